@@ -1,0 +1,1 @@
+//! Mortar contact.

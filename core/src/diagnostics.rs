@@ -1,0 +1,242 @@
+//! What can go wrong, said with place, fact and remedy; one error type for the whole framework.
+//!
+//! Problems of the input are gathered as [`Diagnostic`]s in a [`Report`] and shown together; everything that stops a
+//! run is an [`Error`], whose variant decides the exit code of the program.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A position in an input file; `line` and `column` count from 1, 0 means "the file as a whole".
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// The file, as the user named it.
+    pub file: PathBuf,
+    /// Line from 1; 0 for the whole file.
+    pub line: u32,
+    /// Column from 1, counted in characters; 0 for the whole line.
+    pub column: u32,
+}
+
+impl Place {
+    /// A whole file.
+    pub fn file(path: impl AsRef<Path>) -> Self {
+        Self { file: path.as_ref().to_owned(), line: 0, column: 0 }
+    }
+
+    /// A line (and column, 0 if unknown) of a file.
+    pub fn at(path: impl AsRef<Path>, line: u32, column: u32) -> Self {
+        Self { file: path.as_ref().to_owned(), line, column }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        if self.line > 0 {
+            write!(f, ":{}", self.line)?;
+            if self.column > 0 {
+                write!(f, ":{}", self.column)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a problem stops the run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The run goes on; the log and the report of the run show it.
+    Warning,
+    /// The run does not start, or ends.
+    Error,
+}
+
+/// One problem: its name, where it is, what is the case, and what to do.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Whether it stops the run.
+    pub severity: Severity,
+    /// Short stable name in kebab-case, e.g. `unknown-key`.
+    pub code: &'static str,
+    /// Where, when an input file is to blame.
+    pub place: Option<Place>,
+    /// What is the case, in one sentence without a final stop.
+    pub fact: String,
+    /// What to do about it.
+    pub remedy: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error without place or remedy; add them with [`Diagnostic::at`] and [`Diagnostic::remedy`].
+    pub fn error(code: &'static str, fact: impl Into<String>) -> Self {
+        Self { severity: Severity::Error, code, place: None, fact: fact.into(), remedy: None }
+    }
+
+    /// A warning without place or remedy.
+    pub fn warning(code: &'static str, fact: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, fact) }
+    }
+
+    /// The same problem with its place.
+    #[must_use]
+    pub fn at(mut self, place: impl Into<Option<Place>>) -> Self {
+        self.place = place.into();
+        self
+    }
+
+    /// The same problem with what to do about it.
+    #[must_use]
+    pub fn remedy(mut self, remedy: impl Into<String>) -> Self {
+        self.remedy = Some(remedy.into());
+        self
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.severity == Severity::Error { "error" } else { "warning" };
+        write!(f, "{kind}[{}]", self.code)?;
+        if let Some(place) = &self.place {
+            write!(f, " {place}")?;
+        }
+        write!(f, ": {}", self.fact)?;
+        if let Some(remedy) = &self.remedy {
+            write!(f, "\n    {remedy}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Gathers problems, so that a user sees all of them at once.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Report {
+    /// An empty report.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds one problem; the same one said twice is kept once.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        if !self.diagnostics.contains(&diagnostic) {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Takes the value of `result`, or keeps its problems and gives `None`.
+    pub fn absorb<T>(&mut self, result: Result<T>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(Error::Input(problems)) => {
+                problems.into_iter().for_each(|d| self.push(d));
+                None
+            }
+            Err(other) => {
+                self.push(Diagnostic::error("failed", other.to_string()));
+                None
+            }
+        }
+    }
+
+    /// All problems so far, in the order they were met.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// Whether one of them stops the run.
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+    }
+
+    /// The warnings when nothing stops the run, else the error that holds every problem.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when at least one problem is an error.
+    pub fn finish(self) -> Result<Vec<Diagnostic>> {
+        if self.has_errors() { Err(Error::Input(self.diagnostics)) } else { Ok(self.diagnostics) }
+    }
+}
+
+/// Everything that stops a run; the variant decides the exit code.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The deck is wrong: every problem found, with places (exit code 2).
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Input(Vec<Diagnostic>),
+    /// A step did not converge; what was accepted before it is on disk (exit code 3).
+    #[error("{0}")]
+    NotConverged(String),
+    /// The machine, a file or a solver failed (exit code 4).
+    #[error("{0}")]
+    System(String),
+}
+
+impl Error {
+    /// One input problem.
+    pub fn input(diagnostic: Diagnostic) -> Self {
+        Self::Input(vec![diagnostic])
+    }
+
+    /// The exit code of the program: 2 bad input, 3 not converged, 4 system or solver.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(_) => 2,
+            Self::NotConverged(_) => 3,
+            Self::System(_) => 4,
+        }
+    }
+}
+
+impl From<Diagnostic> for Error {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self::input(diagnostic)
+    }
+}
+
+/// Result of everything in the framework that can fail.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// The names nearest to `wanted`, best first, at most three; for "did you mean".
+pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    let lower = wanted.to_lowercase();
+    let mut scored: Vec<(f64, &str)> =
+        names.into_iter().map(|name| (strsim::jaro_winkler(&lower, &name.to_lowercase()), name)).collect();
+    scored.retain(|(score, _)| *score > 0.8);
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(b.1)));
+    scored.dedup_by(|a, b| a.1 == b.1);
+    scored.into_iter().take(3).map(|(_, name)| name).collect()
+}
+
+/// `did you mean "a" or "b"?`, or `None` when nothing is near.
+pub fn did_you_mean<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let near = nearest(wanted, names);
+    (!near.is_empty()).then(|| {
+        let quoted: Vec<String> = near.iter().map(|name| format!("\"{name}\"")).collect();
+        format!("did you mean {}?", quoted.join(" or "))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_come_first() {
+        assert_eq!(nearest("DISPLACMENT", ["REACTION", "DISPLACEMENT"]), ["DISPLACEMENT"]);
+        assert_eq!(did_you_mean("zzz", ["REACTION"]), None);
+    }
+
+    #[test]
+    fn a_report_with_only_warnings_passes() {
+        let mut report = Report::new();
+        report.push(Diagnostic::warning("old-key", "x"));
+        assert_eq!(report.clone().finish().unwrap().len(), 1);
+        report.push(Diagnostic::error("bad", "y").at(Place::at("a.json", 3, 4)).remedy("z"));
+        let error = report.finish().unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("error[bad] a.json:3:4: y\n    z"));
+    }
+}

@@ -1,0 +1,1 @@
+//! zelus: the façade library.
