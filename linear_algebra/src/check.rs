@@ -1,0 +1,109 @@
+//! What every engine does before and after its own work: look at the input, refine and measure the answer.
+
+use crate::solver::SolveError;
+use crate::system::System;
+use crate::vector;
+
+/// Largest number of equations named in an error.
+pub(crate) const NAMED_EQUATIONS: usize = 16;
+
+/// Refuses input whose sizes do not fit or that is not finite.
+pub(crate) fn input(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), SolveError> {
+    let n = system.equations();
+    let sizes = [
+        ("layout.node", system.layout.node.len()),
+        ("layout.multiplier", system.layout.multiplier.len()),
+        ("coupling", system.coupling.map_or(n, |coupling| coupling.rows)),
+        ("right-hand side", rhs.len()),
+        ("solution", x.len()),
+    ];
+    for (what, size) in sizes {
+        if size != n {
+            return Err(SolveError::Failed(format!("{what} has {size} equations, the matrix {n}")));
+        }
+    }
+    if let Some(i) = rhs.iter().position(|b| !b.is_finite()) {
+        return Err(SolveError::Failed(format!("right-hand side of equation {i} is {}", rhs[i])));
+    }
+    for (what, matrix) in [("matrix", Some(system.bulk)), ("coupling matrix", system.coupling)] {
+        let Some(matrix) = matrix else { continue };
+        if let Some(at) = matrix.values.iter().position(|a| !a.is_finite()) {
+            let row = matrix.row_starts.partition_point(|&start| start <= at) - 1;
+            let (column, value) = (matrix.columns[at], matrix.values[at]);
+            return Err(SolveError::Failed(format!("entry ({row}, {column}) of the {what} is {value}")));
+        }
+    }
+    Ok(())
+}
+
+/// Names equations whose row is zero, which no solver can solve.
+pub(crate) fn empty_rows(system: &System<'_>) -> Result<(), SolveError> {
+    let is_zero = |i: usize| {
+        system.bulk.row(i).1.iter().all(|&a| a == 0.0)
+            && system.coupling.is_none_or(|coupling| coupling.row(i).1.iter().all(|&a| a == 0.0))
+    };
+    let empty: Vec<usize> = (0..system.equations()).filter(|&i| is_zero(i)).collect();
+    if empty.is_empty() {
+        return Ok(());
+    }
+    let rank_deficiency = Some(empty.len());
+    Err(SolveError::Singular { equations: empty.into_iter().take(NAMED_EQUATIONS).collect(), rank_deficiency })
+}
+
+/// An answer and how good it is.
+pub(crate) struct Refined {
+    pub(crate) relative_residual: f64,
+    pub(crate) steps: usize,
+}
+
+/// Residual at which further refinement gains nothing.
+const GOOD_ENOUGH: f64 = 1e-13;
+
+/// `x = A⁻¹ rhs` by `inverse` (in place), improved while the true residual drops by at least a factor of two.
+pub(crate) fn refine(
+    system: &System<'_>,
+    rhs: &[f64],
+    x: &mut [f64],
+    most_steps: usize,
+    mut inverse: impl FnMut(&mut [f64]),
+) -> Refined {
+    let scale = vector::norm(rhs);
+    x.fill(0.0);
+    if scale == 0.0 {
+        return Refined { relative_residual: 0.0, steps: 0 };
+    }
+    let mut correction = rhs.to_vec();
+    inverse(&mut correction);
+    x.copy_from_slice(&correction);
+    let mut residual = vec![0.0; rhs.len()];
+    let mut best = system.residual(rhs, x, &mut residual) / scale;
+    let mut trial = vec![0.0; rhs.len()];
+    for step in 0..most_steps {
+        if best <= GOOD_ENOUGH || best.is_nan() {
+            return Refined { relative_residual: best, steps: step };
+        }
+        correction.copy_from_slice(&residual);
+        inverse(&mut correction);
+        trial.copy_from_slice(x);
+        vector::add_scaled(1.0, &correction, &mut trial);
+        let size = system.residual(rhs, &trial, &mut residual) / scale;
+        if size < best {
+            x.copy_from_slice(&trial);
+        }
+        if size.is_nan() || size > 0.5 * best {
+            return Refined { relative_residual: best.min(size), steps: step + 1 };
+        }
+        best = size;
+    }
+    Refined { relative_residual: best, steps: most_steps }
+}
+
+/// The error for an answer whose residual is too large.
+pub(crate) fn refused(engine: &'static str, refined: &Refined, tolerance: f64) -> SolveError {
+    SolveError::NotConverged {
+        engine,
+        iterations: refined.steps,
+        relative_residual: refined.relative_residual,
+        tolerance,
+    }
+}

@@ -1,0 +1,264 @@
+//! Square sparse matrices by rows, with sorted columns.
+
+use rayon::prelude::*;
+
+/// Rows handled by one task of a product; fixed, so that results do not depend on the number of threads.
+const ROWS_PER_TASK: usize = 512;
+
+/// A square sparse matrix by rows; columns of a row ascend and occur once.
+///
+/// `row_starts` has `rows + 1` entries; the entries of row `i` are `row_starts[i]..row_starts[i + 1]` of `columns`
+/// and `values`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Csr {
+    /// Number of rows and of columns.
+    pub rows: usize,
+    /// Where each row starts, and the number of entries at the end.
+    pub row_starts: Vec<usize>,
+    /// Column of each entry.
+    pub columns: Vec<u32>,
+    /// Value of each entry.
+    pub values: Vec<f64>,
+}
+
+impl Default for Csr {
+    fn default() -> Self {
+        Self::empty(0)
+    }
+}
+
+impl Csr {
+    /// A matrix of `rows` rows without entries.
+    pub fn empty(rows: usize) -> Self {
+        Self { rows, row_starts: vec![0; rows + 1], columns: Vec::new(), values: Vec::new() }
+    }
+
+    /// A zero matrix whose row `i` has the columns `adjacency[i]`, in any order and possibly repeated.
+    ///
+    /// # Panics
+    /// When a column is not below the number of rows.
+    pub fn from_pattern(adjacency: &[Vec<u32>]) -> Self {
+        let rows = adjacency.len();
+        let sorted: Vec<Vec<u32>> = adjacency
+            .par_iter()
+            .with_min_len(ROWS_PER_TASK)
+            .map(|row| {
+                let mut row = row.clone();
+                row.sort_unstable();
+                row.dedup();
+                assert!(row.last().is_none_or(|&column| (column as usize) < rows), "column out of range");
+                row
+            })
+            .collect();
+        let mut row_starts = Vec::with_capacity(rows + 1);
+        row_starts.push(0);
+        let mut entries = 0;
+        for row in &sorted {
+            entries += row.len();
+            row_starts.push(entries);
+        }
+        Self { rows, row_starts, columns: sorted.concat(), values: vec![0.0; entries] }
+    }
+
+    /// A zero matrix of a pattern whose rows are already sorted and free of repetitions.
+    ///
+    /// # Panics
+    /// When the lengths do not fit, or the columns of a row do not ascend or are out of range.
+    pub fn from_sorted_pattern(row_starts: Vec<usize>, columns: Vec<u32>) -> Self {
+        let rows = row_starts.len().checked_sub(1).expect("row_starts has rows + 1 entries");
+        assert_eq!(row_starts[rows], columns.len(), "row_starts ends with the number of entries");
+        for i in 0..rows {
+            let row = &columns[row_starts[i]..row_starts[i + 1]];
+            assert!(row.windows(2).all(|pair| pair[0] < pair[1]), "columns of row {i} ascend");
+            assert!(row.last().is_none_or(|&column| (column as usize) < rows), "column out of range in row {i}");
+        }
+        let values = vec![0.0; columns.len()];
+        Self { rows, row_starts, columns, values }
+    }
+
+    /// The matrix with the sum of all `(row, column, value)` given.
+    ///
+    /// # Panics
+    /// When a row or column is not below `rows`.
+    pub fn from_triplets(rows: usize, triplets: &[(usize, usize, f64)]) -> Self {
+        let mut adjacency = vec![Vec::new(); rows];
+        for &(i, j, _) in triplets {
+            adjacency[i].push(j as u32);
+        }
+        let mut matrix = Self::from_pattern(&adjacency);
+        for &(i, j, value) in triplets {
+            matrix.add(i, j, value);
+        }
+        matrix
+    }
+
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Sets every stored value to zero and keeps the pattern.
+    pub fn zero(&mut self) {
+        self.values.par_chunks_mut(1 << 15).for_each(|chunk| chunk.fill(0.0));
+    }
+
+    /// Columns and values of row `i`.
+    #[inline]
+    pub fn row(&self, i: usize) -> (&[u32], &[f64]) {
+        let range = self.row_starts[i]..self.row_starts[i + 1];
+        (&self.columns[range.clone()], &self.values[range])
+    }
+
+    /// Position of entry `(i, j)` in `columns` and `values`, or `None` outside the pattern.
+    #[inline]
+    pub fn find(&self, i: usize, j: usize) -> Option<usize> {
+        let start = self.row_starts[i];
+        let row = &self.columns[start..self.row_starts[i + 1]];
+        row.binary_search(&(j as u32)).ok().map(|at| start + at)
+    }
+
+    /// Value of entry `(i, j)`; zero outside the pattern.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.find(i, j).map_or(0.0, |at| self.values[at])
+    }
+
+    /// Adds `value` to entry `(i, j)`.
+    ///
+    /// # Panics
+    /// When `(i, j)` is outside the pattern.
+    #[inline]
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        let Some(at) = self.find(i, j) else { panic!("entry ({i}, {j}) is outside the pattern") };
+        self.values[at] += value;
+    }
+
+    /// The diagonal; zero where the pattern has none.
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.rows).map(|i| self.get(i, i)).collect()
+    }
+
+    /// `y = A x`, the same bits on any number of threads.
+    ///
+    /// # Panics
+    /// When `x` or `y` has not `rows` entries.
+    pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
+        self.apply(x, y, |sum, _| sum);
+    }
+
+    /// `y += A x`, the same bits on any number of threads.
+    ///
+    /// # Panics
+    /// When `x` or `y` has not `rows` entries.
+    pub fn mul_vec_add(&self, x: &[f64], y: &mut [f64]) {
+        self.apply(x, y, |sum, old| old + sum);
+    }
+
+    /// `y -= A x`, the same bits on any number of threads.
+    ///
+    /// # Panics
+    /// When `x` or `y` has not `rows` entries.
+    pub fn mul_vec_subtract(&self, x: &[f64], y: &mut [f64]) {
+        self.apply(x, y, |sum, old| old - sum);
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], combine: impl Fn(f64, f64) -> f64 + Sync) {
+        assert_eq!(x.len(), self.rows, "length of x");
+        assert_eq!(y.len(), self.rows, "length of y");
+        let block = |(task, out): (usize, &mut [f64])| {
+            for (at, value) in out.iter_mut().enumerate() {
+                let (columns, values) = self.row(task * ROWS_PER_TASK + at);
+                let sum = columns.iter().zip(values).map(|(&j, a)| a * x[j as usize]).sum::<f64>();
+                *value = combine(sum, *value);
+            }
+        };
+        if self.rows <= ROWS_PER_TASK {
+            block((0, y));
+        } else {
+            y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(block);
+        }
+    }
+
+    /// The transposed matrix.
+    pub fn transpose(&self) -> Self {
+        let mut row_starts = vec![0; self.rows + 1];
+        for &j in &self.columns {
+            row_starts[j as usize + 1] += 1;
+        }
+        for i in 0..self.rows {
+            row_starts[i + 1] += row_starts[i];
+        }
+        let mut next = row_starts.clone();
+        let mut columns = vec![0; self.entries()];
+        let mut values = vec![0.0; self.entries()];
+        for i in 0..self.rows {
+            let (row_columns, row_values) = self.row(i);
+            for (&j, &value) in row_columns.iter().zip(row_values) {
+                let at = &mut next[j as usize];
+                columns[*at] = i as u32;
+                values[*at] = value;
+                *at += 1;
+            }
+        }
+        Self { rows: self.rows, row_starts, columns, values }
+    }
+
+    /// `self + other` on the union of both patterns.
+    ///
+    /// # Panics
+    /// When the sizes differ.
+    pub fn plus(&self, other: &Self) -> Self {
+        assert_eq!(self.rows, other.rows, "matrices of one size");
+        let mut sum = Self::empty(self.rows);
+        sum.columns.reserve(self.entries().max(other.entries()));
+        sum.values.reserve(self.entries().max(other.entries()));
+        for i in 0..self.rows {
+            let (a_columns, a_values) = self.row(i);
+            let (b_columns, b_values) = other.row(i);
+            let (mut a, mut b) = (0, 0);
+            while a < a_columns.len() || b < b_columns.len() {
+                let a_column = a_columns.get(a).copied().unwrap_or(u32::MAX);
+                let b_column = b_columns.get(b).copied().unwrap_or(u32::MAX);
+                let column = a_column.min(b_column);
+                let mut value = 0.0;
+                if a_column == column {
+                    value += a_values[a];
+                    a += 1;
+                }
+                if b_column == column {
+                    value += b_values[b];
+                    b += 1;
+                }
+                sum.columns.push(column);
+                sum.values.push(value);
+            }
+            sum.row_starts[i + 1] = sum.columns.len();
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pattern_is_sorted_and_unique() {
+        let matrix = Csr::from_pattern(&[vec![2, 0, 2], vec![], vec![1]]);
+        assert_eq!(matrix.row_starts, [0, 2, 2, 3]);
+        assert_eq!(matrix.columns, [0, 2, 1]);
+        assert_eq!((matrix.find(0, 2), matrix.find(1, 1)), (Some(1), None));
+    }
+
+    #[test]
+    fn products_transposes_and_sums_agree() {
+        let a = Csr::from_triplets(3, &[(0, 0, 1.0), (0, 2, 2.0), (2, 1, 3.0)]);
+        let b = Csr::from_triplets(3, &[(0, 2, 1.0), (1, 1, 5.0)]);
+        let mut y = [0.0; 3];
+        a.mul_vec(&[1.0, 10.0, 100.0], &mut y);
+        assert_eq!(y, [201.0, 0.0, 30.0]);
+        a.transpose().mul_vec_subtract(&[1.0, 1.0, 1.0], &mut y);
+        assert_eq!(y, [200.0, -3.0, 28.0]);
+        let sum = a.plus(&b);
+        assert_eq!((sum.get(0, 2), sum.get(1, 1), sum.get(2, 1), sum.entries()), (3.0, 5.0, 3.0, 4));
+    }
+}

@@ -1,0 +1,141 @@
+//! The one interface of all solvers, what they report and how they fail.
+
+use crate::system::System;
+
+/// What one solve did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolveReport {
+    /// The engine that gave the answer.
+    pub engine: &'static str,
+    /// `‖b - A x‖ / ‖b‖` of the answer, measured on the true matrix; zero when `b` is zero.
+    pub relative_residual: f64,
+    /// Krylov iterations, or steps of iterative refinement for a direct engine.
+    pub iterations: usize,
+    /// Why another engine than the one asked for gave the answer.
+    pub fallback: Option<String>,
+    /// Seconds spent on ordering and symbolic factorisation; zero when reused.
+    pub seconds_symbolic: f64,
+    /// Seconds spent on numeric factorisation or on the preconditioner; zero when reused.
+    pub seconds_numeric: f64,
+    /// Seconds spent on the solution itself, refinement included.
+    pub seconds_solve: f64,
+}
+
+/// Why a solve gave no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// The matrix is singular; `equations` are the most suspicious ones, worst first.
+    #[error("the matrix is singular{}; suspicious equations: {equations:?}",
+        .rank_deficiency.map(|rank| format!(" (at least {rank} free motions)")).unwrap_or_default())]
+    Singular {
+        /// Equations with the largest entries in the near-null vector, or with tiny pivots; at most 16.
+        equations: Vec<usize>,
+        /// Number of tiny pivots, where it is known.
+        rank_deficiency: Option<usize>,
+    },
+    /// The answer does not reach the accuracy asked for.
+    #[error(
+        "{engine} did not converge: relative residual {relative_residual:.3e} after {iterations} iterations, \
+         {tolerance:.1e} wanted"
+    )]
+    NotConverged {
+        /// The engine that ran last.
+        engine: &'static str,
+        /// Iterations done.
+        iterations: usize,
+        /// Residual reached.
+        relative_residual: f64,
+        /// Residual wanted.
+        tolerance: f64,
+    },
+    /// The input is unusable or the machine gave up; the text says what happened.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// A solver of sparse linear systems that keeps what it can reuse between solves.
+pub trait LinearSolver: Send {
+    /// Name of the engine, as in [`SolveReport::engine`].
+    fn name(&self) -> &'static str;
+
+    /// Solves `(bulk + coupling) x = rhs`; `x` is the first guess of iterative engines and the answer.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] when the matrix has no inverse, [`SolveError::NotConverged`] when the residual stays
+    /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
+    fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
+}
+
+/// Which solver to create, with its settings.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Engine {
+    /// Multifrontal factorisation with the interface in a dense Schur complement; the default.
+    Direct(DirectSettings),
+    /// Sparse LU with column ordering and partial pivoting; slow, for small or awkward systems.
+    Lu,
+    /// Conjugate gradients, for symmetric positive definite systems.
+    ConjugateGradient(KrylovSettings),
+    /// Restarted GMRES, for any system.
+    Gmres {
+        /// Accuracy and preconditioner.
+        krylov: KrylovSettings,
+        /// Directions kept before a restart.
+        restart: usize,
+    },
+}
+
+impl Default for Engine {
+    fn default() -> Self {
+        Self::Direct(DirectSettings::default())
+    }
+}
+
+/// Settings of [`Engine::Direct`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct DirectSettings {
+    /// Systems of at most this many equations are solved by one dense LU.
+    pub dense_below: usize,
+    /// Interfaces of at most this many equations go into a dense Schur complement.
+    pub interface_limit: usize,
+    /// Relative residual above which an answer is refused.
+    pub tolerance: f64,
+    /// Largest number of steps of iterative refinement.
+    pub refinements: usize,
+}
+
+impl Default for DirectSettings {
+    fn default() -> Self {
+        Self { dense_below: 300, interface_limit: 9000, tolerance: 1e-6, refinements: 3 }
+    }
+}
+
+/// Settings of the Krylov engines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KrylovSettings {
+    /// Relative residual `‖b - A x‖ / ‖b‖` at which iteration stops.
+    pub tolerance: f64,
+    /// Largest number of iterations.
+    pub iterations: usize,
+    /// The preconditioner.
+    pub preconditioner: Preconditioner,
+}
+
+impl Default for KrylovSettings {
+    fn default() -> Self {
+        Self { tolerance: 1e-9, iterations: 1000, preconditioner: Preconditioner::default() }
+    }
+}
+
+/// Approximate inverses that speed up a Krylov engine.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Preconditioner {
+    /// None.
+    Identity,
+    /// Inverses of the diagonal blocks of the nodes.
+    BlockJacobi,
+    /// Incomplete LU on the pattern of the matrix.
+    Ilu0,
+    /// Smoothed-aggregation multigrid with the near-null space of the layout.
+    #[default]
+    SmoothedAggregation,
+}

@@ -1,0 +1,141 @@
+//! What a solver is given: the equations and their matrix in two parts.
+
+use crate::csr::Csr;
+
+/// What is known of a matrix before it is factorised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symmetry {
+    /// Symmetric and expected positive definite, at least once the interface is held.
+    PositiveDefinite,
+    /// Symmetric with eigenvalues of either sign.
+    Symmetric,
+    /// Not symmetric.
+    General,
+}
+
+/// What the equations stand for, which decides their ordering.
+///
+/// `node` and `multiplier` have one entry an equation. Equations of one node are ordered together, so equations that
+/// share a node should share their columns too.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Layout {
+    /// Node of each equation, from 0; a multiplier carries the node of its slave.
+    pub node: Vec<u32>,
+    /// Whether the equation is that of a multiplier.
+    pub multiplier: Vec<bool>,
+    /// Vectors the bulk nearly maps to zero (rigid motions), for multigrid; may be empty.
+    pub near_null_space: Vec<Vec<f64>>,
+}
+
+impl Layout {
+    /// Every equation a node of its own and none a multiplier.
+    pub fn scalar(equations: usize) -> Self {
+        Self { node: (0..equations as u32).collect(), multiplier: vec![false; equations], near_null_space: Vec::new() }
+    }
+
+    /// `per_node` equations a node, numbered node by node, none a multiplier.
+    pub fn blocked(nodes: usize, per_node: usize) -> Self {
+        let equations = nodes * per_node;
+        Self {
+            node: (0..equations).map(|i| (i / per_node) as u32).collect(),
+            multiplier: vec![false; equations],
+            near_null_space: Vec::new(),
+        }
+    }
+
+    /// Number of equations.
+    pub fn equations(&self) -> usize {
+        self.node.len()
+    }
+}
+
+/// The equations `(bulk + coupling) x = b`, with stamps that tell what changed since the last solve.
+///
+/// `coupling` touches few equations (the contact interface: slave and master displacements and multipliers); rows of
+/// multipliers are empty in `bulk`. A stamp that equals the one of the previous solve with the same solver promises
+/// that the thing it stamps is unchanged, so work done on it is reused. A changed layout changes `bulk_graph`.
+#[derive(Debug, Clone, Copy)]
+pub struct System<'a> {
+    /// What the equations stand for.
+    pub layout: &'a Layout,
+    /// The part that does not come from contact.
+    pub bulk: &'a Csr,
+    /// What is known of `bulk`.
+    pub bulk_symmetry: Symmetry,
+    /// Stamp of the layout and of the pattern of `bulk`.
+    pub bulk_graph: u64,
+    /// Stamp of the values of `bulk`.
+    pub bulk_values: u64,
+    /// The part that comes from contact.
+    pub coupling: Option<&'a Csr>,
+    /// Stamp of the pattern of `coupling`.
+    pub coupling_graph: u64,
+    /// Stamp of the values of `coupling`.
+    pub coupling_values: u64,
+    /// Whether `coupling` is symmetric.
+    pub coupling_symmetric: bool,
+}
+
+impl<'a> System<'a> {
+    /// A system without coupling; all stamps are zero, set them when the solver is used again.
+    pub fn bulk(layout: &'a Layout, bulk: &'a Csr, bulk_symmetry: Symmetry) -> Self {
+        Self {
+            layout,
+            bulk,
+            bulk_symmetry,
+            bulk_graph: 0,
+            bulk_values: 0,
+            coupling: None,
+            coupling_graph: 0,
+            coupling_values: 0,
+            coupling_symmetric: true,
+        }
+    }
+
+    /// Number of equations.
+    pub fn equations(&self) -> usize {
+        self.bulk.rows
+    }
+
+    /// The coupling when it has entries.
+    pub fn active_coupling(&self) -> Option<&'a Csr> {
+        self.coupling.filter(|coupling| coupling.entries() > 0)
+    }
+
+    /// `y = (bulk + coupling) x`.
+    ///
+    /// # Panics
+    /// When a length is not the number of equations.
+    pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
+        self.bulk.mul_vec(x, y);
+        if let Some(coupling) = self.active_coupling() {
+            coupling.mul_vec_add(x, y);
+        }
+    }
+
+    /// `r = b - (bulk + coupling) x`; gives the Euclidean norm of `r`.
+    ///
+    /// # Panics
+    /// When a length is not the number of equations.
+    pub fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) -> f64 {
+        r.copy_from_slice(b);
+        self.bulk.mul_vec_subtract(x, r);
+        if let Some(coupling) = self.active_coupling() {
+            coupling.mul_vec_subtract(x, r);
+        }
+        crate::vector::norm(r)
+    }
+
+    /// `bulk + coupling` as one matrix.
+    pub fn merged(&self) -> Csr {
+        match self.active_coupling() {
+            Some(coupling) => self.bulk.plus(coupling),
+            None => self.bulk.clone(),
+        }
+    }
+
+    /// Whether the sum of both parts is symmetric as far as the caller knows.
+    pub fn is_symmetric(&self) -> bool {
+        self.bulk_symmetry != Symmetry::General && (self.active_coupling().is_none() || self.coupling_symmetric)
+    }
+}
