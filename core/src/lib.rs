@@ -1,2 +1,14 @@
-//! Finite-element framework of zelus; it knows no physics and names no application.
+//! The framework of zelus: models, parameters, registries, assembly and strategies; it knows no physics.
+//!
+//! Read the modules in the order below: each uses only those above it, and data flows the same way, from the words of a
+//! deck to the numbers on disk. What is found by name is in [`registry`]; what computes is in [`entities`].
+
+pub mod assembly;
 pub mod diagnostics;
+pub mod entities;
+pub mod model;
+pub mod registry;
+
+pub use diagnostics::{Error, Result};
+#[doc(hidden)]
+pub use inventory;

@@ -1,0 +1,97 @@
+//! Unknowns of the model: which exist, which are fixed, and their numbers.
+
+use std::collections::BTreeMap;
+
+use crate::model::{Nodes, ScalarVariable};
+
+/// "Not an unknown of the system" in the table of numbers.
+pub const NONE: u32 = u32::MAX;
+
+/// One unknown of the system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dof {
+    /// Node index.
+    pub node: u32,
+    /// The unknown.
+    pub variable: ScalarVariable,
+    /// Whether it is a Lagrange multiplier.
+    pub multiplier: bool,
+}
+
+/// All unknowns, numbered by node first so that those of a node stand together.
+#[derive(Debug, Clone, Default)]
+pub struct DofTable {
+    dofs: Vec<Dof>,
+    numbers: BTreeMap<ScalarVariable, Vec<u32>>,
+    fixed: BTreeMap<ScalarVariable, Vec<bool>>,
+    version: u64,
+}
+
+impl DofTable {
+    /// Numbers the unknowns of `carriers`: (variable, is a multiplier, nodes that carry it).
+    ///
+    /// Order: by node, displacement-like unknowns before multipliers in the order given.
+    pub fn number(&mut self, nodes: &Nodes, carriers: &[(ScalarVariable, bool, Vec<u32>)]) {
+        let mut present: Vec<(ScalarVariable, bool, Vec<bool>)> = Vec::new();
+        for (variable, multiplier, list) in carriers {
+            let at = present.iter().position(|(known, ..)| known == variable).unwrap_or_else(|| {
+                present.push((*variable, *multiplier, vec![false; nodes.len()]));
+                present.len() - 1
+            });
+            list.iter().for_each(|&node| present[at].2[node as usize] = true);
+        }
+        self.dofs.clear();
+        self.numbers = present.iter().map(|(variable, ..)| (*variable, vec![NONE; nodes.len()])).collect();
+        for node in 0..nodes.len() {
+            for (variable, multiplier, carried) in &present {
+                if carried[node] {
+                    self.numbers.get_mut(variable).expect("just made")[node] = self.dofs.len() as u32;
+                    self.dofs.push(Dof { node: node as u32, variable: *variable, multiplier: *multiplier });
+                }
+            }
+        }
+        self.version += 1;
+    }
+
+    /// All unknowns in the order of their numbers.
+    pub fn dofs(&self) -> &[Dof] {
+        &self.dofs
+    }
+
+    /// Number of unknowns.
+    pub fn len(&self) -> usize {
+        self.dofs.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.dofs.is_empty()
+    }
+
+    /// Changes with every renumbering.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Numbers of a variable by node; [`NONE`] where the node does not carry it. Empty when no node does.
+    pub fn numbers(&self, variable: ScalarVariable) -> &[u32] {
+        self.numbers.get(&variable).map_or(&[], Vec::as_slice)
+    }
+
+    /// Number of one unknown.
+    pub fn number_of(&self, variable: ScalarVariable, node: u32) -> Option<u32> {
+        self.numbers.get(&variable).map(|list| list[node as usize]).filter(|&number| number != NONE)
+    }
+
+    /// Fixes or frees an unknown of some nodes.
+    pub fn set_fixed(&mut self, variable: ScalarVariable, nodes: &[u32], fixed: bool, node_count: usize) {
+        let column = self.fixed.entry(variable).or_insert_with(|| vec![false; node_count]);
+        column.resize(node_count, false);
+        nodes.iter().for_each(|&node| column[node as usize] = fixed);
+    }
+
+    /// Whether an unknown is fixed now.
+    pub fn is_fixed(&self, variable: ScalarVariable, node: u32) -> bool {
+        self.fixed.get(&variable).is_some_and(|column| column[node as usize])
+    }
+}

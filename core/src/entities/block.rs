@@ -1,0 +1,212 @@
+//! A block: all entities of one registered kind, with one computation behind one dispatch.
+
+use std::ops::Range;
+
+use super::view::StepView;
+use crate::diagnostics::{Diagnostic, Error, Result};
+use crate::model::{EntityTable, ModelPart, Nodes, ScalarVariable};
+use crate::registry::Entry;
+
+/// A row of a local system: which unknown of which local node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LocalUnknown {
+    /// Position of the node in the entity's connectivity.
+    pub node: u8,
+    /// The unknown.
+    pub variable: ScalarVariable,
+}
+
+/// How the tangent of a block behaves, so that the framework can reuse what does not change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tangent {
+    /// None at all: the block only loads.
+    Zero,
+    /// The same in every iteration and step, symmetric; the internal force is tangent times unknowns.
+    Constant,
+    /// Depends on the state, symmetric.
+    Symmetric,
+    /// Depends on the state, not symmetric.
+    General,
+}
+
+/// Which parts of the local systems a caller wants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Want {
+    /// The right-hand side only: external minus internal forces.
+    Residual,
+    /// Tangent (minus the derivative of the right-hand side) and right-hand side.
+    Both,
+    /// Only the external forces of a [`Tangent::Constant`] block, e.g. body forces.
+    External,
+}
+
+/// Buffers for the local systems of a range of entities, one after another.
+#[derive(Debug, Default)]
+pub struct LocalSystems {
+    /// Rows of one local system.
+    pub size: usize,
+    /// `size * size` numbers an entity, row by row; empty when no tangent is wanted.
+    pub lhs: Vec<f64>,
+    /// `size` numbers an entity.
+    pub rhs: Vec<f64>,
+}
+
+impl LocalSystems {
+    /// Zeroed buffers for `count` entities of `size` rows.
+    pub fn reset(&mut self, count: usize, size: usize, want: Want) {
+        self.size = size;
+        self.rhs.clear();
+        self.rhs.resize(count * size, 0.0);
+        self.lhs.clear();
+        self.lhs.resize(if want == Want::Both { count * size * size } else { 0 }, 0.0);
+    }
+
+    /// Tangent (empty when not wanted) and right-hand side of the `at`-th entity of the range.
+    pub fn entity(&mut self, at: usize) -> (&mut [f64], &mut [f64]) {
+        let n = self.size;
+        let lhs = if self.lhs.is_empty() { &mut [][..] } else { &mut self.lhs[at * n * n..(at + 1) * n * n] };
+        (lhs, &mut self.rhs[at * n..(at + 1) * n])
+    }
+}
+
+/// Something wrong with one entity during computation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EntityError {
+    /// Registered name of the kind.
+    pub kind: &'static str,
+    /// Id of the entity in the mesh.
+    pub id: usize,
+    /// Ids of its nodes.
+    pub nodes: Vec<usize>,
+    /// What is the case.
+    pub fact: String,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+impl From<EntityError> for Error {
+    fn from(e: EntityError) -> Self {
+        let nodes: Vec<String> = e.nodes.iter().map(ToString::to_string).collect();
+        Diagnostic::error("entity", format!("{} {} (nodes {}): {}", e.kind, e.id, nodes.join(" "), e.fact))
+            .remedy(e.remedy)
+            .into()
+    }
+}
+
+/// Values at the Gauss points of one entity.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Gauss {
+    /// Numbers a point.
+    pub components: usize,
+    /// `components` numbers a point.
+    pub values: Vec<f64>,
+    /// Integration weight times Jacobian of each point.
+    pub weights: Vec<f64>,
+    /// Shape functions, one row of nodes a point.
+    pub shape: Vec<f64>,
+}
+
+/// What a block is made from.
+pub struct BlockRequest<'a> {
+    /// The registered kind.
+    pub entry: &'static Entry,
+    /// Indices of the entities in their table, ascending.
+    pub members: Vec<u32>,
+    /// The table, elements or conditions.
+    pub table: &'a EntityTable,
+    /// Nodes.
+    pub nodes: &'a Nodes,
+    /// The model part, for properties and step data.
+    pub part: &'a ModelPart,
+}
+
+/// All entities of one kind; writes the local systems of ranges of them.
+///
+/// Unknowns are rows in the same order for every entity. Local systems follow `tangent · Δ = residual`, the residual being
+/// external minus internal forces and the tangent minus its derivative.
+pub trait EntityBlock: Send + Sync {
+    /// The registered kind.
+    fn entry(&self) -> &'static Entry;
+
+    /// Indices of the entities in the model part's table, in the order of the block; empty for pairs made by a search.
+    fn members(&self) -> &[u32];
+
+    /// Number of entities.
+    fn len(&self) -> usize {
+        self.members().len()
+    }
+
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Node indices of the `at`-th entity.
+    fn nodes(&self, at: usize) -> &[u32];
+
+    /// The rows of every local system.
+    fn unknowns(&self) -> &[LocalUnknown];
+
+    /// How the tangent behaves.
+    fn tangent(&self) -> Tangent;
+
+    /// Whether the `at`-th entity takes part now; an entity that does not contributes nothing.
+    fn is_active(&self, at: usize, view: &StepView<'_>) -> bool;
+
+    /// Once, before the first step: checks and prepares the entities.
+    ///
+    /// # Errors
+    /// Every entity or property that cannot be computed with.
+    fn initialize(&mut self, _view: &StepView<'_>) -> Result<()> {
+        Ok(())
+    }
+
+    /// Writes the local systems of `range` into `out`, which is reset by the caller.
+    ///
+    /// # Errors
+    /// The first entity that cannot be computed, e.g. an inverted element.
+    fn local_systems(
+        &self,
+        view: &StepView<'_>,
+        range: Range<usize>,
+        want: Want,
+        out: &mut LocalSystems,
+    ) -> Result<(), EntityError>;
+
+    /// Whether a [`Tangent::Constant`] block has external forces of its own in this step.
+    fn has_external(&self, _view: &StepView<'_>) -> bool {
+        false
+    }
+
+    /// Writes the mass matrices of `range` into `out.lhs`; `false` when the kind has no mass.
+    ///
+    /// # Errors
+    /// As [`EntityBlock::local_systems`].
+    fn mass(
+        &self,
+        _view: &StepView<'_>,
+        _range: Range<usize>,
+        _lumped: bool,
+        _out: &mut LocalSystems,
+    ) -> Result<bool, EntityError> {
+        Ok(false)
+    }
+
+    /// The step is accepted: history advances, once.
+    ///
+    /// # Errors
+    /// As [`EntityBlock::local_systems`].
+    fn accept_step(&mut self, _view: &StepView<'_>) -> Result<(), EntityError> {
+        Ok(())
+    }
+
+    /// A variable at the Gauss points of the `at`-th entity; `None` when the kind does not know it.
+    fn gauss(&self, _view: &StepView<'_>, _variable: &str, _at: usize) -> Option<Gauss> {
+        None
+    }
+
+    /// Names that [`EntityBlock::gauss`] answers.
+    fn gauss_variables(&self) -> &'static [&'static str] {
+        &[]
+    }
+}

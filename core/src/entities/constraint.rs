@@ -1,0 +1,21 @@
+//! Linear relations between unknowns, removed from the system by elimination (eqs. D.12a–e).
+
+use crate::model::ScalarVariable;
+
+/// An unknown of a node.
+pub type NodeUnknown = (u32, ScalarVariable);
+
+/// u_slave = Σ weight · u_master + constant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MasterSlaveConstraint {
+    /// Number in the mesh.
+    pub id: usize,
+    /// The eliminated unknown: node index and variable.
+    pub slave: NodeUnknown,
+    /// The unknowns it follows, with weights.
+    pub masters: Vec<(NodeUnknown, f64)>,
+    /// What is added.
+    pub constant: f64,
+    /// Whether it holds now.
+    pub active: bool,
+}

@@ -1,0 +1,93 @@
+//! What acts between bodies and changes with the state: contact above all.
+
+use super::block::EntityBlock;
+use crate::diagnostics::Result;
+use crate::model::{ModelPart, ScalarVariable};
+
+/// What the active-set stage of an iteration changed.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SetChange {
+    /// Ids of nodes that became active.
+    pub activated: Vec<usize>,
+    /// Ids of nodes that became inactive.
+    pub deactivated: Vec<usize>,
+    /// Ids of nodes that changed between stick and slip.
+    pub stick_slip: Vec<usize>,
+}
+
+impl SetChange {
+    /// Number of changes.
+    pub fn count(&self) -> usize {
+        self.activated.len() + self.deactivated.len() + self.stick_slip.len()
+    }
+}
+
+/// A participant in the Newton loop that owns blocks of its own and decides which of them act.
+///
+/// Called by the strategy in the order of the methods below. The model part it receives holds no interactions while they
+/// run, so it can be read and changed freely.
+pub trait Interaction: Send {
+    /// Short name for the log.
+    fn name(&self) -> &str;
+
+    /// Before anything runs: variables, geometry, parameters.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the deck's interfaces.
+    fn initialize(&mut self, part: &mut ModelPart) -> Result<()>;
+
+    /// Unknowns it adds (beside those of elements), with the nodes that carry them; constant over the run.
+    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)>;
+
+    /// Step start, before the prediction: search, pairs, initial active set.
+    ///
+    /// # Errors
+    /// A failed search.
+    fn begin_step(&mut self, part: &mut ModelPart) -> Result<()>;
+
+    /// After the prediction and before the first assembly of the step.
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()>;
+
+    /// Before the assembly of iteration `iteration` (from 1).
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    fn begin_iteration(&mut self, part: &mut ModelPart, iteration: usize) -> Result<()>;
+
+    /// After the update of iteration `iteration`: the active-set stage.
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange>;
+
+    /// The step is accepted.
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()>;
+
+    /// Blocks that act now.
+    fn blocks(&self) -> Vec<&dyn EntityBlock>;
+
+    /// Changes whenever the connectivity of [`Interaction::blocks`] does.
+    fn graph_version(&self) -> u64;
+
+    /// Diagonal and right-hand side for unknowns of [`Interaction::unknowns`] that no block touches now.
+    fn idle_diagonal(&self) -> f64 {
+        1.0
+    }
+
+    /// Keeps what a retried step must restore.
+    fn save(&mut self);
+
+    /// Brings back what [`Interaction::save`] kept.
+    fn restore(&mut self);
+
+    /// Numbers for the report of the run, by name.
+    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,288 @@
+//! The mathematics of one entity, and the block that runs it over many.
+
+use std::ops::Range;
+
+use super::block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
+use super::view::StepView;
+use crate::diagnostics::Result;
+use crate::model::Properties;
+use crate::registry::{Entry, Kind};
+
+/// What a kernel is told of its entity, beside the step's fields.
+#[derive(Clone, Copy)]
+pub struct Gather<'a, const NODES: usize> {
+    /// Index of the entity in the model part's table.
+    pub index: u32,
+    /// Node indices.
+    pub nodes: &'a [u32; NODES],
+    /// Its properties.
+    pub properties: &'a Properties,
+    /// Initial positions.
+    pub initial: [[f64; 3]; NODES],
+    /// Present positions.
+    pub current: [[f64; 3]; NODES],
+}
+
+impl<const NODES: usize> Gather<'_, NODES> {
+    /// Three numbers a node of a vector column.
+    pub fn vectors(&self, column: &[f64]) -> [[f64; 3]; NODES] {
+        self.nodes.map(|node| {
+            let at = 3 * node as usize;
+            [column[at], column[at + 1], column[at + 2]]
+        })
+    }
+
+    /// One number a node of a scalar column.
+    pub fn scalars(&self, column: &[f64]) -> [f64; NODES] {
+        self.nodes.map(|node| column[node as usize])
+    }
+}
+
+/// The mathematics of one kind of element or condition with `NODES` nodes and `SIZE` unknowns.
+///
+/// `tangent · Δ = residual`; the residual is external minus internal forces. One value of the type serves one block; state
+/// of single entities lives in `State`.
+pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + 'static {
+    /// History of one entity; advances only with an accepted step.
+    type State: Clone + Send + Sync;
+
+    /// The rows of the local system.
+    fn unknowns() -> [LocalUnknown; SIZE];
+
+    /// The kernel for one block.
+    ///
+    /// # Errors
+    /// What the block's properties or data lack.
+    fn new(request: &BlockRequest<'_>) -> Result<Self>;
+
+    /// State of an entity before the first step.
+    ///
+    /// # Errors
+    /// What the entity's properties lack, or a geometry that cannot be computed with.
+    fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Self::State, String>;
+
+    /// How the tangent behaves.
+    fn tangent(&self) -> Tangent;
+
+    /// Adds the residual, and the tangent row by row when `lhs` is not empty.
+    ///
+    /// # Errors
+    /// Why the entity cannot be computed, e.g. that it is inverted.
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        state: &Self::State,
+        view: &StepView<'_>,
+        want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String>;
+
+    /// Whether a constant-tangent kernel has external forces of its own in this step.
+    fn has_external(&self, _view: &StepView<'_>) -> bool {
+        false
+    }
+
+    /// Adds the mass matrix row by row; `false` when the kind has none.
+    fn mass(
+        &self,
+        _entity: &Gather<'_, NODES>,
+        _state: &Self::State,
+        _view: &StepView<'_>,
+        _lumped: bool,
+        _out: &mut [f64],
+    ) -> bool {
+        false
+    }
+
+    /// The state after an accepted step.
+    ///
+    /// # Errors
+    /// As [`Kernel::local_system`].
+    fn accept(
+        &self,
+        _entity: &Gather<'_, NODES>,
+        _state: &mut Self::State,
+        _view: &StepView<'_>,
+    ) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// A variable at the Gauss points.
+    fn gauss(
+        &self,
+        _entity: &Gather<'_, NODES>,
+        _state: &Self::State,
+        _view: &StepView<'_>,
+        _variable: &str,
+    ) -> Option<Gauss> {
+        None
+    }
+
+    /// Names that [`Kernel::gauss`] answers.
+    fn gauss_variables() -> &'static [&'static str] {
+        &[]
+    }
+}
+
+/// A block made of a kernel, a connectivity and a state for each entity.
+pub struct KernelBlock<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> {
+    entry: &'static Entry,
+    kernel: K,
+    members: Vec<u32>,
+    ids: Vec<usize>,
+    nodes: Vec<[u32; NODES]>,
+    properties: Vec<usize>,
+    states: Vec<K::State>,
+    unknowns: Vec<LocalUnknown>,
+}
+
+impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<K, NODES, SIZE> {
+    /// The block of the requested entities; the factory that registrations name.
+    ///
+    /// # Errors
+    /// As [`Kernel::new`].
+    pub fn boxed(request: &BlockRequest<'_>) -> Result<Box<dyn EntityBlock>> {
+        let table = request.table;
+        let nodes =
+            request.members.iter().map(|&m| table.nodes(m).try_into().expect("registered node count")).collect();
+        Ok(Box::new(Self {
+            entry: request.entry,
+            kernel: K::new(request)?,
+            ids: request.members.iter().map(|&m| table.ids[m as usize]).collect(),
+            properties: request.members.iter().map(|&m| table.properties[m as usize]).collect(),
+            members: request.members.clone(),
+            nodes,
+            states: Vec::new(),
+            unknowns: K::unknowns().to_vec(),
+        }))
+    }
+
+    fn gather<'a>(&'a self, at: usize, view: &StepView<'a>) -> Gather<'a, NODES> {
+        let nodes = &self.nodes[at];
+        Gather {
+            index: self.members[at],
+            nodes,
+            properties: &view.properties[&self.properties[at]],
+            initial: nodes.map(|n| view.nodes.initial[n as usize]),
+            current: nodes.map(|n| view.nodes.current[n as usize]),
+        }
+    }
+
+    fn error(&self, at: usize, view: &StepView<'_>, fact: String) -> EntityError {
+        EntityError {
+            kind: self.entry.name,
+            id: self.ids[at],
+            nodes: self.nodes[at].iter().map(|&n| view.nodes.ids[n as usize]).collect(),
+            fact,
+            remedy: "see `zelus check`; in a running analysis smaller steps may help",
+        }
+    }
+}
+
+impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock for KernelBlock<K, NODES, SIZE> {
+    fn entry(&self) -> &'static Entry {
+        self.entry
+    }
+
+    fn members(&self) -> &[u32] {
+        &self.members
+    }
+
+    fn nodes(&self, at: usize) -> &[u32] {
+        &self.nodes[at]
+    }
+
+    fn unknowns(&self) -> &[LocalUnknown] {
+        &self.unknowns
+    }
+
+    fn tangent(&self) -> Tangent {
+        self.kernel.tangent()
+    }
+
+    fn is_active(&self, at: usize, view: &StepView<'_>) -> bool {
+        let table = if self.entry.kind == Kind::Element { view.elements } else { view.conditions };
+        table.flags.is_active(self.members[at] as usize)
+    }
+
+    fn initialize(&mut self, view: &StepView<'_>) -> Result<()> {
+        let mut report = crate::diagnostics::Report::new();
+        let mut states = Vec::with_capacity(self.members.len());
+        for at in 0..self.members.len() {
+            match self.kernel.state(&self.gather(at, view), view) {
+                Ok(state) => states.push(state),
+                Err(fact) => {
+                    report.absorb::<()>(Err(self.error(at, view, fact).into()));
+                    if report.diagnostics().len() >= 20 {
+                        break;
+                    }
+                }
+            }
+        }
+        report.finish()?;
+        self.states = states;
+        Ok(())
+    }
+
+    fn local_systems(
+        &self,
+        view: &StepView<'_>,
+        range: Range<usize>,
+        want: Want,
+        out: &mut LocalSystems,
+    ) -> Result<(), EntityError> {
+        for (slot, at) in range.enumerate() {
+            if !self.is_active(at, view) {
+                continue;
+            }
+            let (lhs, rhs) = out.entity(slot);
+            let rhs = rhs.try_into().expect("buffer of SIZE rows");
+            self.kernel
+                .local_system(&self.gather(at, view), &self.states[at], view, want, lhs, rhs)
+                .map_err(|fact| self.error(at, view, fact))?;
+        }
+        Ok(())
+    }
+
+    fn has_external(&self, view: &StepView<'_>) -> bool {
+        self.kernel.has_external(view)
+    }
+
+    fn mass(
+        &self,
+        view: &StepView<'_>,
+        range: Range<usize>,
+        lumped: bool,
+        out: &mut LocalSystems,
+    ) -> Result<bool, EntityError> {
+        let mut any = false;
+        for (slot, at) in range.enumerate() {
+            if self.is_active(at, view) {
+                let (lhs, _) = out.entity(slot);
+                any |= self.kernel.mass(&self.gather(at, view), &self.states[at], view, lumped, lhs);
+            }
+        }
+        Ok(any)
+    }
+
+    fn accept_step(&mut self, view: &StepView<'_>) -> Result<(), EntityError> {
+        if size_of::<K::State>() == 0 {
+            return Ok(());
+        }
+        let mut states = std::mem::take(&mut self.states);
+        let result = states.iter_mut().enumerate().try_for_each(|(at, state)| {
+            self.kernel.accept(&self.gather(at, view), state, view).map_err(|fact| self.error(at, view, fact))
+        });
+        self.states = states;
+        result
+    }
+
+    fn gauss(&self, view: &StepView<'_>, variable: &str, at: usize) -> Option<Gauss> {
+        self.kernel.gauss(&self.gather(at, view), &self.states[at], view, variable)
+    }
+
+    fn gauss_variables(&self) -> &'static [&'static str] {
+        K::gauss_variables()
+    }
+}

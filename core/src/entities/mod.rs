@@ -1,0 +1,16 @@
+//! What computes: blocks of like entities, interactions between bodies, linear constraints between unknowns.
+//!
+//! Dispatch happens once a block: a [`EntityBlock`] writes the local systems of a whole range of its entities into
+//! buffers of the caller. A method is a [`Kernel`], the mathematics of one entity; [`KernelBlock`] makes a block of it.
+
+mod block;
+mod constraint;
+mod interaction;
+mod kernel;
+mod view;
+
+pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
+pub use constraint::{MasterSlaveConstraint, NodeUnknown};
+pub use interaction::{Interaction, SetChange};
+pub use kernel::{Gather, Kernel, KernelBlock};
+pub use view::StepView;

@@ -1,0 +1,86 @@
+//! The elements or conditions of a model part as the mesh gives them: kind, nodes, properties, data, flags.
+
+use rustc_hash::FxHashMap;
+
+use super::fields::Fields;
+use super::flags::Flags;
+use crate::registry::Entry;
+
+/// Elements or conditions in flat arrays; an index counts them in the order they were added.
+#[derive(Debug, Default, Clone)]
+pub struct EntityTable {
+    /// Ids; ascending for what the mesh file gives, later ones follow.
+    pub ids: Vec<usize>,
+    /// Registered kind of each.
+    pub kinds: Vec<&'static Entry>,
+    /// Properties id of each.
+    pub properties: Vec<usize>,
+    /// Columns without history (Kratos: entity data).
+    pub data: Fields,
+    /// Flags.
+    pub flags: Flags,
+    starts: Vec<u32>,
+    nodes: Vec<u32>,
+    index: FxHashMap<usize, u32>,
+}
+
+impl EntityTable {
+    /// Adds one entity; its nodes are node indices in the kind's order. Gives its index.
+    ///
+    /// # Panics
+    /// When the id is taken: the reader checks.
+    pub fn push(&mut self, id: usize, kind: &'static Entry, properties: usize, nodes: &[u32]) -> u32 {
+        let at = self.ids.len() as u32;
+        assert!(self.index.insert(id, at).is_none(), "entity id {id} is taken");
+        if self.starts.is_empty() {
+            self.starts.push(0);
+        }
+        self.ids.push(id);
+        self.kinds.push(kind);
+        self.properties.push(properties);
+        self.nodes.extend_from_slice(nodes);
+        self.starts.push(self.nodes.len() as u32);
+        at
+    }
+
+    /// Makes the data columns as long as the table; call after the last [`EntityTable::push`].
+    pub fn finish(&mut self) {
+        if self.data.len() == 0 {
+            self.data = Fields::new(self.len(), 1);
+        } else {
+            self.data.grow(self.len());
+        }
+    }
+
+    /// Number of entities.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Node indices of one entity.
+    pub fn nodes(&self, index: u32) -> &[u32] {
+        let at = index as usize;
+        &self.nodes[self.starts[at] as usize..self.starts[at + 1] as usize]
+    }
+
+    /// Reverses or replaces the node order of one entity.
+    pub fn nodes_mut(&mut self, index: u32) -> &mut [u32] {
+        let at = index as usize;
+        &mut self.nodes[self.starts[at] as usize..self.starts[at + 1] as usize]
+    }
+
+    /// Index of the entity with that id.
+    pub fn find(&self, id: usize) -> Option<u32> {
+        self.index.get(&id).copied()
+    }
+
+    /// The largest id, 0 when empty.
+    pub fn max_id(&self) -> usize {
+        self.ids.iter().copied().max().unwrap_or(0)
+    }
+}

@@ -1,0 +1,162 @@
+//! Columns of numbers over nodes or entities, with one array a time level.
+
+use std::collections::BTreeMap;
+
+use super::variable::{ColumnType, ScalarVariable, Variable};
+use crate::diagnostics::{Diagnostic, Result};
+
+/// One variable over all nodes (or entities): `levels[0]` is the present, `levels[1]` the previous step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Numbers a value takes: 1 or 3.
+    pub components: usize,
+    /// `count * components` numbers a time level, newest first.
+    pub levels: Vec<Vec<f64>>,
+}
+
+impl Field {
+    fn new(components: usize, levels: usize, count: usize) -> Self {
+        Self { components, levels: vec![vec![0.0; count * components]; levels] }
+    }
+
+    /// The three numbers of `index` at a time level of a vector column.
+    pub fn vector(&self, level: usize, index: usize) -> [f64; 3] {
+        let at = 3 * index;
+        [self.levels[level][at], self.levels[level][at + 1], self.levels[level][at + 2]]
+    }
+}
+
+/// Named columns of one length and one number of time levels.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Fields {
+    columns: BTreeMap<&'static str, Field>,
+    levels: usize,
+    count: usize,
+}
+
+impl Fields {
+    /// No columns yet, for `count` items and `levels` time levels.
+    pub fn new(count: usize, levels: usize) -> Self {
+        Self { columns: BTreeMap::new(), levels: levels.max(1), count }
+    }
+
+    /// Number of items.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there are no items.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Number of time levels.
+    pub fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// Lengthens every column with zeros to `count` items.
+    pub fn grow(&mut self, count: usize) {
+        self.count = count;
+        for field in self.columns.values_mut() {
+            for level in &mut field.levels {
+                level.resize(count * field.components, 0.0);
+            }
+        }
+    }
+
+    /// Sets the number of time levels; new ones copy the oldest.
+    pub fn set_levels(&mut self, levels: usize) {
+        self.levels = levels.max(1);
+        for field in self.columns.values_mut() {
+            let oldest = field.levels.last().cloned().unwrap_or_default();
+            field.levels.resize(self.levels, oldest);
+        }
+    }
+
+    /// Adds a column of zeros unless it is there.
+    pub fn add<T: ColumnType>(&mut self, variable: &Variable<T>) {
+        self.add_named(variable.name(), T::COMPONENTS);
+    }
+
+    /// Adds a column of zeros by name unless it is there; `components` is 1 or 3.
+    pub fn add_named(&mut self, name: &'static str, components: usize) {
+        let (levels, count) = (self.levels, self.count);
+        self.columns.entry(name).or_insert_with(|| Field::new(components, levels, count));
+    }
+
+    /// Whether there is a column of that name.
+    pub fn has(&self, name: &str) -> bool {
+        self.columns.contains_key(name)
+    }
+
+    /// Names and columns.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Field)> {
+        self.columns.iter().map(|(name, field)| (*name, field))
+    }
+
+    /// The column of that name.
+    pub fn get(&self, name: &str) -> Option<&Field> {
+        self.columns.get(name)
+    }
+
+    /// The column of that name, to change.
+    pub fn get_mut(&mut self, name: &str) -> Option<&mut Field> {
+        self.columns.get_mut(name)
+    }
+
+    /// The column of that name.
+    ///
+    /// # Errors
+    /// When there is none: a piece of the deck uses a variable that nothing has added.
+    pub fn field(&self, name: &str) -> Result<&Field> {
+        self.get(name).ok_or_else(|| missing(name, self.columns.keys().copied()))
+    }
+
+    /// The column of that name, to change.
+    ///
+    /// # Errors
+    /// As [`Fields::field`].
+    pub fn field_mut(&mut self, name: &str) -> Result<&mut Field> {
+        if !self.columns.contains_key(name) {
+            return Err(missing(name, self.columns.keys().copied()));
+        }
+        Ok(self.columns.get_mut(name).expect("checked above"))
+    }
+
+    /// Numbers of a column at a time level (0 the present); empty when the column is absent.
+    pub fn values<T: ColumnType>(&self, variable: &Variable<T>, level: usize) -> &[f64] {
+        self.columns.get(variable.name()).map_or(&[], |field| &field.levels[level])
+    }
+
+    /// Numbers of a column at a time level, to change; the column is added when absent.
+    pub fn values_mut<T: ColumnType>(&mut self, variable: &Variable<T>, level: usize) -> &mut [f64] {
+        self.add(variable);
+        &mut self.columns.get_mut(variable.name()).expect("added above").levels[level]
+    }
+
+    /// One number at the present level.
+    pub fn scalar(&self, variable: ScalarVariable, index: usize) -> Option<f64> {
+        let field = self.columns.get(variable.column)?;
+        Some(field.levels[0][index * field.components + variable.offset()])
+    }
+
+    /// A new time level: each column moves back by one, the present starts as a copy of the previous.
+    pub fn advance(&mut self) {
+        for field in self.columns.values_mut() {
+            field.levels.rotate_right(1);
+            if let [present, previous, ..] = field.levels.as_mut_slice() {
+                present.copy_from_slice(previous);
+            }
+        }
+    }
+}
+
+fn missing(name: &str, known: impl Iterator<Item = &'static str>) -> crate::diagnostics::Error {
+    let known: Vec<_> = known.collect();
+    let hint = crate::diagnostics::did_you_mean(name, known.iter().copied());
+    let remedy = hint.unwrap_or_else(|| format!("present are: {}", known.join(", ")));
+    Diagnostic::error("variable-not-in-model", format!("the variable {name} is not stored in this model"))
+        .remedy(remedy)
+        .into()
+}

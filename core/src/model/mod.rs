@@ -1,0 +1,67 @@
+//! The model: parts with nodes, entities, fields, properties and step data, all found by name.
+//!
+//! A [`ModelPart`] owns everything in flat arrays; a [`SubPart`] is a list of indices into them. Quantities are columns
+//! ([`Field`]) found by the name of their [`Variable`]. Nodes are stored in ascending order of id, so loops over indices
+//! run in the order in which the reference program loops over ids.
+
+mod entity_table;
+mod fields;
+pub mod flags;
+mod model_part;
+mod nodes;
+mod process_info;
+mod properties;
+mod sub_part;
+mod table;
+mod variable;
+pub mod variables;
+
+use std::collections::BTreeMap;
+
+pub use entity_table::EntityTable;
+pub use fields::{Field, Fields};
+pub use flags::Flags;
+pub use model_part::ModelPart;
+pub use nodes::Nodes;
+pub use process_info::ProcessInfo;
+pub use properties::{Properties, PropertyValue};
+pub use sub_part::SubPart;
+pub use table::Table;
+pub use variable::{ColumnType, Named, ScalarVariable, Variable, VariableEntry, VariableKind, named, variables};
+
+use crate::diagnostics::{Diagnostic, Result};
+
+/// All root model parts of a run by name; stages share it.
+#[derive(Default)]
+pub struct Model {
+    /// Root parts by name.
+    pub parts: BTreeMap<String, ModelPart>,
+}
+
+impl Model {
+    /// The root part that a dotted path begins with.
+    ///
+    /// # Errors
+    /// Input error naming the known root parts.
+    pub fn root(&self, path: &str) -> Result<&ModelPart> {
+        let name = path.split('.').next().unwrap_or(path);
+        self.parts.get(name).ok_or_else(|| self.no_root(path))
+    }
+
+    /// As [`Model::root`], to change.
+    ///
+    /// # Errors
+    /// As [`Model::root`].
+    pub fn root_mut(&mut self, path: &str) -> Result<&mut ModelPart> {
+        let name = path.split('.').next().unwrap_or(path);
+        let problem = self.no_root(path);
+        self.parts.get_mut(name).ok_or(problem)
+    }
+
+    fn no_root(&self, path: &str) -> crate::diagnostics::Error {
+        let known: Vec<&str> = self.parts.keys().map(String::as_str).collect();
+        Diagnostic::error("unknown-model-part", format!("there is no model part {path:?}"))
+            .remedy(format!("paths begin with the root part: {}", known.join(", ")))
+            .into()
+    }
+}

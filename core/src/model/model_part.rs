@@ -1,0 +1,118 @@
+//! A model part: the mesh, its data, the blocks that compute on it, and its named sub parts.
+
+use std::collections::BTreeMap;
+
+use super::entity_table::EntityTable;
+use super::nodes::Nodes;
+use super::process_info::ProcessInfo;
+use super::properties::{Properties, PropertyValue};
+use super::sub_part::SubPart;
+use super::table::Table;
+use super::variable::ScalarVariable;
+use crate::assembly::DofTable;
+use crate::diagnostics::{Diagnostic, Result, did_you_mean};
+use crate::entities::{EntityBlock, Interaction, MasterSlaveConstraint, StepView};
+
+/// A root model part; sub parts select from it by index.
+#[derive(Default)]
+pub struct ModelPart {
+    /// Name of the root, e.g. `Structure`.
+    pub name: String,
+    /// Nodes.
+    pub nodes: Nodes,
+    /// Elements as the mesh gives them.
+    pub elements: EntityTable,
+    /// Conditions as the mesh gives them.
+    pub conditions: EntityTable,
+    /// Properties by id.
+    pub properties: BTreeMap<usize, Properties>,
+    /// Tables by id.
+    pub tables: BTreeMap<usize, Table>,
+    /// Values stored on the part itself.
+    pub data: BTreeMap<String, PropertyValue>,
+    /// Time, counters, named values.
+    pub info: ProcessInfo,
+    /// The tree of sub parts; its root selects everything.
+    pub tree: SubPart,
+    /// Linear relations between unknowns.
+    pub constraints: Vec<MasterSlaveConstraint>,
+    /// Unknowns: fixity and numbers.
+    pub dofs: DofTable,
+    /// Kernels over the elements, made by the solver from [`ModelPart::elements`].
+    pub element_blocks: Vec<Box<dyn EntityBlock>>,
+    /// Kernels over the conditions, made by the solver from [`ModelPart::conditions`].
+    pub condition_blocks: Vec<Box<dyn EntityBlock>>,
+    /// What acts between bodies, e.g. contact.
+    pub interactions: Vec<Box<dyn Interaction>>,
+}
+
+impl ModelPart {
+    /// An empty part.
+    pub fn new(name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self { tree: SubPart::new(name.clone()), name, ..Self::default() }
+    }
+
+    /// What kernels see: fields and step data, never the model.
+    pub fn view(&self) -> StepView<'_> {
+        StepView {
+            nodes: &self.nodes,
+            elements: &self.elements,
+            conditions: &self.conditions,
+            properties: &self.properties,
+            info: &self.info,
+        }
+    }
+
+    /// The sub part at a full dotted path (`Structure.Parts.Left`) or one relative to the root.
+    ///
+    /// # Errors
+    /// Input error with the nearest names when there is none.
+    pub fn part(&self, path: &str) -> Result<&SubPart> {
+        self.tree.find(self.relative(path)).ok_or_else(|| self.no_part(path))
+    }
+
+    /// As [`ModelPart::part`], to change.
+    ///
+    /// # Errors
+    /// As [`ModelPart::part`].
+    pub fn part_mut(&mut self, path: &str) -> Result<&mut SubPart> {
+        let relative = self.relative(path).to_owned();
+        let problem = self.no_part(path);
+        self.tree.find_mut(&relative).ok_or(problem)
+    }
+
+    fn relative<'p>(&self, path: &'p str) -> &'p str {
+        if path == self.name {
+            return "";
+        }
+        path.strip_prefix(&self.name).and_then(|rest| rest.strip_prefix('.')).unwrap_or(path)
+    }
+
+    fn no_part(&self, path: &str) -> crate::diagnostics::Error {
+        let known: Vec<String> = self.tree.paths();
+        let full: Vec<String> = known.iter().map(|p| format!("{}.{p}", self.name)).collect();
+        let remedy = did_you_mean(path, full.iter().map(String::as_str)).unwrap_or_else(|| {
+            format!("the mesh has: {}", if full.is_empty() { "no sub parts".into() } else { full.join(", ") })
+        });
+        Diagnostic::error("unknown-model-part", format!("there is no model part {path:?}")).remedy(remedy).into()
+    }
+
+    /// Fixes or frees an unknown of some nodes; unknowns not in the system are remembered all the same.
+    pub fn set_fixed(&mut self, variable: ScalarVariable, nodes: &[u32], fixed: bool) {
+        self.dofs.set_fixed(variable, nodes, fixed, self.nodes.len());
+    }
+
+    /// Moves the nodes to their initial position plus DISPLACEMENT.
+    pub fn move_mesh(&mut self) {
+        let displacement = self.nodes.history.values_mut(&super::variables::DISPLACEMENT, 0).to_vec();
+        self.nodes.move_to(&displacement);
+    }
+
+    /// A new time step: fields move back one level, time and step advance.
+    pub fn clone_time_step(&mut self, time: f64) {
+        self.nodes.history.advance();
+        self.info.delta_time = time - self.info.time;
+        self.info.time = time;
+    }
+}

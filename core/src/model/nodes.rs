@@ -1,0 +1,67 @@
+//! Nodes: ids, positions, fields and flags, in ascending order of id.
+
+use rustc_hash::FxHashMap;
+
+use super::fields::Fields;
+use super::flags::Flags;
+
+/// All nodes of a model part; an index counts them by ascending id.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Nodes {
+    /// Ids as in the mesh file, ascending.
+    pub ids: Vec<usize>,
+    /// Positions before any displacement.
+    pub initial: Vec<[f64; 3]>,
+    /// Present positions.
+    pub current: Vec<[f64; 3]>,
+    /// Columns with history (Kratos: solution step data).
+    pub history: Fields,
+    /// Columns without history (Kratos: non-historical values).
+    pub values: Fields,
+    /// Flags.
+    pub flags: Flags,
+    index: FxHashMap<usize, u32>,
+}
+
+impl Nodes {
+    /// Nodes at their initial positions.
+    ///
+    /// # Panics
+    /// When ids are not strictly ascending: the reader sorts them.
+    pub fn new(ids: Vec<usize>, initial: Vec<[f64; 3]>) -> Self {
+        assert!(ids.windows(2).all(|pair| pair[0] < pair[1]) && ids.len() == initial.len());
+        let index = ids.iter().enumerate().map(|(at, &id)| (id, at as u32)).collect();
+        let count = ids.len();
+        Self {
+            ids,
+            current: initial.clone(),
+            initial,
+            history: Fields::new(count, 1),
+            values: Fields::new(count, 1),
+            flags: Flags::default(),
+            index,
+        }
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Index of the node with that id.
+    pub fn find(&self, id: usize) -> Option<u32> {
+        self.index.get(&id).copied()
+    }
+
+    /// Moves every node to its initial position plus `displacement` (three numbers a node).
+    pub fn move_to(&mut self, displacement: &[f64]) {
+        for ((current, initial), u) in self.current.iter_mut().zip(&self.initial).zip(displacement.chunks_exact(3)) {
+            *current = [initial[0] + u[0], initial[1] + u[1], initial[2] + u[2]];
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! What the whole model shares in a step: time, counters and named numbers.
+
+use std::collections::BTreeMap;
+
+/// Time, step and iteration counters, and named values set by processes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ProcessInfo {
+    /// Time at the end of the step.
+    pub time: f64,
+    /// Length of the step.
+    pub delta_time: f64,
+    /// Number of the step, from 1; 0 before the first.
+    pub step: usize,
+    /// Newton iterations of the step so far: linear solves done or under way.
+    pub nl_iteration: usize,
+    /// Dimensions of the problem: 2 or 3.
+    pub domain_size: usize,
+    /// Named numbers, e.g. INITIAL_PENALTY, SCALE_FACTOR.
+    pub values: BTreeMap<&'static str, f64>,
+    /// Named marks, e.g. ADAPT_PENALTY.
+    pub marks: BTreeMap<&'static str, bool>,
+}
+
+impl ProcessInfo {
+    /// The named number, or `default`.
+    pub fn value_or(&self, name: &str, default: f64) -> f64 {
+        self.values.get(name).copied().unwrap_or(default)
+    }
+
+    /// Whether the named mark is set.
+    pub fn is(&self, name: &str) -> bool {
+        self.marks.get(name) == Some(&true)
+    }
+}

@@ -1,0 +1,72 @@
+//! Sub model parts: named, nested selections of nodes, elements and conditions.
+
+use std::collections::BTreeMap;
+
+use super::properties::PropertyValue;
+
+/// A named selection; whatever a child holds its parents hold too.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SubPart {
+    /// Its own name, without those of its parents.
+    pub name: String,
+    /// Node indices, ascending.
+    pub nodes: Vec<u32>,
+    /// Element indices, ascending.
+    pub elements: Vec<u32>,
+    /// Condition indices, ascending.
+    pub conditions: Vec<u32>,
+    /// Constraint indices, ascending.
+    pub constraints: Vec<u32>,
+    /// Ids of tables attached to it.
+    pub tables: Vec<usize>,
+    /// Ids of properties attached to it.
+    pub properties: Vec<usize>,
+    /// Values stored on the part itself.
+    pub data: BTreeMap<String, PropertyValue>,
+    /// Nested parts by name.
+    pub children: BTreeMap<String, SubPart>,
+}
+
+impl SubPart {
+    /// An empty part.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..Self::default() }
+    }
+
+    /// The part at a dotted path below this one; the empty path is this part.
+    pub fn find(&self, path: &str) -> Option<&SubPart> {
+        if path.is_empty() {
+            return Some(self);
+        }
+        let (head, rest) = path.split_once('.').unwrap_or((path, ""));
+        self.children.get(head)?.find(rest)
+    }
+
+    /// As [`SubPart::find`], to change.
+    pub fn find_mut(&mut self, path: &str) -> Option<&mut SubPart> {
+        if path.is_empty() {
+            return Some(self);
+        }
+        let (head, rest) = path.split_once('.').unwrap_or((path, ""));
+        self.children.get_mut(head)?.find_mut(rest)
+    }
+
+    /// Dotted paths of all parts below this one.
+    pub fn paths(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        for (name, child) in &self.children {
+            out.push(name.clone());
+            out.extend(child.paths().into_iter().map(|path| format!("{name}.{path}")));
+        }
+        out
+    }
+
+    /// Sorts all lists and removes repetitions, here and below.
+    pub fn normalise(&mut self) {
+        for list in [&mut self.nodes, &mut self.elements, &mut self.conditions, &mut self.constraints] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        self.children.values_mut().for_each(SubPart::normalise);
+    }
+}
