@@ -8,6 +8,8 @@ pub mod diagnostics;
 pub mod entities;
 pub mod model;
 pub mod registry;
+pub mod scalar;
+pub mod vector3;
 
 pub use diagnostics::{Error, Result};
 #[doc(hidden)]
