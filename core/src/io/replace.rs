@@ -1,0 +1,51 @@
+//! A file that is whole or not there: written beside its name, then renamed onto it.
+
+use crate::diagnostics::{Error, Result};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// Writes a file so that a reader sees the old content or the whole new one, never a part.
+///
+/// Missing folders on the way are made.
+///
+/// # Errors
+/// [`Error::System`] when the disk refuses; the old content is then untouched.
+pub fn replace_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    let failed = |what: &str, e: io::Error| Error::System(format!("{}: cannot {what}: {e}", path.display()));
+    if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
+        fs::create_dir_all(folder).map_err(|e| failed("make its folder", e))?;
+    }
+    let name = path.file_name().ok_or_else(|| Error::System(format!("{}: not a file name", path.display())))?;
+    let temporary = path.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
+    let written = File::create(&temporary).and_then(|file| {
+        let mut writer = BufWriter::with_capacity(1 << 16, file);
+        fill(&mut writer)?;
+        writer.flush()
+    });
+    written.and_then(|()| fs::rename(&temporary, path)).map_err(|e| {
+        // The first failure is the one to tell; a temporary file that cannot be removed adds nothing to it.
+        let _ = fs::remove_file(&temporary);
+        failed("be written", e)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_writing_keeps_the_old_content() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a/b.txt");
+        replace_file(&path, |w| w.write_all(b"old")).unwrap();
+        let error = replace_file(&path, |w| {
+            w.write_all(b"half")?;
+            Err(io::Error::other("full"))
+        })
+        .unwrap_err();
+        assert_eq!(error.exit_code(), 4);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+}
