@@ -4,6 +4,7 @@
 //! encloses one. A number is the longest numeric beginning of its word, so `1.0D0` is 1.0 (said in a warning). The
 //! document keeps the order of the file; sorting by id and the meaning of variables belong to who uses it.
 
+mod blocks;
 mod check;
 mod document;
 mod reader;
