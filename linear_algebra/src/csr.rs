@@ -142,7 +142,7 @@ impl Csr {
     /// # Panics
     /// When `x` or `y` has not `rows` entries.
     pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
-        self.apply(x, y, |sum, _| sum);
+        self.apply(&self.values, x, y, |sum, _| sum);
     }
 
     /// `y += A x`, the same bits on any number of threads.
@@ -150,7 +150,7 @@ impl Csr {
     /// # Panics
     /// When `x` or `y` has not `rows` entries.
     pub fn mul_vec_add(&self, x: &[f64], y: &mut [f64]) {
-        self.apply(x, y, |sum, old| old + sum);
+        self.apply(&self.values, x, y, |sum, old| old + sum);
     }
 
     /// `y -= A x`, the same bits on any number of threads.
@@ -158,15 +158,26 @@ impl Csr {
     /// # Panics
     /// When `x` or `y` has not `rows` entries.
     pub fn mul_vec_subtract(&self, x: &[f64], y: &mut [f64]) {
-        self.apply(x, y, |sum, old| old - sum);
+        self.apply(&self.values, x, y, |sum, old| old - sum);
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64], combine: impl Fn(f64, f64) -> f64 + Sync) {
+    /// `y -= B x` for the matrix B with this pattern and other values.
+    ///
+    /// # Panics
+    /// When `x` or `y` has not `rows` entries, or `values` not one for each entry.
+    pub fn mul_vec_subtract_with(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        assert_eq!(values.len(), self.entries(), "length of values");
+        self.apply(values, x, y, |sum, old| old - sum);
+    }
+
+    fn apply(&self, all: &[f64], x: &[f64], y: &mut [f64], combine: impl Fn(f64, f64) -> f64 + Sync) {
         assert_eq!(x.len(), self.rows, "length of x");
         assert_eq!(y.len(), self.rows, "length of y");
         let block = |(task, out): (usize, &mut [f64])| {
             for (at, value) in out.iter_mut().enumerate() {
-                let (columns, values) = self.row(task * ROWS_PER_TASK + at);
+                let row = task * ROWS_PER_TASK + at;
+                let (columns, _) = self.row(row);
+                let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
                 let sum = columns.iter().zip(values).map(|(&j, a)| a * x[j as usize]).sum::<f64>();
                 *value = combine(sum, *value);
             }

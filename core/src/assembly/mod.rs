@@ -1,5 +1,12 @@
 //! From blocks to one linear system: unknowns, sparsity, matrices and right-hand sides.
 
+mod assembler;
+mod bulk_matrix;
 mod dof_table;
+mod equations;
+mod group_matrix;
+mod local;
 
+pub use assembler::{Assembler, AssemblySeconds, Inertia};
 pub use dof_table::{Dof, DofTable, NONE};
+pub use equations::{Equations, impose_constraints};

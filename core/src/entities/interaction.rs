@@ -51,12 +51,6 @@ pub trait Interaction: Send {
     /// A geometry that cannot be computed with.
     fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()>;
 
-    /// Before the assembly of iteration `iteration` (from 1).
-    ///
-    /// # Errors
-    /// A geometry that cannot be computed with.
-    fn begin_iteration(&mut self, part: &mut ModelPart, iteration: usize) -> Result<()>;
-
     /// After the update of iteration `iteration`: the active-set stage.
     ///
     /// # Errors

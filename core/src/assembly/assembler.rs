@@ -1,0 +1,393 @@
+//! Assembles the system of a step: residual and matrices over all unknowns, and the equations that are solved.
+//!
+//! Three matrices, because they live differently: the *bulk* of elements has one pattern for the whole run and its
+//! constant part is assembled once; the *coupling* of interactions (contact) is rebuilt when pairs change; the *load*
+//! tangents of follower forces are small and not symmetric.
+
+use std::time::Instant;
+
+use zelus_linear_algebra::{Csr, Symmetry, System};
+
+use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
+use super::equations::Equations;
+use super::group_matrix::GroupMatrix;
+use crate::diagnostics::Result;
+use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
+use crate::model::{ModelPart, ScalarVariable};
+
+/// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
+///
+/// Damping is Rayleigh's, C = alpha M + beta K.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inertia {
+    /// Factor of M in the tangent, 1/time².
+    pub mass_factor: f64,
+    /// Factor of C in the tangent, 1/time.
+    pub damping_factor: f64,
+    /// Rayleigh's alpha, 1/time.
+    pub alpha: f64,
+    /// Rayleigh's beta, time.
+    pub beta: f64,
+    /// Acceleration that M acts on, a number an unknown.
+    pub acceleration: Vec<f64>,
+    /// Velocity that C acts on, a number an unknown.
+    pub velocity: Vec<f64>,
+}
+
+/// Seconds spent assembling, by what was assembled.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AssemblySeconds {
+    /// Residuals.
+    pub residual: f64,
+    /// Tangents of elements.
+    pub bulk: f64,
+    /// Tangents of interactions.
+    pub coupling: f64,
+}
+
+type Blocks<'a> = Vec<&'a dyn EntityBlock>;
+
+/// The system of one model part.
+#[derive(Default)]
+pub struct Assembler {
+    pattern: BulkPattern,
+    element_numbers: Vec<Vec<u32>>,
+    condition_numbers: Vec<Vec<u32>>,
+    constant: Option<Vec<f64>>,
+    mass: Option<Vec<f64>>,
+    lumped: bool,
+    bulk: Csr,
+    bulk_general: bool,
+    loads: GroupMatrix,
+    coupling: GroupMatrix,
+    coupling_graph: Option<u64>,
+    interaction_unknowns: Vec<u32>,
+    equations: Equations,
+    reduced_bulk: Csr,
+    reduced_coupling: Csr,
+    reduced_loads: Csr,
+    stamps: Stamps,
+    reduced_graph: u64,
+    tangent_key: Option<[f64; 2]>,
+    /// Seconds spent so far.
+    pub seconds: AssemblySeconds,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Stamps {
+    bulk_graph: u64,
+    bulk_values: u64,
+    coupling_graph: u64,
+    coupling_values: u64,
+}
+
+impl Assembler {
+    /// Numbers the unknowns of the part and lays out the patterns that last.
+    pub fn new(part: &mut ModelPart, interactions: &[Box<dyn Interaction>], lumped_mass: bool) -> Self {
+        let mut carriers: Vec<(ScalarVariable, bool, Vec<u32>)> = Vec::new();
+        for block in part.element_blocks.iter().chain(&part.condition_blocks) {
+            for unknown in block.unknowns() {
+                let nodes = (0..block.len()).map(|at| block.nodes(at)[unknown.node as usize]);
+                match carriers.iter_mut().find(|(known, ..)| *known == unknown.variable) {
+                    Some((.., list)) => list.extend(nodes),
+                    None => carriers.push((unknown.variable, false, nodes.collect())),
+                }
+            }
+        }
+        carriers.sort_by_key(|(variable, ..)| *variable);
+        for interaction in interactions {
+            carriers.extend(interaction.unknowns(part).into_iter().map(|(variable, nodes)| (variable, true, nodes)));
+        }
+        let mut dofs = std::mem::take(&mut part.dofs);
+        dofs.number(&part.nodes, &carriers);
+        part.dofs = dofs;
+        let numbers = |blocks: &[Box<dyn EntityBlock>]| -> Vec<Vec<u32>> {
+            blocks.iter().map(|block| block_numbers(block.as_ref(), &part.dofs)).collect()
+        };
+        let pattern_blocks = || part.element_blocks.iter().chain(&part.condition_blocks).map(AsRef::as_ref);
+        let pattern =
+            BulkPattern::new(&part.dofs, part.nodes.len(), pattern_blocks().filter(|b| b.tangent() != Tangent::Zero));
+        let loads: Blocks<'_> = load_blocks(part);
+        let interaction_unknowns: Vec<u32> =
+            (0..part.dofs.len() as u32).filter(|&n| part.dofs.dofs()[n as usize].multiplier).collect();
+        Self {
+            element_numbers: numbers(&part.element_blocks),
+            condition_numbers: numbers(&part.condition_blocks),
+            bulk: pattern.zero.clone(),
+            loads: GroupMatrix::new(&part.dofs, &loads, &part.view(), &[]),
+            pattern,
+            lumped: lumped_mass,
+            interaction_unknowns,
+            ..Self::default()
+        }
+    }
+
+    /// The map between unknowns and equations.
+    pub fn equations(&self) -> &Equations {
+        &self.equations
+    }
+
+    /// Step start: the equations left by fixities and constraints, and the pattern of the interactions.
+    ///
+    /// # Errors
+    /// Constraints that contradict each other.
+    pub fn begin_step(&mut self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<()> {
+        let equations = Equations::new(&part.dofs, &part.nodes, &part.constraints)?;
+        let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
+        if changed {
+            self.equations = equations;
+            self.stamps.bulk_graph += 1;
+            self.stamps.bulk_values += 1;
+            self.coupling_graph = None;
+        }
+        let graph = interactions.iter().fold(1_u64, |sum, i| sum.wrapping_mul(31).wrapping_add(i.graph_version()));
+        if self.coupling_graph != Some(graph) {
+            self.coupling =
+                GroupMatrix::new(&part.dofs, &blocks_of(interactions), &part.view(), &self.interaction_unknowns);
+            self.coupling_graph = Some(graph);
+            self.stamps.coupling_graph += 1;
+            self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, false);
+        }
+        Ok(())
+    }
+
+    fn reduce_bulk(&mut self, same_pattern: bool) {
+        self.equations.reduce_matrix(&self.bulk, &mut self.reduced_bulk, same_pattern);
+        self.stamps.bulk_values += 1;
+    }
+
+    /// Present values of all unknowns.
+    pub fn values(&self, part: &ModelPart) -> Vec<f64> {
+        part.dofs
+            .dofs()
+            .iter()
+            .map(|dof| part.nodes.history.scalar(dof.variable, dof.node as usize).unwrap_or(0.0))
+            .collect()
+    }
+
+    /// External minus internal forces over all unknowns; at supports, minus the reaction.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn residual(
+        &mut self,
+        part: &ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        inertia: Option<&Inertia>,
+    ) -> Result<Vec<f64>> {
+        self.ensure_constant(part)?;
+        let start = Instant::now();
+        let view = part.view();
+        let mut rhs = vec![0.0; part.dofs.len()];
+        let values = self.values(part);
+        let constant = self.constant.as_ref().expect("ensured");
+        if part.element_blocks.iter().chain(&part.condition_blocks).any(|b| b.tangent() == Tangent::Constant) {
+            self.mul_subtract(constant, &values, &mut rhs);
+        }
+        let numbered = part.element_blocks.iter().zip(&self.element_numbers);
+        for (block, numbers) in numbered.chain(part.condition_blocks.iter().zip(&self.condition_numbers)) {
+            match block.tangent() {
+                Tangent::Constant if block.has_external(&view) => {
+                    add_residual(block.as_ref(), numbers, &view, Want::External, &mut rhs)?;
+                }
+                Tangent::Constant => {}
+                _ => add_residual(block.as_ref(), numbers, &view, Want::Residual, &mut rhs)?,
+            }
+        }
+        if let Some(inertia) = inertia {
+            let mass = self.mass(part)?.to_vec();
+            let with_alpha: Vec<f64> =
+                inertia.acceleration.iter().zip(&inertia.velocity).map(|(a, v)| a + inertia.alpha * v).collect();
+            self.mul_subtract(&mass, &with_alpha, &mut rhs);
+            if inertia.beta != 0.0 {
+                let damped: Vec<f64> = inertia.velocity.iter().map(|v| inertia.beta * v).collect();
+                let stiffness = self.stiffness(part)?;
+                self.mul_subtract(&stiffness, &damped, &mut rhs);
+            }
+        }
+        self.coupling.add_residual(&blocks_of(interactions), &view, &mut rhs)?;
+        self.seconds.residual += start.elapsed().as_secs_f64();
+        Ok(rhs)
+    }
+
+    /// Brings the tangents up to date with the state.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn tangents(
+        &mut self,
+        part: &ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        inertia: Option<&Inertia>,
+    ) -> Result<()> {
+        self.ensure_constant(part)?;
+        let start = Instant::now();
+        let view = part.view();
+        let variable = part.element_blocks.iter().chain(&part.condition_blocks).any(|b| is_variable(b.as_ref()));
+        let key =
+            inertia.map_or([0.0; 2], |i| [i.mass_factor + i.alpha * i.damping_factor, 1.0 + i.beta * i.damping_factor]);
+        let stale = variable || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
+        if stale {
+            let mut values = self.stiffness(part)?;
+            if inertia.is_some() {
+                let [mass_factor, stiffness_factor] = key;
+                let mass = self.mass(part)?;
+                for (value, m) in values.iter_mut().zip(mass) {
+                    *value = stiffness_factor * *value + mass_factor * m;
+                }
+            }
+            self.bulk.values = values;
+            self.bulk_general = part.element_blocks.iter().any(|b| b.tangent() == Tangent::General);
+            self.reduce_bulk(self.reduced_graph == self.stamps.bulk_graph);
+            self.reduced_graph = self.stamps.bulk_graph;
+            self.tangent_key = Some(key);
+        }
+        self.loads.assemble(&load_blocks(part), &view, 0.0)?;
+        self.seconds.bulk += start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let diagonal = interactions.iter().map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
+        self.coupling.assemble(&blocks_of(interactions), &view, diagonal)?;
+        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
+        self.stamps.coupling_values += 1;
+        self.seconds.coupling += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// The equations to solve, without the follower loads.
+    pub fn system(&self) -> System<'_> {
+        System {
+            layout: &self.equations.layout,
+            bulk: &self.reduced_bulk,
+            bulk_symmetry: if self.bulk_general { Symmetry::General } else { Symmetry::PositiveDefinite },
+            bulk_graph: self.stamps.bulk_graph,
+            bulk_values: self.stamps.bulk_values,
+            coupling: (self.reduced_coupling.entries() > 0).then_some(&self.reduced_coupling),
+            coupling_graph: self.stamps.coupling_graph,
+            coupling_values: self.stamps.coupling_values,
+            coupling_symmetric: false,
+        }
+    }
+
+    /// Tangents of follower loads on the equations; `None` when there are none.
+    pub fn load_tangents(&mut self) -> Option<&Csr> {
+        if self.loads.matrix.values.iter().all(|v| *v == 0.0) {
+            return None;
+        }
+        self.equations.reduce_matrix(&self.loads.matrix, &mut self.reduced_loads, false);
+        Some(&self.reduced_loads)
+    }
+
+    /// Subtracts (all tangents) · `increment` from `rhs`, both over all unknowns.
+    pub fn subtract_product(&self, increment: &[f64], rhs: &mut [f64]) {
+        self.bulk.mul_vec_subtract(increment, rhs);
+        self.loads.matrix.mul_vec_subtract(increment, rhs);
+        self.coupling.matrix.mul_vec_subtract(increment, rhs);
+    }
+
+    /// How large the round-off of each entry of a residual is, from the sizes of the terms it is a sum of.
+    ///
+    /// Terms of constant blocks scale with displacements, those of all others with positions.
+    pub fn round_off(&self, part: &ModelPart) -> Vec<f64> {
+        let displacement: Vec<f64> = self.values(part).iter().map(|v| v.abs()).collect();
+        let position: Vec<f64> = part
+            .dofs
+            .dofs()
+            .iter()
+            .zip(&displacement)
+            .map(|(dof, value)| match dof.variable.component {
+                Some(c) if !dof.multiplier => part.nodes.current[dof.node as usize][usize::from(c)].abs().max(*value),
+                _ => *value,
+            })
+            .collect();
+        let mut out = vec![0.0; part.dofs.len()];
+        let variable = part.element_blocks.iter().any(|b| is_variable(b.as_ref()));
+        abs_product(&self.bulk, if variable { &position } else { &displacement }, &mut out);
+        abs_product(&self.coupling.matrix, &position, &mut out);
+        out.iter_mut().for_each(|v| *v *= f64::EPSILON);
+        out
+    }
+
+    fn mul_subtract(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        self.pattern.zero.mul_vec_subtract_with(values, x, y);
+    }
+
+    fn add_blocks(
+        &self,
+        part: &ModelPart,
+        wanted: impl Fn(&dyn EntityBlock) -> bool,
+        values: &mut [f64],
+    ) -> Result<()> {
+        let view = part.view();
+        let numbered = part.element_blocks.iter().zip(&self.element_numbers);
+        for (block, numbers) in numbered.chain(part.condition_blocks.iter().zip(&self.condition_numbers)) {
+            if wanted(block.as_ref()) {
+                let compute = |range, out: &mut LocalSystems| block.local_systems(&view, range, Want::Both, out);
+                self.pattern.add(block.as_ref(), numbers, values, &compute)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn ensure_constant(&mut self, part: &ModelPart) -> Result<()> {
+        if self.constant.is_none() {
+            let start = Instant::now();
+            let mut values = vec![0.0; self.pattern.zero.entries()];
+            self.add_blocks(part, |block| block.tangent() == Tangent::Constant, &mut values)?;
+            self.constant = Some(values);
+            self.seconds.bulk += start.elapsed().as_secs_f64();
+        }
+        Ok(())
+    }
+
+    fn stiffness(&self, part: &ModelPart) -> Result<Vec<f64>> {
+        let mut values = self.constant.clone().expect("assembled before the first residual");
+        let is_element = |block: &dyn EntityBlock| block.entry().kind == crate::registry::Kind::Element;
+        self.add_blocks(
+            part,
+            |block| is_variable(block) && (is_element(block) || block.tangent() == Tangent::Symmetric),
+            &mut values,
+        )?;
+        Ok(values)
+    }
+
+    /// The mass matrix on the bulk pattern.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn mass(&mut self, part: &ModelPart) -> Result<&[f64]> {
+        if self.mass.is_none() {
+            let view = part.view();
+            let mut values = vec![0.0; self.pattern.zero.entries()];
+            for (block, numbers) in part.element_blocks.iter().zip(&self.element_numbers) {
+                let lumped = self.lumped;
+                let compute = |range, out: &mut LocalSystems| block.mass(&view, range, lumped, out).map(|_| ());
+                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
+            }
+            self.mass = Some(values);
+        }
+        Ok(self.mass.as_ref().expect("just made"))
+    }
+}
+
+fn is_variable(block: &dyn EntityBlock) -> bool {
+    matches!(block.tangent(), Tangent::Symmetric | Tangent::General)
+}
+
+fn load_blocks(part: &ModelPart) -> Blocks<'_> {
+    part.condition_blocks
+        .iter()
+        .map(AsRef::as_ref)
+        .filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::General)
+        .collect()
+}
+
+fn blocks_of(interactions: &[Box<dyn Interaction>]) -> Blocks<'_> {
+    interactions.iter().flat_map(|interaction| interaction.blocks()).collect()
+}
+
+fn abs_product(matrix: &Csr, x: &[f64], out: &mut [f64]) {
+    for (row, y) in out.iter_mut().enumerate().take(matrix.rows) {
+        let (columns, values) = matrix.row(row);
+        *y += columns.iter().zip(values).map(|(&c, v)| v.abs() * x[c as usize]).sum::<f64>();
+    }
+}

@@ -1,0 +1,236 @@
+//! From all unknowns to the equations that are solved: fixed ones go, constrained ones follow their masters.
+//!
+//! x = T x̄ + g (eq. D.12b); as the values already satisfy the constraints when an iteration starts, increments obey
+//! Δx = T Δx̄ (eq. D.12d) and the solved system is TᵀA T Δx̄ = Tᵀb (eq. D.12e). Without constraints T only drops the fixed
+//! unknowns.
+
+use std::collections::BTreeMap;
+
+use zelus_linear_algebra::{Csr, Layout};
+
+use super::dof_table::DofTable;
+use crate::diagnostics::{Diagnostic, Result};
+use crate::entities::MasterSlaveConstraint;
+use crate::model::Nodes;
+
+/// What became of an unknown.
+#[derive(Debug, Clone, PartialEq)]
+enum Role {
+    Free(u32),
+    Fixed,
+    /// Follows equations with weights.
+    Slave(Vec<(u32, f64)>),
+}
+
+/// The map between unknowns and equations.
+#[derive(Debug, Clone, Default)]
+pub struct Equations {
+    roles: Vec<Role>,
+    /// Unknown of each equation.
+    free: Vec<u32>,
+    has_slaves: bool,
+    /// What the equations stand for.
+    pub layout: Layout,
+}
+
+impl Equations {
+    /// The equations left by the present fixities and active constraints.
+    ///
+    /// # Errors
+    /// Constraints that form a circle or eliminate an unknown twice.
+    pub fn new(dofs: &DofTable, nodes: &Nodes, constraints: &[MasterSlaveConstraint]) -> Result<Self> {
+        let mut slaves: BTreeMap<u32, &MasterSlaveConstraint> = BTreeMap::new();
+        for constraint in constraints.iter().filter(|c| c.active) {
+            let (node, variable) = constraint.slave;
+            let Some(number) = dofs.number_of(variable, node) else { continue };
+            if let Some(first) = slaves.insert(number, constraint) {
+                let fact = format!(
+                    "constraints {} and {} both eliminate {variable} of node {}",
+                    first.id, constraint.id, nodes.ids[node as usize]
+                );
+                return Err(Diagnostic::error("constraint-twice", fact).remedy("remove one of them").into());
+            }
+        }
+        let mut roles = vec![Role::Fixed; dofs.len()];
+        let mut free = Vec::with_capacity(dofs.len());
+        for (number, dof) in dofs.dofs().iter().enumerate() {
+            let is_slave = slaves.contains_key(&(number as u32));
+            if !is_slave && !dofs.is_fixed(dof.variable, dof.node) {
+                roles[number] = Role::Free(free.len() as u32);
+                free.push(number as u32);
+            }
+        }
+        for &number in slaves.keys() {
+            let mut terms = BTreeMap::new();
+            follow(number, 1.0, &slaves, &roles, dofs, nodes, 0, &mut terms)?;
+            roles[number as usize] = Role::Slave(terms.into_iter().collect());
+        }
+        let layout = Layout {
+            node: free.iter().map(|&n| dofs.dofs()[n as usize].node).collect(),
+            multiplier: free.iter().map(|&n| dofs.dofs()[n as usize].multiplier).collect(),
+            near_null_space: Vec::new(),
+        };
+        Ok(Self { has_slaves: !slaves.is_empty(), roles, free, layout })
+    }
+
+    /// Whether both lead to the same equations.
+    pub fn same_as(&self, other: &Self) -> bool {
+        self.roles == other.roles
+    }
+
+    /// Number of equations.
+    pub fn len(&self) -> usize {
+        self.free.len()
+    }
+
+    /// Whether nothing is left to solve.
+    pub fn is_empty(&self) -> bool {
+        self.free.is_empty()
+    }
+
+    /// Unknown of each equation.
+    pub fn unknowns(&self) -> &[u32] {
+        &self.free
+    }
+
+    /// Whether an unknown is prescribed.
+    pub fn is_fixed(&self, number: usize) -> bool {
+        self.roles[number] == Role::Fixed
+    }
+
+    /// Whether an unknown is solved for.
+    pub fn is_free(&self, number: usize) -> bool {
+        matches!(self.roles[number], Role::Free(_))
+    }
+
+    /// Tᵀ v: a vector over unknowns gathered on equations.
+    pub fn reduce(&self, full: &[f64]) -> Vec<f64> {
+        let mut out: Vec<f64> = self.free.iter().map(|&n| full[n as usize]).collect();
+        if self.has_slaves {
+            for (role, value) in self.roles.iter().zip(full) {
+                if let Role::Slave(terms) = role {
+                    terms.iter().for_each(|&(equation, weight)| out[equation as usize] += weight * value);
+                }
+            }
+        }
+        out
+    }
+
+    /// T v: increments of the equations spread to all unknowns; fixed ones get zero.
+    pub fn expand(&self, reduced: &[f64]) -> Vec<f64> {
+        self.roles
+            .iter()
+            .map(|role| match role {
+                Role::Free(equation) => reduced[*equation as usize],
+                Role::Fixed => 0.0,
+                Role::Slave(terms) => terms.iter().map(|&(equation, weight)| weight * reduced[equation as usize]).sum(),
+            })
+            .collect()
+    }
+
+    /// TᵀA T.
+    pub fn reduce_matrix(&self, full: &Csr, into: &mut Csr, same_pattern: bool) {
+        if self.has_slaves {
+            *into = self.reduce_constrained(full);
+            return;
+        }
+        if !same_pattern {
+            let mut row_starts = vec![0];
+            let mut columns = Vec::new();
+            for &n in &self.free {
+                let (cols, _) = full.row(n as usize);
+                columns.extend(cols.iter().filter_map(|&c| match self.roles[c as usize] {
+                    Role::Free(equation) => Some(equation),
+                    _ => None,
+                }));
+                row_starts.push(columns.len());
+            }
+            *into = Csr::from_sorted_pattern(row_starts, columns);
+        }
+        let mut at = 0;
+        for &n in &self.free {
+            let (cols, values) = full.row(n as usize);
+            for (&column, &value) in cols.iter().zip(values) {
+                if self.is_free(column as usize) {
+                    into.values[at] = value;
+                    at += 1;
+                }
+            }
+        }
+    }
+
+    fn terms<'a>(&'a self, number: usize, one: &'a mut [(u32, f64); 1]) -> &'a [(u32, f64)] {
+        match &self.roles[number] {
+            Role::Free(equation) => {
+                one[0] = (*equation, 1.0);
+                &one[..]
+            }
+            Role::Fixed => &[],
+            Role::Slave(terms) => terms,
+        }
+    }
+
+    fn reduce_constrained(&self, full: &Csr) -> Csr {
+        let mut triplets = Vec::with_capacity(full.entries());
+        let (mut left, mut right) = ([(0, 0.0)], [(0, 0.0)]);
+        for row in 0..full.rows {
+            let (columns, values) = full.row(row);
+            for &(i, wi) in self.terms(row, &mut left) {
+                for (&column, &value) in columns.iter().zip(values) {
+                    for &(j, wj) in self.terms(column as usize, &mut right) {
+                        triplets.push((i as usize, j as usize, wi * value * wj));
+                    }
+                }
+            }
+        }
+        Csr::from_triplets(self.free.len(), &triplets)
+    }
+}
+
+fn follow(
+    number: u32,
+    weight: f64,
+    slaves: &BTreeMap<u32, &MasterSlaveConstraint>,
+    roles: &[Role],
+    dofs: &DofTable,
+    nodes: &Nodes,
+    depth: usize,
+    terms: &mut BTreeMap<u32, f64>,
+) -> Result<()> {
+    let constraint = slaves[&number];
+    if depth > slaves.len() {
+        let fact = format!("constraint {} depends on itself through other constraints", constraint.id);
+        return Err(Diagnostic::error("constraint-circle", fact).remedy("remove one constraint of the circle").into());
+    }
+    for &((node, variable), w) in &constraint.masters {
+        let master = dofs.number_of(variable, node).ok_or_else(|| {
+            Diagnostic::error(
+                "constraint-unknown",
+                format!(
+                    "constraint {} needs {variable} of node {}, which is not an unknown",
+                    constraint.id, nodes.ids[node as usize]
+                ),
+            )
+        })?;
+        if slaves.contains_key(&master) {
+            follow(master, weight * w, slaves, roles, dofs, nodes, depth + 1, terms)?;
+        } else if let Role::Free(equation) = roles[master as usize] {
+            *terms.entry(equation).or_insert(0.0) += weight * w;
+        }
+    }
+    Ok(())
+}
+
+/// Makes the values of constrained unknowns obey their constraints: u_s = Σ w u_m + g.
+pub fn impose_constraints(nodes: &mut Nodes, constraints: &[MasterSlaveConstraint]) {
+    for constraint in constraints.iter().filter(|c| c.active) {
+        let value = constraint.masters.iter().fold(constraint.constant, |sum, &((node, variable), weight)| {
+            sum + weight * nodes.history.scalar(variable, node as usize).unwrap_or(0.0)
+        });
+        let (node, variable) = constraint.slave;
+        if let Some(field) = nodes.history.get_mut(variable.column) {
+            let components = field.components;
+            field.levels[0][node as usize * components + variable.offset()] = value;
+        }
+    }
+}
