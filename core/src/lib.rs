@@ -8,6 +8,7 @@ pub mod diagnostics;
 pub mod entities;
 pub mod io;
 pub mod model;
+pub mod parameters;
 pub mod registry;
 pub mod scalar;
 pub mod vector3;

@@ -1,0 +1,209 @@
+//! What an object can be set to: every key with its default, its type and the comment that documents it.
+
+use std::path::Path;
+
+use super::document::{self, Comment};
+use super::node::{Node, Value};
+use crate::diagnostics::Result;
+
+/// The defaults of one object, and how strictly a deck is held against them.
+#[derive(Debug, Clone)]
+pub struct Defaults {
+    pub(super) name: String,
+    pub(super) node: Node,
+    pub(super) lenient: bool,
+    pub(super) required: Vec<&'static str>,
+    pub(super) deprecated: Vec<Deprecated>,
+    description: String,
+    entries: Vec<Entry>,
+}
+
+/// One documented key.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// Dotted path of the key from the object's root.
+    pub path: String,
+    /// What the value is, e.g. `a number`.
+    pub kind: &'static str,
+    /// The default as compact JSON.
+    pub default: String,
+    /// The comment beside or above the key; empty when there is none.
+    pub description: String,
+}
+
+/// An old spelling that decks still use.
+#[derive(Debug, Clone)]
+pub(super) struct Deprecated {
+    pub(super) old: &'static str,
+    pub(super) what: Replacement,
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Replacement {
+    Renamed(&'static str),
+    Translated(&'static str, fn(&Value) -> Option<Value>),
+    Dropped(&'static str),
+}
+
+impl Defaults {
+    /// Reads the defaults of the object `name` from JSON with comments.
+    ///
+    /// A default of `null` accepts any value, `{}` any content; the items of arrays are not checked. A number written
+    /// without fraction stands for an integer. The comment above a key or at the end of its line documents it, the
+    /// one above the opening brace the object.
+    ///
+    /// # Errors
+    /// `invalid-json`, or `wrong-type` when the text is not an object.
+    pub fn parse(name: &str, text: &str) -> Result<Self> {
+        let (document, comments) = document::parse(text, Path::new(name), true)?;
+        let node = document.root;
+        node.object()?;
+        let mut entries = Vec::new();
+        collect(&node, "", &comments, &mut entries);
+        let description = comment_above(&comments, node.line);
+        let (lenient, required, deprecated) = (false, Vec::new(), Vec::new());
+        Ok(Self { name: name.to_owned(), node, lenient, required, deprecated, description, entries })
+    }
+
+    /// Defaults without any key that accept any content.
+    pub fn free_form(name: &str) -> Self {
+        let node = Node::new(Value::Object(super::Object::default()), &crate::diagnostics::Place::file(name));
+        let (required, deprecated, entries) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name: name.to_owned(), node, lenient: false, required, deprecated, description: String::new(), entries }
+    }
+
+    /// The same defaults where unknown keys are a warning, `unknown-key-ignored`.
+    #[must_use]
+    pub fn lenient(mut self) -> Self {
+        self.lenient = true;
+        self
+    }
+
+    /// The same defaults where these keys must be given; paths may be dotted.
+    #[must_use]
+    pub fn require(mut self, keys: &[&'static str]) -> Self {
+        self.required.extend_from_slice(keys);
+        self
+    }
+
+    /// The same defaults, accepting an old spelling with a warning; paths may be dotted.
+    #[must_use]
+    pub fn renamed(mut self, old: &'static str, new: &'static str) -> Self {
+        self.deprecated.push(Deprecated { old, what: Replacement::Renamed(new) });
+        self
+    }
+
+    /// The same defaults, accepting an old key whose value is translated for the new one (`None`: no such value).
+    #[must_use]
+    pub fn translated(mut self, old: &'static str, new: &'static str, f: fn(&Value) -> Option<Value>) -> Self {
+        self.deprecated.push(Deprecated { old, what: Replacement::Translated(new, f) });
+        self
+    }
+
+    /// The same defaults, accepting a key that has no effect any more, with a warning that says why.
+    #[must_use]
+    pub fn dropped(mut self, old: &'static str, why: &'static str) -> Self {
+        self.deprecated.push(Deprecated { old, what: Replacement::Dropped(why) });
+        self
+    }
+
+    /// The name of the object, as messages give it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The comment above the opening brace: what the object is.
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// Every key, nested ones too, in the order written.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// The tree of defaults.
+    pub fn node(&self) -> &Node {
+        &self.node
+    }
+}
+
+fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<Entry>) {
+    for member in node.as_object().into_iter().flat_map(|o| o.in_source_order()) {
+        let path = if prefix.is_empty() { member.key.clone() } else { format!("{prefix}.{}", member.key) };
+        let beside = comments.iter().filter(|c| !c.own_line && c.first_line == end_line(&member.node));
+        let mut texts = vec![comment_above(comments, member.key_position.0)];
+        texts.extend(beside.map(|c| c.text.clone()));
+        texts.retain(|t| !t.is_empty());
+        let kind = if member.node.is_null() { "any value" } else { member.node.value.kind() };
+        let default = member.node.to_json().to_string();
+        out.push(Entry { path: path.clone(), kind, default, description: texts.join("\n") });
+        collect(&member.node, &path, comments, out);
+    }
+}
+
+/// The line where a comment beside the value stands: that of its last item, for an object that of its brace.
+fn end_line(node: &Node) -> u32 {
+    match &node.value {
+        Value::Array(items) => items.last().map_or(node.line, end_line),
+        _ => node.line,
+    }
+}
+
+/// The comments on lines of their own that end directly above `line`.
+fn comment_above(comments: &[Comment], line: u32) -> String {
+    let mut texts = Vec::new();
+    let mut next = line;
+    for comment in comments.iter().rev().filter(|c| c.own_line && c.last_line < line) {
+        if comment.last_line + 1 != next {
+            break;
+        }
+        next = comment.first_line;
+        texts.insert(0, comment.text.as_str());
+    }
+    texts.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_document_keys() {
+        let text = r#"// Fixes a thing.
+// Twice.
+{
+    // Name of the
+    // part.
+    "part": "",
+    "tolerance": 1e-4, // relative
+    "interval": [0.0, "End"], /* when it acts */
+    "nested": { // an object
+
+        "count": 3
+    }
+}"#;
+        let defaults = Defaults::parse("thing", text).unwrap();
+        assert_eq!(defaults.description(), "Fixes a thing.\nTwice.");
+        let said: Vec<String> = defaults
+            .entries()
+            .iter()
+            .map(|e| format!("{} = {} ({}): {}", e.path, e.default, e.kind, e.description.replace('\n', " ")))
+            .collect();
+        assert_eq!(
+            said,
+            [
+                "part = \"\" (a string): Name of the part.",
+                "tolerance = 0.0001 (a number): relative",
+                "interval = [0.0,\"End\"] (an array): when it acts",
+                "nested = {\"count\":3} (an object): an object",
+                "nested.count = 3 (an integer): ",
+            ]
+        );
+    }
+
+    #[test]
+    fn defaults_must_be_an_object() {
+        assert!(Defaults::parse("thing", "[]").unwrap_err().to_string().contains("thing:1:1: expected an object"));
+    }
+}

@@ -1,0 +1,21 @@
+//! Settings as the deck writes them: JSON with positions, checked against defaults, and functions of space and time.
+//!
+//! A [`Document`] is a parsed file whose every [`Node`] knows its place. A registered object states its [`Defaults`]
+//! (a JSON text that documents each key); [`Settings::validate`] lays the user's node over them, reports every key or
+//! type that does not fit, and hands out typed values, key by key or as one `serde` struct. [`Interval`] and
+//! [`Expression`] are kinds of value that decks use in many places.
+
+mod defaults;
+mod document;
+mod expression;
+mod interval;
+mod node;
+mod settings;
+mod typed;
+
+pub use defaults::{Defaults, Entry};
+pub use document::Document;
+pub use expression::{Expression, ExpressionError, SpaceTime};
+pub use interval::Interval;
+pub use node::{Member, Node, Object, Value};
+pub use settings::Settings;

@@ -1,0 +1,442 @@
+//! One object's settings: the user's node laid over the defaults, strictly.
+
+use super::defaults::{Defaults, Deprecated, Replacement};
+use super::node::{Member, Node, Object, Value};
+use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
+
+/// More known keys than this are not listed in a message.
+const LISTED_KEYS: usize = 16;
+
+/// The checked settings of one object, complete with defaults.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    name: String,
+    node: Node,
+}
+
+impl Settings {
+    /// Lays `user` over `defaults`; every key and type that does not fit goes to `report`.
+    ///
+    /// `None` when an error was reported. Unknown keys are errors (`unknown-key`), or warnings with
+    /// [`Defaults::lenient`] (`unknown-key-ignored`); other codes are `wrong-type`, `missing-key` and, as warnings,
+    /// `deprecated-key`.
+    pub fn validate(user: &Node, defaults: &Defaults, report: &mut Report) -> Option<Self> {
+        let mut user = user.clone();
+        if user.as_object().is_none() {
+            let fact = format!("the settings of {} must be an object, found {}", defaults.name, user.value.kind());
+            report.push(Diagnostic::error("wrong-type", fact).at(user.place()).remedy("write { ... }"));
+            return None;
+        }
+        let mut merger = Merger { lenient: defaults.lenient, report, failed: false };
+        for old in &defaults.deprecated {
+            merger.translate(&mut user, old, &defaults.name);
+        }
+        for path in &defaults.required {
+            if user.get_path(path).is_none() {
+                let fact = format!("\"{path}\" of {} must be given", defaults.name);
+                let remedy = format!("add \"{path}\"");
+                merger.error(Diagnostic::error("missing-key", fact).at(user.place()).remedy(remedy));
+            }
+        }
+        let node = merger.merge(&user, &defaults.node, &defaults.name);
+        (!merger.failed).then(|| Self { name: defaults.name.clone(), node })
+    }
+
+    /// [`Settings::validate`] for one object alone, with its warnings.
+    ///
+    /// # Errors
+    /// Every problem found, as [`crate::diagnostics::Error::Input`].
+    pub fn check(user: &Node, defaults: &Defaults) -> Result<(Self, Vec<Diagnostic>)> {
+        let mut report = Report::new();
+        let settings = Self::validate(user, defaults, &mut report);
+        let warnings = report.finish()?;
+        let gone = || Diagnostic::error("invalid-settings", format!("{} cannot be set so", defaults.name));
+        Ok((settings.ok_or_else(gone)?, warnings))
+    }
+
+    /// The defaults alone, for an object that the deck does not set; `place` is where it is named.
+    pub fn defaults(defaults: &Defaults, place: &Place) -> Self {
+        let mut node = defaults.node.clone();
+        let at = Node::new(Value::Null, place);
+        node.move_to((&at.file, at.line, at.column), false);
+        Self { name: defaults.name.clone(), node }
+    }
+
+    /// Settings that need no check, e.g. an item of a free-form list.
+    pub fn unchecked(name: impl Into<String>, node: Node) -> Self {
+        Self { name: name.into(), node }
+    }
+
+    /// The name of the object, as messages give it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The complete tree.
+    pub fn node(&self) -> &Node {
+        &self.node
+    }
+
+    /// Where the object is written.
+    pub fn place(&self) -> Place {
+        self.node.place()
+    }
+
+    /// Where a key is written, else where the object is; paths may be dotted.
+    pub fn key_place(&self, path: &str) -> Place {
+        place_of(&self.node, path.split('.'))
+    }
+
+    /// The value of a key; paths may be dotted.
+    ///
+    /// # Errors
+    /// `missing-key` when neither the deck nor the defaults have it.
+    pub fn get(&self, path: &str) -> Result<&Node> {
+        self.node.get_path(path).ok_or_else(|| {
+            let fact = format!("\"{path}\" of {} is missing", self.name);
+            Diagnostic::error("missing-key", fact).at(self.place()).remedy(format!("add \"{path}\"")).into()
+        })
+    }
+
+    /// Whether the deck gives the key, rather than the defaults.
+    pub fn is_given(&self, path: &str) -> bool {
+        self.node.get_path(path).is_some_and(Node::is_given)
+    }
+
+    /// A number; errors as [`Settings::get`] and `wrong-type`, as for all typed getters.
+    pub fn get_f64(&self, path: &str) -> Result<f64> {
+        self.get(path)?.f64()
+    }
+
+    /// An integer.
+    pub fn get_i64(&self, path: &str) -> Result<i64> {
+        self.get(path)?.i64()
+    }
+
+    /// An integer from 0.
+    pub fn get_usize(&self, path: &str) -> Result<usize> {
+        self.get(path)?.usize()
+    }
+
+    /// A boolean.
+    pub fn get_bool(&self, path: &str) -> Result<bool> {
+        self.get(path)?.bool()
+    }
+
+    /// A string.
+    pub fn get_str(&self, path: &str) -> Result<&str> {
+        self.get(path)?.str()
+    }
+
+    /// The items of an array.
+    pub fn items(&self, path: &str) -> Result<&[Node]> {
+        self.get(path)?.array()
+    }
+
+    /// The strings of an array.
+    pub fn get_strings(&self, path: &str) -> Result<Vec<String>> {
+        self.items(path)?.iter().map(|n| n.str().map(str::to_owned)).collect()
+    }
+
+    /// The settings of a nested object.
+    pub fn sub(&self, path: &str) -> Result<Settings> {
+        let node = self.get(path)?;
+        node.object()?;
+        Ok(Self { name: format!("{}.{path}", self.name), node: node.clone() })
+    }
+
+    /// An error at a key: `fact` should name value and key, the object's name is added.
+    pub fn error(&self, path: &str, code: &'static str, fact: impl std::fmt::Display) -> Diagnostic {
+        Diagnostic::error(code, format!("{fact} (in {})", self.name)).at(self.key_place(path))
+    }
+}
+
+/// The place of the deepest node that exists on the way down `path`.
+pub(super) fn place_of<'a>(root: &Node, path: impl IntoIterator<Item = &'a str>) -> Place {
+    let (mut node, mut place) = (root, root.place());
+    for step in path {
+        let next = match &node.value {
+            Value::Object(object) => object.get(step).map(|n| (n, node.key_place(step))),
+            Value::Array(items) => step.parse().ok().and_then(|i: usize| items.get(i)).map(|n| (n, n.place())),
+            _ => None,
+        };
+        match next {
+            Some(found) => (node, place) = found,
+            None => break,
+        }
+    }
+    place
+}
+
+struct Merger<'a> {
+    lenient: bool,
+    report: &'a mut Report,
+    failed: bool,
+}
+
+impl Merger<'_> {
+    fn error(&mut self, problem: Diagnostic) {
+        self.failed = true;
+        self.report.push(problem);
+    }
+
+    fn translate(&mut self, user: &mut Node, deprecated: &Deprecated, name: &str) {
+        let old = deprecated.old;
+        let (parent, key) = old.rsplit_once('.').unwrap_or(("", old));
+        let Some(owner) = object_at(user, parent) else { return };
+        let Some(member) = owner.remove(key) else { return };
+        let place = Place::at(&member.node.file, member.key_position.0, member.key_position.1);
+        let warning = |fact: String| Diagnostic::warning("deprecated-key", fact).at(place.clone());
+        let (new, node) = match deprecated.what {
+            Replacement::Dropped(why) => {
+                let problem = warning(format!("\"{old}\" of {name} has no effect: {why}"));
+                return self.report.push(problem.remedy(format!("remove \"{key}\"")));
+            }
+            Replacement::Renamed(new) => (new, member.node),
+            Replacement::Translated(new, f) => match f(&member.node.value) {
+                Some(value) => (new, Node { value, ..member.node }),
+                None => {
+                    let fact = format!("\"{old}\" of {name} cannot be {} ({})", member.node.value.kind(), member.node);
+                    return self
+                        .error(Diagnostic::error("wrong-type", fact).at(place).remedy(format!("set \"{new}\"")));
+                }
+            },
+        };
+        if user.get_path(new).is_some() {
+            let fact = format!("\"{old}\" of {name} is ignored, since \"{new}\", its new name, is given too");
+            return self.report.push(warning(fact).remedy(format!("remove \"{key}\"")));
+        }
+        let problem =
+            warning(format!("\"{old}\" of {name} is now \"{new}\"")).remedy(format!("write \"{new}\": {node}"));
+        self.report.push(problem);
+        insert_at(user, new, node, member.key_position);
+    }
+
+    fn merge(&mut self, user: &Node, defaults: &Node, name: &str) -> Node {
+        let (Some(given), Some(known)) = (user.as_object(), defaults.as_object()) else { return user.clone() };
+        if known.is_empty() {
+            return user.clone();
+        }
+        let mut members = Vec::with_capacity(known.len());
+        for member in given.in_source_order() {
+            match known.get(&member.key) {
+                Some(default) => {
+                    if let Some(node) = self.fit(&member.node, default, &format!("{name}.{}", member.key)) {
+                        members.push(Member { node, ..member.clone() });
+                    }
+                }
+                None => self.unknown(member, known, name),
+            }
+        }
+        for default in known.in_source_order().iter().filter(|m| given.get(&m.key).is_none()) {
+            let mut member = default.clone();
+            member.key_position = (user.line, user.column);
+            member.node.move_to((&user.file, user.line, user.column), false);
+            members.push(member);
+        }
+        Node { value: Value::Object(Object::from_members(members)), ..user.clone() }
+    }
+
+    /// The user's value in the type of the default; `None` when it does not fit.
+    fn fit(&mut self, user: &Node, default: &Node, name: &str) -> Option<Node> {
+        let value = match (&default.value, &user.value) {
+            (Value::Null, _)
+            | (Value::Bool(_), Value::Bool(_))
+            | (Value::String(_), Value::String(_))
+            | (Value::Array(_), Value::Array(_)) => return Some(user.clone()),
+            (Value::Object(_), Value::Object(_)) => return Some(self.merge(user, default, name)),
+            (Value::Integer(_), Value::Integer(_) | Value::Double(_)) => user.as_i64().map(Value::Integer),
+            (Value::Double(_), Value::Integer(_) | Value::Double(_)) => user.as_f64().map(Value::Double),
+            _ => None,
+        };
+        if value.is_none() {
+            let fact = format!("{name} must be {}, found {} ({user})", default.value.kind(), user.value.kind());
+            let remedy = format!("write a value like its default, {default}");
+            self.error(Diagnostic::error("wrong-type", fact).at(user.place()).remedy(remedy));
+        }
+        value.map(|value| Node { value, ..user.clone() })
+    }
+
+    fn unknown(&mut self, member: &Member, known: &Object, name: &str) {
+        let place = Place::at(&member.node.file, member.key_position.0, member.key_position.1);
+        let near = did_you_mean(&member.key, known.keys());
+        let list = (known.len() <= LISTED_KEYS)
+            .then(|| format!("known keys: {}", known.keys().collect::<Vec<_>>().join(", ")));
+        let remedy = match (near, list) {
+            (Some(near), Some(list)) => format!("{near} {list}"),
+            (Some(text), None) | (None, Some(text)) => text,
+            (None, None) => format!("remove it; {} lists the keys that are known", "zelus describe"),
+        };
+        if self.lenient {
+            let fact = format!("\"{}\" is not a setting of {name} and is ignored", member.key);
+            self.report.push(Diagnostic::warning("unknown-key-ignored", fact).at(place).remedy(remedy));
+        } else {
+            let fact = format!("\"{}\" is not a setting of {name}", member.key);
+            self.error(Diagnostic::error("unknown-key", fact).at(place).remedy(remedy));
+        }
+    }
+}
+
+/// The object at a dotted path; an empty path is the root.
+fn object_at<'a>(root: &'a mut Node, path: &str) -> Option<&'a mut Object> {
+    let mut node = root;
+    for key in path.split('.').filter(|k| !k.is_empty()) {
+        let Value::Object(object) = &mut node.value else { return None };
+        node = object.get_mut(key)?;
+    }
+    match &mut node.value {
+        Value::Object(object) => Some(object),
+        _ => None,
+    }
+}
+
+/// Puts a node at a dotted path, making the objects on the way where there are none.
+fn insert_at(root: &mut Node, path: &str, node: Node, key_position: (u32, u32)) {
+    let (parents, key) = path.rsplit_once('.').unwrap_or(("", path));
+    let mut reached = String::new();
+    for parent in parents.split('.').filter(|k| !k.is_empty()) {
+        let Some(object) = object_at(root, &reached) else { return };
+        if object.get(parent).is_none() {
+            let empty = Node { value: Value::Object(Object::default()), ..node.clone() };
+            object.insert(Member { key: parent.to_owned(), key_position, node: empty });
+        }
+        reached = if reached.is_empty() { parent.to_owned() } else { format!("{reached}.{parent}") };
+    }
+    if let Some(object) = object_at(root, parents) {
+        object.insert(Member { key: key.to_owned(), key_position, node });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Document;
+    use super::*;
+
+    const DEFAULTS: &str = r#"{
+        "name": "x", "count": 3, "tolerance": 1e-4, "active": true, "anything": null, "free": {},
+        "list": [1, 2], "inner": { "depth": 1, "path": "" }
+    }"#;
+
+    fn node(text: &str) -> Node {
+        Document::from_str(text, "deck.json").unwrap().root
+    }
+
+    fn defaults() -> Defaults {
+        Defaults::parse("solver_settings", DEFAULTS).unwrap()
+    }
+
+    fn checked(text: &str, defaults: &Defaults) -> (Option<Settings>, String) {
+        let mut report = Report::new();
+        let settings = Settings::validate(&node(text), defaults, &mut report);
+        assert_eq!(settings.is_none(), report.has_errors());
+        (settings, report.diagnostics().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+    }
+
+    #[test]
+    fn the_user_wins_and_defaults_complete() {
+        let text = "{\"count\": 4.0, \"tolerance\": 1,\n \"inner\": {\n\"depth\": 2}, \"free\": {\"q\": [1]}, \"anything\": [3]}";
+        let settings = checked(text, &defaults()).0.unwrap();
+        assert_eq!(
+            settings.node().to_json().to_string(),
+            r#"{"active":true,"anything":[3],"count":4,"free":{"q":[1]},"inner":{"depth":2,"path":""},"list":[1,2],"name":"x","tolerance":1.0}"#
+        );
+        assert!(settings.is_given("inner.depth") && !settings.is_given("inner.path") && !settings.is_given("name"));
+        assert_eq!(settings.key_place("inner.depth").to_string(), "deck.json:3:1");
+        assert_eq!(settings.key_place("inner.path").to_string(), "deck.json:2:11");
+        assert_eq!(settings.key_place("name").to_string(), "deck.json:1:1");
+        assert_eq!(settings.get_usize("inner.depth").unwrap(), 2);
+        assert_eq!(settings.sub("inner").unwrap().get_str("path").unwrap(), "");
+        assert_eq!(settings.get_f64("tolerance").unwrap(), 1.0);
+    }
+
+    #[test]
+    fn unknown_keys_are_errors_that_help() {
+        let said = checked("{\"cuont\": 4,\n \"inner\": {\"_x\": 1}, \"mesh_id\": 0}", &defaults()).1;
+        assert_eq!(
+            said,
+            "error[unknown-key] deck.json:1:2: \"cuont\" is not a setting of solver_settings\n    \
+             did you mean \"count\"? known keys: active, anything, count, free, inner, list, name, tolerance\n\
+             error[unknown-key] deck.json:2:12: \"_x\" is not a setting of solver_settings.inner\n    \
+             known keys: depth, path\n\
+             error[unknown-key] deck.json:2:22: \"mesh_id\" is not a setting of solver_settings\n    \
+             known keys: active, anything, count, free, inner, list, name, tolerance"
+        );
+    }
+
+    #[test]
+    fn lenient_objects_ignore_unknown_keys_aloud() {
+        let (settings, said) = checked("{\"cuont\": 4}", &defaults().lenient());
+        assert!(settings.unwrap().get("cuont").is_err());
+        assert!(said.starts_with(
+            "warning[unknown-key-ignored] deck.json:1:2: \"cuont\" is not a setting of solver_settings and is"
+        ));
+    }
+
+    #[test]
+    fn wrong_types_are_errors() {
+        let said = checked("{\"count\": 2.5}", &defaults()).1;
+        assert_eq!(
+            said,
+            "error[wrong-type] deck.json:1:11: solver_settings.count must be an integer, found a number (2.5)\n    \
+             write a value like its default, 3"
+        );
+        for text in [
+            "{\"tolerance\": true}",
+            "{\"tolerance\": \"1\"}",
+            "{\"active\": 1}",
+            "{\"name\": 3}",
+            "{\"list\": 1}",
+            "{\"inner\": []}",
+            "{\"free\": 1}",
+            "{\"name\": null}",
+            "[]",
+            "{\"inner\": {\"depth\": \"a\"}}",
+        ] {
+            assert!(checked(text, &defaults()).1.starts_with("error[wrong-type] deck.json:1:"), "{text}");
+        }
+        assert_eq!(checked("{\"list\": [\"a\", null, {\"b\": 1}]}", &defaults()).1, "");
+    }
+
+    #[test]
+    fn old_spellings_are_translated_with_a_warning() {
+        let defaults = defaults().renamed("size", "inner.depth").dropped("inner.colour", "there is none").translated(
+            "quiet",
+            "active",
+            |v| if let Value::Bool(b) = v { Some(Value::Bool(!b)) } else { None },
+        );
+        let (settings, said) = checked("{\"size\": 7, \"inner\": {\"colour\": 3}, \"quiet\": true}", &defaults);
+        let settings = settings.unwrap();
+        assert_eq!(settings.get_i64("inner.depth").unwrap(), 7);
+        assert!(!settings.get_bool("active").unwrap());
+        assert_eq!(
+            said,
+            "warning[deprecated-key] deck.json:1:2: \"size\" of solver_settings is now \"inner.depth\"\n    \
+             write \"inner.depth\": 7\n\
+             warning[deprecated-key] deck.json:1:23: \"inner.colour\" of solver_settings has no effect: there is none\n    \
+             remove \"colour\"\n\
+             warning[deprecated-key] deck.json:1:37: \"quiet\" of solver_settings is now \"active\"\n    \
+             write \"active\": false"
+        );
+        let (settings, said) = checked("{\"size\": 7, \"inner\": {\"depth\": 5}}", &defaults);
+        assert_eq!(settings.unwrap().get_i64("inner.depth").unwrap(), 5);
+        assert!(said.contains("\"size\" of solver_settings is ignored"));
+        assert_eq!(checked("{\"size\": 7}", &defaults).0.unwrap().get_i64("inner.depth").unwrap(), 7);
+        assert!(checked("{\"quiet\": 7}", &defaults).1.starts_with("error[wrong-type] deck.json:1:2: \"quiet\" of"));
+    }
+
+    #[test]
+    fn required_keys_must_be_given() {
+        let said = checked("\n {}", &defaults().require(&["name"])).1;
+        assert_eq!(
+            said,
+            "error[missing-key] deck.json:2:2: \"name\" of solver_settings must be given\n    add \"name\""
+        );
+    }
+
+    #[test]
+    fn defaults_alone_carry_the_place_of_the_user() {
+        let settings = Settings::defaults(&defaults(), &Place::at("deck.json", 9, 4));
+        assert_eq!(settings.key_place("inner.depth").to_string(), "deck.json:9:4");
+        assert!(!settings.is_given("name"));
+    }
+}
