@@ -6,6 +6,7 @@
 pub mod assembly;
 pub mod diagnostics;
 pub mod entities;
+pub mod geometry;
 pub mod io;
 pub mod model;
 pub mod parameters;
