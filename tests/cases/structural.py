@@ -1,0 +1,225 @@
+"""Cases without contact: every cell shape under displacement and load, closed forms of bars and beams, solver forms."""
+from deck import *
+from mesh import SHAPES, Box, Mesh
+
+YOUNG, POISSON = 2.0e9, 0.3
+LINEAR = ("2D3N", "2D4N", "3D4N", "3D6N", "3D8N")
+
+
+def stress_3d(gradient, young, poisson):
+    lam, mu = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
+    e = [[0.5 * (gradient[i][j] + gradient[j][i]) for j in range(3)] for i in range(3)]
+    trace = e[0][0] + e[1][1] + e[2][2]
+    return [lam * trace + 2 * mu * e[i][i] for i in range(3)] + [2 * mu * e[0][1], 2 * mu * e[1][2], 2 * mu * e[0][2]]
+
+
+def displacement_patch(shape):
+    """Affine displacement prescribed on the whole boundary; the distorted inside must follow, with constant stress."""
+    dim = int(shape[0])
+    mesh = Mesh()
+    n = 3 if dim == 2 else 2
+    box = Box(mesh, "Body", shape, [n] * dim, [0.0] * dim, [1.0, 0.8, 0.6][:dim], distortion=0.2)
+    mesh.part("Boundary", box.boundary)
+    gradient = [[1.0e-3, 4.0e-4, -3.0e-4], [2.0e-4, -5.0e-4, 6.0e-4], [7.0e-4, -2.0e-4, 8.0e-4]]
+    if dim == 2:
+        gradient = [[1.0e-3, 4.0e-4, 0.0], [2.0e-4, -5.0e-4, 0.0], [0.0, 0.0, 0.0]]
+    fields = [[1.0e-4 * (i + 1), *gradient[i]] for i in range(dim)]
+    text = ["{:g} + ({:g})*X + ({:g})*Y + ({:g})*Z".format(*f) for f in fields]
+    stress = stress_3d(gradient, YOUNG, POISSON)
+    if dim == 2:
+        stress = [stress[0], stress[1], stress[3]]
+    write_case(
+        f"elements/displacement_patch_{shape}",
+        f"SmallDisplacementElement{shape} reproduces an affine displacement and its constant stress on a distorted patch.",
+        "Affine fields lie in the element's space and satisfy equilibrium, so only round-off remains.",
+        parameters("mesh", solver(dim, "mesh"), [fix("Boundary", *text)],
+                   outputs=[json_output("results.json", ["DISPLACEMENT"], gauss=["CAUCHY_STRESS_VECTOR"])]),
+        [material("Body", 1, "3d" if dim == 3 else "strain", YOUNG, POISSON)], mesh,
+        affine_checks(fields, 1e-9) + [check("CAUCHY_STRESS_VECTOR", 1e-8 * max(map(abs, stress)), value=stress)])
+
+
+def load_patch(shape):
+    """A block on rollers under tension and, where the sides are, a pressure: uniform stress from the load conditions."""
+    dim = int(shape[0])
+    mesh = Mesh()
+    box = Box(mesh, "Body", shape, [2] * dim, [0.0] * dim, [1.0, 0.8, 0.6][:dim], distortion=0.2)
+    family = "LineLoad" if dim == 2 else "SurfaceLoad"
+    tension, pressure = 2.0e3, 1.0e3
+    last = "xyz"[dim - 1]
+    mesh.part("Pulled", box.side_nodes["x1"], (), box.conditions("x1", family))
+    mesh.part("Pressed", box.side_nodes[last + "1"], (), box.conditions(last + "1", family))
+    supports = []
+    for axis in "xyz"[:dim]:
+        mesh.part("Symmetry" + axis.upper(), box.side_nodes[axis + "0"])
+        supports.append(fix("Symmetry" + axis.upper(), **{axis: 0.0}))
+    sxx, sll, e, nu = tension, -pressure, YOUNG, POISSON
+    if dim == 2:  # plane strain
+        exx = ((1 - nu * nu) * sxx - nu * (1 + nu) * sll) / e
+        eyy = ((1 - nu * nu) * sll - nu * (1 + nu) * sxx) / e
+        fields, stress = [[0, exx, 0, 0], [0, 0, eyy, 0]], [sxx, sll, 0.0]
+    else:
+        exx, eyy, ezz = (sxx - nu * sll) / e, -nu * (sxx + sll) / e, (sll - nu * sxx) / e
+        fields, stress = [[0, exx, 0, 0], [0, 0, eyy, 0], [0, 0, 0, ezz]], [sxx, 0.0, sll, 0.0, 0.0, 0.0]
+    write_case(
+        f"elements/load_patch_{shape}",
+        f"SmallDisplacementElement{shape} under {family}Condition traction and pressure carries the uniform stress applied.",
+        "Uniform stress is exact for the patch; loads act on the deformed facets, which moves the answer by the strain, 2e-6.",
+        parameters("mesh", solver(dim, "mesh"), supports,
+                   [condition_load("Pulled", family.replace("Load", "_Load").upper(), tension, [1.0, 0.0, 0.0]),
+                    condition_pressure("Pressed", "NEGATIVE_FACE_PRESSURE" if dim == 2 else "POSITIVE_FACE_PRESSURE", pressure)],
+                   outputs=[json_output("results.json", ["DISPLACEMENT"], gauss=["CAUCHY_STRESS_VECTOR"])]),
+        [material("Body", 1, "3d" if dim == 3 else "strain", YOUNG, POISSON)], mesh,
+        affine_checks(fields, 1e-5) + [check("CAUCHY_STRESS_VECTOR", 1e-5 * max(map(abs, stress)), value=stress)])
+
+
+def bar(folder, requirement, law, factor_x, factor_y, thickness=1.0, **settings):
+    """A plane bar pulled by a line load: u_x = factor_x q x / t, u_y = factor_y q y / t."""
+    mesh = Mesh()
+    box = Box(mesh, "Body", "2D4N", [4, 2], [0.0, 0.0], [2.0, 0.5])
+    mesh.part("Left", box.side_nodes["x0"])
+    mesh.part("Bottom", box.side_nodes["y0"])
+    mesh.part("Right", box.side_nodes["x1"], (), box.conditions("x1", "LineLoad"))
+    load = 2.0e3 * thickness
+    more = {"THICKNESS": thickness} if thickness != 1.0 else {}
+    fields = [[0, factor_x * load / thickness, 0, 0], [0, 0, factor_y * load / thickness, 0]]
+    write_case(
+        folder, requirement, "Uniform stress is exact; the load acts on the deformed edge, which moves the answer by the strain, 1e-6.",
+        parameters("mesh", solver(2, "mesh", **settings), [fix("Left", x=0.0), fix("Bottom", y=0.0)],
+                   [condition_load("Right", "LINE_LOAD", load, [1.0, 0.0, 0.0])],
+                   outputs=[json_output("results.json", ["DISPLACEMENT"])]),
+        [material("Body", 1, law, YOUNG, POISSON, **more)], mesh, affine_checks(fields, 1e-5))
+
+
+def cantilever(law, young_of_beam):
+    """A slender beam under a tip load: P L^3 / 3EI + shear."""
+    mesh = Mesh()
+    length, height, load = 10.0, 1.0, 100.0
+    box = Box(mesh, "Body", "2D8N", [20, 2], [0.0, -height / 2], [length, height / 2])
+    mesh.part("Clamped", box.side_nodes["x0"])
+    tip = [i for i in box.side_nodes["x1"] if abs(mesh.nodes[i][1]) < 1e-9]
+    end = mesh.part("Tip", tip, (), [mesh.add_condition("PointLoadCondition2D1N", (tip[0],))])
+    inertia, shear = height ** 3 / 12, YOUNG / (2 * (1 + POISSON))
+    deflection = -load * length ** 3 / (3 * young_of_beam * inertia) - load * length / (5 / 6 * shear * height)
+    write_case(
+        f"structural/cantilever_plane_{law}",
+        f"A slender plane {law} cantilever of 2D8N elements bends by the Timoshenko beam deflection.",
+        "Beam theory leaves out the clamped section's Poisson effect and the indentation at the point load: below 1 %.",
+        parameters("mesh", solver(2, "mesh"), [fix("Clamped", 0.0, 0.0)],
+                   [process("assign_vector_by_direction_to_condition_process", {
+                       "model_part_name": "Structure." + end, "variable_name": "POINT_LOAD", "modulus": load,
+                       "direction": [0.0, -1.0, 0.0], "interval": [0.0, "End"]})],
+                   outputs=[json_output("results.json", ["DISPLACEMENT"], end)]),
+        [material("Body", 1, law, YOUNG, POISSON)], mesh,
+        [check("DISPLACEMENT_Y", 0.01 * abs(deflection), nodes=tip, value=deflection)])
+
+
+def column(folder, requirement, loads, top_stress, time_step=1.0, end_time=1.0, extra=None, criterion=None):
+    """A confined column whose top stress at each time is known: u_y = stress y / M."""
+    mesh = Mesh()
+    box = Box(mesh, "Body", "2D4N", [2, 4], [0.0, 0.0], [1.0, 2.0])
+    mesh.part("Bottom", box.side_nodes["y0"])
+    mesh.part("Sides", sorted(set(box.side_nodes["x0"] + box.side_nodes["x1"])))
+    mesh.part("Top", box.side_nodes["y1"], (), box.conditions("y1", "LineLoad"))
+    stiffness = oedometer(YOUNG, POISSON)
+    scale = max(abs(s) for s in top_stress.values())
+    checks = []
+    for time, stress in top_stress.items():
+        checks.append(check("DISPLACEMENT_Y", 1e-9 * scale / stiffness, time=time, affine=[0, 0, stress / stiffness, 0]))
+        checks.append(check("DISPLACEMENT_X", 1e-9 * scale / stiffness, time=time, value=0.0))
+    settings = {"convergence_criterion": criterion} if criterion else {}
+    write_case(
+        folder, requirement, "A confined column keeps its cross-section, so the closed form is exact up to round-off.",
+        parameters("mesh", solver(2, "mesh", time_step, **settings), [fix("Bottom", y=0.0), fix("Sides", x=0.0)], loads,
+                   outputs=[json_output("results.json", ["DISPLACEMENT"])], end_time=end_time),
+        [material("Body", 1, "strain", YOUNG, POISSON)], mesh, checks, extra=extra)
+
+
+def self_weight():
+    """A column without Poisson effect under its weight: u = -rho g (H y - y^2 / 2) / E at the nodes."""
+    mesh = Mesh()
+    height, density, gravity = 2.0, 1000.0, 10.0
+    box = Box(mesh, "Body", "3D8N", [1, 1, 4], [0.0, 0.0, 0.0], [0.5, 0.5, height])
+    mesh.part("Bottom", box.side_nodes["z0"])
+    scale = density * gravity * height ** 2 / (2 * YOUNG)
+    levels = {}
+    for i in box.nodes:
+        levels.setdefault(mesh.nodes[i][2], []).append(i)
+    checks = [check("DISPLACEMENT_Z", 1e-9 * scale, nodes=ids,
+                    value=-density * gravity * (height * z - z * z / 2) / YOUNG) for z, ids in sorted(levels.items())]
+    write_case(
+        "structural/self_weight", "VOLUME_ACCELERATION at the nodes loads a column with its weight.",
+        "Linear elements are exact at the nodes of a one-dimensional problem, so only round-off remains.",
+        parameters("mesh", solver(3, "mesh"), [fix("Bottom", 0.0, 0.0, 0.0)],
+                   [nodal_load("Body", "VOLUME_ACCELERATION", gravity, [0.0, 0.0, -1.0])],
+                   outputs=[json_output("results.json", ["DISPLACEMENT"])]),
+        [material("Body", 1, "3d", YOUNG, 0.0, DENSITY=density)], mesh, checks)
+
+
+def two_stages():
+    """The orchestrator form: the second stage goes on with the model part and time of the first."""
+    mesh = Mesh()
+    box = Box(mesh, "Body", "2D4N", [2, 2], [0.0, 0.0], [1.0, 1.0])
+    mesh.part("Bottom", box.side_nodes["y0"])
+    mesh.part("Sides", sorted(set(box.side_nodes["x0"] + box.side_nodes["x1"])))
+    mesh.part("Top", box.side_nodes["y1"], (), box.conditions("y1", "LineLoad"))
+    stiffness, loads = oedometer(YOUNG, POISSON), {"first": 1.0e6, "second": 3.0e6}
+    stages = {}
+    for number, (name, load) in enumerate(loads.items()):
+        settings = solver(2, "mesh")
+        if number:
+            settings["model_import_settings"] = {"input_type": "use_input_model_part"}
+            settings["material_import_settings"] = {"materials_filename": ""}
+        stage = parameters("mesh", settings, [fix("Bottom", y=0.0), fix("Sides", x=0.0)],
+                           [condition_load("Top", "LINE_LOAD", load, [0.0, -1.0, 0.0])],
+                           outputs=[json_output(f"{name}.json", ["DISPLACEMENT"])])
+        stage["problem_data"].update(start_time=float(number), end_time=number + 0.5)
+        where = "KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis"
+        stages[name] = {"stage_preprocess": {}, "stage_settings": {"analysis_stage": where, **stage}, "stage_postprocess": {}}
+    write_case(
+        "structural/two_stages", "The orchestrator runs the stages of its execution list in sequence on one model.",
+        "A confined column keeps its cross-section, so the closed form of each stage is exact up to round-off.",
+        {"orchestrator": {"name": "Orchestrators.KratosMultiphysics.SequentialOrchestrator", "settings": {
+            "echo_level": 0, "execution_list": list(loads), "load_from_checkpoint": None, "stage_checkpoints": False}},
+         "stages": stages},
+        [material("Body", 1, "strain", YOUNG, POISSON)], mesh,
+        [check("DISPLACEMENT_Y", 1e-9 * load / stiffness, f"{name}.json", affine=[0, 0, -load / stiffness, 0])
+         for name, load in loads.items()])
+
+
+def write():
+    for shape in SHAPES:
+        displacement_patch(shape)
+    for shape in LINEAR:
+        load_patch(shape)
+    strain_x, strain_y = (1 - POISSON ** 2) / YOUNG, -POISSON * (1 + POISSON) / YOUNG
+    bar("structural/bar_plane_stress", "A plane stress bar stretches by qL/E and narrows by Poisson's ratio.",
+        "stress", 1 / YOUNG, -POISSON / YOUNG)
+    bar("structural/bar_plane_strain", "A plane strain bar stretches with the plane strain moduli.", "strain", strain_x, strain_y)
+    bar("structural/bar_thickness", "THICKNESS scales the stiffness of a plane element and not the line load.",
+        "stress", 1 / YOUNG, -POISSON / YOUNG, thickness=0.1)
+    bar("structural/linear_analysis", "analysis_type linear gives the answer of one linear solve.", "strain", strain_x, strain_y,
+        analysis_type="linear")
+    bar("structural/elimination_builder", "The elimination builder gives the answer of the block builder.", "strain",
+        strain_x, strain_y, builder_and_solver_settings={"type": "elimination"})
+    bar("structural/deprecated_block_builder", "The deprecated key block_builder false is taken as the elimination builder.",
+        "strain", strain_x, strain_y, block_builder=False)
+    for criterion in ("displacement", "and", "or"):
+        bar(f"structural/criterion_{criterion}", f"The {criterion}_criterion ends the iteration of a linear problem at its answer.",
+            "strain", strain_x, strain_y, convergence_criterion=f"{criterion}_criterion")
+    cantilever("stress", YOUNG)
+    cantilever("strain", YOUNG / (1 - POISSON ** 2))
+    down = [0.0, -1.0, 0.0]
+    column("structural/load_expression", "A load given as an expression of t is evaluated at each step's time.",
+           [condition_load("Top", "LINE_LOAD", "1.0e6*t^2", down)], {0.5: -0.25e6, 1.0: -1.0e6}, time_step=0.5)
+    column("structural/load_ternary", "A conditional expression switches a load.",
+           [condition_pressure("Top", "NEGATIVE_FACE_PRESSURE", "1.0e6*t if t < 1.5 else 4.0e6")], {1.0: -1.0e6, 2.0: -4.0e6}, end_time=2.0)
+    column("structural/load_intervals", "A load process acts in its interval and the last value stays afterwards.",
+           [condition_load("Top", "LINE_LOAD", "1.0e6*t", down, [0.0, 2.5])], {1.0: -1.0e6, 2.0: -2.0e6, 3.0: -2.0e6}, end_time=3.0)
+    table = {"name": "csv_table", "filename": "load.csv", "skiprows": 1}
+    column("structural/load_table", "A load given as a csv table is interpolated between its rows.",
+           [nodal_scalar("Top", "NEGATIVE_FACE_PRESSURE", table)], {1.0: -2.0e6, 2.0: -3.0e6, 3.0: -2.5e6}, end_time=3.0,
+           extra={"load.csv": "time,pressure\n0.0,1.0e6\n2.0,3.0e6\n4.0,2.0e6\n"})
+    column("structural/load_on_nodes", "LINE_LOAD at the nodes of a load condition is integrated with the shape functions.",
+           [nodal_load("Top", "LINE_LOAD", 1.0e6, down)], {1.0: -1.0e6})
+    self_weight()
+    two_stages()
