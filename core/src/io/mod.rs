@@ -1,6 +1,13 @@
 //! Files in and out: meshes, materials, results.
 
+mod import;
+mod materials;
 pub mod mdpa;
 mod replace;
+#[cfg(test)]
+mod tests;
+pub(crate) mod variables;
 
+pub use import::{import, read_mesh};
+pub use materials::{apply_materials, read_materials};
 pub use replace::replace_file;

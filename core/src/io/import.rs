@@ -1,0 +1,354 @@
+//! From a mesh document to a model part: ids become indices, names become registered kinds and variables.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use rustc_hash::FxHashMap;
+
+use super::mdpa::{self, DataBlock, DataColumn, DataEntry, DataValue, EntityBlock, EntityNames, Line, MdpaDocument};
+use super::variables::{kind_of, law_name, unknown_variable};
+use crate::diagnostics::{Diagnostic, Place, Report, Result};
+use crate::entities::MasterSlaveConstraint;
+use crate::model::flags::{FLAGS, flag};
+use crate::model::{
+    EntityTable, Fields, Flags, ModelPart, Named, Nodes, Properties, PropertyValue, ScalarVariable, SubPart, Table,
+    VariableKind, named,
+};
+use crate::registry::{self, Kind};
+
+/// Reads an mdpa file into `part`; gives the warnings. Columns the part already has are kept and made longer.
+///
+/// # Errors
+/// As [`mdpa::read`] and [`import`].
+pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
+    let known: Vec<&str> = registry::names(Kind::Element).chain(registry::names(Kind::Condition)).collect();
+    let nodes_of = |name: &str| {
+        let entry = registry::find(Kind::Element, name).or_else(|| registry::find(Kind::Condition, name));
+        entry.map(|entry| entry.nodes).or_else(|| geometry_nodes(name))
+    };
+    let names = EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| FLAGS.contains(&name) };
+    let (document, mut warnings) = mdpa::read(path, &names)?;
+    warnings.extend(import(&document, part)?);
+    Ok(warnings)
+}
+
+/// Number of nodes of a geometry by its name, as `Quadrilateral3D4`.
+fn geometry_nodes(name: &str) -> Option<usize> {
+    let kinds = ["Point", "Line", "Triangle", "Quadrilateral", "Tetrahedra", "Prism", "Hexahedra", "Pyramid", "Sphere"];
+    let rest = kinds.iter().find_map(|kind| name.strip_prefix(kind))?;
+    let nodes = rest.strip_prefix("2D").or_else(|| rest.strip_prefix("3D"))?;
+    if nodes.is_empty() { Some(1) } else { nodes.parse().ok() }
+}
+
+/// Puts the content of a document into `part`, sorted by id; gives the warnings.
+///
+/// The document is one that was read (or is as good): ids are unique and references go to what exists.
+///
+/// # Errors
+/// Names of entities, variables, flags and laws that are not registered, and values that do not fit their variable,
+/// each with its line.
+pub fn import(document: &MdpaDocument, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
+    let mut import = Import { document, report: Report::new() };
+    import.nodes(part);
+    import.elements_and_conditions(part);
+    for entry in &document.model_part_data {
+        import.entry(entry, &mut part.data);
+    }
+    for table in &document.tables {
+        part.tables.extend(table.id.map(|id| (id as usize, Table::new(table.rows.clone()))));
+    }
+    import.properties(part);
+    import.nodal_data(part);
+    let ModelPart { elements, conditions, .. } = part;
+    for (blocks, table) in [(&document.elemental_data, elements), (&document.conditional_data, conditions)] {
+        for block in blocks {
+            let EntityTable { data, flags, .. } = &mut *table;
+            let (mut data, mut flags) = (std::mem::take(data), std::mem::take(flags));
+            import.column(block, &mut data, &mut flags, &|id| table.find(id).expect("checked by the reader"));
+            (table.data, table.flags) = (data, flags);
+        }
+    }
+    let constraints = import.constraints(part);
+    import.sub_parts(part, &constraints);
+    if let Some(block) = document.geometries.first() {
+        let fact = "geometries without elements or conditions on them are not used";
+        import.push(block.line, Diagnostic::warning("unused-block", fact));
+    }
+    import.report.finish()
+}
+
+struct Import<'a> {
+    document: &'a MdpaDocument,
+    report: Report,
+}
+
+impl Import<'_> {
+    fn push(&mut self, line: Line, diagnostic: Diagnostic) {
+        self.report.push(diagnostic.at(self.place(line)));
+    }
+
+    fn place(&self, line: Line) -> Place {
+        Place::at(&self.document.file, line.0, 0)
+    }
+
+    fn nodes(&self, part: &mut ModelPart) {
+        let source = &self.document.nodes;
+        let mut order: Vec<usize> = (0..source.ids.len()).collect();
+        order.sort_by_key(|&at| source.ids[at]);
+        // The reader lets a repeated node with equal coordinates pass.
+        order.dedup_by_key(|at| source.ids[*at]);
+        let ids = order.iter().map(|&at| source.ids[at] as usize).collect();
+        let nodes = Nodes::new(ids, order.iter().map(|&at| source.coordinates[at]).collect());
+        let Nodes { mut history, mut values, .. } = std::mem::replace(&mut part.nodes, nodes);
+        history.grow(part.nodes.len());
+        values.grow(part.nodes.len());
+        (part.nodes.history, part.nodes.values) = (history, values);
+    }
+
+    fn elements_and_conditions(&mut self, part: &mut ModelPart) {
+        let ModelPart { nodes, elements, conditions, .. } = part;
+        for (kind, blocks, table) in [
+            (Kind::Element, &self.document.elements, elements),
+            (Kind::Condition, &self.document.conditions, conditions),
+        ] {
+            let mut rows: Vec<(u32, &EntityBlock, usize)> = Vec::new();
+            let mut entries = Vec::new();
+            for block in blocks {
+                match registry::require(kind, &block.name) {
+                    Ok(entry) => entries.push((block.name.as_str(), entry)),
+                    Err(problem) => self.push(block.line, problem),
+                }
+                rows.extend(block.ids.iter().enumerate().map(|(at, &id)| (id, block, at)));
+            }
+            rows.sort_by_key(|&(id, ..)| id);
+            let mut indices = Vec::new();
+            for (id, block, at) in rows {
+                let Some((_, entry)) = entries.iter().find(|(name, _)| *name == block.name) else { continue };
+                indices.clear();
+                indices.extend(block.nodes_of(at).iter().map(|&node| nodes.find(node as usize).expect("checked")));
+                table.push(id as usize, entry, block.properties[at] as usize, &indices);
+            }
+            table.finish();
+        }
+    }
+
+    fn properties(&mut self, part: &mut ModelPart) {
+        for block in &self.document.properties {
+            let mut properties = Properties::new(block.id as usize);
+            properties.place = Some(self.place(block.line));
+            for entry in &block.values {
+                match (&entry.name[..], &entry.value) {
+                    ("CONSTITUTIVE_LAW", DataValue::Text(law)) => match law_name(law) {
+                        Ok(name) => properties.law = Some(name),
+                        Err(problem) => self.push(entry.line, problem),
+                    },
+                    _ => self.entry(entry, &mut properties.values),
+                }
+            }
+            for table in &block.tables {
+                for name in [&table.input_variable, &table.output_variable] {
+                    if kind_of(name).is_none() {
+                        self.push(table.line, unknown_variable(name));
+                    }
+                }
+                let names = (table.input_variable.clone(), table.output_variable.clone());
+                properties.tables.insert(names, Table::new(table.rows.clone()));
+            }
+            part.properties.insert(properties.id, properties);
+        }
+    }
+
+    /// Stores one `NAME value`, as the kind of the variable wants it.
+    fn entry(&mut self, entry: &DataEntry, values: &mut BTreeMap<String, PropertyValue>) {
+        let Some(kind) = kind_of(&entry.name) else { return self.push(entry.line, unknown_variable(&entry.name)) };
+        let value = match (kind, &entry.value) {
+            (VariableKind::Scalar | VariableKind::Integer, DataValue::Number(value)) => PropertyValue::Number(*value),
+            (VariableKind::Scalar | VariableKind::Integer, DataValue::Text(text)) => match mdpa::number_prefix(text) {
+                Some(value) => {
+                    let fact = format!("{} {text} is read as {value:?}, as Kratos does", entry.name);
+                    let remedy = "exponents are written with e, as in 1.0e5";
+                    self.push(entry.line, Diagnostic::warning("number-prefix", fact).remedy(remedy));
+                    PropertyValue::Number(value)
+                }
+                None => return self.misfit(entry, "a number"),
+            },
+            (VariableKind::Boolean, DataValue::Number(value)) => PropertyValue::Boolean(*value != 0.0),
+            (VariableKind::Boolean, DataValue::Text(text)) if text == "true" || text == "false" => {
+                PropertyValue::Boolean(text == "true")
+            }
+            (VariableKind::Vector3, DataValue::Vector(values)) if values.len() == 3 => {
+                PropertyValue::Vector(values.clone())
+            }
+            (VariableKind::Vector, DataValue::Vector(values)) => PropertyValue::Vector(values.clone()),
+            (VariableKind::Matrix, DataValue::Matrix { columns, values, .. }) => {
+                PropertyValue::Matrix(values.chunks(*columns.max(&1)).map(<[f64]>::to_vec).collect())
+            }
+            (VariableKind::Text, DataValue::Text(text)) => PropertyValue::Text(text.clone()),
+            (VariableKind::Text, DataValue::Number(value)) => PropertyValue::Text(value.to_string()),
+            (VariableKind::Boolean, _) => return self.misfit(entry, "0 or 1"),
+            (VariableKind::Vector3, _) => return self.misfit(entry, "three numbers, [3] (a,b,c)"),
+            (VariableKind::Vector, _) => return self.misfit(entry, "a vector, [3] (a,b,c)"),
+            (VariableKind::Matrix, _) => return self.misfit(entry, "a matrix, [2,2] ((a,b),(c,d))"),
+            (VariableKind::Text, _) => return self.misfit(entry, "a word"),
+            (VariableKind::Scalar | VariableKind::Integer, _) => return self.misfit(entry, "a number"),
+        };
+        values.insert(entry.name.clone(), value);
+    }
+
+    fn misfit(&mut self, entry: &DataEntry, wanted: &str) {
+        let fact = format!("the value of {} is not {wanted}", entry.name);
+        self.push(entry.line, Diagnostic::error("wrong-type", fact));
+    }
+
+    fn nodal_data(&mut self, part: &mut ModelPart) {
+        for block in &self.document.nodal_data {
+            let Nodes { history, flags, .. } = &mut part.nodes;
+            let (mut history, mut flags) = (std::mem::take(history), std::mem::take(flags));
+            let find = |id| part.nodes.find(id).expect("checked by the reader");
+            let stored = self.column(block, &mut history, &mut flags, &find);
+            (part.nodes.history, part.nodes.flags) = (history, flags);
+            if let (Some(variable), DataColumn::Scalar { fixed, .. }) = (stored, &block.values) {
+                let held = block.ids.iter().zip(fixed).filter(|(_, fixed)| **fixed);
+                let held: Vec<u32> = held.filter_map(|(&id, _)| part.nodes.find(id as usize)).collect();
+                if !held.is_empty() {
+                    part.set_fixed(variable, &held, true);
+                }
+            }
+        }
+    }
+
+    /// Stores a block of values; gives the scalar it fills, when it fills one.
+    fn column(
+        &mut self,
+        block: &DataBlock,
+        fields: &mut Fields,
+        flags: &mut Flags,
+        find: &dyn Fn(usize) -> u32,
+    ) -> Option<ScalarVariable> {
+        if let DataColumn::Flag = block.values {
+            match flag(&block.variable) {
+                Ok(name) => block.ids.iter().for_each(|&id| flags.set(name, find(id as usize) as usize, true)),
+                Err(remedy) => {
+                    let fact = format!("there is no flag {}", block.variable);
+                    self.push(block.line, Diagnostic::error("unknown-flag", fact).remedy(remedy));
+                }
+            }
+            return None;
+        }
+        let Some(variable) = named(&block.variable) else {
+            self.push(block.line, unknown_variable(&block.variable));
+            return None;
+        };
+        let (name, offset, size) = variable.column();
+        let (values, given) = match &block.values {
+            DataColumn::Scalar { values, .. } => (values, 1),
+            DataColumn::Vector { size, values } => (values, *size),
+            DataColumn::Matrix { rows, columns, values } => (values, rows * columns),
+            DataColumn::Flag => return None,
+        };
+        let free_size = matches!(variable, Named::Whole(_, VariableKind::Vector | VariableKind::Matrix));
+        if given != size && !free_size {
+            let fact = format!("{} takes {size} numbers, the block gives {given}", block.variable);
+            self.push(block.line, Diagnostic::error("wrong-size", fact));
+            return None;
+        }
+        let components = match variable {
+            Named::Component(_) => 3,
+            Named::Whole(..) => given,
+        };
+        fields.add_named(name, components);
+        let field = fields.get_mut(name).expect("just added");
+        if field.components != components {
+            let fact = format!("{} has {} numbers elsewhere, here {given}", block.variable, field.components);
+            self.push(block.line, Diagnostic::error("wrong-size", fact));
+            return None;
+        }
+        for (id, row) in block.ids.iter().zip(values.chunks_exact(given)) {
+            let at = find(*id as usize) as usize * components + offset;
+            field.levels[0][at..at + given].copy_from_slice(row);
+        }
+        match variable {
+            Named::Component(scalar) => Some(scalar),
+            Named::Whole(column, _) => (given == 1).then_some(ScalarVariable { column, component: None }),
+        }
+    }
+
+    /// Adds the constraints; gives their indices by id.
+    fn constraints(&mut self, part: &mut ModelPart) -> FxHashMap<u32, u32> {
+        let mut indices = FxHashMap::default();
+        for block in &self.document.constraints {
+            let scalar = match named(&block.variables[0]) {
+                Some(Named::Component(scalar)) => scalar,
+                Some(Named::Whole(column, VariableKind::Scalar)) => ScalarVariable { column, component: None },
+                Some(Named::Whole(..)) => {
+                    let fact = format!("a constraint relates single numbers, {} is more", block.variables[0]);
+                    self.push(block.line, Diagnostic::error("wrong-type", fact).remedy("name a component, as …_X"));
+                    continue;
+                }
+                None => {
+                    self.push(block.line, unknown_variable(&block.variables[0]));
+                    continue;
+                }
+            };
+            if block.variables.iter().any(|name| *name != block.variables[0]) {
+                let fact = format!("only the first variable of the heading is used ({scalar}), as Kratos does");
+                self.push(block.line, Diagnostic::warning("mixed-constraint", fact));
+            }
+            for row in &block.rows {
+                let unknown = |id: u32| (part.nodes.find(id as usize).expect("checked by the reader"), scalar);
+                indices.insert(row.id, part.constraints.len() as u32);
+                part.constraints.push(MasterSlaveConstraint {
+                    id: row.id as usize,
+                    slave: unknown(row.slave),
+                    masters: row.masters.iter().map(|&id| unknown(id)).zip(row.weights.iter().copied()).collect(),
+                    constant: row.constant,
+                    active: true,
+                });
+            }
+        }
+        indices
+    }
+
+    fn sub_parts(&mut self, part: &mut ModelPart, constraints: &FxHashMap<u32, u32>) {
+        let mut tree = std::mem::take(&mut part.tree);
+        for source in &self.document.sub_model_parts {
+            let child = self.sub_part(source, part, constraints);
+            tree.children.insert(child.name.clone(), child);
+        }
+        tree.nodes = (0..part.nodes.len() as u32).collect();
+        tree.elements = (0..part.elements.len() as u32).collect();
+        tree.conditions = (0..part.conditions.len() as u32).collect();
+        tree.constraints = (0..part.constraints.len() as u32).collect();
+        tree.tables = part.tables.keys().copied().collect();
+        tree.properties = part.properties.keys().copied().collect();
+        tree.normalise();
+        part.tree = tree;
+    }
+
+    fn sub_part(
+        &mut self,
+        source: &mdpa::SubModelPart,
+        part: &ModelPart,
+        constraints: &FxHashMap<u32, u32>,
+    ) -> SubPart {
+        let mut out = SubPart::new(source.name.clone());
+        out.nodes = source.nodes.iter().filter_map(|&id| part.nodes.find(id as usize)).collect();
+        out.elements = source.elements.iter().filter_map(|&id| part.elements.find(id as usize)).collect();
+        out.conditions = source.conditions.iter().filter_map(|&id| part.conditions.find(id as usize)).collect();
+        out.constraints = source.constraints.iter().filter_map(|id| constraints.get(id).copied()).collect();
+        out.tables = source.tables.iter().map(|&id| id as usize).collect();
+        out.properties = source.properties.iter().map(|&id| id as usize).collect();
+        for entry in &source.data {
+            self.entry(entry, &mut out.data);
+        }
+        for inner in &source.parts {
+            let child = self.sub_part(inner, part, constraints);
+            out.nodes.extend(&child.nodes);
+            out.elements.extend(&child.elements);
+            out.conditions.extend(&child.conditions);
+            out.constraints.extend(&child.constraints);
+            out.children.insert(child.name.clone(), child);
+        }
+        out
+    }
+}

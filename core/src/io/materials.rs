@@ -1,0 +1,162 @@
+//! The materials file: properties, laws and tables, given to the entities of model parts.
+
+use std::path::Path;
+
+use super::variables::{kind_of, last_of_path, law_name, unknown_variable};
+use crate::diagnostics::{Diagnostic, Report, Result};
+use crate::model::{ModelPart, Properties, PropertyValue, Table, VariableKind};
+use crate::parameters::{Document, Node};
+
+/// Reads a materials file and gives its properties to the parts it names; gives the warnings.
+///
+/// Entries act in the order of the file. Properties that exist are completed: values of the file win, others stay.
+///
+/// # Errors
+/// Every key, name, type and part that does not fit, with its place.
+pub fn read_materials(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
+    let document = Document::read(path)?;
+    let warnings = apply_materials(&document.root, part)?;
+    Ok(document.warnings.into_iter().chain(warnings).collect())
+}
+
+/// As [`read_materials`], from a tree already read.
+///
+/// # Errors
+/// As [`read_materials`].
+pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
+    let mut report = Report::new();
+    let mut seen: Vec<String> = Vec::new();
+    for item in root.require("properties")?.array()? {
+        let Some((name, id)) = report.absorb(head(item)) else { continue };
+        if let Some(problem) = misplaced(&name, &seen, part) {
+            report.push(problem.at(item.key_place("model_part_name")));
+        }
+        seen.push(name.clone());
+        let mut properties = part.properties.remove(&id).unwrap_or_else(|| Properties::new(id));
+        properties.place = Some(item.place());
+        if let Some(material) = item.get("Material") {
+            read_material(material, &mut properties, &mut report);
+        }
+        part.properties.insert(id, properties);
+        if let Ok(selected) = part.part(&name) {
+            let (elements, conditions) = (selected.elements.clone(), selected.conditions.clone());
+            elements.iter().for_each(|&at| part.elements.properties[at as usize] = id);
+            conditions.iter().for_each(|&at| part.conditions.properties[at as usize] = id);
+        }
+        attach(part, &name, id);
+    }
+    report.finish()
+}
+
+fn head(item: &Node) -> Result<(String, usize)> {
+    Ok((item.require("model_part_name")?.str()?.to_owned(), item.require("properties_id")?.usize()?))
+}
+
+/// Notes the properties with the part and those above it.
+fn attach(part: &mut ModelPart, path: &str, id: usize) {
+    let mut names = path.split('.');
+    names.next();
+    let mut at = &mut part.tree;
+    loop {
+        if !at.properties.contains(&id) {
+            at.properties.push(id);
+            at.properties.sort_unstable();
+        }
+        let Some(next) = names.next().and_then(|name| at.children.get_mut(name)) else { break };
+        at = next;
+    }
+}
+
+/// Why the entry for the part `name` cannot stand after those for `seen`.
+fn misplaced(name: &str, seen: &[String], part: &ModelPart) -> Option<Diagnostic> {
+    let is_below = |child: &str, parent: &str| child.strip_prefix(parent).is_some_and(|rest| rest.starts_with('.'));
+    if name != part.name && !is_below(name, &part.name) {
+        let fact = format!("{name:?} does not begin with the root model part {:?}", part.name);
+        let remedy = match part.part(name) {
+            Ok(_) => format!("write the full path \"{}.{name}\"", part.name),
+            Err(_) => format!("parts are addressed by full path, as \"{}.Parts\"", part.name),
+        };
+        return Some(Diagnostic::error("unknown-model-part", fact).remedy(remedy));
+    }
+    if let Err(crate::Error::Input(mut problems)) = part.part(name) {
+        return problems.pop();
+    }
+    if seen.iter().any(|other| other == name) {
+        let fact = format!("{name:?} has material properties already");
+        return Some(Diagnostic::error("repeated-material", fact).remedy("keep one entry a model part"));
+    }
+    let child = seen.iter().find(|other| is_below(other, name))?;
+    let fact = format!("{name:?} comes after its sub part {child:?} and would override it");
+    Some(Diagnostic::error("material-order", fact).remedy("put the entry of the parent first"))
+}
+
+fn read_material(material: &Node, properties: &mut Properties, report: &mut Report) {
+    if let Some(law) = material.get("constitutive_law").and_then(|law| law.get("name")) {
+        if let Some(name) = report.absorb(law.str()) {
+            match law_name(name) {
+                Ok(name) => properties.law = Some(name),
+                Err(problem) => report.push(problem.at(law.place())),
+            }
+        }
+    }
+    for member in material.get("Variables").and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order()) {
+        let name = last_of_path(&member.key);
+        let Some(kind) = kind_of(name) else {
+            report.push(unknown_variable(name).at(material.get("Variables").map(|v| v.key_place(&member.key))));
+            continue;
+        };
+        if let Some(value) = report.absorb(value(&member.node, kind)) {
+            properties.values.insert(name.to_owned(), value);
+        }
+    }
+    for member in material.get("Tables").and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order()) {
+        if let Some((names, table)) = report.absorb(table(&member.node)) {
+            for name in [&names.0, &names.1] {
+                if kind_of(name).is_none() {
+                    report.push(unknown_variable(name).at(member.node.place()));
+                }
+            }
+            properties.tables.insert(names, table);
+        }
+    }
+    if let Some(inner) = material.get("sub_properties") {
+        let fact = "sub-properties are not used: a material is one law and its values";
+        report.push(Diagnostic::warning("unused-key", fact).at(inner.place()));
+    }
+}
+
+fn value(node: &Node, kind: VariableKind) -> Result<PropertyValue> {
+    let numbers = |node: &Node| node.array()?.iter().map(Node::f64).collect::<Result<Vec<f64>>>();
+    Ok(match kind {
+        VariableKind::Scalar => PropertyValue::Number(node.f64()?),
+        VariableKind::Integer => PropertyValue::Number(node.i64()? as f64),
+        VariableKind::Boolean => PropertyValue::Boolean(node.bool()?),
+        VariableKind::Vector => PropertyValue::Vector(numbers(node)?),
+        VariableKind::Vector3 => {
+            let values = numbers(node)?;
+            if values.len() != 3 {
+                let fact = format!("expected three numbers, found {}", values.len());
+                return Err(Diagnostic::error("wrong-size", fact).at(node.place()).into());
+            }
+            PropertyValue::Vector(values)
+        }
+        VariableKind::Matrix => PropertyValue::Matrix(node.array()?.iter().map(numbers).collect::<Result<_>>()?),
+        VariableKind::Text => PropertyValue::Text(node.str()?.to_owned()),
+    })
+}
+
+fn table(node: &Node) -> Result<((String, String), Table)> {
+    let name = |key: &str| Ok::<_, crate::Error>(last_of_path(node.require(key)?.str()?).to_owned());
+    let names = (name("input_variable")?, name("output_variable")?);
+    let mut points = Vec::new();
+    for row in node.require("data")?.array()? {
+        match row.array()? {
+            [x, y] => points.push([x.f64()?, y.f64()?]),
+            other => {
+                let fact = format!("a row of a table has two numbers, this one {}", other.len());
+                return Err(Diagnostic::error("wrong-size", fact).at(row.place()).into());
+            }
+        }
+    }
+    Ok((names, Table::new(points)))
+}
