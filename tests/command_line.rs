@@ -1,0 +1,145 @@
+//! The program as a user meets it: commands, exit codes, the report, and the same results with any number of threads.
+
+mod support;
+
+use std::path::Path;
+use support::{Results, contents, read_json, root, said, scratch_copy, zelus};
+
+fn case(name: &str) -> tempfile::TempDir {
+    scratch_copy(&root().join("tests/cases").join(name))
+}
+
+/// Replaces a text in the deck's project parameters.
+fn change(folder: &Path, find: &str, with: &str) {
+    let path = folder.join("ProjectParameters.json");
+    let text = std::fs::read_to_string(&path).expect("the deck");
+    assert!(text.contains(find), "the deck does not have {find:?}");
+    std::fs::write(path, text.replace(find, with)).expect("the deck");
+}
+
+#[test]
+fn list_shows_what_decks_can_name() {
+    let output = zelus(&root(), &["list"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let text = String::from_utf8_lossy(&output.stdout);
+    for name in
+        ["SmallDisplacementElement2D4N", "LinearElastic3DLaw", "alm_contact_process", "contact_residual_criterion"]
+    {
+        assert!(text.contains(name), "{name} is not in the list");
+    }
+    let output = zelus(&root(), &["list", "process"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("alm_contact_process") && !text.contains("SmallDisplacementElement2D4N"), "{text}");
+}
+
+#[test]
+fn describe_shows_settings_with_defaults() {
+    let output = zelus(&root(), &["describe", "alm_contact_process"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let text = String::from_utf8_lossy(&output.stdout);
+    for word in ["search_factor", "3.5", "active_check_factor", "contact_model_part"] {
+        assert!(text.contains(word), "{word} is not described:\n{text}");
+    }
+}
+
+#[test]
+fn describe_and_list_help_with_unknown_names() {
+    let output = zelus(&root(), &["describe", "alm_contact_proces"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("alm_contact_process"), "{}", said(&output));
+    let output = zelus(&root(), &["list", "proces"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+}
+
+#[test]
+fn an_unknown_command_or_option_is_bad_input() {
+    for arguments in [&["rum"][..], &["run"], &["run", "ProjectParameters.json", "--thread", "1"]] {
+        let output = zelus(&root(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", said(&output));
+    }
+}
+
+#[test]
+fn check_accepts_a_good_deck_and_writes_nothing() {
+    let scratch = case("contact_2d/nonmatching");
+    let before = contents(scratch.path());
+    let output = zelus(scratch.path(), &["check", "ProjectParameters.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    assert_eq!(contents(scratch.path()), before, "files were written");
+}
+
+#[test]
+fn a_deck_runs_from_any_folder_beside_its_files() {
+    let scratch = case("contact_2d/nonmatching");
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let deck = scratch.path().join("ProjectParameters.json");
+    let output = zelus(elsewhere.path(), &["run", &deck.to_string_lossy()]);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(scratch.path().join("slave.json").is_file(), "results are not beside the deck");
+    assert!(contents(elsewhere.path()).is_empty(), "files were written into the working folder");
+}
+
+#[test]
+fn the_report_of_a_run_says_what_happened() {
+    let scratch = case("contact_2d/opening");
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "report.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let report = read_json(&scratch.path().join("report.json")).expect("a report");
+    let text = report.to_string();
+    assert!(text.contains(env!("CARGO_PKG_VERSION")), "no version in {text}");
+    let stage = &report["stages"][0];
+    let steps = stage["steps"].as_array().unwrap_or_else(|| panic!("no steps in {text}"));
+    assert_eq!(steps.len(), 2, "{text}");
+    for step in steps {
+        assert_eq!(step["converged"], true, "{step}");
+        assert!(step["iterations"].as_array().is_some_and(|i| !i.is_empty()), "{step}");
+    }
+}
+
+#[test]
+fn a_report_that_cannot_be_written_is_a_system_failure() {
+    let scratch = case("structural/bar_plane_stress");
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "no/such/folder/report.json"]);
+    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
+    assert!(said(&output).contains("no/such/folder"), "{}", said(&output));
+}
+
+#[test]
+fn a_step_that_does_not_converge_ends_the_run_with_what_was_accepted_before_it() {
+    let scratch = case("contact_2d/opening");
+    change(scratch.path(), "\"max_iteration\": 20", "\"max_iteration\": 1");
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+    let results = Results::read(&scratch.path().join("slave.json")).expect("the step accepted before");
+    assert_eq!(results.step(None).expect("a step"), 0, "a step that did not converge was written");
+}
+
+#[test]
+fn a_body_without_supports_is_a_solver_failure() {
+    let scratch = case("structural/bar_plane_stress");
+    change(scratch.path(), "\"constrained\": [true, false, false]", "\"constrained\": [false, false, false]");
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
+}
+
+#[test]
+fn results_are_the_same_to_the_bit_with_one_and_two_threads() {
+    let decks = [
+        "tests/cases/contact_3d/hexahedra_nonmatching",
+        "tests/cases/contact_2d/closing_gap",
+        "examples/hertz_line_contact",
+    ];
+    for deck in decks {
+        let runs = ["1", "2"].map(|threads| {
+            let scratch = scratch_copy(&root().join(deck));
+            let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--threads", threads]);
+            assert!(output.status.success(), "{deck}: {}", said(&output));
+            contents(scratch.path())
+        });
+        assert!(runs[0].keys().eq(runs[1].keys()), "{deck}: not the same files");
+        for (name, content) in &runs[0] {
+            assert!(*content == runs[1][name], "{deck}: {} depends on the number of threads", name.display());
+        }
+    }
+}

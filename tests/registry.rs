@@ -1,0 +1,53 @@
+//! What holds for everything a deck can name.
+
+mod support;
+
+use std::collections::BTreeSet;
+use support::root;
+use zelus as _;
+use zelus_core::parameters::Defaults;
+use zelus_core::registry::{Kind, duplicates, entries};
+
+#[test]
+fn every_name_is_registered_once() {
+    assert!(duplicates().is_empty(), "{}", duplicates().join("\n"));
+}
+
+#[test]
+fn the_program_links_every_application() {
+    let kinds: BTreeSet<Kind> = entries().iter().map(|entry| entry.kind).collect();
+    for kind in [
+        Kind::Element,
+        Kind::Condition,
+        Kind::ConstitutiveLaw,
+        Kind::Process,
+        Kind::ConvergenceCriterion,
+        Kind::LinearSolver,
+    ] {
+        assert!(kinds.contains(&kind), "no {} is registered", kind.word());
+    }
+    let names: BTreeSet<&str> = entries().iter().map(|entry| entry.name).collect();
+    for name in ["SmallDisplacementElement2D4N", "LinearElastic3DLaw", "alm_contact_process", "json_output_process"] {
+        assert!(names.contains(name), "{name} is not registered");
+    }
+}
+
+#[test]
+fn every_name_says_what_it_is_and_where_it_lives() {
+    let mut problems = Vec::new();
+    for entry in entries() {
+        let place = format!("{} {} ({}:{})", entry.kind.word(), entry.name, entry.file, entry.line);
+        if entry.about.trim().is_empty() {
+            problems.push(format!("{place} does not say what it is"));
+        }
+        if !root().join(entry.file).is_file() {
+            problems.push(format!("{place}: there is no such file"));
+        }
+        if !entry.defaults.is_empty()
+            && let Err(error) = Defaults::parse(entry.name, entry.defaults)
+        {
+            problems.push(format!("{place}: {error}"));
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
