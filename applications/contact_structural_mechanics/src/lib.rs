@@ -1,1 +1,2 @@
 //! Mortar contact.
+pub mod mortar;

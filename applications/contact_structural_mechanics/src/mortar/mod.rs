@@ -1,0 +1,33 @@
+//! Mortar integration of one contact pair: from two facets to the operators D, M and the weighted gap.
+//!
+//! The pipeline, in the order of the modules:
+//! 1. [`geometry`]: nodes and normals of the pair, as plain numbers or as dual numbers seeded with its displacements;
+//! 2. [`settings`]: distance threshold, tolerance, Gauss rule, axisymmetry;
+//! 3. `segmentation_2d`, `segmentation_3d`: the exact overlap. In the plane an interval of the slave; in space the
+//!    intersection of both facets flattened along the slave's normal, cut into a fan of triangles and put back on the
+//!    true slave surface;
+//! 4. `quadrature`, [`shape`]: Gauss points on each cell; each goes to the master along the interpolated nodal normal
+//!    n = Σ N¹_j n_j, x² = x¹ + n ((x²₀ − x¹)·n_m)/(n·n_m), and gets its local coordinates there;
+//! 5. [`operators`]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
+//! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration.
+//!
+//! Slave (upper index 1) is the side that carries multipliers, master (2) the other. Decisions (which vertices the
+//! overlap has, where iterations end) are made on values; derivatives then come from one corrected evaluation at the
+//! solution, so that dual numbers cost a small multiple of the plain kernel and are exact.
+
+pub mod gap;
+pub mod geometry;
+pub mod operators;
+mod quadrature;
+mod segmentation_2d;
+mod segmentation_3d;
+pub mod settings;
+pub mod shape;
+
+pub use gap::{weighted_gap, weighted_jump};
+pub use geometry::{PairGeometry, dimension};
+pub use operators::{Operators, Overlap, operators};
+pub use settings::{IntegrationOrder, SegmentationSettings};
+
+#[cfg(test)]
+mod tests;

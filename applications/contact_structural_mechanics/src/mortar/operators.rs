@@ -1,0 +1,262 @@
+//! Mortar operators D and M of one pair, with dual shape functions built on the overlap of that pair.
+//!
+//! With N¹, N² the shape functions of slave and master: Me = ∫ N¹⊗N¹, De = ∫ diag N¹, Ae = De Me⁻¹, Φ = Ae N¹ and
+//! D = ∫ Φ⊗N¹ = De, M = ∫ Φ⊗N² = Ae ∫ N¹⊗N². Integrals run over the cells of the overlap, current configuration.
+//!
+//! Where Me cannot be inverted, Φ = N¹ and D = Me is full. With the usual three points a triangle this is so for every
+//! quadrilateral slave whose overlap is a single triangle: three points cannot tell four functions apart.
+
+use super::geometry::PairGeometry;
+use super::quadrature;
+use super::segmentation_2d;
+use super::segmentation_3d::Polygon;
+use super::settings::SegmentationSettings;
+use super::shape;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{cross, dot, norm, sub, value};
+
+/// Share of the slave's measure below which an overlap does not count.
+const LEAST_OVERLAP: f64 = 1e-5;
+/// Share of the slave's measure below which a cell is skipped: its normal would be rounding noise.
+const LEAST_CELL: f64 = 1e-13;
+/// Condition number (Frobenius) of Me beyond which the plain shape functions serve as Φ.
+const WORST_CONDITION: f64 = 1e-4 / f64::EPSILON;
+
+/// The operators of a pair.
+/// Row j belongs to the multiplier of slave node j; entries have the unit of a length (lines) or an area (surfaces).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Operators<T, const NS: usize, const NM: usize> {
+    /// D_jk = ∫ Φ_j N¹_k; diagonal whenever the dual functions exist.
+    pub d: [[T; NS]; NS],
+    /// M_jl = ∫ Φ_j N²_l.
+    pub m: [[T; NM]; NS],
+}
+
+/// Whether the facets of a pair face each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Overlap<O> {
+    /// They do, on one or more cells.
+    Cells(O),
+    /// They do not, or on a negligible part: the pair contributes nothing.
+    None,
+}
+
+impl<O> Overlap<O> {
+    /// The operators, if any.
+    pub fn cells(self) -> Option<O> {
+        match self {
+            Self::Cells(operators) => Some(operators),
+            Self::None => None,
+        }
+    }
+}
+
+/// Computes D and M of a pair: 2–2 nodes in the plane, 3 or 4 nodes a side in space.
+///
+/// With dual numbers the gradients are exact derivatives of the values, through cells, points and dual functions, as
+/// long as the kinds of the overlap's vertices do not change.
+pub fn operators<T: Real, const NS: usize, const NM: usize>(
+    pair: &PairGeometry<T, NS, NM>,
+    settings: &SegmentationSettings,
+) -> Overlap<Operators<T, NS, NM>> {
+    let mut sums = Sums::new(pair);
+    let whole = shape::measure(&pair.slave.map(value));
+    let covered = if NS == 2 {
+        let revolution = settings.revolution();
+        segmentation_2d::interval(pair, settings)
+            .map_or(0.0, |ends| sums.integrate_interval(ends, settings, revolution))
+    } else {
+        Polygon::new(pair, settings).map_or(0.0, |polygon| sums.integrate_polygon(&polygon, settings, whole))
+    };
+    if covered > LEAST_OVERLAP * whole { Overlap::Cells(sums.finish()) } else { Overlap::None }
+}
+
+impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
+    /// No overlap at all.
+    pub fn zero() -> Self {
+        Self { d: [[T::zero(); NS]; NS], m: [[T::zero(); NM]; NS] }
+    }
+
+    /// The same operators in another scalar, without derivatives.
+    pub fn as_constants<S: Real>(&self) -> Operators<S, NS, NM> {
+        Operators {
+            d: self.d.map(|row| row.map(|x| S::constant(x.value()))),
+            m: self.m.map(|row| row.map(|x| S::constant(x.value()))),
+        }
+    }
+
+    /// The same operators without derivatives.
+    pub fn values(&self) -> Operators<f64, NS, NM> {
+        self.as_constants()
+    }
+
+    /// Whether D is diagonal, so that dual functions were in use.
+    pub fn is_diagonal(&self) -> bool {
+        (0..NS).all(|j| (0..NS).all(|k| j == k || self.d[j][k].value() == 0.0))
+    }
+
+    /// (D v¹ − M v²)_j, the weighted jump of a nodal vector field across the pair.
+    #[inline]
+    pub fn jump(&self, slave: &[[T; 3]; NS], master: &[[T; 3]; NM]) -> [[T; 3]; NS] {
+        std::array::from_fn(|j| {
+            let mut sum = [T::zero(); 3];
+            for c in 0..3 {
+                for k in 0..NS {
+                    sum[c].add_product(self.d[j][k], slave[k][c]);
+                }
+                for l in 0..NM {
+                    sum[c].add_product(-self.m[j][l], master[l][c]);
+                }
+            }
+            sum
+        })
+    }
+}
+
+/// Integrals gathered over the cells: Me (upper triangle) and ∫ N¹⊗N².
+struct Sums<'a, T, const NS: usize, const NM: usize> {
+    pair: &'a PairGeometry<T, NS, NM>,
+    me: [[T; NS]; NS],
+    mixed: [[T; NM]; NS],
+}
+
+impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
+    fn new(pair: &'a PairGeometry<T, NS, NM>) -> Self {
+        Self { pair, me: [[T::zero(); NS]; NS], mixed: [[T::zero(); NM]; NS] }
+    }
+
+    /// Integrates over a segment of the slave line and returns its length.
+    fn integrate_interval(&mut self, ends: [T; 2], settings: &SegmentationSettings, revolution: Option<f64>) -> f64 {
+        let share = (ends[1] - ends[0]) * 0.5;
+        let det_j = norm(sub(self.pair.slave[1], self.pair.slave[0])) * share;
+        for &(s, weight) in quadrature::line(settings.integration_order) {
+            let xi = [ends[0] * (1.0 - s) + ends[1] * s, T::zero()];
+            let shape = shape::values::<T, NS>(xi);
+            let x = shape::interpolate(&shape, &self.pair.slave);
+            let mut weight = det_j * weight;
+            if let Some(per_radius) = revolution {
+                weight *= x[0] * per_radius;
+            }
+            self.add_point(&shape, x, weight);
+        }
+        det_j.value()
+    }
+
+    /// Integrates over the fan of triangles of a polygon and returns their area; `whole` is the slave's.
+    fn integrate_polygon(&mut self, polygon: &Polygon<T, NS, NM>, settings: &SegmentationSettings, whole: f64) -> f64 {
+        let place = |xi: [T; 2]| shape::interpolate(&shape::values::<T, NS>(xi), &self.pair.slave);
+        let rule = quadrature::triangle(settings.integration_order);
+        let mut covered = 0.0;
+        let vertices = polygon.vertices();
+        let mut local = [polygon.local(vertices[0]), [T::zero(); 2], polygon.local(vertices[1])];
+        let mut x = [place(local[0]), [T::zero(); 3], place(local[2])];
+        for &vertex in &vertices[2..] {
+            let xi = polygon.local(vertex);
+            (local[1], local[2]) = (local[2], xi);
+            (x[1], x[2]) = (x[2], shape::interpolate(&shape::values::<T, NS>(xi), &self.pair.slave));
+            let normal = cross(sub(x[1], x[0]), sub(x[2], x[0]));
+            if norm(value(normal)) <= 2.0 * LEAST_CELL * whole {
+                continue;
+            }
+            let area = norm(normal) * 0.5;
+            covered += area.value();
+            for (barycentric, weight) in rule {
+                let x = shape::combine(barycentric, &x);
+                let mut xi = shape::combine(barycentric, &local);
+                if NS == 4 {
+                    // Cells are flat and straight in space, not in the local coordinates of a general quadrilateral.
+                    xi = shape::closest_point(&self.pair.slave, x, xi.map(T::value));
+                }
+                self.add_point(&shape::values::<T, NS>(xi), x, area * *weight);
+            }
+        }
+        covered
+    }
+
+    /// Adds a point of the slave with its shape functions and weight × det J.
+    #[inline]
+    fn add_point(&mut self, slave_shape: &[T; NS], x: [T; 3], weight: T) {
+        let pair = self.pair;
+        let normal = shape::interpolate(slave_shape, &pair.nodal_normals);
+        let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
+        let mut projected = x;
+        (0..3).for_each(|c| projected[c].add_product(normal[c], distance));
+        let xi = shape::closest_point(&pair.master, projected, shape::centre::<NM>());
+        let master_shape = shape::values::<T, NM>(xi);
+        for j in 0..NS {
+            let weighted = slave_shape[j] * weight;
+            for k in j..NS {
+                self.me[j][k].add_product(weighted, slave_shape[k]);
+            }
+            for l in 0..NM {
+                self.mixed[j][l].add_product(weighted, master_shape[l]);
+            }
+        }
+    }
+
+    /// D and M from the integrals.
+    fn finish(mut self) -> Operators<T, NS, NM> {
+        for j in 0..NS {
+            for k in 0..j {
+                self.me[j][k] = self.me[k][j];
+            }
+        }
+        let Some(inverse) = inverse(self.me.map(|row| row.map(T::value))) else {
+            return Operators { d: self.me, m: self.mixed };
+        };
+        // X = Me⁻¹ ∫ N¹⊗N² on values, then one correction, which brings the derivative.
+        let mut solution = [[0.0; NM]; NS];
+        for j in 0..NS {
+            for l in 0..NM {
+                solution[j][l] = (0..NS).map(|k| inverse[j][k] * self.mixed[k][l].value()).sum();
+            }
+        }
+        let mut residual = self.mixed;
+        for j in 0..NS {
+            for l in 0..NM {
+                for k in 0..NS {
+                    residual[j][l].add_scaled(self.me[j][k], -solution[k][l]);
+                }
+            }
+        }
+        let mut operators = Operators::zero();
+        for j in 0..NS {
+            // The shape functions add up to one, so De is the row sum of Me.
+            let mut de = self.me[j][0];
+            (1..NS).for_each(|k| de += self.me[j][k]);
+            operators.d[j][j] = de;
+            for l in 0..NM {
+                let mut x = T::constant(solution[j][l]);
+                (0..NS).for_each(|k| x.add_scaled(residual[k][l], inverse[j][k]));
+                operators.m[j][l] = de * x;
+            }
+        }
+        operators
+    }
+}
+
+/// Inverse by elimination with row exchanges; `None` if the matrix is too badly conditioned to trust it.
+fn inverse<const N: usize>(matrix: [[f64; N]; N]) -> Option<[[f64; N]; N]> {
+    let frobenius = |m: &[[f64; N]; N]| m.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+    let mut work = matrix;
+    let mut inverse: [[f64; N]; N] = std::array::from_fn(|j| std::array::from_fn(|k| f64::from(u8::from(j == k))));
+    for pivot in 0..N {
+        let best = (pivot..N).max_by(|&a, &b| work[a][pivot].abs().total_cmp(&work[b][pivot].abs()))?;
+        work.swap(pivot, best);
+        inverse.swap(pivot, best);
+        let scale = 1.0 / work[pivot][pivot];
+        work[pivot] = work[pivot].map(|x| x * scale);
+        inverse[pivot] = inverse[pivot].map(|x| x * scale);
+        for row in 0..N {
+            let factor = work[row][pivot];
+            if row != pivot && factor != 0.0 {
+                for c in 0..N {
+                    work[row][c] -= factor * work[pivot][c];
+                    inverse[row][c] -= factor * inverse[pivot][c];
+                }
+            }
+        }
+    }
+    // Written so that NaN counts as bad.
+    (frobenius(&matrix) * frobenius(&inverse) < WORST_CONDITION).then_some(inverse)
+}

@@ -1,0 +1,287 @@
+//! The polygon in which a slave facet and a master facet overlap, seen along the slave's normal.
+//!
+//! Both facets are flattened onto the plane with normal n_s and the convex polygons are intersected there. What a
+//! vertex *is* (a node of either side, or a crossing of two edges) is decided on values with tolerances, which also
+//! makes coincident nodes and edges one vertex; where it is then follows in the scalar of the caller.
+
+use super::geometry::PairGeometry;
+use super::settings::SegmentationSettings;
+use super::shape;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{cross, dot, normalised, sub, value};
+
+/// Room for every node and every crossing of two quadrilaterals.
+const CAPACITY: usize = 24;
+/// Relative distance below which points coincide, and relative sine below which edges are parallel.
+const TOLERANCE: f64 = 1e-12;
+/// Sine of the angle between two edges below which their crossing moves with the slave's edge.
+/// Its exact velocity grows like the inverse of the angle, while the shape of the overlap hardly depends on it.
+const GRAZING: f64 = 1e-4;
+
+/// What a vertex of the overlap is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Vertex {
+    /// This master node, inside the slave.
+    Master(usize),
+    /// This slave node, inside the master.
+    Slave(usize),
+    /// The crossing of the edges that start at these nodes.
+    Crossing { slave: usize, master: usize },
+}
+
+/// The vertices of an overlap, anticlockwise about the slave's normal.
+pub(super) struct Polygon<T, const NS: usize, const NM: usize> {
+    slave: [[T; 2]; NS],
+    master: [[T; 2]; NM],
+    vertices: [Vertex; CAPACITY],
+    len: usize,
+}
+
+impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
+    /// Intersects the flattened facets; `None` if they are too far apart or share no area.
+    pub(super) fn new(pair: &PairGeometry<T, NS, NM>, settings: &SegmentationSettings) -> Option<Self> {
+        let plane = Plane::new(pair);
+        let height = |x: [T; 3]| dot(sub(value(x), plane.origin), value(pair.slave_normal));
+        if pair.master.iter().any(|&x| height(x) > settings.distance_threshold) {
+            return None;
+        }
+        let slave = pair.slave.map(|x| plane.coordinates(x));
+        let master = pair.master.map(|x| plane.coordinates(x));
+
+        let mut list = PointList::new(&slave.map(|p| p.map(T::value)), &master.map(|p| p.map(T::value)));
+        list.tolerance *= (settings.zero_tolerance_factor * f64::EPSILON / TOLERANCE).max(1.0);
+        list.collect();
+        if list.len < 3 {
+            return None;
+        }
+        list.sort();
+        Some(Self { slave, master, vertices: list.vertices, len: list.len })
+    }
+
+    /// The vertices, the first of them the one all cells share.
+    pub(super) fn vertices(&self) -> &[Vertex] {
+        &self.vertices[..self.len]
+    }
+
+    /// Local coordinates of a vertex on the flattened slave.
+    #[inline]
+    pub(super) fn local(&self, vertex: Vertex) -> [T; 2] {
+        match vertex {
+            Vertex::Slave(n) => shape::corner::<NS>(n).map(T::constant),
+            Vertex::Crossing { slave, master } => {
+                let (a, b) = (self.slave[slave], self.slave[(slave + 1) % NS]);
+                let (c, d) = (self.master[master], self.master[(master + 1) % NM]);
+                let (along, across) = (minus(b, a), minus(d, c));
+                let denominator = cross2(along, across);
+                let mut t = cross2(minus(c, a), across) / denominator;
+                if denominator.value().abs() < GRAZING * length(along.map(T::value)) * length(across.map(T::value)) {
+                    t = T::constant(t.value());
+                }
+                let (start, end) = (shape::corner::<NS>(slave), shape::corner::<NS>((slave + 1) % NS));
+                std::array::from_fn(|c| t * (end[c] - start[c]) + start[c])
+            }
+            Vertex::Master(n) => {
+                let lift = |p: [T; 2]| [p[0], p[1], T::zero()];
+                shape::closest_point(&self.slave.map(lift), lift(self.master[n]), shape::centre::<NS>())
+            }
+        }
+    }
+}
+
+/// The plane of the slave: its origin, in-plane axes (constant, any will do) and normal.
+struct Plane<T> {
+    origin: [f64; 3],
+    axes: [[f64; 3]; 2],
+    normal: [T; 3],
+    turn: [T; 2],
+}
+
+impl<T: Real> Plane<T> {
+    fn new<const NS: usize, const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> Self {
+        let values = pair.values();
+        let origin = shape::combine(&[1.0 / NS as f64; NS], &values.slave);
+        let normal = normalised(values.slave_normal);
+        // Project the longest of two edges, so that the axis is never degenerate.
+        let in_plane = |a: [f64; 3]| std::array::from_fn(|c| a[c] - dot(a, normal) * normal[c]);
+        let (a, b) = (in_plane(sub(values.slave[1], values.slave[0])), in_plane(sub(values.slave[2], values.slave[1])));
+        let first = normalised(if dot(a, a) >= dot(b, b) { a } else { b });
+        let axes = [first, cross(normal, first)];
+        let turn = axes.map(|axis| {
+            let mut sum = T::zero();
+            (0..3).for_each(|c| sum.add_scaled(pair.slave_normal[c], axis[c]));
+            sum
+        });
+        Self { origin, axes, normal: pair.slave_normal, turn }
+    }
+
+    /// In-plane coordinates of a point projected along the normal.
+    #[inline]
+    fn coordinates(&self, x: [T; 3]) -> [T; 2] {
+        let from_origin: [T; 3] = std::array::from_fn(|c| x[c] - self.origin[c]);
+        let height = dot(from_origin, self.normal);
+        std::array::from_fn(|a| {
+            let mut along = T::zero();
+            (0..3).for_each(|c| along.add_scaled(from_origin[c], self.axes[a][c]));
+            along.add_product(-height, self.turn[a]);
+            along
+        })
+    }
+}
+
+/// Vertices under construction, with their places in the plane.
+struct PointList<const NS: usize, const NM: usize> {
+    slave: [[f64; 2]; NS],
+    master: [[f64; 2]; NM],
+    tolerance: f64,
+    points: [[f64; 2]; CAPACITY],
+    vertices: [Vertex; CAPACITY],
+    len: usize,
+}
+
+impl<const NS: usize, const NM: usize> PointList<NS, NM> {
+    fn new(slave: &[[f64; 2]; NS], master: &[[f64; 2]; NM]) -> Self {
+        Self {
+            slave: *slave,
+            master: *master,
+            tolerance: TOLERANCE * area(slave).abs().sqrt(),
+            points: [[0.0; 2]; CAPACITY],
+            vertices: [Vertex::Slave(0); CAPACITY],
+            len: 0,
+        }
+    }
+
+    /// Lists master nodes inside the slave, then slave nodes inside the master, then crossings of edges.
+    fn collect(&mut self) {
+        let (slave, master) = (self.slave, self.master);
+        for n in 0..NM {
+            if inside(master[n], &slave, self.tolerance) {
+                self.push(master[n], Vertex::Master(n));
+            }
+        }
+        if self.len == NM {
+            return;
+        }
+        for n in 0..NS {
+            if inside(slave[n], &master, self.tolerance) {
+                self.push(slave[n], Vertex::Slave(n));
+            }
+        }
+        for i in 0..NS {
+            let (a, b) = (slave[i], slave[(i + 1) % NS]);
+            let along = minus(b, a);
+            for j in 0..NM {
+                let (c, d) = (master[j], master[(j + 1) % NM]);
+                let across = minus(d, c);
+                let denominator = cross2(along, across);
+                if denominator.abs() <= TOLERANCE * length(along) * length(across) {
+                    continue;
+                }
+                let t = cross2(minus(c, a), across) / denominator;
+                let u = cross2(minus(c, a), along) / denominator;
+                let range = -TOLERANCE..=1.0 + TOLERANCE;
+                if range.contains(&t) && range.contains(&u) {
+                    let point = [a[0] + t * along[0], a[1] + t * along[1]];
+                    self.push(point, Vertex::Crossing { slave: i, master: j });
+                }
+            }
+        }
+    }
+
+    fn push(&mut self, point: [f64; 2], vertex: Vertex) {
+        if self.points[..self.len].iter().all(|&p| length(minus(point, p)) > self.tolerance) {
+            self.points[self.len] = point;
+            self.vertices[self.len] = vertex;
+            self.len += 1;
+        }
+    }
+
+    /// Orders the points anticlockwise about their mean; the first of the list stays the first.
+    fn sort(&mut self) {
+        let count = self.len as f64;
+        let sum = self.points[..self.len].iter().fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
+        let mean = sum.map(|s| s / count);
+        let angle = |p: [f64; 2]| (p[1] - mean[1]).atan2(p[0] - mean[0]);
+        let start = angle(self.points[0]);
+        let mut angles = [0.0; CAPACITY];
+        for n in 1..self.len {
+            let turn = angle(self.points[n]) - start;
+            angles[n] = if turn < 0.0 { turn + std::f64::consts::TAU } else { turn };
+        }
+        for n in 2..self.len {
+            let mut k = n;
+            while k > 1 && angles[k] < angles[k - 1] {
+                angles.swap(k, k - 1);
+                self.vertices.swap(k, k - 1);
+                k -= 1;
+            }
+        }
+    }
+}
+
+#[inline]
+fn minus<T: Real>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+#[inline]
+fn cross2<T: Real>(a: [T; 2], b: [T; 2]) -> T {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[inline]
+fn length(a: [f64; 2]) -> f64 {
+    (a[0] * a[0] + a[1] * a[1]).sqrt()
+}
+
+/// Signed area, positive if the nodes run anticlockwise.
+fn area<const N: usize>(polygon: &[[f64; 2]; N]) -> f64 {
+    0.5 * (0..N).map(|n| cross2(polygon[n], polygon[(n + 1) % N])).sum::<f64>()
+}
+
+/// Whether a point lies in a convex polygon of either orientation, or within `tolerance` of it.
+fn inside<const N: usize>(point: [f64; 2], polygon: &[[f64; 2]; N], tolerance: f64) -> bool {
+    let sign = area(polygon).signum();
+    (0..N).all(|n| {
+        let edge = minus(polygon[(n + 1) % N], polygon[n]);
+        sign * cross2(edge, minus(point, polygon[n])) >= -tolerance * length(edge)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vertices(slave: [[f64; 2]; 4], master: [[f64; 2]; 4]) -> Vec<Vertex> {
+        let mut list = PointList::new(&slave, &master);
+        list.collect();
+        list.sort();
+        list.vertices[..list.len].to_vec()
+    }
+
+    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+    fn moved(dx: f64, dy: f64) -> [[f64; 2]; 4] {
+        [3, 2, 1, 0].map(|n| [SQUARE[n][0] + dx, SQUARE[n][1] + dy])
+    }
+
+    #[test]
+    fn partial_overlap_mixes_all_kinds() {
+        let found = vertices(SQUARE, moved(0.5, 0.25));
+        let crossing = |slave, master| Vertex::Crossing { slave, master };
+        assert_eq!(found, [Vertex::Master(3), crossing(1, 2), Vertex::Slave(2), crossing(2, 3)]);
+    }
+
+    #[test]
+    fn coincident_squares_share_their_corners() {
+        for noise in [0.0, 1e-15, -1e-15, 3e-13] {
+            let found = vertices(SQUARE, moved(noise, -noise));
+            assert_eq!(found, [Vertex::Master(0), Vertex::Master(3), Vertex::Master(2), Vertex::Master(1)]);
+        }
+    }
+
+    #[test]
+    fn common_edge_makes_no_extra_vertex() {
+        let found = vertices(SQUARE, moved(0.5, 0.0));
+        assert_eq!(found.len(), 4, "{found:?}");
+    }
+}
