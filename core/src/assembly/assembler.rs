@@ -158,11 +158,7 @@ impl Assembler {
 
     /// Present values of all unknowns.
     pub fn values(&self, part: &ModelPart) -> Vec<f64> {
-        part.dofs
-            .dofs()
-            .iter()
-            .map(|dof| part.nodes.history.scalar(dof.variable, dof.node as usize).unwrap_or(0.0))
-            .collect()
+        part.dofs.gather(&part.nodes, 0)
     }
 
     /// External minus internal forces over all unknowns; at supports, minus the reaction.

@@ -83,6 +83,30 @@ impl DofTable {
         self.numbers.get(&variable).map(|list| list[node as usize]).filter(|&number| number != NONE)
     }
 
+    /// Values of all unknowns at a time level (0 the present).
+    pub fn gather(&self, nodes: &Nodes, level: usize) -> Vec<f64> {
+        let mut out = vec![0.0; self.dofs.len()];
+        for (variable, numbers) in &self.numbers {
+            let Some(field) = nodes.history.get(variable.column) else { continue };
+            let (values, offset) = (&field.levels[level.min(field.levels.len() - 1)], variable.offset());
+            for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != NONE) {
+                out[number as usize] = values[node * field.components + offset];
+            }
+        }
+        out
+    }
+
+    /// Adds an increment to the present values of all unknowns.
+    pub fn scatter_add(&self, increment: &[f64], nodes: &mut Nodes) {
+        for (variable, numbers) in &self.numbers {
+            let Some(field) = nodes.history.get_mut(variable.column) else { continue };
+            let (components, offset) = (field.components, variable.offset());
+            for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != NONE) {
+                field.levels[0][node * components + offset] += increment[number as usize];
+            }
+        }
+    }
+
     /// Fixes or frees an unknown of some nodes.
     pub fn set_fixed(&mut self, variable: ScalarVariable, nodes: &[u32], fixed: bool, node_count: usize) {
         let column = self.fixed.entry(variable).or_insert_with(|| vec![false; node_count]);

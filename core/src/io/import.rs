@@ -24,7 +24,7 @@ pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
     let known: Vec<&str> = registry::names(Kind::Element).chain(registry::names(Kind::Condition)).collect();
     let nodes_of = |name: &str| {
         let entry = registry::find(Kind::Element, name).or_else(|| registry::find(Kind::Condition, name));
-        entry.map(|entry| entry.nodes).or_else(|| geometry_nodes(name))
+        entry.map(|entry| entry.nodes()).or_else(|| geometry_nodes(name))
     };
     let names = EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| FLAGS.contains(&name) };
     let (document, mut warnings) = mdpa::read(path, &names)?;

@@ -17,8 +17,8 @@ register_variable! {
     kind IO_TEST_MATRIX: Matrix = "Numbers in rows.";
 }
 
-register! { Element "IoTestElement2D3N", about: "a triangle of the tests", nodes: 3, shape: "2D3N" }
-register! { Condition "IoTestCondition2D2N", about: "a line of the tests", nodes: 2, shape: "2D2N" }
+register! { Element "IoTestElement2D3N", about: "a triangle of the tests", cell: Some(crate::geometry::Shape::Tri3), space: 2 }
+register! { Condition "IoTestCondition2D2N", about: "a line of the tests", cell: Some(crate::geometry::Shape::Line2), space: 2 }
 register! { ConstitutiveLaw "IoTestLaw", about: "a law" }
 
 const MESH: &str = "Begin ModelPartData\n IO_TEST_COUNT 2\nEnd ModelPartData\n\

@@ -9,6 +9,7 @@ use std::sync::LazyLock;
 
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
 use crate::entities::{BlockRequest, EntityBlock};
+use crate::geometry::Shape;
 
 /// The kinds of things a deck can name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -87,6 +88,8 @@ impl Kind {
 pub enum Build {
     /// Elements and conditions: a block of them.
     Block(fn(&BlockRequest<'_>) -> Result<Box<dyn EntityBlock>>),
+    /// Processes.
+    Process(crate::processes::ProcessFactory),
     /// Any other factory, known to the code that asks for this kind: a reference to a function or a table.
     Factory(&'static (dyn Any + Send + Sync)),
     /// A name that is only known, with no object behind it.
@@ -107,10 +110,10 @@ pub struct Entry {
     pub source: &'static str,
     /// Default settings in JSON with a comment on every key; empty when it has none.
     pub defaults: &'static str,
-    /// Nodes of an element or condition; 0 otherwise.
-    pub nodes: usize,
-    /// Suffix naming shape and dimension of an element or condition, e.g. `3D8N`; empty otherwise.
-    pub shape: &'static str,
+    /// Reference cell of an element or condition.
+    pub cell: Option<Shape>,
+    /// Dimensions of the space an element or condition lives in: 2 or 3; 0 for everything else.
+    pub space: usize,
     /// How it is made.
     pub build: Build,
     /// Source file of the registration.
@@ -129,12 +132,19 @@ impl Entry {
             about: "",
             source: "",
             defaults: "",
-            nodes: 0,
-            shape: "",
+            cell: None,
+            space: 0,
             build: Build::NameOnly,
             file,
             line,
         }
+    }
+}
+
+impl Entry {
+    /// Nodes of an element or condition; 0 for everything else.
+    pub fn nodes(&self) -> usize {
+        self.cell.map_or(0, Shape::nodes)
     }
 }
 

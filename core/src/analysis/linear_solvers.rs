@@ -1,0 +1,66 @@
+//! The linear solvers that decks name, and the engine that serves each.
+
+use zelus_linear_algebra::{DirectSettings, Engine, KrylovSettings, LinearSolver, Preconditioner, create};
+
+use crate::diagnostics::Result;
+use crate::parameters::Settings;
+use crate::register;
+use crate::registry::{self, Build, Kind};
+
+/// An engine for the settings of a deck.
+pub(super) type EngineFactory = fn(&Settings) -> Engine;
+
+/// The solver for `linear_solver_settings`, and a sentence saying which engine serves.
+///
+/// # Errors
+/// An unknown name.
+pub(super) fn make(settings: &Settings) -> Result<(Box<dyn LinearSolver>, String)> {
+    let given = settings.node().get("solver_type").map(|n| n.str()).transpose()?.unwrap_or("");
+    let name = given.rsplit('.').next().unwrap_or(given);
+    let name = if name.is_empty() { "sparse_lu" } else { name };
+    let entry = registry::require(Kind::LinearSolver, name).map_err(|d| d.at(settings.key_place("solver_type")))?;
+    let Build::Factory(factory) = entry.build else { unreachable!("linear solvers register a factory") };
+    let engine = factory.downcast_ref::<EngineFactory>().expect("linear solvers register an EngineFactory")(settings);
+    let solver = create(engine);
+    let asked = if given.is_empty() { "no linear solver named".to_owned() } else { format!("\"{given}\"") };
+    let says = format!("linear solver: {asked} is served by {}", solver.name());
+    Ok((solver, says))
+}
+
+fn direct(_: &Settings) -> Engine {
+    Engine::Direct(DirectSettings::default())
+}
+
+fn krylov(settings: &Settings) -> KrylovSettings {
+    let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
+    let mut krylov = KrylovSettings { preconditioner: Preconditioner::Ilu0, ..KrylovSettings::default() };
+    if let Some(tolerance) = number("tolerance") {
+        krylov.tolerance = tolerance;
+    }
+    if let Some(iterations) = number("max_iteration") {
+        krylov.iterations = iterations as usize;
+    }
+    krylov
+}
+
+register! { LinearSolver "sparse_lu",
+    aliases: &["skyline_lu_factorization", "pardiso_lu", "pardiso_ldlt", "pardiso_llt", "sparse_cg", "sparse_qr",
+        "super_lu", "SuperLUSolver", "LUSkylineFactorizationSolver", "umfpack", "mumps", "direct"],
+    about: "multifrontal factorisation; the interface of contact in a dense Schur complement",
+    build: Build::Factory(&(direct as EngineFactory)),
+}
+register! { LinearSolver "amgcl",
+    aliases: &["AMGCL", "amgcl_raw", "multigrid", "deflated_cg"],
+    about: "served by the direct engine, which is faster at the sizes one machine holds and never leaves a residual",
+    build: Build::Factory(&(direct as EngineFactory)),
+}
+register! { LinearSolver "cg",
+    aliases: &["CGSolver", "conjugate_gradient"],
+    about: "conjugate gradients, for symmetric systems without contact",
+    build: Build::Factory(&((|settings| Engine::ConjugateGradient(krylov(settings))) as EngineFactory)),
+}
+register! { LinearSolver "gmres",
+    aliases: &["bicgstab", "BICGSTABSolver", "tfqmr", "TFQMRSolver"],
+    about: "restarted GMRES, for any system",
+    build: Build::Factory(&((|settings| Engine::Gmres { krylov: krylov(settings), restart: 100 }) as EngineFactory)),
+}

@@ -1,0 +1,16 @@
+//! The stage loop: from a deck to results.
+//!
+//! [`run`] reads `ProjectParameters.json` and runs its stage, or, in the form with an orchestrator, its stages one after
+//! another on one model. [`check`] does everything that can be done without solving.
+
+mod linear_solvers;
+mod orchestrator;
+mod report;
+mod solver;
+mod stage;
+mod time_stepping;
+
+pub use orchestrator::{RunOptions, check, run};
+pub use report::{RunReport, Sizes};
+pub use solver::{ExtensionDefinition, NodalVariable, SolverDefinition};
+pub use time_stepping::TimeStepping;

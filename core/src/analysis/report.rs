@@ -1,0 +1,57 @@
+//! The report of a run: what was solved, how it went, how long it took.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::strategies::StepRecord;
+
+/// Sizes of a problem.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Sizes {
+    /// Nodes.
+    pub nodes: usize,
+    /// Elements.
+    pub elements: usize,
+    /// Conditions.
+    pub conditions: usize,
+    /// Constraints.
+    pub constraints: usize,
+    /// Unknowns, fixed ones included.
+    pub unknowns: usize,
+}
+
+/// What a run leaves behind, as written by `--report`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct RunReport {
+    /// Version of the program.
+    pub version: String,
+    /// Name of the problem.
+    pub problem: String,
+    /// Stages run.
+    pub stages: Vec<String>,
+    /// Sizes of the last stage.
+    pub sizes: Sizes,
+    /// Accepted steps and failed attempts, in order.
+    pub steps: Vec<StepRecord>,
+    /// Warnings, in words.
+    pub warnings: Vec<String>,
+    /// Which engine serves the deck's linear solver.
+    pub linear_solver: String,
+    /// Seconds by phase.
+    pub seconds: BTreeMap<String, f64>,
+    /// Threads used.
+    pub threads: usize,
+    /// Files and folders a user would open.
+    pub outputs: Vec<PathBuf>,
+    /// Whether every step converged.
+    pub converged: bool,
+}
+
+impl RunReport {
+    /// Adds seconds to a phase.
+    pub fn add_seconds(&mut self, phase: &str, seconds: f64) {
+        *self.seconds.entry(phase.to_owned()).or_insert(0.0) += seconds;
+    }
+}

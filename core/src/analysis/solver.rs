@@ -1,0 +1,238 @@
+//! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
+
+use crate::diagnostics::{Diagnostic, Report, Result};
+use crate::entities::BlockRequest;
+use crate::model::{EntityTable, ModelPart};
+use crate::parameters::{Defaults, Node, Settings, Value};
+use crate::registry::{self, Build, Entry, Kind};
+use crate::strategies::{
+    ConvergenceCriterion, CriterionFactory, CriterionRequest, NewtonRaphson, NewtonSettings, Scheme, SchemeFactory,
+    SchemeRequest,
+};
+
+/// A variable with history on the nodes: name and number of components.
+pub type NodalVariable = (&'static str, usize);
+
+/// What an application registers for a `solver_type`, as `Build::Factory(&SolverDefinition {…})`.
+pub struct SolverDefinition {
+    /// Variables with history that every node gets.
+    pub variables: &'static [NodalVariable],
+    /// Registered name of the time scheme that these settings ask for.
+    pub scheme: fn(&Settings) -> Result<String>,
+    /// Names the deprecated spellings of settings.
+    pub adapt: fn(Defaults) -> Defaults,
+}
+
+/// What an application registers for a nested object of `solver_settings`, as `Build::Factory(&ExtensionDefinition {…})`.
+pub struct ExtensionDefinition {
+    /// Further variables with history, for these settings of the nested object.
+    ///
+    /// An error names a setting that does not fit.
+    pub variables: fn(&Settings) -> Result<Vec<NodalVariable>>,
+}
+
+/// The settings of a stage's solver, checked, with what they ask for.
+pub struct SolverSettings {
+    /// All settings, nested objects of extensions included, defaults filled in.
+    pub settings: Settings,
+    /// As the user wrote them.
+    pub user: Node,
+    definition: &'static SolverDefinition,
+    variables: Vec<NodalVariable>,
+}
+
+impl SolverSettings {
+    /// Checks `solver_settings`.
+    ///
+    /// # Errors
+    /// Everything that does not fit, gathered.
+    pub fn new(user: &Node, report: &mut Report) -> Result<Self> {
+        let solver_type = user.require("solver_type")?;
+        let entry = registry::require(Kind::Solver, solver_type.str()?).map_err(|d| d.at(solver_type.place()))?;
+        let Build::Factory(definition) = entry.build else { unreachable!("solvers register a factory") };
+        let definition = definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition");
+        let mut own = user.clone();
+        let mut extensions = Vec::new();
+        let mut lenient = false;
+        if let Value::Object(members) = &mut own.value {
+            let known: Vec<&'static Entry> =
+                registry::entries().into_iter().filter(|e| e.kind == Kind::SolverExtension).collect();
+            for extension in known {
+                if let Some(member) = members.remove(extension.name) {
+                    extensions.push((extension, member));
+                    lenient = true;
+                }
+            }
+        }
+        let mut defaults = (definition.adapt)(Defaults::parse(entry.name, entry.defaults)?);
+        if lenient {
+            defaults = defaults.lenient();
+        }
+        let mut problems = Report::new();
+        let settings = Settings::validate(&own, &defaults, &mut problems);
+        let mut variables = definition.variables.to_vec();
+        let mut merged = settings.as_ref().map(|s| s.node().clone());
+        for (extension, mut member) in extensions {
+            let defaults = Defaults::parse(extension.name, extension.defaults)?;
+            let Some(checked) = Settings::validate(&member.node, &defaults, &mut problems) else { continue };
+            let Build::Factory(factory) = extension.build else { unreachable!("extensions register a factory") };
+            let factory = factory.downcast_ref::<ExtensionDefinition>().expect("an ExtensionDefinition");
+            if let Some(more) = problems.absorb((factory.variables)(&checked)) {
+                variables.extend(more);
+            }
+            if let Some(Node { value: Value::Object(members), .. }) = &mut merged {
+                member.node = checked.node().clone();
+                members.insert(member);
+            }
+        }
+        for warning in problems.finish()? {
+            report.push(warning);
+        }
+        let node = merged.unwrap_or_else(|| user.clone());
+        Ok(Self { settings: Settings::unchecked(entry.name, node), user: user.clone(), definition, variables })
+    }
+
+    /// Gives the nodes their variables with history and the buffer its length.
+    ///
+    /// # Errors
+    /// Settings that are not what they should be.
+    pub fn prepare(&self, part: &mut ModelPart) -> Result<()> {
+        part.info.domain_size = self.settings.get_usize("domain_size")?;
+        let levels = self.settings.get_usize("buffer_size")?.max(2);
+        part.nodes.history.set_levels(levels);
+        for &(name, components) in &self.variables {
+            part.nodes.history.add_named(name, components);
+        }
+        Ok(())
+    }
+
+    /// Dimensions of the problem.
+    ///
+    /// # Errors
+    /// Anything but 2 and 3.
+    pub fn domain_size(&self) -> Result<usize> {
+        match self.settings.get_i64("domain_size")? {
+            2 => Ok(2),
+            3 => Ok(3),
+            other => Err(self
+                .settings
+                .error("domain_size", "domain-size", format!("\"domain_size\" is {other}, it must be 2 or 3"))
+                .into()),
+        }
+    }
+
+    /// The time scheme.
+    ///
+    /// # Errors
+    /// A name that is not registered.
+    pub fn scheme(&self) -> Result<Box<dyn Scheme>> {
+        let name = (self.definition.scheme)(&self.settings)?;
+        let entry = registry::require(Kind::Scheme, &name).map_err(|d| d.at(self.settings.key_place("scheme_type")))?;
+        let Build::Factory(factory) = entry.build else { unreachable!("schemes register a factory") };
+        factory.downcast_ref::<SchemeFactory>().expect("a SchemeFactory")(&SchemeRequest { settings: &self.settings })
+    }
+
+    /// The convergence criterion.
+    ///
+    /// # Errors
+    /// A name that is not registered.
+    pub fn criterion(&self, report: &mut Report) -> Result<Box<dyn ConvergenceCriterion>> {
+        let name = self.settings.get_str("convergence_criterion")?;
+        let entry = registry::require(Kind::ConvergenceCriterion, name)
+            .map_err(|d| d.at(self.settings.key_place("convergence_criterion")))?;
+        let Build::Factory(factory) = entry.build else { unreachable!("criteria register a factory") };
+        let make = factory.downcast_ref::<CriterionFactory>().expect("a CriterionFactory");
+        make(&mut CriterionRequest { settings: &self.settings, user: &self.user, report })
+    }
+
+    /// The strategy over a part whose blocks and interactions are ready, and a sentence on its linear solver.
+    ///
+    /// # Errors
+    /// Names that are not registered.
+    pub fn strategy(&self, part: &mut ModelPart, report: &mut Report) -> Result<(NewtonRaphson, String)> {
+        let (solver, says) = super::linear_solvers::make(&self.settings.sub("linear_solver_settings")?)?;
+        let analysis = self.settings.get_str("analysis_type")?;
+        if !matches!(analysis, "linear" | "non_linear") {
+            let fact = format!("\"analysis_type\" is \"{analysis}\"");
+            return Err(self
+                .settings
+                .error("analysis_type", "analysis-type", fact)
+                .remedy("use \"linear\" or \"non_linear\"")
+                .into());
+        }
+        let settings = NewtonSettings {
+            max_iteration: self.settings.get_usize("max_iteration")?,
+            linear: analysis == "linear",
+            compute_reactions: self.settings.get_bool("compute_reactions")?,
+            move_mesh: self.settings.get_bool("move_mesh_flag")?,
+        };
+        let scheme = self.scheme()?;
+        scheme.prepare(part);
+        let criterion = self.criterion(report)?;
+        Ok((NewtonRaphson::new(settings, scheme, criterion, solver, part), says))
+    }
+}
+
+/// Makes the blocks of a part from its tables: one for each kind and properties.
+///
+/// # Errors
+/// Every block that cannot be made and every entity that cannot be computed with.
+pub fn make_blocks(part: &mut ModelPart) -> Result<()> {
+    let mut report = Report::new();
+    let mut both = [Vec::new(), Vec::new()];
+    for (blocks, table) in both.iter_mut().zip([&part.elements, &part.conditions]) {
+        for (entry, members) in groups(table) {
+            let Build::Block(factory) = entry.build else { continue };
+            let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
+            if let Some(block) = report.absorb(factory(&request)) {
+                blocks.push(block);
+            }
+        }
+    }
+    for blocks in &mut both {
+        for block in blocks.iter_mut() {
+            report.absorb(block.initialize(&part.view()));
+        }
+    }
+    report.finish()?;
+    let [elements, conditions] = both;
+    part.element_blocks = elements;
+    part.condition_blocks = conditions;
+    Ok(())
+}
+
+fn groups(table: &EntityTable) -> Vec<(&'static Entry, Vec<u32>)> {
+    let mut groups: std::collections::BTreeMap<(&'static str, usize), Vec<u32>> = std::collections::BTreeMap::new();
+    for at in 0..table.len() {
+        groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);
+    }
+    groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()
+}
+
+/// An element or condition kind of the wrong dimension for the problem.
+///
+/// # Errors
+/// Input error naming the first such entity of each kind.
+pub fn check_dimensions(part: &ModelPart, domain_size: usize) -> Result<()> {
+    let mut report = Report::new();
+    for table in [&part.elements, &part.conditions] {
+        let mut last: Option<&Entry> = None;
+        for (at, entry) in table.kinds.iter().enumerate() {
+            if last == Some(entry) {
+                continue;
+            }
+            last = Some(entry);
+            if entry.space != 0 && entry.space != domain_size {
+                let fact = format!(
+                    "{} {} is {}-dimensional, but \"domain_size\" is {domain_size}",
+                    entry.name, table.ids[at], entry.space
+                );
+                report.push(
+                    Diagnostic::error("wrong-dimension", fact)
+                        .remedy("use the kind for this dimension, or correct \"domain_size\""),
+                );
+            }
+        }
+    }
+    report.finish().map(|_| ())
+}

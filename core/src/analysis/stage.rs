@@ -1,0 +1,457 @@
+//! One stage: a solver, its processes, and the loop over the steps.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::report::{RunReport, Sizes};
+use super::solver::{SolverSettings, check_dimensions, make_blocks};
+use super::time_stepping::TimeStepping;
+use crate::diagnostics::{Diagnostic, Error, Report, Result};
+use crate::io;
+use crate::model::{Model, ModelPart, Nodes, ProcessInfo};
+use crate::parameters::{Node, Settings};
+use crate::processes::{Process, ProcessRequest};
+use crate::registry::{self, Build, Kind};
+use crate::strategies::{Monitor, NewtonRaphson, StepRecord};
+
+/// Halvings of a step that does not converge before the run ends.
+const CUTS: u32 = 6;
+
+/// A stage that is ready to run.
+pub(super) struct Stage {
+    name: String,
+    root: String,
+    start_time: f64,
+    end_time: f64,
+    stepping: TimeStepping,
+    strategy: NewtonRaphson,
+    processes: Vec<Box<dyn Process>>,
+}
+
+impl Stage {
+    /// Reads mesh and materials, makes the processes, blocks and strategy: everything short of solving.
+    ///
+    /// # Errors
+    /// Every problem of the deck that can be found, gathered.
+    pub(super) fn prepare(
+        name: &str,
+        deck: &Node,
+        folder: &Path,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Self> {
+        let start = Instant::now();
+        let mut problems = Report::new();
+        let known = ["problem_data", "solver_settings", "processes", "output_processes", "modelers", "analysis_stage"];
+        for member in deck.object()?.iter() {
+            check_top_level(&member.key, &known, deck, &mut problems);
+        }
+        let problem_data = problems.absorb(deck.require("problem_data").cloned());
+        let times = problem_data.as_ref().and_then(|data| {
+            let start = problems.absorb(data.require("start_time").and_then(Node::f64));
+            let end = problems.absorb(data.require("end_time").and_then(Node::f64));
+            if let Some(parallel) = data.get("parallel_type") {
+                let word = problems.absorb(parallel.str());
+                if word.is_some_and(|word| !matches!(word, "OpenMP" | "MPI" | "serial")) {
+                    let fact = format!("\"parallel_type\" is {:?}", word.unwrap_or_default());
+                    problems.push(
+                        Diagnostic::error("parallel-type", fact)
+                            .at(parallel.place())
+                            .remedy("use \"OpenMP\" or \"MPI\""),
+                    );
+                }
+            }
+            start.zip(end)
+        });
+        let user = problems.absorb(deck.require("solver_settings").cloned());
+        let solver = user.and_then(|user| {
+            let solver = SolverSettings::new(&user, &mut problems);
+            problems.absorb(solver)
+        });
+        let Some(solver) = solver else { return Err(finish(problems)) };
+        let stepping = problems.absorb(solver.settings.get("time_stepping").and_then(TimeStepping::from_node));
+        problems.absorb(solver.domain_size());
+        problems.absorb(solver.scheme().map(|_| ()));
+        problems.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
+        let root = problems.absorb(root_name(&solver.settings)).unwrap_or_default();
+        let imported = import(&solver, &root, folder, model, &mut problems);
+        let imported = problems.absorb(imported);
+        if imported.is_none() || problems.has_errors() {
+            return Err(finish(problems));
+        }
+        report.add_seconds("read", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let mut processes = make_processes(deck, folder, model, &mut problems);
+        if problems.has_errors() {
+            return Err(finish(problems));
+        }
+        for process in &mut processes {
+            problems.absorb(process.initialize(model));
+        }
+        if problems.has_errors() {
+            return Err(finish(problems));
+        }
+        let part = model.root_mut(&root)?;
+        let domain_size = solver.domain_size()?;
+        problems.absorb(check_dimensions(part, domain_size));
+        problems.absorb(make_blocks(part));
+        if problems.has_errors() {
+            return Err(finish(problems));
+        }
+        warn_of_lonely_nodes(part, &mut problems);
+        let mut interactions = std::mem::take(&mut part.interactions);
+        for interaction in &mut interactions {
+            problems.absorb(interaction.initialize(part));
+        }
+        part.interactions = interactions;
+        if problems.has_errors() {
+            return Err(finish(problems));
+        }
+        let (strategy, says) = solver.strategy(part, &mut problems)?;
+        monitor.note(&says);
+        report.linear_solver = says;
+        report.sizes = Sizes {
+            nodes: part.nodes.len(),
+            elements: part.elements.len(),
+            conditions: part.conditions.len(),
+            constraints: part.constraints.len(),
+            unknowns: part.dofs.len(),
+        };
+        for warning in problems.finish()? {
+            report.warnings.push(warning.to_string());
+            monitor.warn(&warning);
+        }
+        let (start_time, end_time) = times.expect("checked above");
+        report.add_seconds("set up", start.elapsed().as_secs_f64());
+        Ok(Self {
+            name: name.to_owned(),
+            root,
+            start_time,
+            end_time,
+            stepping: stepping.expect("checked above"),
+            strategy,
+            processes,
+        })
+    }
+
+    /// Runs all steps and finalises the processes, also when a step fails.
+    ///
+    /// # Errors
+    /// A step that does not converge, however short; a failed solver, process or file.
+    pub(super) fn run(mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
+        report.stages.push(self.name.clone());
+        let result = self.all_steps(model, report, monitor);
+        let mut finals = Report::new();
+        for process in &mut self.processes {
+            finals.absorb(process.finalize(model));
+            report.outputs.extend(process.outputs());
+        }
+        let seconds = self.strategy.linear_seconds;
+        for (phase, seconds) in ["linear: order", "linear: factor", "linear: solve"].into_iter().zip(seconds) {
+            report.add_seconds(phase, seconds);
+        }
+        let assembly = self.strategy.assembler().seconds;
+        report.add_seconds("assemble: residual", assembly.residual);
+        report.add_seconds("assemble: elements", assembly.bulk);
+        report.add_seconds("assemble: interactions", assembly.coupling);
+        let part = model.root_mut(&self.root)?;
+        part.interactions.clear();
+        part.element_blocks.clear();
+        part.condition_blocks.clear();
+        result.and(finals.finish().map(|_| ()))
+    }
+
+    fn all_steps(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
+        for process in &mut self.processes {
+            process.before_loop(model)?;
+        }
+        model.root_mut(&self.root)?.info.time = self.start_time;
+        let mut time = self.start_time;
+        while time < self.end_time {
+            let target = time + self.stepping.next(time)?;
+            self.reach(target, model, report, monitor)?;
+            time = model.root(&self.root)?.info.time;
+        }
+        Ok(())
+    }
+
+    /// Solves up to `target`, in one step or, where that does not converge, in shorter ones.
+    fn reach(
+        &mut self,
+        target: f64,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+    ) -> Result<()> {
+        let whole = target - model.root(&self.root)?.info.time;
+        let mut length = whole;
+        loop {
+            let from = model.root(&self.root)?.info.time;
+            let last = length >= (target - from) * (1.0 - 1e-12);
+            let to = if last { target } else { from + length };
+            let saved = Saved::of(model.root_mut(&self.root)?);
+            let record = self.attempt(to, model, report, monitor)?;
+            if record.converged {
+                self.accept(model, report)?;
+                if last {
+                    return Ok(());
+                }
+                length = (2.0 * length).min(target - to);
+                continue;
+            }
+            let failure = record.failure.unwrap_or_default();
+            if length <= whole / f64::from(1 << CUTS) {
+                return Err(Error::NotConverged(format!(
+                    "step {} to time {to}: {failure}\n    {} halvings of the step did not help; results up to time {from} are \
+                     written. Try a shorter \"time_step\", more \"max_iteration\", or look at the nodes named",
+                    record.step, CUTS
+                )));
+            }
+            monitor.note(&format!("step {} to time {to}: {failure}; retried with half the step", record.step));
+            saved.restore(model.root_mut(&self.root)?);
+            length = 0.5 * (to - from);
+        }
+    }
+
+    fn attempt(
+        &mut self,
+        to: f64,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+    ) -> Result<StepRecord> {
+        let part = model.root_mut(&self.root)?;
+        part.info.step += 1;
+        part.clone_time_step(to);
+        monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
+        for process in &mut self.processes {
+            process.begin_step(model)?;
+        }
+        let start = Instant::now();
+        let record = self.strategy.solve_step(model.root_mut(&self.root)?, monitor)?;
+        report.add_seconds("solve steps", start.elapsed().as_secs_f64());
+        monitor.end_step(&record);
+        report.steps.push(record.clone());
+        Ok(record)
+    }
+
+    fn accept(&mut self, model: &mut Model, report: &mut RunReport) -> Result<()> {
+        self.strategy.accept_step(model.root_mut(&self.root)?)?;
+        let start = Instant::now();
+        for process in &mut self.processes {
+            process.end_step(model)?;
+        }
+        let mut writers = Vec::new();
+        for (at, process) in self.processes.iter_mut().enumerate() {
+            if process.is_output_step(model) {
+                writers.push(at);
+            }
+        }
+        if !writers.is_empty() {
+            for process in &mut self.processes {
+                process.before_output(model)?;
+            }
+            for at in writers {
+                self.processes[at].print_output(model)?;
+            }
+        }
+        report.add_seconds("output", start.elapsed().as_secs_f64());
+        Ok(())
+    }
+}
+
+/// What a retried step must find again.
+struct Saved {
+    nodes: Nodes,
+    info: ProcessInfo,
+}
+
+impl Saved {
+    fn of(part: &mut ModelPart) -> Self {
+        part.interactions.iter_mut().for_each(|interaction| interaction.save());
+        Self { nodes: part.nodes.clone(), info: part.info.clone() }
+    }
+
+    fn restore(self, part: &mut ModelPart) {
+        part.nodes = self.nodes;
+        part.info = self.info;
+        part.interactions.iter_mut().for_each(|interaction| interaction.restore());
+    }
+}
+
+fn finish(mut problems: Report) -> Error {
+    if !problems.has_errors() {
+        problems.push(Diagnostic::error("deck", "the deck cannot be prepared"));
+    }
+    problems.finish().expect_err("it has errors")
+}
+
+fn root_name(settings: &Settings) -> Result<String> {
+    let name = settings.get_str("model_part_name")?;
+    if name.is_empty() {
+        return Err(settings
+            .error("model_part_name", "model-part-name", "\"model_part_name\" is empty")
+            .remedy("name the root part, e.g. \"Structure\"")
+            .into());
+    }
+    Ok(name.to_owned())
+}
+
+fn check_top_level(key: &str, known: &[&str], deck: &Node, problems: &mut Report) {
+    const REFUSED: [&str; 8] = [
+        "constraints_process_list",
+        "loads_process_list",
+        "list_other_processes",
+        "json_output_process",
+        "json_check_process",
+        "check_analytic_results_process",
+        "contact_process_list",
+        "output_configuration",
+    ];
+    if known.contains(&key) {
+        return;
+    }
+    if REFUSED.contains(&key) {
+        problems.push(
+            Diagnostic::error("old-deck", format!("\"{key}\" at the top level is an old form"))
+                .at(deck.key_place(key))
+                .remedy("put the list inside \"processes\" (or \"output_processes\")"),
+        );
+    } else if key.starts_with('_') {
+        problems.push(
+            Diagnostic::warning("disabled-key", format!("\"{key}\" starts with an underscore and is not read"))
+                .at(deck.key_place(key)),
+        );
+    } else {
+        let hint = crate::diagnostics::did_you_mean(key, known.iter().copied());
+        problems.push(
+            Diagnostic::warning("unknown-key-ignored", format!("\"{key}\" at the top level is not read"))
+                .at(deck.key_place(key))
+                .remedy(hint.unwrap_or_else(|| format!("read are: {}", known.join(", ")))),
+        );
+    }
+}
+
+fn import(solver: &SolverSettings, root: &str, folder: &Path, model: &mut Model, warnings: &mut Report) -> Result<()> {
+    let settings = &solver.settings;
+    let import = settings.sub("model_import_settings")?;
+    let input_type = import.node().get("input_type").map(Node::str).transpose()?.unwrap_or("mdpa");
+    let existing = model.parts.contains_key(root);
+    match input_type {
+        "use_input_model_part" if existing => {}
+        "use_input_model_part" => {
+            return Err(Diagnostic::error(
+                "no-model-part",
+                format!("there is no model part {root:?} from an earlier stage"),
+            )
+            .at(import.key_place("input_type"))
+            .remedy("read it from a file with \"input_type\": \"mdpa\"")
+            .into());
+        }
+        "mdpa" => {
+            if existing {
+                model.parts.remove(root);
+            }
+            let mut part = ModelPart::new(root);
+            let name = import.node().require("input_filename")?;
+            let path = with_extension(folder.join(name.str()?), "mdpa");
+            if !path.is_file() {
+                return Err(Diagnostic::error("missing-file", format!("there is no mesh file {}", path.display()))
+                    .at(name.place())
+                    .remedy("\"input_filename\" is relative to the deck and has no extension")
+                    .into());
+            }
+            solver.prepare(&mut part)?;
+            io::read_mesh(&path, &mut part)?.into_iter().for_each(|w| warnings.push(w));
+            model.parts.insert(root.to_owned(), part);
+        }
+        other => {
+            return Err(Diagnostic::error("input-type", format!("\"input_type\" is {other:?}"))
+                .at(import.key_place("input_type"))
+                .remedy("use \"mdpa\" or \"use_input_model_part\"")
+                .into());
+        }
+    }
+    let part = model.root_mut(root)?;
+    solver.prepare(part)?;
+    let materials = settings.get("material_import_settings.materials_filename")?;
+    let name = materials.str()?;
+    if !name.is_empty() {
+        let path = folder.join(name);
+        if !path.is_file() {
+            return Err(Diagnostic::error("missing-file", format!("there is no materials file {}", path.display()))
+                .at(materials.place())
+                .remedy("\"materials_filename\" is relative to the deck")
+                .into());
+        }
+        io::read_materials(&path, part)?.into_iter().for_each(|w| warnings.push(w));
+    }
+    Ok(())
+}
+
+fn with_extension(path: PathBuf, extension: &str) -> PathBuf {
+    let mut name = path.into_os_string();
+    if !PathBuf::from(&name).extension().is_some_and(|e| e == extension) {
+        name.push(".");
+        name.push(extension);
+    }
+    PathBuf::from(name)
+}
+
+/// The processes of `processes`, list by list in the order of their names, then those of `output_processes`.
+fn make_processes(deck: &Node, folder: &Path, model: &mut Model, problems: &mut Report) -> Vec<Box<dyn Process>> {
+    let mut out = Vec::new();
+    for section in ["processes", "output_processes"] {
+        let Some(lists) = deck.get(section) else { continue };
+        let Some(lists) = problems.absorb(lists.object()) else { continue };
+        for list in lists.iter() {
+            let Some(items) = problems.absorb(list.node.array()) else { continue };
+            for item in items {
+                let made = make_process(item, folder, model, problems);
+                if let Some(process) = problems.absorb(made) {
+                    out.push(process);
+                }
+            }
+        }
+    }
+    out
+}
+
+fn make_process(item: &Node, folder: &Path, model: &mut Model, problems: &mut Report) -> Result<Box<dyn Process>> {
+    let module = match item.get("python_module") {
+        Some(module) => module,
+        None => item.require("name")?,
+    };
+    let name = module.str()?.rsplit('.').next().unwrap_or_default();
+    let entry = registry::require(Kind::Process, name).map_err(|d| d.at(module.place()))?;
+    let Build::Process(factory) = entry.build else { unreachable!("processes register a factory") };
+    let empty = Node::new(crate::parameters::Value::Object(Default::default()), &item.place());
+    let parameters = item.get("Parameters").unwrap_or(&empty);
+    let place = parameters.place();
+    factory(&mut ProcessRequest { entry, parameters, model, folder, report: problems }).map_err(|error| match error {
+        Error::Input(list) => {
+            Error::Input(list.into_iter().map(|d| if d.place.is_none() { d.at(place.clone()) } else { d }).collect())
+        }
+        other => other,
+    })
+}
+
+fn warn_of_lonely_nodes(part: &ModelPart, problems: &mut Report) {
+    let mut used = vec![false; part.nodes.len()];
+    for blocks in [&part.element_blocks, &part.condition_blocks] {
+        for block in blocks {
+            (0..block.len()).for_each(|at| block.nodes(at).iter().for_each(|&n| used[n as usize] = true));
+        }
+    }
+    let lonely: Vec<usize> = (0..used.len()).filter(|&n| !used[n]).map(|n| part.nodes.ids[n]).collect();
+    if let Some(first) = lonely.first() {
+        problems.push(
+            Diagnostic::warning(
+                "unreferenced-node",
+                format!("{} nodes belong to no element, the first is node {first}", lonely.len()),
+            )
+            .remedy("they are left where they are; remove them from the mesh if that is not meant"),
+        );
+    }
+}

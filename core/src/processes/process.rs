@@ -1,0 +1,119 @@
+//! The trait of processes, and what one is made from.
+
+use std::path::Path;
+
+use crate::diagnostics::{Report, Result};
+use crate::model::Model;
+use crate::parameters::{Defaults, Node, Settings};
+use crate::registry::Entry;
+
+/// Something done at fixed points of the stage loop, in the order in which the deck lists it.
+///
+/// Points in time: [`initialize`](Process::initialize), [`before_loop`](Process::before_loop); then each step
+/// [`begin_step`](Process::begin_step) – solve – [`end_step`](Process::end_step) – output; at last
+/// [`finalize`](Process::finalize). A step that is cut and retried calls `begin_step` again for each part of it.
+pub trait Process: Send {
+    /// Mesh and materials are read, the solver is not ready yet (Kratos: `ExecuteInitialize`).
+    ///
+    /// # Errors
+    /// Whatever the deck asks for that the model cannot give.
+    fn initialize(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// All is ready, time is still zero (Kratos: `ExecuteBeforeSolutionLoop`).
+    ///
+    /// # Errors
+    /// As [`Process::initialize`].
+    fn before_loop(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// Time has advanced, nothing is solved (Kratos: `ExecuteInitializeSolutionStep`): boundary conditions and loads.
+    ///
+    /// # Errors
+    /// As [`Process::initialize`].
+    fn begin_step(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// The step is solved and accepted (Kratos: `ExecuteFinalizeSolutionStep`).
+    ///
+    /// # Errors
+    /// As [`Process::initialize`]; a check of results that fails.
+    fn end_step(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// Whether it writes output after this step; asked once a step, after every [`Process::end_step`].
+    fn is_output_step(&mut self, _model: &Model) -> bool {
+        false
+    }
+
+    /// Some process writes output now (Kratos: `ExecuteBeforeOutputStep`).
+    ///
+    /// # Errors
+    /// As [`Process::initialize`].
+    fn before_output(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// Writes output; gives the path of what a user would open, to be named at the end of the run.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    fn print_output(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// After the last step, also when a step failed (Kratos: `ExecuteFinalize`).
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    fn finalize(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// Files or folders a user would open, for the last lines of the program.
+    fn outputs(&self) -> Vec<std::path::PathBuf> {
+        Vec::new()
+    }
+}
+
+/// What a process is made from.
+pub struct ProcessRequest<'a> {
+    /// Its registered entry.
+    pub entry: &'static Entry,
+    /// The `Parameters` object of the deck.
+    pub parameters: &'a Node,
+    /// The model as read: parts can be looked up, nothing has run.
+    pub model: &'a mut Model,
+    /// Folder of the deck; relative file names start there.
+    pub folder: &'a Path,
+    /// Takes warnings.
+    pub report: &'a mut Report,
+}
+
+impl ProcessRequest<'_> {
+    /// The parameters checked against the entry's defaults.
+    ///
+    /// # Errors
+    /// Every key or type that does not fit.
+    pub fn settings(&mut self) -> Result<Settings> {
+        self.settings_with(|defaults| defaults)
+    }
+
+    /// As [`ProcessRequest::settings`], after `adapt` has named deprecated spellings.
+    ///
+    /// # Errors
+    /// As [`ProcessRequest::settings`].
+    pub fn settings_with(&mut self, adapt: impl FnOnce(Defaults) -> Defaults) -> Result<Settings> {
+        let defaults = adapt(Defaults::parse(self.entry.name, self.entry.defaults)?);
+        let (settings, warnings) = Settings::check(self.parameters, &defaults)?;
+        warnings.into_iter().for_each(|warning| self.report.push(warning));
+        Ok(settings)
+    }
+}
+
+/// Makes a process.
+pub type ProcessFactory = fn(&mut ProcessRequest<'_>) -> Result<Box<dyn Process>>;

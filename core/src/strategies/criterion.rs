@@ -1,0 +1,164 @@
+//! Convergence criteria: what they may look at, and what they say.
+
+use crate::assembly::{Dof, DofTable, Equations};
+use crate::diagnostics::{Report, Result};
+use crate::model::Nodes;
+use crate::parameters::{Node, Settings};
+
+/// A block of unknowns that is measured by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Block {
+    /// Every unknown that is solved for.
+    All,
+    /// Displacement-like unknowns.
+    Primary,
+    /// Lagrange multipliers.
+    Multiplier,
+}
+
+impl Block {
+    /// Whether an unknown belongs to the block.
+    pub fn holds(self, dof: &Dof) -> bool {
+        match self {
+            Self::All => true,
+            Self::Primary => !dof.multiplier,
+            Self::Multiplier => dof.multiplier,
+        }
+    }
+}
+
+/// The state after an iteration, over all unknowns.
+pub struct Measures<'a> {
+    /// Iteration, from 1.
+    pub iteration: usize,
+    /// Nodes, for flags and fields.
+    pub nodes: &'a Nodes,
+    /// Unknowns.
+    pub dofs: &'a DofTable,
+    /// Which unknowns are solved for.
+    pub equations: &'a Equations,
+    /// External minus internal forces.
+    pub residual: &'a [f64],
+    /// Residuals that a relative measure refers to: before the first solve, prescribed increments included, and after it.
+    pub references: &'a [Vec<f64>],
+    /// Increment of the iteration.
+    pub increment: &'a [f64],
+    /// Values after the update.
+    pub values: &'a [f64],
+    /// Size of the round-off of each entry of the residual.
+    pub round_off: &'a [f64],
+}
+
+impl Measures<'_> {
+    /// Entries of `vector` that are solved for and that `wanted` accepts.
+    pub fn select<'v>(
+        &'v self,
+        vector: &'v [f64],
+        wanted: impl Fn(&Dof) -> bool + 'v,
+    ) -> impl Iterator<Item = f64> + 'v {
+        let dofs = self.dofs.dofs();
+        self.equations.unknowns().iter().map(|&n| n as usize).filter(move |&n| wanted(&dofs[n])).map(|n| vector[n])
+    }
+
+    /// Euclidean norm over a block and number of its entries.
+    pub fn block(&self, vector: &[f64], block: Block) -> (f64, usize) {
+        norm(self.select(vector, |dof| block.holds(dof)))
+    }
+}
+
+/// Euclidean norm and number of entries.
+pub fn norm(entries: impl Iterator<Item = f64>) -> (f64, usize) {
+    let (sum, count) = entries.fold((0.0, 0), |(sum, count), value| (sum + value * value, count + 1));
+    (sum.sqrt(), count)
+}
+
+/// Whether a residual norm is no larger than the round-off of the terms it is the sum of.
+///
+/// Such a residual cannot fall further, whatever the tolerance.
+pub fn is_round_off(residual: f64, round_off: f64) -> bool {
+    residual <= 4.0 * round_off
+}
+
+/// One measured block.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Check {
+    /// What was measured, e.g. `residual`.
+    pub label: &'static str,
+    /// Norm divided by its reference.
+    pub ratio: f64,
+    /// Tolerance of the ratio.
+    pub ratio_tolerance: f64,
+    /// Norm an unknown.
+    pub absolute: f64,
+    /// Tolerance of the norm an unknown.
+    pub absolute_tolerance: f64,
+    /// Whether it is good enough.
+    pub converged: bool,
+}
+
+/// What a criterion says of an iteration.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Verdict {
+    /// Whether the iteration is good enough.
+    pub converged: bool,
+    /// What was measured.
+    pub checks: Vec<Check>,
+}
+
+impl Verdict {
+    /// Converged when every check is.
+    pub fn all(checks: Vec<Check>) -> Self {
+        Self { converged: checks.iter().all(|check| check.converged), checks }
+    }
+}
+
+/// Judges an iteration; changes nothing.
+pub trait ConvergenceCriterion: Send {
+    /// Measures and judges.
+    fn judge(&self, measures: &Measures<'_>) -> Verdict;
+}
+
+/// What a criterion is made from.
+pub struct CriterionRequest<'a> {
+    /// The solver settings, defaults filled in.
+    pub settings: &'a Settings,
+    /// The solver settings as the user wrote them.
+    pub user: &'a Node,
+    /// Takes warnings.
+    pub report: &'a mut Report,
+}
+
+/// Makes a criterion; registered as `Build::Factory(&(make as CriterionFactory))`.
+pub type CriterionFactory = fn(&mut CriterionRequest<'_>) -> Result<Box<dyn ConvergenceCriterion>>;
+
+struct Pair {
+    first: Box<dyn ConvergenceCriterion>,
+    second: Box<dyn ConvergenceCriterion>,
+    both: bool,
+}
+
+impl ConvergenceCriterion for Pair {
+    fn judge(&self, measures: &Measures<'_>) -> Verdict {
+        let (mut first, second) = (self.first.judge(measures), self.second.judge(measures));
+        first.converged =
+            if self.both { first.converged && second.converged } else { first.converged || second.converged };
+        first.checks.extend(second.checks);
+        first
+    }
+}
+
+/// Converged when both are.
+pub fn both(
+    first: Box<dyn ConvergenceCriterion>,
+    second: Box<dyn ConvergenceCriterion>,
+) -> Box<dyn ConvergenceCriterion> {
+    Box::new(Pair { first, second, both: true })
+}
+
+/// Converged when one of them is.
+pub fn either(
+    first: Box<dyn ConvergenceCriterion>,
+    second: Box<dyn ConvergenceCriterion>,
+) -> Box<dyn ConvergenceCriterion> {
+    Box::new(Pair { first, second, both: false })
+}

@@ -1,0 +1,90 @@
+//! One linear solve of an iteration: the equations, corrected for the small tangents of follower loads.
+
+use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, vector};
+
+use crate::assembly::{Assembler, DofTable};
+use crate::diagnostics::{Error, Result};
+use crate::model::Nodes;
+
+/// Corrections for the load tangents before they are merged into the bulk.
+const CORRECTIONS: usize = 12;
+/// Residual relative to the right-hand side at which corrections stop.
+const ACCURACY: f64 = 1e-10;
+
+/// Solves for the increment of the equations.
+///
+/// Follower loads make the tangent slightly unsymmetric. The factorised rest serves as the preconditioner of a stationary
+/// iteration; when their tangents are too large for it, they are merged into the matrix.
+///
+/// # Errors
+/// [`Error::System`] naming nodes when the matrix is singular or the solver fails.
+pub(super) fn solve(
+    assembler: &mut Assembler,
+    solver: &mut dyn LinearSolver,
+    rhs: &[f64],
+    dofs: &DofTable,
+    nodes: &Nodes,
+) -> Result<(Vec<f64>, SolveReport)> {
+    let loads = assembler.load_tangents().cloned();
+    let system = assembler.system();
+    let explain = |error: SolveError| explain(&error, assembler, dofs, nodes);
+    let mut increment = vec![0.0; rhs.len()];
+    let mut report = solver.solve(&system, rhs, &mut increment).map_err(explain)?;
+    let Some(loads) = loads else { return Ok((increment, report)) };
+    let scale = vector::norm(rhs);
+    let mut residual = vec![0.0; rhs.len()];
+    let mut correction = vec![0.0; rhs.len()];
+    let mut last = f64::INFINITY;
+    for _ in 0..CORRECTIONS {
+        system.residual(rhs, &increment, &mut residual);
+        loads.mul_vec_subtract(&increment, &mut residual);
+        let size = vector::norm(&residual);
+        report.relative_residual = if scale > 0.0 { size / scale } else { 0.0 };
+        if report.relative_residual <= ACCURACY {
+            return Ok((increment, report));
+        }
+        if size > 0.5 * last {
+            break;
+        }
+        last = size;
+        correction.fill(0.0);
+        solver.solve(&system, &residual, &mut correction).map_err(explain)?;
+        vector::add_scaled(1.0, &correction, &mut increment);
+    }
+    if report.relative_residual <= 1e-6 {
+        return Ok((increment, report));
+    }
+    let merged: Csr = system.bulk.plus(&loads);
+    let whole = System {
+        bulk: &merged,
+        bulk_symmetry: zelus_linear_algebra::Symmetry::General,
+        bulk_graph: u64::MAX - system.bulk_graph,
+        bulk_values: u64::MAX - system.coupling_values,
+        ..system
+    };
+    increment.fill(0.0);
+    let report = solver.solve(&whole, rhs, &mut increment).map_err(explain)?;
+    Ok((increment, report))
+}
+
+fn explain(error: &SolveError, assembler: &Assembler, dofs: &DofTable, nodes: &Nodes) -> Error {
+    let SolveError::Singular { equations, rank_deficiency } = error else {
+        return Error::System(format!("linear solve: {error}"));
+    };
+    let unknowns = assembler.equations().unknowns();
+    let names: Vec<String> = equations
+        .iter()
+        .take(6)
+        .filter_map(|&e| unknowns.get(e))
+        .map(|&n| {
+            let dof = &dofs.dofs()[n as usize];
+            format!("{} of node {}", dof.variable, nodes.ids[dof.node as usize])
+        })
+        .collect();
+    let rank = rank_deficiency.map(|r| format!(", at least {r} free motions")).unwrap_or_default();
+    Error::System(format!(
+        "the system of equations is singular{rank}; suspicious: {}\n    some body can move freely: support it, or check \
+         that contact holds it from the first step",
+        names.join(", ")
+    ))
+}

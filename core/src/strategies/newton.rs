@@ -1,0 +1,291 @@
+//! Newton's iteration of one step, semi-smooth where an active set changes.
+
+use zelus_linear_algebra::LinearSolver;
+
+use super::criterion::{ConvergenceCriterion, Measures};
+use super::linear_solve;
+use super::records::{IterationRecord, Monitor, StepRecord};
+use super::scheme::Scheme;
+use crate::assembly::{Assembler, impose_constraints};
+use crate::diagnostics::{Error, Result};
+use crate::entities::{Interaction, SetChange};
+use crate::model::{ModelPart, variables};
+
+/// How a step is iterated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewtonSettings {
+    /// Linear solves before the step counts as not converged.
+    pub max_iteration: usize,
+    /// One linear solve and no check (`analysis_type` "linear").
+    pub linear: bool,
+    /// Whether REACTION is computed.
+    pub compute_reactions: bool,
+    /// Whether nodes follow DISPLACEMENT.
+    pub move_mesh: bool,
+}
+
+/// Newton's iteration with its scheme, criterion, linear solver and system.
+pub struct NewtonRaphson {
+    settings: NewtonSettings,
+    scheme: Box<dyn Scheme>,
+    criterion: Box<dyn ConvergenceCriterion>,
+    solver: Box<dyn LinearSolver>,
+    assembler: Assembler,
+    /// Seconds spent in linear solves: symbolic, numeric, solution.
+    pub linear_seconds: [f64; 3],
+}
+
+impl NewtonRaphson {
+    /// Numbers the unknowns of `part`, whose blocks and interactions are ready.
+    pub fn new(
+        settings: NewtonSettings,
+        scheme: Box<dyn Scheme>,
+        criterion: Box<dyn ConvergenceCriterion>,
+        solver: Box<dyn LinearSolver>,
+        part: &mut ModelPart,
+    ) -> Self {
+        let interactions = std::mem::take(&mut part.interactions);
+        let assembler = Assembler::new(part, &interactions, scheme.lumped_mass());
+        part.interactions = interactions;
+        Self { settings, scheme, criterion, solver, assembler, linear_seconds: [0.0; 3] }
+    }
+
+    /// The system of the last step.
+    pub fn assembler(&self) -> &Assembler {
+        &self.assembler
+    }
+
+    /// Solves the step whose time, fixities and prescribed values are set; the record says whether it converged.
+    ///
+    /// # Errors
+    /// A singular system, a failed solver or search. An entity that cannot be computed (e.g. inverted) makes the step
+    /// not converged instead.
+    pub fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
+        let mut interactions = std::mem::take(&mut part.interactions);
+        let result = self.iterate(part, &mut interactions, monitor);
+        let mut record = StepRecord {
+            step: part.info.step,
+            time: part.info.time,
+            delta_time: part.info.delta_time,
+            interactions: interactions
+                .iter()
+                .flat_map(|i| i.summary(part))
+                .map(|(name, value)| (name.to_owned(), value))
+                .collect(),
+            ..StepRecord::default()
+        };
+        part.interactions = interactions;
+        match result {
+            Ok((iterations, failure)) => {
+                record.iterations = iterations;
+                record.converged = failure.is_none();
+                record.failure = failure;
+            }
+            Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => {
+                record.failure = Some(Error::Input(problems).to_string());
+            }
+            Err(error) => return Err(error),
+        }
+        Ok(record)
+    }
+
+    /// The step is accepted: history advances, once.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        let mut blocks = std::mem::take(&mut part.element_blocks);
+        let result = blocks.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
+        part.element_blocks = blocks;
+        result?;
+        let mut interactions = std::mem::take(&mut part.interactions);
+        let result = interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part));
+        part.interactions = interactions;
+        result
+    }
+
+    fn iterate(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Vec<IterationRecord>, Option<String>)> {
+        part.info.nl_iteration = 0;
+        for interaction in interactions.iter_mut() {
+            interaction.begin_step(part)?;
+        }
+        self.assembler.begin_step(part, interactions)?;
+        let prescribed = self.start(part)?;
+        for interaction in interactions.iter_mut() {
+            interaction.after_prediction(part)?;
+        }
+        let mut inertia = self.scheme.inertia(part);
+        let mut residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
+        let mut references: Vec<Vec<f64>> = Vec::new();
+        let mut records = Vec::new();
+        let last = if self.settings.linear { 1 } else { self.settings.max_iteration };
+        for iteration in 1..=last {
+            if !self.settings.linear {
+                part.info.nl_iteration = iteration;
+            }
+            self.assembler.tangents(part, interactions, inertia.as_ref())?;
+            if iteration == 1 {
+                if prescribed.iter().any(|d| *d != 0.0) {
+                    self.assembler.subtract_product(&prescribed, &mut residual);
+                }
+                references.push(residual.clone());
+            }
+            let rhs = self.assembler.equations().reduce(&residual);
+            let (reduced, linear_residual, engine) = if rhs.iter().all(|v| *v == 0.0) {
+                (vec![0.0; rhs.len()], 0.0, "none: nothing out of balance".to_owned())
+            } else {
+                let (increment, report) =
+                    linear_solve::solve(&mut self.assembler, self.solver.as_mut(), &rhs, &part.dofs, &part.nodes)?;
+                for (sum, seconds) in self.linear_seconds.iter_mut().zip([
+                    report.seconds_symbolic,
+                    report.seconds_numeric,
+                    report.seconds_solve,
+                ]) {
+                    *sum += seconds;
+                }
+                if let Some(why) = &report.fallback {
+                    monitor.note(&format!("linear solver: {why}"));
+                }
+                (increment, report.relative_residual, report.engine.to_owned())
+            };
+            let mut increment = self.assembler.equations().expand(&reduced);
+            if iteration == 1 {
+                increment.iter_mut().zip(&prescribed).for_each(|(sum, d)| *sum += d);
+            }
+            part.dofs.scatter_add(&increment, &mut part.nodes);
+            if !part.constraints.is_empty() {
+                impose_constraints(&mut part.nodes, &part.constraints);
+            }
+            self.scheme.update(part);
+            if self.settings.move_mesh {
+                part.move_mesh();
+            }
+            let mut change = SetChange::default();
+            for interaction in interactions.iter_mut() {
+                let more = interaction.after_update(part, iteration)?;
+                change.activated.extend(more.activated);
+                change.deactivated.extend(more.deactivated);
+                change.stick_slip.extend(more.stick_slip);
+            }
+            inertia = self.scheme.inertia(part);
+            residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
+            if iteration == 1 {
+                references.push(residual.clone());
+            }
+            let values = self.assembler.values(part);
+            let round_off = self.assembler.round_off(part);
+            let verdict = self.criterion.judge(&Measures {
+                iteration,
+                nodes: &part.nodes,
+                dofs: &part.dofs,
+                equations: self.assembler.equations(),
+                residual: &residual,
+                references: &references,
+                increment: &increment,
+                values: &values,
+                round_off: &round_off,
+            });
+            let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
+            let record = IterationRecord {
+                iteration,
+                checks: verdict.checks,
+                active_set_changes: change.activated.len() + change.deactivated.len(),
+                stick_slip_changes: change.stick_slip.len(),
+                changed_nodes: changed.copied().take(12).collect(),
+                linear_residual,
+                engine,
+            };
+            monitor.iteration(&record);
+            records.push(record);
+            if residual.iter().chain(&values).any(|v| !v.is_finite()) {
+                return Ok((records, Some(format!("iteration {iteration} diverged: values are no longer finite"))));
+            }
+            if self.settings.linear || (verdict.converged && change.count() == 0) {
+                self.write_reactions(part, &residual);
+                return Ok((records, None));
+            }
+        }
+        let failure = self.explain(part, &records, &residual);
+        self.write_reactions(part, &residual);
+        Ok((records, Some(failure)))
+    }
+
+    /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
+    /// left at their old values: the first solve takes them on through the tangent.
+    fn start(&mut self, part: &mut ModelPart) -> Result<Vec<f64>> {
+        let targets = self.assembler.values(part);
+        for (number, dof) in part.dofs.dofs().iter().enumerate() {
+            if self.assembler.equations().is_fixed(number)
+                && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
+                && field.levels.len() > 1
+            {
+                let at = dof.node as usize * field.components + dof.variable.offset();
+                field.levels[0][at] = field.levels[1][at];
+            }
+        }
+        self.scheme.predict(part)?;
+        let start = self.assembler.values(part);
+        let mut increment: Vec<f64> = (0..start.len())
+            .map(|n| if self.assembler.equations().is_fixed(n) { targets[n] - start[n] } else { 0.0 })
+            .collect();
+        if part.constraints.iter().any(|c| c.active) {
+            part.dofs.scatter_add(&increment, &mut part.nodes);
+            impose_constraints(&mut part.nodes, &part.constraints);
+            let imposed = self.assembler.values(part);
+            increment = imposed.iter().zip(&start).map(|(a, b)| a - b).collect();
+            let back: Vec<f64> = increment.iter().map(|d| -d).collect();
+            part.dofs.scatter_add(&back, &mut part.nodes);
+        }
+        self.scheme.update(part);
+        if self.settings.move_mesh {
+            part.move_mesh();
+        }
+        Ok(increment)
+    }
+
+    fn write_reactions(&self, part: &mut ModelPart, residual: &[f64]) {
+        if !self.settings.compute_reactions {
+            return;
+        }
+        let dofs = std::mem::take(&mut part.dofs);
+        let reaction = part.nodes.history.values_mut(&variables::REACTION, 0);
+        for (dof, r) in dofs.dofs().iter().zip(residual) {
+            if dof.variable.column == variables::DISPLACEMENT.name() {
+                reaction[3 * dof.node as usize + dof.variable.offset()] = -r;
+            }
+        }
+        part.dofs = dofs;
+    }
+
+    fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {
+        let equations = self.assembler.equations();
+        let worst = equations
+            .unknowns()
+            .iter()
+            .map(|&n| n as usize)
+            .max_by(|&a, &b| residual[a].abs().total_cmp(&residual[b].abs()));
+        let worst = worst.map(|n| {
+            let dof = &part.dofs.dofs()[n];
+            format!(
+                "; largest residual {:.3e} at {} of node {}",
+                residual[n], dof.variable, part.nodes.ids[dof.node as usize]
+            )
+        });
+        let last = records.last();
+        let cycling = last.filter(|r| r.active_set_changes + r.stick_slip_changes > 0).map(|r| {
+            let nodes: Vec<String> = r.changed_nodes.iter().map(ToString::to_string).collect();
+            format!("; the contact state of nodes {} still changes", nodes.join(" "))
+        });
+        format!(
+            "not converged in {} iterations{}{}",
+            records.len(),
+            worst.unwrap_or_default(),
+            cycling.unwrap_or_default()
+        )
+    }
+}

@@ -1,0 +1,61 @@
+//! What a step leaves behind for the log and the report of the run.
+
+use super::criterion::Check;
+
+/// One Newton iteration.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct IterationRecord {
+    /// From 1.
+    pub iteration: usize,
+    /// What the criteria measured.
+    pub checks: Vec<Check>,
+    /// Nodes that became active or inactive.
+    pub active_set_changes: usize,
+    /// Nodes that changed between stick and slip.
+    pub stick_slip_changes: usize,
+    /// Ids of (some of) the nodes that changed.
+    pub changed_nodes: Vec<usize>,
+    /// Relative residual of the linear solve.
+    pub linear_residual: f64,
+    /// Engine of the linear solve.
+    pub engine: String,
+}
+
+/// One step, or one attempt at it.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct StepRecord {
+    /// Number of the step.
+    pub step: usize,
+    /// Time at its end.
+    pub time: f64,
+    /// Its length.
+    pub delta_time: f64,
+    /// Whether it converged.
+    pub converged: bool,
+    /// Its iterations; their number is the number of linear solves.
+    pub iterations: Vec<IterationRecord>,
+    /// Why it did not converge.
+    pub failure: Option<String>,
+    /// Numbers of the interactions by name, e.g. active nodes.
+    pub interactions: Vec<(String, f64)>,
+}
+
+/// Watches a run; the program prints, tests stay silent.
+pub trait Monitor: Send {
+    /// A step begins.
+    fn begin_step(&mut self, _step: usize, _time: f64, _delta_time: f64) {}
+    /// An iteration is done.
+    fn iteration(&mut self, _record: &IterationRecord) {}
+    /// A step (or an attempt at it) is over.
+    fn end_step(&mut self, _record: &StepRecord) {}
+    /// Something worth a line.
+    fn note(&mut self, _text: &str) {}
+    /// Something the user should know of.
+    fn warn(&mut self, _warning: &crate::diagnostics::Diagnostic) {}
+}
+
+/// Watches and says nothing.
+#[derive(Debug, Default)]
+pub struct Silent;
+
+impl Monitor for Silent {}
