@@ -4,6 +4,7 @@ mod import;
 mod materials;
 pub mod mdpa;
 mod replace;
+pub mod results;
 #[cfg(test)]
 mod tests;
 pub(crate) mod variables;

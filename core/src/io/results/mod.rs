@@ -1,0 +1,16 @@
+//! Result files from plain arrays: legacy VTK, VTU with its PVD series, GiD.
+//!
+//! A [`Dataset`] is what a picture shows: points, cells, named columns. The writers know nothing of models.
+
+mod dataset;
+mod gid;
+mod number;
+#[cfg(test)]
+mod tests;
+mod vtk;
+mod vtu;
+
+pub use dataset::{Cells, Column, Dataset, Values};
+pub use gid::{GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step};
+pub use vtk::{VtkFormat, write_vtk};
+pub use vtu::{write_pvd, write_vtu};

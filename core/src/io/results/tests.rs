@@ -1,0 +1,118 @@
+use vtkio::model::{Attribute, DataSet, IOBuffer, Piece, Vtk};
+
+use super::number::scientific;
+use super::*;
+use crate::geometry::Shape;
+
+fn data() -> Dataset {
+    let mut cells = Cells::default();
+    cells.push(7, 1, Shape::Tri3, [0, 1, 2]);
+    cells.push(9, 2, Shape::Quad4, [0, 1, 3, 2]);
+    Dataset {
+        point_ids: vec![2, 3, 5, 8],
+        points: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.25]],
+        cells,
+        point_data: vec![
+            Column::real("DISPLACEMENT", 3, (0..12).map(|i| f64::from(i) / 3.0).collect()),
+            Column::real("PRESSURE", 1, vec![0.1, -1.0, 1e-300, 1e10]),
+            Column::ids("KRATOS_NODE_ID", &[2, 3, 5, 8]),
+        ],
+        cell_data: vec![Column::real("STRESS", 4, vec![1.0; 8]), Column::ids("PROPERTIES_ID", &[1, 2])],
+    }
+}
+
+#[test]
+fn numbers_have_the_exponents_of_c() {
+    let said = |value: f64| {
+        let mut out = Vec::new();
+        scientific(&mut out, value, 3).unwrap();
+        String::from_utf8(out).unwrap()
+    };
+    let wanted = ["0.000e+00", "-1.500e+00", "1.000e-07", "1.235e+100", "nan"];
+    assert_eq!([0.0, -1.5, 1e-7, 1.2346e100, f64::NAN].map(said), wanted);
+}
+
+#[test]
+fn legacy_text_has_the_layout_of_kratos() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtk");
+    let mut data = data();
+    data.point_data.remove(0);
+    data.cell_data.remove(0);
+    write_vtk(&path, &data, VtkFormat::Ascii { precision: 7 }).unwrap();
+    let wanted = "# vtk DataFile Version 4.0\nvtk output\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n\
+        0.0000000e+00 0.0000000e+00 0.0000000e+00 \n1.0000000e+00 0.0000000e+00 0.0000000e+00 \n\
+        0.0000000e+00 1.0000000e+00 0.0000000e+00 \n1.0000000e+00 1.0000000e+00 2.5000000e-01 \n\
+        \nCELLS 2 9\n3 0 1 2\n4 0 1 3 2\n\nCELL_TYPES 2\n5\n9\nPOINT_DATA 4\nFIELD FieldData 2\n\
+        PRESSURE 1 4  float\n1.0000000e-01\n-1.0000000e+00\n0.0000000e+00\n1.0000000e+10\n\
+        KRATOS_NODE_ID 1 4  int\n2\n3\n5\n8\nCELL_DATA 2\nFIELD FieldData 1\nPROPERTIES_ID 1 2  int\n1\n2\n";
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), wanted);
+}
+
+#[test]
+fn legacy_binary_has_the_bytes_of_kratos() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtk");
+    write_vtk(&path, &data(), VtkFormat::Binary).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let head = b"# vtk DataFile Version 4.0\nvtk output\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n";
+    assert!(bytes.starts_with(head));
+    let after = &bytes[head.len() + 4 * 12..];
+    assert!(after.starts_with(b"\nCELLS 2 9\n\0\0\0\x03\0\0\0\0\0\0\0\x01\0\0\0\x02\0\0\0\x04"));
+    assert_eq!(bytes[head.len() + 12..head.len() + 16], 1.0_f32.to_be_bytes());
+    let find = |what: &[u8]| bytes.windows(what.len()).position(|w| w == what).unwrap() + what.len();
+    assert!(bytes[find(b"CELL_TYPES 2\n")..].starts_with(b"\0\0\0\x05\0\0\0\x09POINT_DATA 4\nFIELD FieldData 3\n"));
+    assert!(bytes[find(b"PRESSURE 1 4  float\n")..].starts_with(&0.1_f32.to_be_bytes()));
+    assert!(bytes.ends_with(b"PROPERTIES_ID 1 2  int\n\0\0\0\x01\0\0\0\x02"));
+}
+
+#[test]
+fn vtu_reads_back_in_double_precision() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtu");
+    write_vtu(&path, &data()).unwrap();
+    let Vtk { data: DataSet::UnstructuredGrid { pieces, .. }, .. } = Vtk::import(&path).unwrap() else { panic!() };
+    let Piece::Inline(piece) = &pieces[0] else { panic!() };
+    assert_eq!(piece.points, IOBuffer::F64(data().points.concat()));
+    let vtkio::model::VertexNumbers::XML { connectivity, offsets } = &piece.cells.cell_verts else { panic!() };
+    assert_eq!((&connectivity[..], &offsets[..]), (&[0, 1, 2, 0, 1, 3, 2][..], &[3, 7][..]));
+    let Attribute::DataArray(column) = &piece.data.point[0] else { panic!() };
+    let Values::Real(wanted) = &data().point_data[0].values else { panic!() };
+    assert_eq!((&column.data, column.num_comp()), (&IOBuffer::F64(wanted.clone()), 3));
+    let Attribute::DataArray(column) = &piece.data.cell[0] else { panic!() };
+    assert_eq!((column.name.as_str(), column.num_comp()), ("STRESS", 4));
+    let text = String::from_utf8_lossy(&std::fs::read(&path).unwrap()).into_owned();
+    assert!(text.contains("vtkZLibDataCompressor") && text.contains("format=\"appended\""), "{}", &text[..600]);
+
+    write_pvd(&folder.path().join("a.pvd"), &[(0.1, "a_1.vtu".into()), (0.2, "a_2.vtu".into())]).unwrap();
+    let pvd = std::fs::read_to_string(folder.path().join("a.pvd")).unwrap();
+    assert!(pvd.contains("<DataSet timestep=\"0.2\" part=\"0\" file=\"a_2.vtu\"/>"));
+}
+
+#[test]
+fn gid_files_name_meshes_results_and_points() {
+    let data = data();
+    let mut mesh = Vec::new();
+    write_gid_mesh(&mut mesh, &data, GidKind::Element, true).unwrap();
+    let mesh = String::from_utf8(mesh).unwrap();
+    let wanted =
+        "MESH \"Kratos_Triangle3_elements\" dimension 3 ElemType Triangle Nnode 3\nCoordinates\n2 0.0 0.0 0.0\n";
+    assert!(mesh.starts_with(wanted), "{mesh}");
+    assert!(mesh.contains("End Coordinates\nElements\n9 2 3 8 5 2\nEnd Elements\n"), "{mesh}");
+    let gauss = GaussResult {
+        name: "VON_MISES_STRESS".into(),
+        shape: Shape::Tri3,
+        points: vec![[0.25, 0.5, 0.0]],
+        components: 1,
+        cells: vec![7],
+        values: vec![3.5],
+    };
+    let mut out = Vec::new();
+    write_gid_results_head(&mut out, &[gauss.clone(), gauss.clone()]).unwrap();
+    write_gid_step(&mut out, 0.5, &data.point_ids, &data.point_data[1..2], &[gauss]).unwrap();
+    let wanted = "GiD Post Results File 1.0\nGaussPoints \"triangle3_1gp_element\" ElemType Triangle\n\
+        Number Of Gauss Points: 1\nNatural Coordinates: Given\n0.25 0.5\nEnd GaussPoints\n\
+        Result \"PRESSURE\" \"Kratos\" 0.5 Scalar OnNodes\nValues\n2 0.1\n3 -1.0\n5 1e-300\n8 10000000000.0\nEnd Values\n\
+        Result \"VON_MISES_STRESS\" \"Kratos\" 0.5 Scalar OnGaussPoints \"triangle3_1gp_element\"\nValues\n7 3.5\nEnd Values\n";
+    assert_eq!(String::from_utf8(out).unwrap(), wanted);
+}
