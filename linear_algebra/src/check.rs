@@ -56,8 +56,15 @@ pub(crate) struct Refined {
     pub(crate) steps: usize,
 }
 
+impl Refined {
+    /// Whether the residual is small enough; never when it is not a number.
+    pub(crate) fn reaches(&self, tolerance: f64) -> bool {
+        self.relative_residual <= tolerance
+    }
+}
+
 /// Residual at which further refinement gains nothing.
-const GOOD_ENOUGH: f64 = 1e-13;
+const GOOD_ENOUGH: f64 = 1e-11;
 
 /// `x = A⁻¹ rhs` by `inverse` (in place), improved while the true residual drops by at least a factor of two.
 pub(crate) fn refine(

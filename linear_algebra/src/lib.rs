@@ -6,8 +6,18 @@
 
 mod check;
 mod csr;
+mod dense;
+mod dense_lu;
+mod direct;
+mod equilibrate;
+mod gmres;
+mod interface;
 mod lu;
+mod multifrontal;
+mod ordering;
+mod scatter;
 mod solver;
+mod symbolic;
 mod system;
 pub mod vector;
 
@@ -18,8 +28,7 @@ pub use system::{Layout, Symmetry, System};
 /// A solver of the kind asked for.
 pub fn create(engine: Engine) -> Box<dyn LinearSolver> {
     match engine {
-        Engine::Direct(_) | Engine::Lu | Engine::ConjugateGradient(_) | Engine::Gmres { .. } => {
-            Box::new(lu::LuSolver::default())
-        }
+        Engine::Direct(settings) => Box::new(direct::DirectSolver::new(settings)),
+        Engine::Lu | Engine::ConjugateGradient(_) | Engine::Gmres { .. } => Box::new(lu::LuSolver::default()),
     }
 }

@@ -10,6 +10,8 @@ use faer::{Conj, MatMut, Par};
 
 use crate::check;
 use crate::csr::Csr;
+use crate::equilibrate;
+use crate::multifrontal::Scaling;
 use crate::solver::{LinearSolver, SolveError, SolveReport};
 use crate::system::System;
 
@@ -20,6 +22,7 @@ const REFINEMENTS: usize = 5;
 
 /// A factorised matrix.
 pub(crate) struct SparseLu {
+    scaling: Scaling,
     symbolic: SymbolicLu<usize>,
     numeric: NumericLu<usize, f64>,
 }
@@ -30,7 +33,8 @@ impl SparseLu {
     /// # Errors
     /// [`SolveError::Singular`] when the pattern is singular, [`SolveError::Failed`] when memory runs out.
     pub(crate) fn new(matrix: &Csr) -> Result<Self, SolveError> {
-        let by_columns = matrix.transpose();
+        let scaling = equilibrate::sparse(matrix);
+        let by_columns = Csr { values: scaling.apply(matrix), ..matrix.clone() }.transpose();
         let columns: Vec<usize> = by_columns.columns.iter().map(|&j| j as usize).collect();
         let n = matrix.rows;
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &by_columns.row_starts, None, &columns);
@@ -54,12 +58,13 @@ impl SparseLu {
                 Default::default(),
             )
             .map_err(failed)?;
-        Ok(Self { symbolic, numeric })
+        Ok(Self { scaling, symbolic, numeric })
     }
 
     /// Replaces `x` by `A⁻¹ x`.
     pub(crate) fn solve_in_place(&self, x: &mut [f64]) {
         let n = x.len();
+        x.iter_mut().zip(&self.scaling.row).for_each(|(x, scale)| *x *= scale);
         let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         LuRef::new_unchecked(&self.symbolic, &self.numeric).solve_in_place_with_conj(
             Conj::No,
@@ -67,6 +72,7 @@ impl SparseLu {
             Par::Seq,
             MemStack::new(&mut memory),
         );
+        x.iter_mut().zip(&self.scaling.column).for_each(|(x, scale)| *x *= scale);
     }
 }
 
@@ -94,7 +100,7 @@ impl LinearSolver for LuSolver {
         let start = Instant::now();
         let (factor, _) = self.factor.as_ref().expect("factorised above");
         let refined = check::refine(system, rhs, x, REFINEMENTS, |r| factor.solve_in_place(r));
-        if refined.relative_residual > TOLERANCE || refined.relative_residual.is_nan() {
+        if !refined.reaches(TOLERANCE) {
             return Err(check::refused(self.name(), &refined, TOLERANCE));
         }
         Ok(SolveReport {

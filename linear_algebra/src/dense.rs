@@ -1,0 +1,255 @@
+//! Dense kernels cut into tiles at fixed places, so that results do not depend on the number of threads.
+//!
+//! All matrices are column-major. Each tile is computed by one sequential call; threads only share the tiles out.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::{Accum, MatMut, MatRef, Par};
+use rayon::prelude::*;
+
+/// Columns of a block of a factorisation.
+const BLOCK: usize = 128;
+/// Rows of a tile below the diagonal block.
+const ROW_TILE: usize = 256;
+/// Columns of a tile of an update.
+const COLUMN_TILE: usize = 192;
+/// Multiplications below which threads cost more than they gain.
+pub(crate) const PARALLEL_WORK: usize = 1 << 21;
+
+/// Views a column-major slice.
+pub(crate) fn view(values: &[f64], rows: usize, columns: usize) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(&values[..rows * columns], rows, columns)
+}
+
+/// Views a column-major slice for writing.
+pub(crate) fn view_mut(values: &mut [f64], rows: usize, columns: usize) -> MatMut<'_, f64> {
+    MatMut::from_column_major_slice_mut(&mut values[..rows * columns], rows, columns)
+}
+
+/// Runs `work` on every item, on several threads when there is enough to do.
+pub(crate) fn for_each<T: Send>(parallel: bool, items: Vec<T>, work: impl Fn(T) + Sync + Send) {
+    if parallel && items.len() > 1 {
+        items.into_par_iter().with_max_len(1).for_each(work);
+    } else {
+        items.into_iter().for_each(work);
+    }
+}
+
+fn row_tiles<'a>(mut matrix: MatMut<'a, f64>, tile: usize) -> Vec<(usize, MatMut<'a, f64>)> {
+    let mut tiles = Vec::with_capacity(matrix.nrows().div_ceil(tile));
+    let mut at = 0;
+    while matrix.nrows() > 0 {
+        let (head, tail) = {
+            let rows = tile.min(matrix.nrows());
+            matrix.split_at_row_mut(rows)
+        };
+        let rows = head.nrows();
+        tiles.push((at, head));
+        at += rows;
+        matrix = tail;
+    }
+    tiles
+}
+
+fn column_tiles<'a>(mut matrix: MatMut<'a, f64>, tile: usize) -> Vec<(usize, MatMut<'a, f64>)> {
+    let mut tiles = Vec::with_capacity(matrix.ncols().div_ceil(tile));
+    let mut at = 0;
+    while matrix.ncols() > 0 {
+        let (head, tail) = {
+            let columns = tile.min(matrix.ncols());
+            matrix.split_at_col_mut(columns)
+        };
+        let columns = head.ncols();
+        tiles.push((at, head));
+        at += columns;
+        matrix = tail;
+    }
+    tiles
+}
+
+/// `target -= left * right`.
+pub(crate) fn subtract_product(target: MatMut<'_, f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>) {
+    matmul(target, Accum::Add, left, right, -1.0, Par::Seq);
+}
+
+/// Cholesky of the first `pivots` columns of a symmetric front of `order` rows, of which `panel` holds the lower part.
+///
+/// # Errors
+/// The first pivot, from 0, that is not positive.
+pub(crate) fn cholesky_panel(panel: &mut [f64], order: usize, pivots: usize) -> Result<(), usize> {
+    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<f64>(BLOCK, Par::Seq, Default::default()));
+    let mut k = 0;
+    while k < pivots {
+        let width = BLOCK.min(pivots - k);
+        let (left, right) = panel.split_at_mut(order * k);
+        let left = view(left, order, k).subrows(k, order - k);
+        let (mut head, mut below) = view_mut(right, order, width).subrows_mut(k, order - k).split_at_row_mut(width);
+        let (left_head, left_below) = left.split_at_row(width);
+        if k > 0 {
+            triangular::matmul(
+                head.as_mut(),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                left_head,
+                BlockStructure::Rectangular,
+                left_head.transpose(),
+                BlockStructure::Rectangular,
+                -1.0,
+                Par::Seq,
+            );
+        }
+        cholesky_in_place(head.as_mut(), Default::default(), Par::Seq, MemStack::new(&mut memory), Default::default())
+            .map_err(|LltError::NonPositivePivot { index }| k + index)?;
+        let head = head.as_ref();
+        let parallel = below.nrows() * width * (k + width) > PARALLEL_WORK;
+        for_each(parallel, row_tiles(below.as_mut(), ROW_TILE), |(at, mut tile)| {
+            if k > 0 {
+                let rows = tile.nrows();
+                subtract_product(tile.as_mut(), left_below.subrows(at, rows), left_head.transpose());
+            }
+            solve_lower_triangular_in_place(head, tile.transpose_mut(), Par::Seq);
+        });
+        k += width;
+    }
+    Ok(())
+}
+
+/// Lower part of `update = -below belowᵀ`, where `below` are the rows of `panel` after its pivots.
+pub(crate) fn symmetric_update(update: &mut [f64], panel: &[f64], order: usize, pivots: usize) {
+    let rows = order - pivots;
+    let below = view(panel, order, pivots).subrows(pivots, rows);
+    let tiles = column_tiles(view_mut(update, rows, rows), COLUMN_TILE);
+    for_each(rows * rows * pivots > PARALLEL_WORK, tiles, |(at, tile)| {
+        let width = tile.ncols();
+        let (diagonal, lower) = tile.subrows_mut(at, rows - at).split_at_row_mut(width);
+        let (near, far) = below.subrows(at, rows - at).split_at_row(width);
+        triangular::matmul(
+            diagonal,
+            BlockStructure::TriangularLower,
+            Accum::Replace,
+            near,
+            BlockStructure::Rectangular,
+            near.transpose(),
+            BlockStructure::Rectangular,
+            -1.0,
+            Par::Seq,
+        );
+        matmul(lower, Accum::Replace, far, near.transpose(), -1.0, Par::Seq);
+    });
+}
+
+/// `update = -left right`.
+pub(crate) fn general_update(update: MatMut<'_, f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>) {
+    let work = update.nrows() * update.ncols() * left.ncols();
+    for_each(work > PARALLEL_WORK, column_tiles(update, COLUMN_TILE), |(at, tile)| {
+        let width = tile.ncols();
+        matmul(tile, Accum::Replace, left, right.subcols(at, width), -1.0, Par::Seq);
+    });
+}
+
+/// `matrix = matrix U⁻¹` with `U` the upper triangle of `factor`, in tiles of rows.
+pub(crate) fn solve_upper_from_right(matrix: MatMut<'_, f64>, factor: MatRef<'_, f64>) {
+    let work = matrix.nrows() * matrix.ncols() * matrix.ncols();
+    for_each(work > PARALLEL_WORK, row_tiles(matrix, ROW_TILE), |(_, tile)| {
+        solve_lower_triangular_in_place(factor.transpose(), tile.transpose_mut(), Par::Seq);
+    });
+}
+
+/// `matrix = L⁻¹ matrix` with `L` the unit lower triangle of `factor`, in tiles of columns.
+pub(crate) fn solve_unit_lower(matrix: MatMut<'_, f64>, factor: MatRef<'_, f64>) {
+    let work = matrix.nrows() * matrix.nrows() * matrix.ncols();
+    for_each(work > PARALLEL_WORK, column_tiles(matrix, COLUMN_TILE), |(_, tile)| {
+        solve_unit_lower_triangular_in_place(factor, tile, Par::Seq);
+    });
+}
+
+/// The triangle a vector is solved with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Triangle {
+    /// `L` with its diagonal.
+    Lower,
+    /// `L` with ones on the diagonal.
+    UnitLower,
+}
+
+/// Columns solved at once in a triangular solve with a vector.
+const VECTOR_BLOCK: usize = 192;
+/// Rows or columns of one task of a matrix–vector product.
+const VECTOR_TILE: usize = 512;
+
+/// Solves with the first `pivots` columns of a panel of `order` rows; the rest of `local` loses their part.
+pub(crate) fn forward(panel: MatRef<'_, f64>, triangle: Triangle, local: &mut [f64]) {
+    let (order, pivots) = (panel.nrows(), panel.ncols());
+    let mut k = 0;
+    while k < pivots {
+        let width = VECTOR_BLOCK.min(pivots - k);
+        let block = panel.submatrix(k, k, order - k, width);
+        let (head, below) = block.split_at_row(width);
+        let (x, rest) = local[k..order].split_at_mut(width);
+        let mut x = view_mut(x, width, 1);
+        match triangle {
+            Triangle::Lower => solve_lower_triangular_in_place(head, x.as_mut(), Par::Seq),
+            Triangle::UnitLower => solve_unit_lower_triangular_in_place(head, x.as_mut(), Par::Seq),
+        }
+        subtract_from_vector(rest, below, x.as_ref());
+        k += width;
+    }
+}
+
+/// `target -= matrix x`.
+fn subtract_from_vector(target: &mut [f64], matrix: MatRef<'_, f64>, x: MatRef<'_, f64>) {
+    let rows = target.len();
+    let tiles = row_tiles(view_mut(target, rows, 1), VECTOR_TILE);
+    for_each(rows * matrix.ncols() > PARALLEL_WORK / 8, tiles, |(at, tile)| {
+        let count = tile.nrows();
+        subtract_product(tile, matrix.subrows(at, count), x);
+    });
+}
+
+/// Solves `Lᵀ x = local` for the pivots, the other entries of `local` being known.
+pub(crate) fn backward_transposed(panel: MatRef<'_, f64>, local: &mut [f64]) {
+    let (order, pivots) = (panel.nrows(), panel.ncols());
+    let mut end = pivots;
+    while end > 0 {
+        let start = (end - 1) / VECTOR_BLOCK * VECTOR_BLOCK;
+        let block = panel.submatrix(start, start, order - start, end - start);
+        let (head, below) = block.split_at_row(end - start);
+        let (x, rest) = local[start..order].split_at_mut(end - start);
+        if !rest.is_empty() {
+            let rest = view(rest, rest.len(), 1);
+            let tiles = row_tiles(view_mut(x, end - start, 1), 32);
+            for_each(below.nrows() * below.ncols() > PARALLEL_WORK / 8, tiles, |(at, tile)| {
+                let count = tile.nrows();
+                subtract_product(tile, below.subcols(at, count).transpose(), rest);
+            });
+        }
+        solve_upper_triangular_in_place(head.transpose(), view_mut(x, end - start, 1), Par::Seq);
+        end = start;
+    }
+}
+
+/// Solves `U x = local - right rest` for the pivots; `square` holds `U` on and above its diagonal.
+pub(crate) fn backward_upper(square: MatRef<'_, f64>, right: MatRef<'_, f64>, local: &mut [f64]) {
+    let pivots = square.ncols();
+    let (x, rest) = local.split_at_mut(pivots);
+    if !rest.is_empty() {
+        subtract_from_vector(x, right, view(rest, rest.len(), 1));
+    }
+    let mut end = pivots;
+    while end > 0 {
+        let start = (end - 1) / VECTOR_BLOCK * VECTOR_BLOCK;
+        let (above, block) = square.submatrix(0, start, end, end - start).split_at_row(start);
+        let (before, x) = x[..end].split_at_mut(start);
+        let mut x = view_mut(x, end - start, 1);
+        solve_upper_triangular_in_place(block, x.as_mut(), Par::Seq);
+        if start > 0 {
+            subtract_from_vector(before, above, x.as_ref());
+        }
+        end = start;
+    }
+}

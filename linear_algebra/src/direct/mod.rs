@@ -1,0 +1,422 @@
+//! The default engine: multifrontal factorisation of the bulk, the interface in a dense Schur complement.
+//!
+//! Order I (interior) before B (interface): `A = [K_II K_IB; K_BI K_BB + C]`. The bulk is eliminated once,
+//! `S = K_BB - K_BI K_II⁻¹ K_IB`, and kept while its stamp is unchanged; a changed coupling `C` costs one dense LU of
+//! `S + C`. Bodies that only contact holds need no care, as `K_II` is regular when B is held.
+
+mod path;
+
+use std::time::Instant;
+
+use crate::check::{self, NAMED_EQUATIONS, Refined};
+use crate::gmres::gmres;
+use crate::interface::Interface;
+use crate::lu::SparseLu;
+use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
+use crate::system::{Symmetry, System};
+use crate::vector;
+use path::{Path, Sparse};
+
+/// Interfaces up to this size are always worth their dense block.
+const SMALL_INTERFACE: usize = 1500;
+/// Multiplications of an LU of the whole matrix, divided by the square of its size; typical of solids.
+const WHOLE_WORK: f64 = 40.0;
+/// Largest system given to the slow last resort.
+const SPARSE_LU_LIMIT: usize = 60_000;
+/// Residual that refinement should reach; above it Krylov iteration is tried.
+const WANTED: f64 = 1e-10;
+/// Krylov iterations before a factorisation is given up.
+const KRYLOV_ITERATIONS: usize = 40;
+/// Factorisations without another attempt at Cholesky, after one failed.
+const CHOLESKY_PAUSE: usize = 4;
+/// `‖A v‖ / (‖A‖ ‖v‖)` below which `v` proves the matrix singular.
+const NULL_VECTOR: f64 = 1e-10;
+
+/// The ways, from the preferred one to the last resort.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Dense,
+    InterfaceCholesky,
+    InterfaceLu,
+    WholeCholesky,
+    WholeLu,
+    SparseLu,
+}
+
+impl Way {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Dense => "dense_lu",
+            Self::InterfaceCholesky => "cholesky+interface",
+            Self::InterfaceLu => "multifrontal_lu+interface",
+            Self::WholeCholesky => "cholesky",
+            Self::WholeLu => "multifrontal_lu",
+            Self::SparseLu => "sparse_lu",
+        }
+    }
+}
+
+/// Stamps of what was factorised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Stamps {
+    bulk_graph: u64,
+    bulk_values: u64,
+    is_coupled: bool,
+    coupling_graph: u64,
+    coupling_values: u64,
+}
+
+impl Stamps {
+    fn of(system: &System<'_>) -> Self {
+        Self {
+            bulk_graph: system.bulk_graph,
+            bulk_values: system.bulk_values,
+            is_coupled: system.active_coupling().is_some(),
+            coupling_graph: system.coupling_graph,
+            coupling_values: system.coupling_values,
+        }
+    }
+}
+
+/// The engine [`crate::Engine::Direct`].
+pub(crate) struct DirectSolver {
+    settings: DirectSettings,
+    current: Option<(Way, Path, Stamps)>,
+    /// Equations kept in the interface, with the stamp of the bulk's graph they belong to.
+    kept: Option<(Vec<bool>, u64)>,
+    /// Whether the interface of these graphs is too large for a dense block.
+    too_dense: Option<((u64, u64), bool)>,
+    cholesky_pause: usize,
+    seconds_symbolic: f64,
+    seconds_numeric: f64,
+}
+
+impl DirectSolver {
+    pub(crate) fn new(settings: DirectSettings) -> Self {
+        Self {
+            settings,
+            current: None,
+            kept: None,
+            too_dense: None,
+            cholesky_pause: 0,
+            seconds_symbolic: 0.0,
+            seconds_numeric: 0.0,
+        }
+    }
+
+    /// Ways to try, best first.
+    fn ways(&mut self, system: &System<'_>) -> Result<Vec<Way>, SolveError> {
+        let n = system.equations();
+        if n <= self.settings.dense_below {
+            return Ok(vec![Way::Dense]);
+        }
+        let mut ways = Vec::new();
+        let cholesky = system.bulk_symmetry != Symmetry::General && self.cholesky_pause == 0;
+        let kept = self.interface(system);
+        if kept == 0 {
+            ways.extend(cholesky.then_some(Way::WholeCholesky));
+        } else if kept <= self.settings.interface_limit && !self.is_too_dense(kept, system)? {
+            ways.extend(cholesky.then_some(Way::InterfaceCholesky));
+            ways.push(Way::InterfaceLu);
+        }
+        ways.push(Way::WholeLu);
+        ways.extend((n <= SPARSE_LU_LIMIT).then_some(Way::SparseLu));
+        Ok(ways)
+    }
+
+    /// Decides which equations stay in the interface and counts them.
+    ///
+    /// The interface of the previous solve is kept while it covers the new one and is not much larger, since a new one
+    /// means a new factorisation of the bulk; a moving interface grows for the same reason.
+    fn interface(&mut self, system: &System<'_>) -> usize {
+        let wanted = path::interface_equations(system);
+        let count = |kept: &[bool]| kept.iter().filter(|&&kept| kept).count();
+        let needed = count(&wanted);
+        if let Some((old, graph)) = &mut self.kept
+            && *graph == system.bulk_graph
+            && old.len() == wanted.len()
+        {
+            let affordable = needed.max(SMALL_INTERFACE / 2) * 3 / 2;
+            let union: Vec<bool> = old.iter().zip(&wanted).map(|(a, b)| *a || *b).collect();
+            let size = count(&union);
+            if size <= affordable.min(self.settings.interface_limit) {
+                *old = union;
+                return size;
+            }
+        }
+        self.kept = Some((wanted, system.bulk_graph));
+        needed
+    }
+
+    /// Makes `way` ready for `system`, reusing what the stamps allow; `None` when the matrix does not suit the way.
+    fn prepare(&mut self, way: Way, system: &System<'_>) -> Result<Option<Path>, SolveError> {
+        let stamps = Stamps::of(system);
+        let (old, old_stamps) = match self.current.take() {
+            Some((old_way, path, old_stamps)) if old_way == way => (Some(path), Some(old_stamps)),
+            _ => (None, None),
+        };
+        if old_stamps == Some(stamps) {
+            return Ok(old);
+        }
+        let same_bulk_graph = old_stamps.is_some_and(|old| old.bulk_graph == stamps.bulk_graph);
+        let same_bulk = same_bulk_graph && old_stamps.is_some_and(|old| old.bulk_values == stamps.bulk_values);
+        let start = Instant::now();
+        match way {
+            Way::Dense => {
+                let path = path::dense(system);
+                self.seconds_numeric += start.elapsed().as_secs_f64();
+                Ok(Some(path))
+            }
+            Way::SparseLu => {
+                let path = Path::SparseLu(SparseLu::new(&system.merged())?);
+                self.seconds_numeric += start.elapsed().as_secs_f64();
+                Ok(Some(path))
+            }
+            Way::WholeCholesky | Way::WholeLu => {
+                let same_graph = same_bulk_graph
+                    && old_stamps.is_some_and(|old| {
+                        old.is_coupled == stamps.is_coupled && old.coupling_graph == stamps.coupling_graph
+                    });
+                let merged = system.active_coupling().map(|_| system.merged());
+                let matrix = merged.as_ref().unwrap_or(system.bulk);
+                let mut sparse = match old {
+                    Some(Path::Whole(sparse)) if same_graph => sparse,
+                    _ => Sparse::new(matrix, system, &vec![false; system.equations()])?,
+                };
+                self.seconds_symbolic += start.elapsed().as_secs_f64();
+                let start = Instant::now();
+                let done = sparse.factorise(matrix, way == Way::WholeCholesky);
+                self.seconds_numeric += start.elapsed().as_secs_f64();
+                Ok(done.ok().map(|()| Path::Whole(sparse)))
+            }
+            Way::InterfaceCholesky | Way::InterfaceLu => {
+                let (kept, _) = self.kept.as_ref().expect("decided in `interface`");
+                let (mut sparse, old_interface) = match old {
+                    Some(Path::Interface(sparse, interface)) if same_bulk_graph && covers(&sparse, kept) => {
+                        (sparse, Some(interface))
+                    }
+                    _ => (Sparse::new(system.bulk, system, kept)?, None),
+                };
+                self.seconds_symbolic += start.elapsed().as_secs_f64();
+                let start = Instant::now();
+                if !(same_bulk && sparse.factor.is_some())
+                    && sparse.factorise(system.bulk, way == Way::InterfaceCholesky).is_err()
+                {
+                    self.seconds_numeric += start.elapsed().as_secs_f64();
+                    return Ok(None);
+                }
+                let symbolic = &sparse.symbolic;
+                let interior = symbolic.interior;
+                let interface = Interface::new(
+                    &sparse.factor.as_ref().expect("factorised").root,
+                    &symbolic.equation[interior..],
+                    system.active_coupling(),
+                    |equation| symbolic.position[equation as usize] as usize - interior,
+                    |equation| system.bulk.row(equation as usize).1.iter().any(|&value| value != 0.0),
+                    old_interface,
+                );
+                self.seconds_numeric += start.elapsed().as_secs_f64();
+                Ok(Some(Path::Interface(sparse, interface)))
+            }
+        }
+    }
+
+    /// Whether a dense interface of `order` equations costs more than eliminating the whole matrix.
+    fn is_too_dense(&mut self, order: usize, system: &System<'_>) -> Result<bool, SolveError> {
+        let n = system.equations() as f64;
+        let work = 2.0 / 3.0 * (order as f64).powi(3);
+        if order <= SMALL_INTERFACE || work < WHOLE_WORK * n * n {
+            return Ok(false);
+        }
+        let graphs = (system.bulk_graph, system.coupling_graph);
+        if let Some((known, too_dense)) = self.too_dense
+            && known == graphs
+        {
+            return Ok(too_dense);
+        }
+        let start = Instant::now();
+        let whole = Sparse::new(&system.merged(), system, &vec![false; system.equations()])?;
+        self.seconds_symbolic += start.elapsed().as_secs_f64();
+        // The whole matrix takes an LU, twice the work of Cholesky, in blocks smaller than the dense one.
+        let too_dense = work > 3.0 * 2.0 * whole.symbolic.work();
+        self.too_dense = Some((graphs, too_dense));
+        Ok(too_dense)
+    }
+
+    /// Solves by one way; `None` when another one should be tried.
+    fn attempt(
+        &mut self,
+        way: Way,
+        system: &System<'_>,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> Result<Option<Refined>, SolveError> {
+        let known = self.current.as_ref().is_some_and(|(old, _, stamps)| *old == way && *stamps == Stamps::of(system));
+        let Some(path) = self.prepare(way, system)? else { return Ok(None) };
+        if !known && path.suspicious() > 0 && !is_regular(system, &path) {
+            let (vector, ratio) = null_vector(system, &path);
+            if ratio < NULL_VECTOR {
+                return Err(SolveError::Singular {
+                    equations: largest_entries(&vector),
+                    rank_deficiency: Some(path.suspicious()),
+                });
+            }
+            return Ok(None);
+        }
+        let mut refined = check::refine(system, rhs, x, self.settings.refinements, |r| path.apply(r));
+        if !refined.reaches(WANTED) {
+            refined = krylov(system, &path, rhs, x, refined);
+        }
+        let good = refined.reaches(self.settings.tolerance);
+        if good {
+            self.current = Some((way, path, Stamps::of(system)));
+        }
+        Ok(good.then_some(refined))
+    }
+}
+
+/// Whether the interface of a factorisation is the one wanted.
+fn covers(sparse: &Sparse, kept: &[bool]) -> bool {
+    let symbolic = &sparse.symbolic;
+    let count = kept.iter().filter(|&&kept| kept).count();
+    symbolic.equations() == kept.len()
+        && symbolic.equations() - symbolic.interior == count
+        && symbolic.equation[symbolic.interior..].iter().all(|&i| kept[i as usize])
+}
+
+/// Continues from the better of `x` and zero by GMRES, preconditioned with the factors.
+fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64], before: Refined) -> Refined {
+    let mut trial = if before.relative_residual < 1.0 { x.to_vec() } else { vec![0.0; x.len()] };
+    let progress = gmres(
+        |x, y| system.mul_vec(x, y),
+        |r| path.apply(r),
+        rhs,
+        &mut trial,
+        KRYLOV_ITERATIONS,
+        KRYLOV_ITERATIONS,
+        WANTED,
+    );
+    let steps = before.steps + progress.iterations;
+    if before.relative_residual <= progress.relative_residual {
+        return Refined { steps, ..before };
+    }
+    x.copy_from_slice(&trial);
+    Refined { relative_residual: progress.relative_residual, steps }
+}
+
+/// Entries without pattern, the same every time.
+fn pseudo_random(n: usize) -> Vec<f64> {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    (0..n)
+        .map(|_| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        })
+        .collect()
+}
+
+/// Whether a right-hand side that no singular matrix could produce is solved.
+fn is_regular(system: &System<'_>, path: &Path) -> bool {
+    let x: Vec<f64> = pseudo_random(system.equations());
+    let mut rhs = vec![0.0; x.len()];
+    row_sizes(system, &mut rhs);
+    rhs.iter_mut().zip(&x).for_each(|(size, x)| *size *= x);
+    let mut solution = vec![0.0; x.len()];
+    let mut refined = check::refine(system, &rhs, &mut solution, 2, |r| path.apply(r));
+    if !refined.reaches(1e-8) {
+        refined = krylov(system, path, &rhs, &mut solution, refined);
+    }
+    refined.reaches(1e-8)
+}
+
+/// Sum of the sizes of the entries of each row.
+fn row_sizes(system: &System<'_>, sizes: &mut [f64]) {
+    for (i, size) in sizes.iter_mut().enumerate() {
+        *size = [Some(system.bulk), system.active_coupling()]
+            .into_iter()
+            .flatten()
+            .flat_map(|matrix| matrix.row(i).1)
+            .map(|value| value.abs())
+            .sum();
+    }
+}
+
+/// A vector the matrix nearly maps to zero, by inverse iteration, and `max |A v|ᵢ / (|A| |v|)ᵢ` over the equations.
+fn null_vector(system: &System<'_>, path: &Path) -> (Vec<f64>, f64) {
+    let mut vector = pseudo_random(system.equations());
+    for _ in 0..4 {
+        path.apply(&mut vector);
+        let size = vector.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        if size == 0.0 || !size.is_finite() {
+            return (vector, f64::NAN);
+        }
+        vector.iter_mut().for_each(|v| *v /= size);
+    }
+    let mut image = vec![0.0; vector.len()];
+    system.mul_vec(&vector, &mut image);
+    let mut sizes = vec![0.0; vector.len()];
+    row_sizes(system, &mut sizes);
+    (vector, vector::norm(&image) / vector::norm(&sizes))
+}
+
+/// Equations with the largest entries of a vector, largest first.
+fn largest_entries(vector: &[f64]) -> Vec<usize> {
+    let largest = vector.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut order: Vec<usize> = (0..vector.len()).filter(|&i| vector[i].abs() >= 0.1 * largest).collect();
+    order.sort_by(|&a, &b| vector[b].abs().total_cmp(&vector[a].abs()).then(a.cmp(&b)));
+    order.truncate(NAMED_EQUATIONS);
+    order
+}
+
+impl LinearSolver for DirectSolver {
+    fn name(&self) -> &'static str {
+        "direct"
+    }
+
+    fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
+        check::input(system, rhs, x)?;
+        check::empty_rows(system)?;
+        (self.seconds_symbolic, self.seconds_numeric) = (0.0, 0.0);
+        let start = Instant::now();
+        let mut failed: Vec<&'static str> = Vec::new();
+        let mut ways = self.ways(system)?;
+        // A way that served the same bulk before is tried first, so that a failing one is not tried at each solve.
+        if let Some((way, _, stamps)) = &self.current
+            && stamps.bulk_graph == system.bulk_graph
+            && stamps.bulk_values == system.bulk_values
+            && let Some(at) = ways.iter().position(|candidate| candidate == way)
+        {
+            ways.drain(..at);
+        }
+        for way in ways {
+            let Some(refined) = self.attempt(way, system, rhs, x)? else {
+                if matches!(way, Way::WholeCholesky | Way::InterfaceCholesky) {
+                    self.cholesky_pause = CHOLESKY_PAUSE + 1;
+                }
+                failed.push(way.name());
+                continue;
+            };
+            self.cholesky_pause = self.cholesky_pause.saturating_sub(1);
+            let before_solve = self.seconds_symbolic + self.seconds_numeric;
+            return Ok(SolveReport {
+                engine: way.name(),
+                relative_residual: refined.relative_residual,
+                iterations: refined.steps,
+                fallback: (!failed.is_empty()).then(|| format!("{} did not serve", failed.join(", "))),
+                seconds_symbolic: self.seconds_symbolic,
+                seconds_numeric: self.seconds_numeric,
+                seconds_solve: start.elapsed().as_secs_f64() - before_solve,
+            });
+        }
+        let mut residual = vec![0.0; x.len()];
+        let relative_residual = system.residual(rhs, x, &mut residual) / vector::norm(rhs);
+        Err(SolveError::NotConverged {
+            engine: self.name(),
+            iterations: self.settings.refinements,
+            relative_residual,
+            tolerance: self.settings.tolerance,
+        })
+    }
+}

@@ -1,0 +1,112 @@
+//! The ways to an inverse that the direct engine can take.
+
+use std::sync::Arc;
+
+use crate::csr::Csr;
+use crate::equilibrate;
+use crate::interface::{DenseFactor, Interface};
+use crate::lu::SparseLu;
+use crate::multifrontal::{Factor, Kind, NotPositiveDefinite};
+use crate::scatter::Scatter;
+use crate::solver::SolveError;
+use crate::symbolic::Symbolic;
+use crate::system::System;
+
+/// Pivots of the equilibrated matrix below this are replaced; Krylov iteration makes up for it.
+const PIVOT_LIMIT: f64 = 1e-9;
+
+/// The sparse part of a path: structure and numbers, each kept while its stamp is unchanged.
+pub(crate) struct Sparse {
+    pub(crate) symbolic: Arc<Symbolic>,
+    scatter: Option<(Scatter, bool)>,
+    pub(crate) factor: Option<Factor>,
+}
+
+impl Sparse {
+    /// Orders `pattern`, keeping the equations of `last` for a dense root.
+    pub(crate) fn new(pattern: &Csr, system: &System<'_>, last: &[bool]) -> Result<Self, SolveError> {
+        Ok(Self { symbolic: Arc::new(Symbolic::new(pattern, system.layout, last)?), scatter: None, factor: None })
+    }
+
+    /// Factorises `matrix`, which has the pattern given to [`Sparse::new`].
+    pub(crate) fn factorise(&mut self, matrix: &Csr, cholesky: bool) -> Result<(), NotPositiveDefinite> {
+        if self.scatter.as_ref().is_none_or(|(_, symmetric)| *symmetric && !cholesky) {
+            self.scatter = Some((Scatter::new(&self.symbolic, matrix, cholesky), cholesky));
+        }
+        let (scatter, _) = self.scatter.as_ref().expect("made above");
+        let (kind, scaling) = if cholesky {
+            (Kind::Cholesky, None)
+        } else {
+            (Kind::Lu { limit: PIVOT_LIMIT }, Some(equilibrate::sparse(matrix)))
+        };
+        let old = self.factor.take();
+        self.factor = Some(Factor::new(&self.symbolic, scatter, matrix, kind, scaling, old)?);
+        Ok(())
+    }
+}
+
+/// A factorised system.
+pub(crate) enum Path {
+    /// One dense LU of everything.
+    Dense(DenseFactor),
+    /// Multifrontal factorisation of the whole matrix.
+    Whole(Sparse),
+    /// Multifrontal factorisation of the bulk, dense LU of the interface.
+    Interface(Sparse, Interface),
+    /// LU with column ordering.
+    SparseLu(SparseLu),
+}
+
+impl Path {
+    /// Replaces `x` by an approximation of `A⁻¹ x`, exact but for rounding and replaced pivots.
+    pub(crate) fn apply(&self, x: &mut [f64]) {
+        match self {
+            Self::Dense(factor) => factor.solve(x),
+            Self::Whole(sparse) => sparse.factor.as_ref().expect("factorised").solve(x, |_| {}),
+            Self::Interface(sparse, interface) => {
+                sparse.factor.as_ref().expect("factorised").solve(x, |kept| interface.solve(kept));
+            }
+            Self::SparseLu(factor) => factor.solve_in_place(x),
+        }
+    }
+
+    /// Number of pivots that hint at a singular matrix.
+    pub(crate) fn suspicious(&self) -> usize {
+        let of = |sparse: &Sparse| sparse.factor.as_ref().map_or(0, |factor| factor.suspicious.len());
+        match self {
+            Self::Dense(factor) => usize::from(factor.is_suspicious()),
+            Self::Whole(sparse) => of(sparse),
+            Self::Interface(sparse, interface) => of(sparse) + usize::from(interface.is_suspicious()),
+            Self::SparseLu(_) => 0,
+        }
+    }
+}
+
+/// One dense LU of the whole system.
+pub(crate) fn dense(system: &System<'_>) -> Path {
+    let n = system.equations();
+    let mut values = vec![0.0; n * n];
+    for matrix in [Some(system.bulk), system.active_coupling()].into_iter().flatten() {
+        for i in 0..n {
+            let (columns, entries) = matrix.row(i);
+            columns.iter().zip(entries).for_each(|(&j, value)| values[i + n * j as usize] += value);
+        }
+    }
+    Path::Dense(DenseFactor::new(values, n))
+}
+
+/// Equations that must stay in the dense interface: those of the coupling and those the bulk knows nothing of.
+pub(crate) fn interface_equations(system: &System<'_>) -> Vec<bool> {
+    let mut kept: Vec<bool> =
+        (0..system.equations()).map(|i| system.layout.multiplier[i] || system.bulk.row(i).0.is_empty()).collect();
+    if let Some(coupling) = system.active_coupling() {
+        for i in 0..coupling.rows {
+            let columns = coupling.row(i).0;
+            if !columns.is_empty() {
+                kept[i] = true;
+                columns.iter().for_each(|&j| kept[j as usize] = true);
+            }
+        }
+    }
+    kept
+}

@@ -1,0 +1,239 @@
+//! The direct engine on elastic boxes, tied boxes and awkward matrices.
+
+mod samples;
+
+use samples::{Brick, contact, fix};
+use zelus_linear_algebra::{
+    Csr, DirectSettings, Engine, Layout, LinearSolver, SolveError, SolveReport, Symmetry, System, create,
+};
+
+fn right_hand_side(n: usize) -> Vec<f64> {
+    (0..n).map(|i| ((i * 7919) % 1000) as f64 / 1000.0 - 0.5).collect()
+}
+
+fn clamped_box(cells: usize) -> (Csr, Layout) {
+    let brick = Brick { cells: [cells; 3] };
+    let mut triplets = Vec::new();
+    brick.stiffness(0, 1.0, &mut triplets);
+    fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
+    (Csr::from_triplets(3 * brick.nodes(), &triplets), Layout::blocked(brick.nodes(), 3))
+}
+
+fn direct(interface_limit: usize) -> Box<dyn LinearSolver> {
+    create(Engine::Direct(DirectSettings { interface_limit, ..Default::default() }))
+}
+
+/// Solves for the known answer `1, 2, 3, …` and gives the report and the largest error relative to it.
+fn solve_known(solver: &mut dyn LinearSolver, system: &System<'_>) -> (SolveReport, f64) {
+    let n = system.equations();
+    let exact: Vec<f64> = (0..n).map(|i| 1.0 + (i % 17) as f64).collect();
+    let mut rhs = vec![0.0; n];
+    system.mul_vec(&exact, &mut rhs);
+    let mut x = vec![0.0; n];
+    let report = solver.solve(system, &rhs, &mut x).expect("a regular matrix");
+    let error = x.iter().zip(&exact).map(|(x, e)| (x - e).abs()).fold(0.0, f64::max) / 17.0;
+    (report, error)
+}
+
+#[test]
+fn cholesky_of_an_elastic_box() {
+    let (bulk, layout) = clamped_box(9);
+    let (report, error) = solve_known(&mut *direct(9000), &System::bulk(&layout, &bulk, Symmetry::PositiveDefinite));
+    assert_eq!((report.engine, report.fallback), ("cholesky", None));
+    assert!(error < 1e-10 && report.relative_residual < 1e-12, "{error}");
+}
+
+#[test]
+fn an_indefinite_matrix_falls_back_to_lu() {
+    let (mut bulk, layout) = clamped_box(8);
+    for i in 0..bulk.rows {
+        bulk.add(i, i, -0.9);
+    }
+    let mut solver = direct(9000);
+    let mut system = System::bulk(&layout, &bulk, Symmetry::Symmetric);
+    let (report, error) = solve_known(&mut *solver, &system);
+    assert_eq!((report.engine, report.fallback.is_some()), ("multifrontal_lu", true));
+    assert!(error < 1e-7, "{error}");
+    system.bulk_values += 1;
+    assert_eq!(solve_known(&mut *solver, &system).0.fallback, None, "cholesky pauses after a failure");
+}
+
+#[test]
+fn an_unsymmetric_bulk_is_solved() {
+    let (mut bulk, layout) = clamped_box(8);
+    for (at, value) in bulk.values.iter_mut().enumerate() {
+        *value *= 1.0 + 1e-3 * (at % 13) as f64;
+    }
+    let (report, error) = solve_known(&mut *direct(9000), &System::bulk(&layout, &bulk, Symmetry::General));
+    assert_eq!(report.engine, "multifrontal_lu");
+    assert!(error < 1e-9, "{error}");
+}
+
+#[test]
+fn a_floating_body_is_held_by_multipliers() {
+    for (skew, inactive) in [(0.0, 1000), (0.0, 3), (0.2, 4)] {
+        let sample = contact(7, skew, |at| at % inactive != 1);
+        let system = System {
+            coupling: Some(&sample.coupling),
+            coupling_symmetric: skew == 0.0,
+            ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+        };
+        let (report, error) = solve_known(&mut *direct(9000), &system);
+        assert_eq!(report.engine, "cholesky+interface");
+        assert!(error < 1e-7, "dense interface: {error}");
+        let (report, error) = solve_known(&mut *direct(0), &system);
+        assert_eq!(report.engine, "multifrontal_lu");
+        assert!(error < 1e-7, "whole matrix: {error}");
+        let (report, error) = solve_known(&mut *create(Engine::Lu), &system);
+        assert_eq!(report.engine, "sparse_lu");
+        assert!(error < 1e-7, "sparse LU: {error}");
+    }
+}
+
+/// Two chains of springs: the first held at its end, the second only through multipliers.
+#[test]
+fn chains_tied_by_a_multiplier() {
+    let length = 300;
+    let n = 2 * length + 2;
+    let mut triplets = vec![(0, 0, 1e6)];
+    for first in [0, length] {
+        for i in first..first + length - 1 {
+            triplets.extend([(i, i, 1e6), (i + 1, i + 1, 1e6), (i, i + 1, -1e6), (i + 1, i, -1e6)]);
+        }
+    }
+    let bulk = Csr::from_triplets(n, &triplets);
+    let mut layout = Layout::scalar(2 * length);
+    layout.node.extend([length as u32, 2 * length as u32 - 1]);
+    layout.multiplier.extend([true, true]);
+    let (active, inactive) = (2 * length, 2 * length + 1);
+    let coupling = Csr::from_triplets(
+        n,
+        &[
+            (active, length, 1.0),
+            (active, length - 1, -1.0),
+            (length, active, 1.0),
+            (length - 1, active, -1.0),
+            (inactive, inactive, -1e-3),
+            (2 * length - 1, inactive, 0.5),
+        ],
+    );
+    let system = System { coupling: Some(&coupling), ..System::bulk(&layout, &bulk, Symmetry::PositiveDefinite) };
+    let (report, error) = solve_known(&mut *direct(9000), &system);
+    assert_eq!(report.engine, "cholesky+interface");
+    assert!(error < 1e-6, "{error}");
+    assert!(solve_known(&mut *direct(0), &system).1 < 1e-6);
+}
+
+#[test]
+fn equal_stamps_reuse_and_new_ones_renew() {
+    let sample = contact(6, 0.1, |at| at % 3 != 0);
+    let mut system = System {
+        coupling: Some(&sample.coupling),
+        coupling_symmetric: false,
+        ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+    };
+    let rhs = right_hand_side(system.equations());
+    let mut solver = direct(9000);
+    let mut solve = |system: &System<'_>| {
+        let mut x = vec![0.0; rhs.len()];
+        let report = solver.solve(system, &rhs, &mut x).expect("regular");
+        (x, report)
+    };
+    let (first, _) = solve(&system);
+    let (again, report) = solve(&system);
+    assert_eq!(first, again);
+    assert_eq!((report.seconds_symbolic, report.seconds_numeric), (0.0, 0.0));
+    system.coupling_values += 1;
+    assert_eq!(solve(&system).0, first);
+    system.bulk_values += 1;
+    assert_eq!(solve(&system).0, first);
+
+    let other = contact(6, 0.1, |at| at % 4 != 0);
+    let mut changed = System { coupling: Some(&other.coupling), coupling_graph: 1, coupling_values: 7, ..system };
+    let (x, _) = solve(&changed);
+    let mut r = vec![0.0; rhs.len()];
+    assert!(changed.residual(&rhs, &x, &mut r) < 1e-9);
+    let stiffer = Csr { values: sample.bulk.values.iter().map(|v| 2.0 * v).collect(), ..sample.bulk.clone() };
+    (changed.bulk, changed.bulk_values) = (&stiffer, 9);
+    let (x, _) = solve(&changed);
+    assert!(changed.residual(&rhs, &x, &mut r) < 1e-9);
+}
+
+#[test]
+fn a_singular_matrix_names_its_equations() {
+    let brick = Brick { cells: [6, 6, 6] };
+    let loose = Brick { cells: [2, 2, 2] };
+    let mut triplets = Vec::new();
+    brick.stiffness(0, 1.0, &mut triplets);
+    loose.stiffness(brick.nodes(), 1.0, &mut triplets);
+    fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
+    let nodes = brick.nodes() + loose.nodes();
+    let bulk = Csr::from_triplets(3 * nodes, &triplets);
+    let layout = Layout::blocked(nodes, 3);
+    let rhs = right_hand_side(3 * nodes);
+    for dense_below in [0, 100_000] {
+        let mut solver = create(Engine::Direct(DirectSettings { dense_below, ..Default::default() }));
+        let mut x = vec![0.0; 3 * nodes];
+        match solver.solve(&System::bulk(&layout, &bulk, Symmetry::PositiveDefinite), &rhs, &mut x) {
+            Err(SolveError::Singular { equations, rank_deficiency }) => {
+                assert!(!equations.is_empty() && equations.iter().all(|&i| i >= 3 * brick.nodes()), "{equations:?}");
+                assert!(rank_deficiency.is_some());
+            }
+            other => panic!("a loose body was not noticed: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn unusable_input_is_refused() {
+    let layout = Layout::scalar(3);
+    let mut bulk = Csr::from_triplets(3, &[(0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0)]);
+    let mut x = [0.0; 3];
+    let solve = |bulk: &Csr, rhs: &[f64], x: &mut [f64]| {
+        create(Engine::default()).solve(&System::bulk(&layout, bulk, Symmetry::PositiveDefinite), rhs, x)
+    };
+    assert_eq!(solve(&bulk, &[1.0, 2.0, 3.0], &mut x).unwrap().engine, "dense_lu");
+    assert_eq!(x, [1.0, 2.0, 3.0]);
+    assert_eq!(solve(&bulk, &[0.0; 3], &mut x).unwrap().relative_residual, 0.0);
+    assert_eq!(x, [0.0; 3]);
+    assert!(matches!(solve(&bulk, &[1.0, f64::NAN, 3.0], &mut x), Err(SolveError::Failed(_))));
+    assert!(matches!(solve(&bulk, &[1.0], &mut x), Err(SolveError::Failed(_))));
+    bulk.values[1] = 0.0;
+    let singular = SolveError::Singular { equations: vec![1], rank_deficiency: Some(1) };
+    assert_eq!(solve(&bulk, &[1.0, 2.0, 3.0], &mut x), Err(singular));
+    bulk.values[1] = f64::INFINITY;
+    assert!(matches!(solve(&bulk, &[1.0, 2.0, 3.0], &mut x), Err(SolveError::Failed(_))));
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_threads() {
+    let (bulk, layout) = clamped_box(13);
+    let sample = contact(10, 0.1, |at| at % 5 != 0);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| {
+            let mut answers = Vec::new();
+            for symmetry in [Symmetry::PositiveDefinite, Symmetry::General] {
+                let system = System::bulk(&layout, &bulk, symmetry);
+                let mut x = vec![0.0; system.equations()];
+                direct(9000).solve(&system, &right_hand_side(x.len()), &mut x).expect("regular");
+                answers.push(x);
+            }
+            for limit in [9000, 0] {
+                let system = System {
+                    coupling: Some(&sample.coupling),
+                    coupling_symmetric: false,
+                    ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+                };
+                let mut x = vec![0.0; system.equations()];
+                direct(limit).solve(&system, &right_hand_side(x.len()), &mut x).expect("regular");
+                answers.push(x);
+            }
+            answers
+        })
+    };
+    let one = run(1);
+    for threads in [2, 3] {
+        assert!(one == run(threads), "{threads} threads change the bits");
+    }
+}
