@@ -37,6 +37,8 @@ struct Measure {
     factor: f64,
     results: String,
     time: Option<f64>,
+    /// Only nodes with this initial y count.
+    y: Option<f64>,
 }
 
 impl Measure {
@@ -46,7 +48,9 @@ impl Measure {
         let quantity = self.largest.as_ref().or(self.edge.as_ref()).ok_or("a measure needs `largest` or `edge`")?;
         let nodes = read_nodes(&folder.join(mesh));
         let values = results.nodal(quantity, step);
-        let mut along: Vec<(f64, f64)> = values.iter().map(|(id, v)| (nodes[id][0], v * self.factor)).collect();
+        let counts = |id: &u64| self.y.is_none_or(|y| (nodes[id][1] - y).abs() < 1e-9);
+        let mut along: Vec<(f64, f64)> =
+            values.iter().filter(|(id, _)| counts(id)).map(|(id, v)| (nodes[id][0], v * self.factor)).collect();
         along.sort_by(|a, b| a.0.total_cmp(&b.0));
         let largest = along.iter().map(|(_, v)| *v).fold(f64::NEG_INFINITY, f64::max);
         if self.largest.is_some() {
