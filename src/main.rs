@@ -1,2 +1,5 @@
 //! The program `zelus`.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    zelus::program::main()
+}

@@ -1,1 +1,3 @@
-//! Structural mechanics.
+//! Structural mechanics: elements, constitutive laws, loads and the solvers of structural problems.
+
+mod solvers;

@@ -4,6 +4,7 @@
 //! nothing; [`NewtonRaphson`] iterates. The active set of contact is a stage of each iteration, see
 //! [`crate::entities::Interaction::after_update`].
 
+mod bossak_scheme;
 mod criterion;
 mod displacement_criterion;
 mod linear_solve;
@@ -12,6 +13,7 @@ mod records;
 mod residual_criterion;
 mod scheme;
 
+pub use bossak_scheme::BossakScheme;
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
     is_round_off, norm,

@@ -1,0 +1,31 @@
+//! The solver of problems with inertia.
+
+use zelus_core::analysis::{NodalVariable, SolverDefinition};
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+const VARIABLES: [NodalVariable; 10] = {
+    let [a, b, c, d, e, f, g, h] = super::VARIABLES;
+    [a, b, c, d, e, f, g, h, ("VELOCITY", 3), ("ACCELERATION", 3)]
+};
+
+register! { Solver "Dynamic",
+    aliases: &["dynamic"],
+    about: "motion with inertia, integrated in time by a scheme",
+    defaults: include_str!("../../../../configs/solvers/dynamic.json"),
+    build: Build::Factory(&SolverDefinition {
+        variables: &VARIABLES,
+        scheme: |settings| {
+            let method = settings.get_str("time_integration_method")?;
+            if method != "implicit" {
+                let fact = format!("\"time_integration_method\" is \"{method}\"");
+                return Err(settings
+                    .error("time_integration_method", "time-integration", fact)
+                    .remedy("use \"implicit\"")
+                    .into());
+            }
+            settings.get_str("scheme_type").map(str::to_owned)
+        },
+        adapt: super::adapt,
+    }),
+}

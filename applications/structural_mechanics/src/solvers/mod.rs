@@ -1,0 +1,45 @@
+//! The solvers of structural problems, by `solver_type`.
+
+mod dynamic_solver;
+mod static_solver;
+
+use zelus_core::analysis::NodalVariable;
+use zelus_core::parameters::{Defaults, Node, Value};
+
+/// Variables that every structural node has.
+const VARIABLES: [NodalVariable; 8] = [
+    ("DISPLACEMENT", 3),
+    ("REACTION", 3),
+    ("POSITIVE_FACE_PRESSURE", 1),
+    ("NEGATIVE_FACE_PRESSURE", 1),
+    ("POINT_LOAD", 3),
+    ("LINE_LOAD", 3),
+    ("SURFACE_LOAD", 3),
+    ("VOLUME_ACCELERATION", 3),
+];
+
+/// Names the spellings of older decks.
+fn adapt(defaults: Defaults) -> Defaults {
+    const WHOLE: &str = "the whole root part is computed";
+    defaults
+        .require(&["model_part_name", "domain_size", "time_stepping", "model_import_settings"])
+        .dropped("problem_domain_sub_model_part_list", WHOLE)
+        .dropped("processes_sub_model_part_list", WHOLE)
+        .dropped("use_computing_model_part", WHOLE)
+        .dropped("computing_model_part_name", WHOLE)
+        .translated("block_builder", "builder_and_solver_settings", |value| match value {
+            Value::Bool(true) => Some(typed("block")),
+            Value::Bool(false) => Some(typed("elimination")),
+            _ => None,
+        })
+        .translated("line_search", "solving_strategy_settings", |value| match value {
+            Value::Bool(true) => Some(typed("line_search")),
+            Value::Bool(false) => Some(typed("newton_raphson")),
+            _ => None,
+        })
+}
+
+fn typed(name: &str) -> Value {
+    let place = zelus_core::diagnostics::Place::file("");
+    Node::from_json(&serde_json::json!({ "type": name }), &place).map_or(Value::Null, |node| node.value)
+}

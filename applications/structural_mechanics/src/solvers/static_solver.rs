@@ -1,0 +1,16 @@
+//! The solver of static problems.
+
+use zelus_core::analysis::SolverDefinition;
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+register! { Solver "Static",
+    aliases: &["static"],
+    about: "equilibrium at each time; time only orders the loads",
+    defaults: include_str!("../../../../configs/solvers/static.json"),
+    build: Build::Factory(&SolverDefinition {
+        variables: &super::VARIABLES,
+        scheme: |_| Ok("static".to_owned()),
+        adapt: super::adapt,
+    }),
+}

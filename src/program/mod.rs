@@ -1,0 +1,131 @@
+//! The program: `zelus run`, `check`, `list`, `describe`.
+
+mod catalogue;
+mod terminal;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use zelus_core::analysis::{RunOptions, RunReport};
+use zelus_core::{Error, Result};
+
+use terminal::Terminal;
+
+/// Multiphysics finite elements: runs Kratos contact decks unmodified.
+#[derive(Debug, Parser)]
+#[command(
+    name = "zelus",
+    version,
+    about,
+    after_help = "Exit codes: 0 done and converged, 2 bad input, 3 not converged \
+    (what converged is written), 4 system or solver failure."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a deck.
+    Run {
+        /// The deck, e.g. ProjectParameters.json.
+        file: PathBuf,
+        /// Threads; all of the machine when not given. Results do not depend on it.
+        #[arg(long)]
+        threads: Option<usize>,
+        /// Write the report of the run (sizes, iterations, contact state, timings, warnings) to this JSON file.
+        #[arg(long)]
+        report: Option<PathBuf>,
+    },
+    /// Check everything about a deck that can be known without solving.
+    Check {
+        /// The deck, e.g. ProjectParameters.json.
+        file: PathBuf,
+    },
+    /// List the registered names, of all kinds or of one.
+    List {
+        /// A kind, e.g. process or condition.
+        kind: Option<String>,
+    },
+    /// Say what a registered name is, its settings with defaults, and its source.
+    Describe {
+        /// The name, as a deck would write it.
+        name: String,
+    },
+}
+
+/// Runs the program with the arguments of the process.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match execute(arguments.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            let _ = std::io::stdout().flush();
+            eprintln!("{}", explain(&error));
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn execute(command: Command) -> Result<()> {
+    match command {
+        Command::Run { file, threads, report } => {
+            if let Some(path) = &report {
+                check_writable(path)?;
+            }
+            let mut terminal = Terminal::new();
+            let (result, run) = zelus_core::analysis::run(&file, &RunOptions { threads }, &mut terminal);
+            terminal.finish(&run, result.is_ok());
+            let written = report.map_or(Ok(()), |path| write_report(&path, &run));
+            result.and(written)
+        }
+        Command::Check { file } => {
+            let mut terminal = Terminal::new();
+            let (result, report) = zelus_core::analysis::check(&file, &RunOptions::default(), &mut terminal);
+            result?;
+            println!(
+                "{}: no errors; {} nodes, {} elements, {} conditions, {} unknowns",
+                file.display(),
+                report.sizes.nodes,
+                report.sizes.elements,
+                report.sizes.conditions,
+                report.sizes.unknowns
+            );
+            Ok(())
+        }
+        Command::List { kind } => catalogue::list(kind.as_deref()),
+        Command::Describe { name } => catalogue::describe(&name),
+    }
+}
+
+fn explain(error: &Error) -> String {
+    match error {
+        Error::Input(problems) => {
+            let errors = problems.iter().filter(|p| p.severity == zelus_core::diagnostics::Severity::Error).count();
+            let s = if errors == 1 { "" } else { "s" };
+            format!("{error}\n\n{errors} error{s} in the input; nothing was run")
+        }
+        Error::NotConverged(_) => format!("error[not-converged] {error}"),
+        Error::System(_) => format!("error[system] {error}"),
+    }
+}
+
+fn check_writable(path: &Path) -> Result<()> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_dir() {
+        return Ok(());
+    }
+    Err(Error::System(format!(
+        "cannot write the report to {}: there is no folder {}",
+        path.display(),
+        folder.display()
+    )))
+}
+
+fn write_report(path: &Path, report: &RunReport) -> Result<()> {
+    let text = serde_json::to_string_pretty(report).map_err(|e| Error::System(format!("report: {e}")))?;
+    zelus_core::io::replace_file(path, |file| file.write_all(text.as_bytes()))
+}
