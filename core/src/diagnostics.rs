@@ -180,6 +180,15 @@ impl Error {
         Self::Input(vec![diagnostic])
     }
 
+    /// The same error, where problems of the input that have no place get this one.
+    #[must_use]
+    pub fn at(mut self, place: &Place) -> Self {
+        if let Self::Input(problems) = &mut self {
+            problems.iter_mut().filter(|d| d.place.is_none()).for_each(|d| d.place = Some(place.clone()));
+        }
+        self
+    }
+
     /// The exit code of the program: 2 bad input, 3 not converged, 4 system or solver.
     pub fn exit_code(&self) -> u8 {
         match self {

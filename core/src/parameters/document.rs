@@ -42,7 +42,6 @@ impl Document {
     ///
     /// # Errors
     /// [`Error::Input`] when the text is not JSON (`invalid-json`).
-    #[expect(clippy::should_implement_trait, reason = "a text without the name of its file has no places")]
     pub fn from_str(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         Ok(parse(text, path.as_ref(), false)?.0)
     }

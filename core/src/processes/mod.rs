@@ -1,5 +1,30 @@
-//! Processes: what a deck does at fixed points of the stage loop.
+//! What is done at fixed points of the stage loop: the [`Process`] trait and the framework's own processes.
+//!
+//! Each file named `*_process.rs` is one registered process, found by its own name; its settings and their defaults are
+//! the file of that name in `configs/processes/`. They share two workers: [`AssignToNodes`] for values and fixities of
+//! unknowns, [`AssignToEntities`] for data of conditions and elements.
 
 mod process;
+mod scalar_value;
+mod local_axes;
+mod target;
+mod direction;
+mod assign_to_nodes;
+mod assign_to_entities;
+mod assign_scalar_variable_process;
+mod assign_vector_variable_process;
+mod assign_vector_by_direction_process;
+mod fix_variable_process;
+mod assign_scalar_variable_to_entities_process;
+mod assign_vector_variable_to_entities_process;
+mod assign_vector_by_direction_to_entity_process;
+mod assign_flag_process;
+#[cfg(test)]
+mod tests;
 
+pub use assign_to_entities::{AssignToEntities, Container, EntityComponent};
+pub use assign_to_nodes::{AssignToNodes, NodalComponent};
+pub use local_axes::LocalAxes;
 pub use process::{Process, ProcessFactory, ProcessRequest};
+pub use scalar_value::ScalarValue;
+pub use target::Target;

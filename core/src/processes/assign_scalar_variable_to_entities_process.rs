@@ -1,0 +1,50 @@
+//! Gives conditions, elements or nodes one number of data: a scalar variable or a component of a vector.
+
+use super::assign_scalar_variable_process::optional_value;
+use super::assign_to_entities::{AssignToEntities, Container, EntityComponent};
+use super::local_axes::LocalAxes;
+use super::process::{Process, ProcessRequest};
+use super::target::{Target, scalar_variable};
+use crate::diagnostics::Result;
+use crate::parameters::Settings;
+use crate::register;
+use crate::registry::Build;
+
+fn build(
+    request: &mut ProcessRequest<'_>,
+    containers: fn(&Settings) -> Result<Vec<Container>>,
+) -> Result<Box<dyn Process>> {
+    let settings = &request.settings_with(|defaults| defaults.require(&["model_part_name", "variable_name"]))?;
+    let containers = containers(settings)?;
+    let components = vec![EntityComponent { variable: scalar_variable(settings)?, value: optional_value(settings)? }];
+    let axes = LocalAxes::from_settings(settings)?;
+    Ok(Box::new(AssignToEntities { target: Target::new(settings, request.model)?, containers, components, axes }))
+}
+
+register! { Process "assign_scalar_variable_to_entities_process",
+    aliases: &["AssignScalarVariableToEntitiesProcess"],
+    about: "gives the listed kinds of entities of a part a scalar value",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_entities_process.json")),
+    build: Build::Process(|request| build(request, Container::list)),
+}
+
+register! { Process "assign_scalar_variable_to_conditions_process",
+    aliases: &["AssignScalarVariableToConditionsProcess"],
+    about: "gives the conditions of a part a scalar value, e.g. a pressure",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_conditions_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Conditions]))),
+}
+
+register! { Process "assign_scalar_variable_to_elements_process",
+    aliases: &["AssignScalarVariableToElementsProcess"],
+    about: "gives the elements of a part a scalar value",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_elements_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Elements]))),
+}
+
+register! { Process "assign_scalar_variable_to_nodes_process",
+    aliases: &["AssignScalarVariableToNodesProcess"],
+    about: "gives the nodes of a part a scalar value without history",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_nodes_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Nodes]))),
+}

@@ -1,0 +1,145 @@
+//! Gives conditions, elements or nodes data of their own: the worker of the processes on entities.
+//!
+//! Acts at the beginning of each step whose TIME is in the interval, not before the first. Nothing is undone afterwards:
+//! the last value stays.
+
+use super::local_axes::LocalAxes;
+use super::process::Process;
+use super::scalar_value::ScalarValue;
+use super::target::Target;
+use crate::diagnostics::{Result, did_you_mean};
+use crate::model::{EntityTable, Fields, Model, ModelPart, Nodes, ScalarVariable};
+use crate::parameters::{Settings, SpaceTime};
+
+/// What a model part holds that can carry data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Container {
+    /// Nodes.
+    Nodes,
+    /// Conditions.
+    Conditions,
+    /// Elements.
+    Elements,
+}
+
+impl Container {
+    const NAMES: [(&'static str, Self); 3] =
+        [("nodes", Self::Nodes), ("conditions", Self::Conditions), ("elements", Self::Elements)];
+
+    /// Reads the list `"entities"`.
+    ///
+    /// # Errors
+    /// `invalid-value` for an empty list or a word that is none of these.
+    pub fn list(settings: &Settings) -> Result<Vec<Self>> {
+        let words = settings.get_strings("entities")?;
+        if words.is_empty() {
+            let problem = settings.error("entities", "invalid-value", "\"entities\" is empty");
+            return Err(problem.remedy("list some of nodes, conditions, elements").into());
+        }
+        let find = |word: &String| {
+            Self::NAMES.iter().find(|(name, _)| name == word).map(|(_, container)| *container).ok_or_else(|| {
+                let problem = settings.error("entities", "invalid-value", format!("there are no entities {word:?}"));
+                let near = did_you_mean(word, Self::NAMES.iter().map(|(name, _)| *name));
+                problem.remedy(near.unwrap_or_else(|| "list some of nodes, conditions, elements".to_owned())).into()
+            })
+        };
+        words.iter().map(find).collect()
+    }
+}
+
+/// What one number of the data is set to.
+#[derive(Debug, Clone)]
+pub struct EntityComponent {
+    /// The number.
+    pub variable: ScalarVariable,
+    /// Its value; functions see the centre of the entity.
+    pub value: ScalarValue,
+}
+
+/// Sets data of the entities of a part, in the order of containers and components.
+#[derive(Debug, Clone)]
+pub struct AssignToEntities {
+    /// Where and when.
+    pub target: Target,
+    /// On what.
+    pub containers: Vec<Container>,
+    /// What.
+    pub components: Vec<EntityComponent>,
+    /// Axes of the functions.
+    pub axes: Option<LocalAxes>,
+}
+
+impl AssignToEntities {
+    fn apply(&self, part: &mut ModelPart) -> Result<()> {
+        let time = part.info.time;
+        if !self.target.interval.contains(time) {
+            return Ok(());
+        }
+        let selection = self.target.selection(&part.tree)?;
+        for container in &self.containers {
+            match container {
+                Container::Nodes => {
+                    let nodes = &mut part.nodes;
+                    let (ids, current, initial) = (&nodes.ids, &nodes.current, &nodes.initial);
+                    let at = |n: usize| SpaceTime { current: current[n], initial: initial[n], time };
+                    self.set(&mut nodes.values, &selection.nodes, time, at, |n| format!("node {}", ids[n]))?;
+                }
+                Container::Conditions => {
+                    self.set_table(&mut part.conditions, &selection.conditions, &part.nodes, time, "condition")?
+                }
+                Container::Elements => {
+                    self.set_table(&mut part.elements, &selection.elements, &part.nodes, time, "element")?
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn set_table(&self, table: &mut EntityTable, selected: &[u32], nodes: &Nodes, time: f64, word: &str) -> Result<()> {
+        let mut data = std::mem::take(&mut table.data);
+        let at = |n: usize| SpaceTime { current: centre(table.nodes(n as u32), nodes), initial: [0.0; 3], time };
+        let done = self.set(&mut data, selected, time, at, |n| format!("{word} {}", table.ids[n]));
+        table.data = data;
+        done
+    }
+
+    fn set(
+        &self,
+        data: &mut Fields,
+        selected: &[u32],
+        time: f64,
+        at: impl Fn(usize) -> SpaceTime,
+        name: impl Fn(usize) -> String,
+    ) -> Result<()> {
+        for EntityComponent { variable, value } in &self.components {
+            data.add_named(variable.column, if variable.component.is_some() { 3 } else { 1 });
+            let field = data.field_mut(variable.column)?;
+            let stride = field.components;
+            let constant = (!value.uses_space()).then(|| value.value(&SpaceTime { time, ..SpaceTime::default() }));
+            for &index in selected {
+                let index = index as usize;
+                let number = constant.unwrap_or_else(|| {
+                    let here = at(index);
+                    value.value(&self.axes.as_ref().map_or(here, |axes| axes.map(&here)))
+                });
+                if !number.is_finite() {
+                    return Err(self.target.not_finite(*variable, number, time, name(index)).into());
+                }
+                field.levels[0][index * stride + variable.offset()] = number;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Mean of the present positions of the nodes.
+fn centre(nodes: &[u32], all: &Nodes) -> [f64; 3] {
+    let sum = nodes.iter().fold([0.0; 3], |sum, &n| crate::vector3::add(sum, all.current[n as usize]));
+    crate::vector3::scale(sum, 1.0 / nodes.len() as f64)
+}
+
+impl Process for AssignToEntities {
+    fn begin_step(&mut self, model: &mut Model) -> Result<()> {
+        self.apply(model.root_mut(&self.target.path)?)
+    }
+}

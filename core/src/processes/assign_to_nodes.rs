@@ -1,0 +1,142 @@
+//! Prescribes values and fixities of nodal unknowns: the worker of the nodal processes.
+//!
+//! While TIME is in the interval, at the beginning of a step the unknown is fixed and its value set; at the end of that
+//! step it is released on all nodes of the part. Between steps all such unknowns are therefore free, a later process on
+//! the same unknown wins, and fixities of the mesh file on the same unknown last one step only.
+
+use super::local_axes::LocalAxes;
+use super::process::Process;
+use super::scalar_value::ScalarValue;
+use super::target::Target;
+use crate::diagnostics::{Diagnostic, Result};
+use crate::model::{Model, ModelPart, ScalarVariable};
+use crate::parameters::SpaceTime;
+
+/// What is prescribed for one unknown.
+#[derive(Debug, Clone)]
+pub struct NodalComponent {
+    /// The unknown.
+    pub variable: ScalarVariable,
+    /// Its value; `None` leaves it as it is.
+    pub value: Option<ScalarValue>,
+    /// Whether it is fixed during the step; if not, the value is only where iterations start.
+    pub fixed: bool,
+}
+
+/// Sets and fixes unknowns on the nodes of a part, in the order of the components.
+#[derive(Debug, Clone)]
+pub struct AssignToNodes {
+    /// Where and when.
+    pub target: Target,
+    /// What.
+    pub components: Vec<NodalComponent>,
+    /// Axes of the functions.
+    pub axes: Option<LocalAxes>,
+    /// Whether it also acts before the first step, at TIME 0.
+    pub before_loop: bool,
+    /// Whether it acts in this step.
+    active: bool,
+    /// Whether it has acted before the first step, which lasts until the end of that.
+    held: bool,
+}
+
+impl AssignToNodes {
+    /// A process that acts before the first step and at the beginning of each.
+    pub fn new(target: Target, components: Vec<NodalComponent>, axes: Option<LocalAxes>) -> Self {
+        Self { target, components, axes, before_loop: true, active: false, held: false }
+    }
+
+    /// Fixes and sets if the time is right; whether it is. A value that is not finite stops the run if `strict`.
+    fn apply(&self, part: &mut ModelPart, strict: bool) -> Result<bool> {
+        let time = part.info.time;
+        if !self.target.interval.contains(time) {
+            return Ok(false);
+        }
+        let count = part.nodes.len();
+        let nodes = &self.target.selection(&part.tree)?.nodes;
+        for component in &self.components {
+            let variable = component.variable;
+            if component.fixed {
+                part.dofs.set_fixed(variable, nodes, true, count);
+            }
+            let Some(value) = &component.value else { continue };
+            let field = part.nodes.history.field_mut(variable.column).map_err(|e| e.at(&self.target.place))?;
+            let stride = field.components;
+            let column = &mut field.levels[0];
+            let constant = (!value.uses_space()).then(|| value.value(&SpaceTime { time, ..SpaceTime::default() }));
+            for &node in nodes {
+                let at = node as usize;
+                let number = constant.unwrap_or_else(|| {
+                    let here = SpaceTime { current: part.nodes.current[at], initial: part.nodes.initial[at], time };
+                    value.value(&self.axes.as_ref().map_or(here, |axes| axes.map(&here)))
+                });
+                if !number.is_finite() {
+                    if !strict {
+                        continue;
+                    }
+                    let at = format!("node {}", part.nodes.ids[at]);
+                    return Err(self.target.not_finite(variable, number, time, at).into());
+                }
+                column[at * stride + variable.offset()] = number;
+            }
+        }
+        Ok(true)
+    }
+
+    fn release(&self, part: &mut ModelPart) -> Result<()> {
+        let count = part.nodes.len();
+        let nodes = &self.target.selection(&part.tree)?.nodes;
+        for component in self.components.iter().filter(|c| c.fixed) {
+            part.dofs.set_fixed(component.variable, nodes, false, count);
+        }
+        Ok(())
+    }
+
+    /// Fixing what is never solved for, e.g. a load, is a mistake of the deck.
+    fn check_unknowns(&self, part: &ModelPart) -> Result<()> {
+        let solved =
+            |column: &str| MOTION.contains(&column) || part.dofs.dofs().iter().any(|dof| dof.variable.column == column);
+        match self.components.iter().find(|c| c.fixed && !solved(c.variable.column)) {
+            Some(component) if !part.dofs.is_empty() => {
+                let fact = format!("{} fixes {}, which is not an unknown", self.target.process, component.variable);
+                let problem = Diagnostic::error("not-an-unknown", fact).at(self.target.place.clone());
+                Err(problem.remedy("set \"constrained\": false to give it a value only").into())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Unknowns of every structural stage, in its system or not: dynamics prescribes displacements through the last two.
+const MOTION: [&str; 3] = ["DISPLACEMENT", "VELOCITY", "ACCELERATION"];
+
+impl Process for AssignToNodes {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root(&self.target.path)?;
+        for component in &self.components {
+            part.nodes.history.field(component.variable.column).map_err(|e| e.at(&self.target.place))?;
+        }
+        Ok(())
+    }
+
+    fn before_loop(&mut self, model: &mut Model) -> Result<()> {
+        self.check_unknowns(model.root(&self.target.path)?)?;
+        if self.before_loop {
+            // a function like 1/t has no value at TIME 0, and needs none: the first step sets it
+            self.held = self.apply(model.root_mut(&self.target.path)?, false)?;
+        }
+        Ok(())
+    }
+
+    fn begin_step(&mut self, model: &mut Model) -> Result<()> {
+        self.active = self.apply(model.root_mut(&self.target.path)?, true)?;
+        Ok(())
+    }
+
+    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+        if std::mem::take(&mut self.active) | std::mem::take(&mut self.held) {
+            self.release(model.root_mut(&self.target.path)?)?;
+        }
+        Ok(())
+    }
+}

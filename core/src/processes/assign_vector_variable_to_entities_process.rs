@@ -1,0 +1,38 @@
+//! Gives conditions, elements or nodes a vector of data, component by component.
+
+use super::assign_to_entities::{AssignToEntities, Container, EntityComponent};
+use super::assign_vector_variable_process::component_values;
+use super::local_axes::LocalAxes;
+use super::process::{Process, ProcessRequest};
+use super::target::{Target, vector_variable};
+use crate::diagnostics::Result;
+use crate::parameters::Settings;
+use crate::register;
+use crate::registry::Build;
+
+fn build(
+    request: &mut ProcessRequest<'_>,
+    containers: fn(&Settings) -> Result<Vec<Container>>,
+) -> Result<Box<dyn Process>> {
+    let settings =
+        &request.settings_with(|defaults| defaults.require(&["model_part_name", "variable_name", "value"]))?;
+    let containers = containers(settings)?;
+    let pairs = vector_variable(settings)?.into_iter().zip(component_values(settings)?);
+    let components = pairs.filter_map(|(variable, value)| Some(EntityComponent { variable, value: value? })).collect();
+    let axes = LocalAxes::from_settings(settings)?;
+    Ok(Box::new(AssignToEntities { target: Target::new(settings, request.model)?, containers, components, axes }))
+}
+
+register! { Process "assign_vector_variable_to_entities_process",
+    aliases: &["AssignVectorVariableToEntitiesProcess"],
+    about: "gives the listed kinds of entities of a part a vector value",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_entities_process.json")),
+    build: Build::Process(|request| build(request, Container::list)),
+}
+
+register! { Process "assign_vector_variable_to_conditions_process",
+    aliases: &["AssignVectorVariableToConditionProcess", "AssignVectorVariableToConditionsProcess"],
+    about: "gives the conditions of a part a vector value, e.g. a line load",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_conditions_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Conditions]))),
+}

@@ -1,0 +1,121 @@
+//! A value that a deck gives as a number, a function of space and time, or a table over time.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use crate::diagnostics::{Diagnostic, Place, Result};
+use crate::model::Table;
+use crate::parameters::{Defaults, Expression, Node, Settings, SpaceTime};
+
+/// One number, possibly varying in space and time.
+#[derive(Debug, Clone)]
+pub enum ScalarValue {
+    /// Always the same.
+    Number(f64),
+    /// A function of position and time.
+    Expression(Expression),
+    /// Linear between points over TIME, continued with the end slopes.
+    Table(Table),
+    /// The product of two.
+    Product(Box<[ScalarValue; 2]>),
+}
+
+#[derive(Deserialize)]
+struct CsvSettings {
+    filename: String,
+    delimiter: String,
+    skiprows: usize,
+    first_column_id: usize,
+    second_column_id: usize,
+    na_replace: f64,
+}
+
+static CSV_DEFAULTS: LazyLock<Result<Defaults>> = LazyLock::new(|| {
+    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/csv_table.json"));
+    Ok(Defaults::parse("csv_table", text)?.require(&["filename"]))
+});
+
+impl ScalarValue {
+    /// Reads a number, a function as a string, or an object that names a file of comma-separated values.
+    ///
+    /// The file is looked for beside the deck.
+    ///
+    /// # Errors
+    /// `wrong-type`, `invalid-expression`, and for files `unreadable-file` and `invalid-table`.
+    pub fn from_node(node: &Node) -> Result<Self> {
+        if let Some(number) = node.as_f64() {
+            return Ok(Self::Number(number));
+        }
+        if node.as_str().is_some() {
+            return Ok(Self::Expression(Expression::from_node(node)?));
+        }
+        if node.as_object().is_some() {
+            return read_csv(node).map(Self::Table);
+        }
+        let fact = format!("a value must be a number, a function or a table, found {} ({node})", node.value.kind());
+        let remedy = "write e.g. 1.0 or \"2.0*t\" or {\"name\": \"csv_table\", \"filename\": \"load.csv\"}";
+        Err(Diagnostic::error("wrong-type", fact).at(node.place()).remedy(remedy).into())
+    }
+
+    /// The value at a place and time.
+    pub fn value(&self, at: &SpaceTime) -> f64 {
+        match self {
+            Self::Number(number) => *number,
+            Self::Expression(expression) => expression.value(at),
+            Self::Table(table) => table.value(at.time),
+            Self::Product(factors) => factors[0].value(at) * factors[1].value(at),
+        }
+    }
+
+    /// Whether the value depends on the position.
+    pub fn uses_space(&self) -> bool {
+        match self {
+            Self::Number(_) | Self::Table(_) => false,
+            Self::Expression(expression) => expression.uses_space(),
+            Self::Product(factors) => factors.iter().any(Self::uses_space),
+        }
+    }
+}
+
+fn read_csv(node: &Node) -> Result<Table> {
+    let defaults = match &*CSV_DEFAULTS {
+        Ok(defaults) => defaults,
+        Err(problem) => return Err(Diagnostic::error("invalid-json", problem.to_string()).into()),
+    };
+    let settings = Settings::check(node, defaults)?.0;
+    let csv: CsvSettings = settings.parse()?;
+    let place = settings.place();
+    let path = place.file.parent().unwrap_or(Path::new("")).join(&csv.filename);
+    let unreadable = |e: std::io::Error| {
+        Diagnostic::error("unreadable-file", format!("cannot read the table {}: {e}", path.display()))
+            .at(settings.key_place("filename"))
+            .remedy("the name is taken relative to the deck")
+    };
+    parse_csv(&std::fs::read_to_string(&path).map_err(unreadable)?, &csv, &path)
+}
+
+fn parse_csv(text: &str, csv: &CsvSettings, path: &Path) -> Result<Table> {
+    let number = |cell: &str| cell.trim().trim_matches('"').parse::<f64>().unwrap_or(csv.na_replace);
+    let mut points = Vec::new();
+    for (row, line) in text.lines().enumerate().skip(csv.skiprows).filter(|(_, line)| !line.trim().is_empty()) {
+        let cells: Vec<&str> = line.split(csv.delimiter.as_str()).collect();
+        let (Some(x), Some(y)) = (cells.get(csv.first_column_id), cells.get(csv.second_column_id)) else {
+            let fact = format!(
+                "the row has {} columns, wanted are {} and {}",
+                cells.len(),
+                csv.first_column_id,
+                csv.second_column_id
+            );
+            let problem = Diagnostic::error("invalid-table", fact).at(Place::at(path, row as u32 + 1, 0));
+            return Err(problem.remedy("columns count from 0; check \"delimiter\" and \"skiprows\"").into());
+        };
+        points.push([number(x), number(y)]);
+    }
+    if points.is_empty() {
+        let problem = Diagnostic::error("invalid-table", "the table has no rows").at(Place::file(path));
+        return Err(problem.remedy("give at least one row \"time, value\"").into());
+    }
+    Ok(Table::new(points))
+}

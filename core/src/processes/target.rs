@@ -1,0 +1,107 @@
+//! The model part that a process works on, and the variable it works with.
+
+use crate::diagnostics::{Diagnostic, Place, Result, did_you_mean};
+use crate::model::{Model, Named, ScalarVariable, SubPart, VariableKind, named, variables};
+use crate::parameters::{Interval, Settings};
+
+/// What most processes share: a part of the model, a time span, and the place in the deck to blame.
+#[derive(Debug, Clone)]
+pub struct Target {
+    /// Full dotted path of the model part.
+    pub path: String,
+    /// When the process acts.
+    pub interval: Interval,
+    /// Where the deck names the part.
+    pub place: Place,
+    /// Name of the process, for messages.
+    pub process: String,
+}
+
+impl Target {
+    /// Reads `"model_part_name"`, which the model must have, and `"interval"`.
+    ///
+    /// # Errors
+    /// `missing-key` without a name, `unknown-model-part`, `invalid-interval`.
+    pub fn new(settings: &Settings, model: &Model) -> Result<Self> {
+        let path = settings.get_str("model_part_name")?;
+        let place = settings.key_place("model_part_name");
+        if path.is_empty() {
+            let problem =
+                settings.error("model_part_name", "missing-key", "\"model_part_name\" must name a model part");
+            return Err(problem.remedy("write the full path, e.g. \"Structure.Parts\"").into());
+        }
+        model.root(path).and_then(|root| root.part(path)).map_err(|e| e.at(&place))?;
+        let interval = Interval::from_node(settings.get("interval")?)?;
+        Ok(Self { path: path.to_owned(), interval, place, process: settings.name().to_owned() })
+    }
+
+    /// The path below the root part, for [`SubPart::find`].
+    pub(super) fn below_root(&self) -> &str {
+        self.path.split_once('.').map_or("", |(_, rest)| rest)
+    }
+
+    /// The selection in the tree of its root part.
+    pub(super) fn selection<'t>(&self, tree: &'t SubPart) -> Result<&'t SubPart> {
+        let gone = || Diagnostic::error("unknown-model-part", format!("the model part {:?} is gone", self.path));
+        tree.find(self.below_root()).ok_or_else(|| gone().at(self.place.clone()).into())
+    }
+
+    /// An error for a value that is not finite.
+    pub(super) fn not_finite(
+        &self,
+        variable: ScalarVariable,
+        value: f64,
+        time: f64,
+        at: impl std::fmt::Display,
+    ) -> Diagnostic {
+        let fact = format!("{} gives {value} for {variable} at {at} at time {time}", self.process);
+        Diagnostic::error("not-finite", fact)
+            .at(self.place.clone())
+            .remedy("check the function there, e.g. for a division by zero")
+    }
+}
+
+fn unknown_variable(settings: &Settings, name: &str, wanted: &str) -> Diagnostic {
+    let problem = settings.error("variable_name", "unknown-variable", format!("there is no {wanted} {name:?}"));
+    match did_you_mean(name, variables().keys().copied()) {
+        Some(near) => problem.remedy(near),
+        None => problem.remedy("`zelus list variable` shows what there is"),
+    }
+}
+
+/// The scalar or component that `"variable_name"` names.
+///
+/// # Errors
+/// `unknown-variable`.
+pub(super) fn scalar_variable(settings: &Settings) -> Result<ScalarVariable> {
+    let name = settings.get_str("variable_name")?;
+    match named(name) {
+        Some(Named::Component(variable)) => Ok(variable),
+        Some(Named::Whole(column, VariableKind::Scalar)) => Ok(ScalarVariable { column, component: None }),
+        Some(_) => {
+            let fact = format!("{name} is not one number");
+            let problem = settings.error("variable_name", "unknown-variable", fact);
+            Err(problem.remedy(format!("name a scalar variable or a component, e.g. \"{name}_X\"")).into())
+        }
+        None => Err(unknown_variable(settings, name, "variable").into()),
+    }
+}
+
+/// The three components of the vector that `"variable_name"` names.
+///
+/// # Errors
+/// `unknown-variable`.
+pub(super) fn vector_variable(settings: &Settings) -> Result<[ScalarVariable; 3]> {
+    let name = settings.get_str("variable_name")?;
+    match named(name) {
+        Some(Named::Whole(column, VariableKind::Vector3)) => {
+            Ok([0, 1, 2].map(|c| ScalarVariable { column, component: Some(c) }))
+        }
+        Some(_) => {
+            let problem =
+                settings.error("variable_name", "unknown-variable", format!("{name} is not a vector of three"));
+            Err(problem.remedy("name a vector variable, e.g. \"DISPLACEMENT\"").into())
+        }
+        None => Err(unknown_variable(settings, name, "vector variable").into()),
+    }
+}
