@@ -11,6 +11,11 @@
 //! 5. [`operators`]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
 //! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration.
 //!
+//! With normals that belong to the present geometry, D, M and g̃ agree with the reference program to 1e-10 (its inverse
+//! maps stop there). Three deliberate differences: a lagging slave normal tilts the direction of projection but does
+//! not shrink the facet; a quadrilateral master inside a triangular slave is cut into (0,1,2), (0,2,3), which covers it
+//! once; local coordinates on a warped slave are always those of the flattened one.
+//!
 //! Slave (upper index 1) is the side that carries multipliers, master (2) the other. Decisions (which vertices the
 //! overlap has, where iterations end) are made on values; derivatives then come from one corrected evaluation at the
 //! solution, so that dual numbers cost a small multiple of the plain kernel and are exact.

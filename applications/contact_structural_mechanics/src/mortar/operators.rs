@@ -161,13 +161,16 @@ impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
             let area = norm(normal) * 0.5;
             covered += area.value();
             for (barycentric, weight) in rule {
-                let x = shape::combine(barycentric, &x);
+                let mut x = shape::combine(barycentric, &x);
                 let mut xi = shape::combine(barycentric, &local);
+                let mut slave_shape = shape::values::<T, NS>(xi);
                 if NS == 4 {
-                    // Cells are flat and straight in space, not in the local coordinates of a general quadrilateral.
+                    // Cells are flat and straight in space, a warped quadrilateral and its local coordinates are not.
                     xi = shape::closest_point(&self.pair.slave, x, xi.map(T::value));
+                    slave_shape = shape::values::<T, NS>(xi);
+                    x = shape::interpolate(&slave_shape, &self.pair.slave);
                 }
-                self.add_point(&shape::values::<T, NS>(xi), x, area * *weight);
+                self.add_point(&slave_shape, x, area * *weight);
             }
         }
         covered

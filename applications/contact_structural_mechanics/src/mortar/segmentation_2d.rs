@@ -8,10 +8,12 @@ use super::geometry::PairGeometry;
 use super::settings::SegmentationSettings;
 use super::shape;
 use zelus_core::scalar::{Dual, Real};
-use zelus_core::vector3::{dot, scale, sub};
+use zelus_core::vector3::{cross, dot, scale, sub};
 
 /// Newton steps allowed for the projection of a master node.
 const MAX_STEPS: usize = 20;
+/// Distance from the master line, relative to its length, within which a point counts as on it.
+const ON_LINE: f64 = 1e-7;
 
 /// The overlap as an interval of the slave's ξ, increasing; `None` if there is none.
 pub(super) fn interval<T: Real, const NS: usize, const NM: usize>(
@@ -22,11 +24,11 @@ pub(super) fn interval<T: Real, const NS: usize, const NM: usize>(
     let values = pair.values();
     let mut covered = [false; 2];
     for i in 0..2 {
-        let (distance, xi) = project_slave_node(&values, i);
+        let (distance, xi, on_master) = project_slave_node(&values, i);
         if distance > settings.distance_threshold {
             return None;
         }
-        covered[i] = xi.abs() <= 1.0 + tolerance;
+        covered[i] = on_master && xi.abs() <= 1.0 + tolerance;
     }
     let whole = [T::constant(-1.0), T::constant(1.0)];
     if covered[0] && covered[1] {
@@ -63,18 +65,24 @@ pub(super) fn interval<T: Real, const NS: usize, const NM: usize>(
     (segment[1].value() - segment[0].value() > f64::EPSILON).then_some(segment)
 }
 
-/// Distance of the master line behind slave node `i` along its normal, and ξ of the projection on the master.
+/// Distance of the master line behind slave node `i` along its normal, ξ of the projection on the master, and whether
+/// that point is on the master itself: with a lagging master normal it is only near.
 /// A master line parallel to the normal is never met.
-fn project_slave_node<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>, i: usize) -> (f64, f64) {
+fn project_slave_node<const NS: usize, const NM: usize>(
+    pair: &PairGeometry<f64, NS, NM>,
+    i: usize,
+) -> (f64, f64, bool) {
     let normal = pair.nodal_normals[i];
     let slope = -dot(normal, pair.master_normal);
     if slope.abs() < f64::EPSILON {
-        return (0.0, f64::INFINITY);
+        return (0.0, f64::INFINITY, false);
     }
     let distance = dot(sub(pair.master[0], pair.slave[i]), pair.master_normal) / slope;
     let point = sub(pair.slave[i], scale(normal, distance));
     let [xi, _] = shape::closest_point(&pair.master, point, [0.0; 2]);
-    (distance, xi)
+    let along = sub(pair.master[1], pair.master[0]);
+    let across = cross(along, sub(point, pair.master[0]))[2];
+    (distance, xi, across.abs() < ON_LINE * dot(along, along))
 }
 
 /// ξ ∈ [−1, 1] of the projection of master node `j` on the slave, and the slope of [`mismatch`] there.

@@ -382,6 +382,43 @@ fn several_masters_cover_a_slave_exactly() {
     }
 }
 
+fn reference_values<const NS: usize, const NM: usize, const NU: usize>() {
+    let mut found = 0;
+    for line in include_str!("reference_pairs.txt").lines().filter(|line| !line.starts_with('#')) {
+        let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+        if numbers[..2] != [NS as f64, NM as f64] {
+            continue;
+        }
+        let mut rest = &numbers[2..];
+        let mut vector = || {
+            let (head, tail) = rest.split_first_chunk::<3>().unwrap();
+            rest = tail;
+            *head
+        };
+        let pair = PairGeometry::<f64, NS, NM> {
+            slave: std::array::from_fn(|_| vector()),
+            master: std::array::from_fn(|_| vector()),
+            nodal_normals: std::array::from_fn(|_| vector()),
+            slave_normal: vector(),
+            master_normal: vector(),
+        };
+        let o = value_of(&pair);
+        let gap = weighted_gap(&o, &pair.slave, &pair.master, &pair.nodal_normals);
+        let scale = rest[..NS * NS].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        assert_eq!(rest.len(), NS * (NS + NM + 1));
+        for (entry, (x, reference)) in flat(&o).iter().chain(&gap).zip(rest).enumerate() {
+            assert!((x - reference).abs() < 1e-10 * scale, "{NS}–{NM} entry {entry}: {x} {reference}");
+        }
+        found += 1;
+    }
+    assert!(found >= 2);
+}
+
+#[test]
+fn values_of_the_reference_program() {
+    for_all_shapes!(reference_values);
+}
+
 /// Cost of a quadrilateral pair; run with `--ignored --nocapture`.
 #[test]
 #[ignore = "a measurement"]
