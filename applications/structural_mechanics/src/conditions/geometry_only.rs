@@ -1,0 +1,58 @@
+//! Boundaries without load: they name a piece of the boundary for searches and output, and bring no unknowns.
+
+use zelus_core::diagnostics::Result;
+use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+
+use super::load::register_conditions;
+
+/// A piece of boundary that contributes nothing.
+pub struct GeometryOnly;
+
+impl<const NODES: usize> Kernel<NODES, 0> for GeometryOnly {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; 0] {
+        []
+    }
+
+    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
+        Ok(Self)
+    }
+
+    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::Zero
+    }
+
+    fn local_system(
+        &self,
+        _entity: &Gather<'_, NODES>,
+        _state: &(),
+        _view: &StepView<'_>,
+        _want: Want,
+        _lhs: &mut [f64],
+        _rhs: &mut [f64; 0],
+    ) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+register_conditions! { "PointCondition", "A point of the boundary without load", "geometry only";
+"2D1N": GeometryOnly, 1, 0;
+"3D1N": GeometryOnly, 1, 0 }
+
+register_conditions! { "LineCondition", "A line of the boundary without load", "geometry only";
+"2D2N": GeometryOnly, 2, 0;
+"2D3N": GeometryOnly, 3, 0;
+"3D2N": GeometryOnly, 2, 0;
+"3D3N": GeometryOnly, 3, 0 }
+
+register_conditions! { "SurfaceCondition", "A surface of the boundary without load", "geometry only";
+"3D3N": GeometryOnly, 3, 0;
+"3D4N": GeometryOnly, 4, 0;
+"3D6N": GeometryOnly, 6, 0;
+"3D8N": GeometryOnly, 8, 0;
+"3D9N": GeometryOnly, 9, 0 }

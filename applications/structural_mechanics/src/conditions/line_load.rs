@@ -1,0 +1,156 @@
+//! Loads on lines: force per length, and in the plane pressure.
+//!
+//! f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ with t = ∂x/∂ξ along the line: positive p pushes to the left of its direction,
+//! into a body that runs counter-clockwise. K_ij = ∫ N_i p N_j,ξ [[0, 1], [−1, 0]] dξ. THICKNESS does not enter, except
+//! that axisymmetric loads carry the factor 2πr/THICKNESS, as in Kratos.
+
+use std::f64::consts::PI;
+
+use zelus_core::diagnostics::Result;
+use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::{Shape, ShapeTable};
+
+use super::load::{displacements, interpolate, pressure, register_conditions, thickness, vector_load};
+use crate::variables::LINE_LOAD;
+
+/// Force per length and pressure on a line in the plane.
+pub struct LineLoad<const AXISYMMETRIC: bool> {
+    rule: &'static ShapeTable,
+}
+
+/// Force per length on a line in space.
+pub struct SpatialLineLoad {
+    rule: &'static ShapeTable,
+}
+
+fn rule(nodes: usize) -> &'static ShapeTable {
+    let shape = Shape::of(1, nodes).expect("line loads are registered for known shapes only");
+    ShapeTable::get(shape, shape.cell().default_order + 1)
+}
+
+/// Σ N_i,ξ x_i.
+fn tangent_vector<const NODES: usize>(dn: &[[f64; 1]; NODES], x: &[[f64; 3]; NODES]) -> [f64; 3] {
+    interpolate(&dn.map(|[d]| d), x)
+}
+
+fn length(t: [f64; 3]) -> f64 {
+    (t[0] * t[0] + t[1] * t[1] + t[2] * t[2]).sqrt()
+}
+
+impl<const AXISYMMETRIC: bool, const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for LineLoad<AXISYMMETRIC> {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; SIZE] {
+        displacements(2)
+    }
+
+    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
+        Ok(Self { rule: rule(NODES) })
+    }
+
+    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::General
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        _state: &(),
+        view: &StepView<'_>,
+        _want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String> {
+        let q = vector_load(entity, view, &LINE_LOAD);
+        let p = pressure(entity, view);
+        let pressed = p.iter().any(|p| *p != 0.0);
+        let circle = if AXISYMMETRIC { 2.0 * PI / thickness(entity) } else { 1.0 };
+        for g in 0..self.rule.len() {
+            let (n, dn) = (&self.rule.n::<NODES>()[g], &self.rule.dn::<NODES, 1>()[g]);
+            let t = tangent_vector(dn, &entity.current);
+            let radius = interpolate(n, &entity.current)[0];
+            let weight = self.rule.weight(g) * circle * if AXISYMMETRIC { radius } else { 1.0 };
+            let (load, size) = (interpolate(n, &q), length(t));
+            let p = weight * n.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>();
+            for (i, n) in n.iter().enumerate() {
+                rhs[2 * i] += n * (weight * size * load[0] - p * t[1]);
+                rhs[2 * i + 1] += n * (weight * size * load[1] + p * t[0]);
+            }
+            if pressed && !lhs.is_empty() {
+                for (i, n_i) in n.iter().enumerate() {
+                    for (j, ([slope], n_j)) in dn.iter().zip(n).enumerate() {
+                        let k = p * n_i * slope;
+                        lhs[2 * i * SIZE + 2 * j + 1] += k;
+                        lhs[(2 * i + 1) * SIZE + 2 * j] -= k;
+                        if AXISYMMETRIC {
+                            // the circumference grows with the radius
+                            let ring = p / radius * n_i * n_j;
+                            lhs[2 * i * SIZE + 2 * j] += ring * t[1];
+                            lhs[(2 * i + 1) * SIZE + 2 * j] -= ring * t[0];
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SpatialLineLoad {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; SIZE] {
+        displacements(3)
+    }
+
+    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
+        Ok(Self { rule: rule(NODES) })
+    }
+
+    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::Zero
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        _state: &(),
+        view: &StepView<'_>,
+        _want: Want,
+        _lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String> {
+        let q = vector_load(entity, view, &LINE_LOAD);
+        for g in 0..self.rule.len() {
+            let (n, dn) = (&self.rule.n::<NODES>()[g], &self.rule.dn::<NODES, 1>()[g]);
+            let weight = self.rule.weight(g) * length(tangent_vector(dn, &entity.current));
+            let load = interpolate(n, &q);
+            for (i, n) in n.iter().enumerate() {
+                for a in 0..3 {
+                    rhs[3 * i + a] += weight * n * load[a];
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+register_conditions! { "LineLoadCondition", "Force per length (LINE_LOAD) and pressure on a line",
+"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ";
+"2D2N": LineLoad<false>, 2, 4;
+"2D3N": LineLoad<false>, 3, 6;
+"3D2N": SpatialLineLoad, 2, 6;
+"3D3N": SpatialLineLoad, 3, 9 }
+
+register_conditions! { "AxisymLineLoadCondition", "Force per area (LINE_LOAD) and pressure on a surface of revolution",
+"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ";
+"2D2N": LineLoad<true>, 2, 4;
+"2D3N": LineLoad<true>, 3, 6 }

@@ -1,0 +1,79 @@
+//! What load conditions share: values from the condition and its nodes, rows, thickness.
+
+use zelus_core::entities::{Gather, LocalUnknown, StepView};
+use zelus_core::model::Variable;
+use zelus_core::model::variables::DISPLACEMENT;
+
+use crate::variables::{NEGATIVE_FACE_PRESSURE, POSITIVE_FACE_PRESSURE, PRESSURE};
+
+/// Displacements of all nodes in `dim` directions, node by node.
+pub(super) fn displacements<const SIZE: usize>(dim: usize) -> [LocalUnknown; SIZE] {
+    std::array::from_fn(|row| LocalUnknown {
+        node: (row / dim) as u8,
+        variable: DISPLACEMENT.component((row % dim) as u8),
+    })
+}
+
+/// Vector load at each node: that of the condition plus that of the node.
+pub(super) fn vector_load<const NODES: usize>(
+    entity: &Gather<'_, NODES>,
+    view: &StepView<'_>,
+    variable: &Variable<[f64; 3]>,
+) -> [[f64; 3]; NODES] {
+    let mut own = [0.0; 3];
+    if let Some(value) =
+        view.conditions.data.values(variable, 0).get(3 * entity.index as usize..).filter(|v| v.len() > 2)
+    {
+        own.copy_from_slice(&value[..3]);
+    }
+    match view.nodes.history.values(variable, 0) {
+        [] => [own; NODES],
+        column => entity.vectors(column).map(|v| [v[0] + own[0], v[1] + own[1], v[2] + own[2]]),
+    }
+}
+
+/// Pressure at each node: PRESSURE + NEGATIVE_FACE_PRESSURE − POSITIVE_FACE_PRESSURE of the condition, plus negative
+/// minus positive pressure of the node.
+pub(super) fn pressure<const NODES: usize>(entity: &Gather<'_, NODES>, view: &StepView<'_>) -> [f64; NODES] {
+    let own = |variable| view.conditions.data.values(variable, 0).get(entity.index as usize).copied().unwrap_or(0.0);
+    let mut out = [own(&PRESSURE) + own(&NEGATIVE_FACE_PRESSURE) - own(&POSITIVE_FACE_PRESSURE); NODES];
+    for (variable, sign) in [(&NEGATIVE_FACE_PRESSURE, 1.0), (&POSITIVE_FACE_PRESSURE, -1.0)] {
+        let column = view.nodes.history.values(variable, 0);
+        if !column.is_empty() {
+            out.iter_mut().zip(entity.scalars(column)).for_each(|(p, value)| *p += sign * value);
+        }
+    }
+    out
+}
+
+/// THICKNESS of the condition's properties, 1 when not given.
+pub(super) fn thickness<const NODES: usize>(entity: &Gather<'_, NODES>) -> f64 {
+    entity.properties.number("THICKNESS").unwrap_or(1.0)
+}
+
+/// Σ N_i v_i.
+pub(super) fn interpolate<const NODES: usize>(n: &[f64; NODES], values: &[[f64; 3]; NODES]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    for (n, v) in n.iter().zip(values) {
+        for a in 0..3 {
+            out[a] += n * v[a];
+        }
+    }
+    out
+}
+
+/// Registers a condition kernel for shapes: name; kernel type, nodes, unknowns, suffix for each.
+macro_rules! register_conditions {
+    ($name:literal, $about:literal, $source:literal; $($suffix:literal: $kernel:ty, $nodes:literal, $size:literal);+) => {
+        $(zelus_core::register! { Condition concat!($name, $suffix),
+            about: $about,
+            source: $source,
+            nodes: $nodes,
+            shape: $suffix,
+            build: zelus_core::registry::Build::Block(
+                zelus_core::entities::KernelBlock::<$kernel, $nodes, $size>::boxed),
+        })+
+    };
+}
+
+pub(super) use register_conditions;

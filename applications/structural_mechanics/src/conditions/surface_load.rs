@@ -1,0 +1,86 @@
+//! Loads on surfaces: force per area, and pressure.
+//!
+//! f_i = ∫ N_i (q |n| + p n) dξ dη with n = t_1 × t_2, t_1 = ∂x/∂ξ, t_2 = ∂x/∂η: positive p pushes along n.
+//! K_ij = ∫ p N_i (N_j,ξ [t_2]× − N_j,η [t_1]×) dξ dη with [a]× v = a × v.
+
+use zelus_core::diagnostics::Result;
+use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::{Shape, ShapeTable};
+use zelus_core::vector3::{cross, norm};
+
+use super::load::{displacements, interpolate, pressure, register_conditions, vector_load};
+use crate::variables::SURFACE_LOAD;
+
+/// Force per area and pressure on a surface in space.
+pub struct SurfaceLoad {
+    rule: &'static ShapeTable,
+}
+
+impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SurfaceLoad {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; SIZE] {
+        displacements(3)
+    }
+
+    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
+        let shape = Shape::of(2, NODES).expect("surface loads are registered for known shapes only");
+        Ok(Self { rule: ShapeTable::get(shape, shape.cell().default_order + 1) })
+    }
+
+    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::General
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        _state: &(),
+        view: &StepView<'_>,
+        _want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String> {
+        let q = vector_load(entity, view, &SURFACE_LOAD);
+        let p = pressure(entity, view);
+        let pressed = p.iter().any(|p| *p != 0.0);
+        for g in 0..self.rule.len() {
+            let (n, dn) = (&self.rule.n::<NODES>()[g], &self.rule.dn::<NODES, 2>()[g]);
+            let [t1, t2] = [0, 1].map(|k| interpolate(&dn.map(|d| d[k]), &entity.current));
+            let (normal, weight) = (cross(t1, t2), self.rule.weight(g));
+            let (load, area) = (interpolate(n, &q), norm(normal));
+            let p = weight * n.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>();
+            for (i, n) in n.iter().enumerate() {
+                for a in 0..3 {
+                    rhs[3 * i + a] += n * (weight * area * load[a] + p * normal[a]);
+                }
+            }
+            if pressed && !lhs.is_empty() {
+                for (j, slope) in dn.iter().enumerate() {
+                    let axis: [f64; 3] = std::array::from_fn(|a| p * (slope[0] * t2[a] - slope[1] * t1[a]));
+                    let skew = [[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]];
+                    for (i, n) in n.iter().enumerate() {
+                        for a in 0..3 {
+                            for b in 0..3 {
+                                lhs[(3 * i + a) * SIZE + 3 * j + b] += n * skew[a][b];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+register_conditions! { "SurfaceLoadCondition", "Force per area (SURFACE_LOAD) and pressure on a surface",
+"f_i = ∫ N_i (q |n| + p n) dξ dη, n = t_1 × t_2";
+"3D3N": SurfaceLoad, 3, 9;
+"3D4N": SurfaceLoad, 4, 12;
+"3D6N": SurfaceLoad, 6, 18;
+"3D8N": SurfaceLoad, 8, 24;
+"3D9N": SurfaceLoad, 9, 27 }

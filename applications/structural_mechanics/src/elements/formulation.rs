@@ -1,0 +1,15 @@
+//! What tells one solid formulation from another.
+
+use crate::laws::StressMeasure;
+
+/// Strain measure and configuration of a solid element.
+pub trait Formulation: Send + Sync + 'static {
+    /// Whether strain is Green–Lagrange's of the moved mesh; otherwise the small strain of DISPLACEMENT.
+    const FINITE: bool;
+
+    /// Whether gradients and weights belong to the present configuration; otherwise to the initial one.
+    const PRESENT: bool;
+
+    /// The stress that works on the strain: Cauchy on the present, Piola–Kirchhoff on the initial configuration.
+    const MEASURE: StressMeasure = if Self::PRESENT { StressMeasure::Cauchy } else { StressMeasure::Pk2 };
+}

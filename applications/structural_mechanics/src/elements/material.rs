@@ -1,0 +1,92 @@
+//! What an element takes from its properties, read once.
+
+use zelus_core::diagnostics::{Diagnostic, Report, Result};
+use zelus_core::entities::BlockRequest;
+use zelus_core::geometry::{MAX_ORDER, Shape, ShapeTable};
+use zelus_core::model::Properties;
+
+use crate::laws::{ConstitutiveLaw, law_of};
+
+/// Law and constants of one set of properties for one shape.
+pub(super) struct Material<const S: usize> {
+    /// Id of the properties.
+    id: usize,
+    /// The law.
+    pub(super) law: Box<dyn ConstitutiveLaw<S>>,
+    /// Mass per initial volume, 0 when not given.
+    pub(super) density: f64,
+    /// Thickness of planar elements; 1 for all others.
+    pub(super) thickness: f64,
+    /// VOLUME_ACCELERATION of the properties.
+    pub(super) acceleration: [f64; 3],
+    /// COMPUTE_LUMPED_MASS_MATRIX of the properties.
+    pub(super) lumped: bool,
+    /// Gauss rule of forces and stiffness.
+    pub(super) rule: &'static ShapeTable,
+}
+
+impl<const S: usize> Material<S> {
+    fn new(properties: &Properties, shape: Shape) -> Result<Self> {
+        let order = properties.number("INTEGRATION_ORDER").unwrap_or(shape.cell().default_order as f64);
+        if !(1.0..=MAX_ORDER as f64).contains(&order) || order.fract() != 0.0 {
+            let fact = format!("INTEGRATION_ORDER of properties {} is {order}", properties.id);
+            let problem = Diagnostic::error("integration-order", fact).at(properties.place.clone());
+            return Err(problem.remedy("give a whole number from 1 to 5").into());
+        }
+        let thickness = properties.number("THICKNESS").filter(|_| S == 3).unwrap_or(1.0);
+        let density = properties.number("DENSITY").unwrap_or(0.0);
+        for (name, value, bad) in [
+            ("THICKNESS", thickness, !(thickness > 0.0 && thickness.is_finite())),
+            ("DENSITY", density, !(density >= 0.0 && density.is_finite())),
+        ] {
+            if bad {
+                let fact = format!("{name} of properties {} is {value}", properties.id);
+                let problem = Diagnostic::error("material-out-of-range", fact).at(properties.place.clone());
+                return Err(problem.remedy("give a positive number").into());
+            }
+        }
+        Ok(Self {
+            id: properties.id,
+            law: law_of::<S>(properties)?,
+            density,
+            thickness,
+            acceleration: properties.vector3("VOLUME_ACCELERATION").unwrap_or_default(),
+            lumped: properties.number("COMPUTE_LUMPED_MASS_MATRIX").is_some_and(|flag| flag != 0.0),
+            rule: ShapeTable::get(shape, order as usize),
+        })
+    }
+
+    /// The materials of all entities of a block, by ascending id of the properties.
+    ///
+    /// # Errors
+    /// Every set of properties that an element cannot compute with.
+    pub(super) fn all(request: &BlockRequest<'_>, shape: Shape) -> Result<Vec<Self>> {
+        let mut ids: Vec<usize> = request.members.iter().map(|&m| request.table.properties[m as usize]).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let mut report = Report::new();
+        let mut materials = Vec::with_capacity(ids.len());
+        for id in ids {
+            let made = match request.part.properties.get(&id) {
+                Some(properties) => Self::new(properties, shape),
+                None => {
+                    let fact = format!("{} uses properties {id}, which do not exist", request.entry.name);
+                    Err(Diagnostic::error("missing-properties", fact)
+                        .remedy("define them in the mesh file or the materials file")
+                        .into())
+                }
+            };
+            materials.extend(report.absorb(made));
+        }
+        report.finish()?;
+        Ok(materials)
+    }
+
+    /// The material of the properties with that id.
+    pub(super) fn find(materials: &[Self], id: usize) -> &Self {
+        match materials {
+            [only] => only,
+            _ => &materials[materials.partition_point(|m| m.id < id)],
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Results at Gauss points.
+//!
+//! Stresses follow the law (a LinearElastic law gives the same numbers for every measure). VON_MISES_STRESS is that of
+//! the stress the formulation integrates; in the plane it takes in-plane components only, as in Kratos. Cauchy stress
+//! and strains of axisymmetric elements have two zeros appended, as in Kratos.
+
+use zelus_core::entities::{Gather, Gauss, StepView};
+
+use super::formulation::Formulation;
+use super::solid::Solid;
+use crate::laws::{ConstitutiveLaw, StrainState, StressMeasure};
+use crate::tensor::{Tensor, strain_tensor, stress_tensor};
+
+/// Names that the elements answer.
+pub(super) const VARIABLES: &[&str] = &[
+    "CAUCHY_STRESS_VECTOR",
+    "PK2_STRESS_VECTOR",
+    "KIRCHHOFF_STRESS_VECTOR",
+    "STRAIN",
+    "GREEN_LAGRANGE_STRAIN_VECTOR",
+    "ALMANSI_STRAIN_VECTOR",
+    "CAUCHY_STRESS_TENSOR",
+    "PK2_STRESS_TENSOR",
+    "KIRCHHOFF_STRESS_TENSOR",
+    "GREEN_LAGRANGE_STRAIN_TENSOR",
+    "ALMANSI_STRAIN_TENSOR",
+    "DEFORMATION_GRADIENT",
+    "VON_MISES_STRESS",
+    "STRAIN_ENERGY",
+    "INTEGRATION_WEIGHT",
+];
+
+/// A variable at all Gauss points of one element; `None` when unknown or when the element is turned inside out.
+pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const S: usize>(
+    solid: &Solid<F, NODES, DIM, S>,
+    entity: &Gather<'_, NODES>,
+    view: &StepView<'_>,
+    variable: &str,
+) -> Option<Gauss> {
+    let material = solid.material(entity);
+    let u = solid.displacement(entity, view);
+    let table = material.rule;
+    let mut out = Gauss::default();
+    for g in 0..table.len() {
+        let state = solid.point(material, g, entity, &u).ok()?.state;
+        let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
+        match variable {
+            "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
+            _ => value(material.law.as_ref(), &state, F::MEASURE, variable, &mut out.values)?,
+        }
+        out.weights.push(weight);
+        out.shape.extend_from_slice(table.n_at(g));
+    }
+    out.components = out.values.len() / table.len();
+    Some(out)
+}
+
+fn value<const S: usize>(
+    law: &dyn ConstitutiveLaw<S>,
+    state: &StrainState<S>,
+    measure: StressMeasure,
+    variable: &str,
+    out: &mut Vec<f64>,
+) -> Option<()> {
+    if let Some(stem) = variable.strip_suffix("_STRESS_VECTOR") {
+        vector(&stress(law, state, stem)?, out);
+    } else if let Some(stem) = variable.strip_suffix("_STRESS_TENSOR") {
+        tensor::<S>(&stress_tensor(&stress(law, state, stem)?), out);
+    } else if let Some(stem) = variable.strip_suffix("_STRAIN_VECTOR") {
+        vector(&strain(law, state, stem)?, out);
+    } else if let Some(stem) = variable.strip_suffix("_STRAIN_TENSOR") {
+        tensor::<S>(&strain_tensor(&strain(law, state, stem)?), out);
+    } else {
+        match variable {
+            "STRAIN" => vector(&state.strain, out),
+            "DEFORMATION_GRADIENT" => tensor::<S>(&state.f, out),
+            "STRAIN_ENERGY" => out.push(law.energy(state)),
+            "VON_MISES_STRESS" => out.push(von_mises(&law.stress(state, measure, None))),
+            _ => return None,
+        }
+    }
+    Some(())
+}
+
+fn stress<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, stem: &str) -> Option<[f64; S]> {
+    Some(match stem {
+        "PK2" => law.stress(state, StressMeasure::Pk2, None),
+        "CAUCHY" => law.stress(state, StressMeasure::Cauchy, None),
+        "KIRCHHOFF" => {
+            let factor = if law.ignores_measure() { 1.0 } else { state.det_f };
+            law.stress(state, StressMeasure::Cauchy, None).map(|s| factor * s)
+        }
+        _ => return None,
+    })
+}
+
+fn strain<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, stem: &str) -> Option<[f64; S]> {
+    match stem {
+        "GREEN_LAGRANGE" => Some(state.strain),
+        "ALMANSI" => Some(law.almansi(state)),
+        _ => None,
+    }
+}
+
+fn vector<const S: usize>(values: &[f64; S], out: &mut Vec<f64>) {
+    out.extend_from_slice(values);
+    if S == 4 {
+        out.extend_from_slice(&[0.0; 2]);
+    }
+}
+
+fn tensor<const S: usize>(values: &Tensor, out: &mut Vec<f64>) {
+    let dim = if S == 3 { 2 } else { 3 };
+    values[..dim].iter().for_each(|row| out.extend_from_slice(&row[..dim]));
+}
+
+fn von_mises<const S: usize>(stress: &[f64; S]) -> f64 {
+    let t = stress_tensor(stress);
+    // with s_zz = 0 this is the plane formula sqrt(sx² − sx sy + sy² + 3 txy²)
+    let normal = (t[0][0] - t[1][1]).powi(2) + (t[1][1] - t[2][2]).powi(2) + (t[2][2] - t[0][0]).powi(2);
+    (0.5 * normal + 3.0 * (t[0][1].powi(2) + t[1][2].powi(2) + t[0][2].powi(2))).sqrt()
+}
