@@ -40,17 +40,17 @@ impl<const NODES: usize> Kernel<NODES, 0> for GeometryOnly {
     }
 }
 
-register_conditions! { "PointCondition", "A point of the boundary without load", "geometry only";
+register_conditions! { "PointCondition", 0, "A point of the boundary without load", "geometry only";
 "2D1N": GeometryOnly, 1, 0;
 "3D1N": GeometryOnly, 1, 0 }
 
-register_conditions! { "LineCondition", "A line of the boundary without load", "geometry only";
+register_conditions! { "LineCondition", 1, "A line of the boundary without load", "geometry only";
 "2D2N": GeometryOnly, 2, 0;
 "2D3N": GeometryOnly, 3, 0;
 "3D2N": GeometryOnly, 2, 0;
 "3D3N": GeometryOnly, 3, 0 }
 
-register_conditions! { "SurfaceCondition", "A surface of the boundary without load", "geometry only";
+register_conditions! { "SurfaceCondition", 2, "A surface of the boundary without load", "geometry only";
 "3D3N": GeometryOnly, 3, 0;
 "3D4N": GeometryOnly, 4, 0;
 "3D6N": GeometryOnly, 6, 0;

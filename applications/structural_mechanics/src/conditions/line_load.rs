@@ -143,14 +143,14 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SpatialLineL
     }
 }
 
-register_conditions! { "LineLoadCondition", "Force per length (LINE_LOAD) and pressure on a line",
+register_conditions! { "LineLoadCondition", 1, "Force per length (LINE_LOAD) and pressure on a line",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ";
 "2D2N": LineLoad<false>, 2, 4;
 "2D3N": LineLoad<false>, 3, 6;
 "3D2N": SpatialLineLoad, 2, 6;
 "3D3N": SpatialLineLoad, 3, 9 }
 
-register_conditions! { "AxisymLineLoadCondition", "Force per area (LINE_LOAD) and pressure on a surface of revolution",
+register_conditions! { "AxisymLineLoadCondition", 1, "Force per area (LINE_LOAD) and pressure on a surface of revolution",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ";
 "2D2N": LineLoad<true>, 2, 4;
 "2D3N": LineLoad<true>, 3, 6 }

@@ -62,14 +62,14 @@ pub(super) fn interpolate<const NODES: usize>(n: &[f64; NODES], values: &[[f64; 
     out
 }
 
-/// Registers a condition kernel for shapes: name; kernel type, nodes, unknowns, suffix for each.
+/// Registers a condition for shapes: name, local dimension, texts; then suffix, kernel, nodes and unknowns of each.
 macro_rules! register_conditions {
-    ($name:literal, $about:literal, $source:literal; $($suffix:literal: $kernel:ty, $nodes:literal, $size:literal);+) => {
+    ($name:literal, $dim:literal, $about:literal, $source:literal; $($suffix:literal: $kernel:ty, $nodes:literal, $size:literal);+) => {
         $(zelus_core::register! { Condition concat!($name, $suffix),
             about: $about,
             source: $source,
-            nodes: $nodes,
-            shape: $suffix,
+            cell: zelus_core::geometry::Shape::of($dim, $nodes),
+            space: ($suffix.as_bytes()[0] - b'0') as usize,
             build: zelus_core::registry::Build::Block(
                 zelus_core::entities::KernelBlock::<$kernel, $nodes, $size>::boxed),
         })+

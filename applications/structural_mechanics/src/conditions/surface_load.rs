@@ -77,7 +77,7 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SurfaceLoad 
     }
 }
 
-register_conditions! { "SurfaceLoadCondition", "Force per area (SURFACE_LOAD) and pressure on a surface",
+register_conditions! { "SurfaceLoadCondition", 2, "Force per area (SURFACE_LOAD) and pressure on a surface",
 "f_i = ∫ N_i (q |n| + p n) dξ dη, n = t_1 × t_2";
 "3D3N": SurfaceLoad, 3, 9;
 "3D4N": SurfaceLoad, 4, 12;

@@ -27,8 +27,8 @@ macro_rules! register_solids {
         $(zelus_core::register! { Element concat!($name, $suffix),
             about: $about,
             source: $source,
-            nodes: $nodes,
-            shape: $suffix,
+            cell: zelus_core::geometry::Shape::of($dim, $nodes),
+            space: $dim,
             build: zelus_core::registry::Build::Block(zelus_core::entities::KernelBlock::<
                 $crate::elements::Solid<$formulation, $nodes, $dim, $strains>, $nodes, { $nodes * $dim }>::boxed),
         })+
