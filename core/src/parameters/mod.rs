@@ -5,13 +5,14 @@
 //! type that does not fit, and hands out typed values, key by key or as one `serde` struct. [`Interval`] and
 //! [`Expression`] are kinds of value that decks use in many places.
 
-mod defaults;
-mod document;
-mod expression;
-mod interval;
 mod node;
+mod document;
+mod defaults;
+mod merge;
 mod settings;
 mod typed;
+mod interval;
+mod expression;
 
 pub use defaults::{Defaults, Entry};
 pub use document::Document;
