@@ -6,9 +6,10 @@ use std::time::Instant;
 use super::report::{RunReport, Sizes};
 use super::solver::{SolverSettings, check_dimensions, make_blocks};
 use super::time_stepping::TimeStepping;
+use crate::assembly::DofTable;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::io;
-use crate::model::{Model, ModelPart, Nodes, ProcessInfo};
+use crate::model::{Fields, Flags, Model, ModelPart, Nodes, ProcessInfo};
 use crate::parameters::{Node, Settings};
 use crate::processes::{Process, ProcessRequest};
 use crate::registry::{self, Build, Kind};
@@ -261,20 +262,34 @@ impl Stage {
     }
 }
 
-/// What a retried step must find again.
+/// What a retried step must find again: all that processes and the solution of a step change.
 struct Saved {
     nodes: Nodes,
+    elements: (Fields, Flags),
+    conditions: (Fields, Flags),
+    dofs: DofTable,
     info: ProcessInfo,
 }
 
 impl Saved {
     fn of(part: &mut ModelPart) -> Self {
         part.interactions.iter_mut().for_each(|interaction| interaction.save());
-        Self { nodes: part.nodes.clone(), info: part.info.clone() }
+        Self {
+            nodes: part.nodes.clone(),
+            elements: (part.elements.data.clone(), part.elements.flags.clone()),
+            conditions: (part.conditions.data.clone(), part.conditions.flags.clone()),
+            dofs: part.dofs.clone(),
+            info: part.info.clone(),
+        }
     }
 
     fn restore(self, part: &mut ModelPart) {
         part.nodes = self.nodes;
+        (part.elements.data, part.elements.flags) = self.elements;
+        (part.conditions.data, part.conditions.flags) = self.conditions;
+        part.elements.finish();
+        part.conditions.finish();
+        part.dofs = self.dofs;
         part.info = self.info;
         part.interactions.iter_mut().for_each(|interaction| interaction.restore());
     }

@@ -112,6 +112,22 @@ fn what_is_fixed_before_the_loop_stays_fixed_through_the_first_step() {
 }
 
 #[test]
+fn a_retried_shorter_step_acts_at_its_own_time() {
+    let mut model = model();
+    let text = r#"{"model_part_name": "Structure", "variable_name": "DISPLACEMENT_Y", "value": "t", "interval": [1.0, "End"]}"#;
+    let mut process = make("assign_scalar_variable_process", text, &mut model).unwrap();
+    let saved = part(&mut model).dofs.clone();
+    step(&mut *process, &mut model, 1.0).unwrap();
+    assert!(fixed(&mut model, "DISPLACEMENT_Y", 0));
+    part(&mut model).dofs = saved;
+    // another process holds the unknown now; this one must not release it
+    part(&mut model).set_fixed(scalar("DISPLACEMENT_Y"), &[0], true);
+    step(&mut *process, &mut model, 0.5).unwrap();
+    process.end_step(&mut model).unwrap();
+    assert!(fixed(&mut model, "DISPLACEMENT_Y", 0));
+}
+
+#[test]
 fn a_vector_leaves_null_components_alone() {
     let mut model = model();
     let text = r#"{"model_part_name": "Structure", "variable_name": "DISPLACEMENT", "value": [1.0, null, "t"],
