@@ -1,2 +1,3 @@
 //! Mortar contact.
 pub mod mortar;
+pub mod formulations;

@@ -9,7 +9,8 @@
 //! 4. `quadrature`, [`shape`]: Gauss points on each cell; each goes to the master along the interpolated nodal normal
 //!    n = Σ N¹_j n_j, x² = x¹ + n ((x²₀ − x¹)·n_m)/(n·n_m), and gets its local coordinates there;
 //! 5. [`operators`]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
-//! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration.
+//! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration;
+//! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments.
 //!
 //! With normals that belong to the present geometry, D, M and g̃ agree with the reference program to 1e-10 (its inverse
 //! maps stop there). Three deliberate differences: a lagging slave normal tilts the direction of projection but does
@@ -28,11 +29,13 @@ mod segmentation_2d;
 mod segmentation_3d;
 pub mod settings;
 pub mod shape;
+pub mod slip;
 
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{PairGeometry, dimension};
 pub use operators::{Operators, Overlap, operators};
 pub use settings::{IntegrationOrder, SegmentationSettings};
+pub use slip::{incremental_slip, is_objective, objective_slip, tangent, tangential};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

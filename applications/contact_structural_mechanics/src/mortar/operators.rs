@@ -90,6 +90,14 @@ impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
         self.as_constants()
     }
 
+    /// The change since the operators `previous`.
+    pub fn minus(&self, previous: &Operators<f64, NS, NM>) -> Self {
+        Self {
+            d: std::array::from_fn(|j| std::array::from_fn(|k| self.d[j][k] - previous.d[j][k])),
+            m: std::array::from_fn(|j| std::array::from_fn(|l| self.m[j][l] - previous.m[j][l])),
+        }
+    }
+
     /// Whether D is diagonal, so that dual functions were in use.
     pub fn is_diagonal(&self) -> bool {
         (0..NS).all(|j| (0..NS).all(|k| j == k || self.d[j][k].value() == 0.0))

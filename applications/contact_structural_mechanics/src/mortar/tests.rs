@@ -93,6 +93,7 @@ macro_rules! for_all_shapes {
         $check::<4, 4, 24>();
     };
 }
+pub(crate) use for_all_shapes;
 
 fn derivative_matches_differences<const NS: usize, const NM: usize, const NU: usize>() {
     for axisymmetric in [None, (NS == 2).then_some(0.7)] {

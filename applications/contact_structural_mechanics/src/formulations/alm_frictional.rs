@@ -1,0 +1,98 @@
+//! Coulomb friction by the augmented Lagrangian with a vector multiplier.
+//!
+//! - inactive: p = 0, b_λ = −k²/ε (λ·n) n − k²/(κε) P λ;
+//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k²/ε (P λ − P q/k) with q = −μ (k λ·n + ε g̃) τ;
+//! - stick: p = f (k λ + ε g̃ n + κ ε s), b_λ = k g̃ n + k s.
+//!
+//! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
+//! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference.
+
+use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
+use crate::mortar::{Operators, incremental_slip, is_objective, objective_slip, tangential};
+use zelus_core::scalar::Real;
+use zelus_core::vector3::dot;
+
+/// Augmented Lagrangian with Coulomb friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AlmFrictional {
+    /// Scale factor k of the multipliers: traction = k λ.
+    pub scale_factor: f64,
+    /// Ratio κ of tangential to normal penalty.
+    pub tangent_factor: f64,
+    /// Change of D and of M (Frobenius norm) beyond which the slip is taken as objective.
+    pub operator_threshold: f64,
+}
+
+/// A pair as it was when slip began to be counted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipHistory<const NS: usize, const NM: usize> {
+    /// D° and M°, at the start of the step.
+    pub previous: Operators<f64, NS, NM>,
+    /// Slave positions from which increments count.
+    pub reference_slave: [[f64; 3]; NS],
+    /// Master positions from which increments count.
+    pub reference_master: [[f64; 3]; NM],
+}
+
+impl AlmFrictional {
+    /// Weighted slip vectors s of a pair.
+    pub fn slip<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        history: &SlipHistory<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        if is_objective(&pair.operators, &history.previous, self.operator_threshold) {
+            return objective_slip(&pair.operators, &history.previous, &pair.slave, &pair.master, &pair.normals);
+        }
+        let increment = |x: [T; 3], from: [f64; 3]| std::array::from_fn(|c| x[c] - from[c]);
+        let delta_slave = std::array::from_fn(|j| increment(pair.slave[j], history.reference_slave[j]));
+        let delta_master = std::array::from_fn(|l| increment(pair.master[l], history.reference_master[l]));
+        incremental_slip(&pair.operators, &delta_slave, &delta_master, &pair.normals)
+    }
+}
+
+impl Formulation for AlmFrictional {
+    const MULTIPLIERS: Multipliers = Multipliers::Vector;
+    type History<const NS: usize, const NM: usize> = SlipHistory<NS, NM>;
+
+    fn residual<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+    ) -> PairResidual<T, NS, NM> {
+        let k = self.scale_factor;
+        let gap = pair.gap();
+        let slip = self.slip(pair, history);
+        let mut out = PairResidual::zero();
+        for (j, node) in nodes.iter().enumerate() {
+            let (lambda, n, penalty) = (pair.multipliers[j], pair.normals[j], node.penalty);
+            let lambda_n = dot(lambda, n);
+            let lambda_t = tangential(lambda, n);
+            let augmentation = gap[j] * penalty;
+            let held = match node.state {
+                NodeState::Inactive => {
+                    let (normal, tangent) = (-k * k / penalty, -k * k / (self.tangent_factor * penalty));
+                    out.multipliers[j] = std::array::from_fn(|c| n[c] * lambda_n * normal + lambda_t[c] * tangent);
+                    continue;
+                }
+                NodeState::Slip => {
+                    let bound = (lambda_n * k + augmentation) * -node.friction;
+                    let q = tangential(node.tangent.map(|t| bound * t), n);
+                    out.multipliers[j] =
+                        std::array::from_fn(|c| n[c] * gap[j] * k - (lambda_t[c] * k - q[c]) * (k / penalty));
+                    0.0
+                }
+                NodeState::Stick => {
+                    out.multipliers[j] = std::array::from_fn(|c| (n[c] * gap[j] + slip[j][c]) * k);
+                    self.tangent_factor * penalty
+                }
+            };
+            let force = std::array::from_fn(|c| {
+                (lambda[c] * k + n[c] * augmentation + slip[j][c] * held) * node.dynamic_factor
+            });
+            out.add_nodal_force(&pair.operators, j, force);
+        }
+        out
+    }
+}

@@ -1,0 +1,41 @@
+//! Frictionless contact by the augmented Lagrangian with a scalar multiplier (eq. 4.9, D.11).
+//!
+//! Active: p = f (k λ + ε g̃) n and b_λ = k g̃. Inactive: p = 0 and b_λ = −k²/ε λ. λ < 0 in compression.
+
+use super::{Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
+use zelus_core::scalar::Real;
+use zelus_core::vector3::scale;
+
+/// Augmented Lagrangian, normal multiplier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AlmFrictionless {
+    /// Scale factor k of the multipliers: pressure = k λ.
+    pub scale_factor: f64,
+}
+
+impl Formulation for AlmFrictionless {
+    const MULTIPLIERS: Multipliers = Multipliers::Normal;
+    type History<const NS: usize, const NM: usize> = ();
+
+    fn residual<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        (): &(),
+    ) -> PairResidual<T, NS, NM> {
+        let k = self.scale_factor;
+        let gap = pair.gap();
+        let mut out = PairResidual::zero();
+        for (j, node) in nodes.iter().enumerate() {
+            let lambda = pair.multipliers[j][0];
+            if node.state.is_active() {
+                let pressure = (lambda * k + gap[j] * node.penalty) * node.dynamic_factor;
+                out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
+                out.multipliers[j][0] = gap[j] * k;
+            } else {
+                out.multipliers[j][0] = lambda * (-k * k / node.penalty);
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,96 @@
+//! What a formulation sees of a pair, and what it returns.
+
+use crate::mortar::{Operators, weighted_gap};
+use zelus_core::scalar::Real;
+
+/// Whether a slave node is in contact, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum NodeState {
+    /// Not in contact.
+    #[default]
+    Inactive,
+    /// In contact and held in the tangential direction.
+    Stick,
+    /// In contact and sliding; the active state of frictionless contact.
+    Slip,
+}
+
+impl NodeState {
+    /// Whether the node is in contact.
+    #[inline]
+    pub fn is_active(self) -> bool {
+        self != Self::Inactive
+    }
+}
+
+/// Constants of a slave node during an assembly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlaveNode {
+    /// Decided by the active-set stage, never here.
+    pub state: NodeState,
+    /// Penalty ε > 0.
+    pub penalty: f64,
+    /// Factor f on nodal forces, 1 unless the dynamic factor is in use.
+    pub dynamic_factor: f64,
+    /// Friction coefficient μ ≥ 0.
+    pub friction: f64,
+    /// Unit tangent τ: the direction of sliding.
+    pub tangent: [f64; 3],
+}
+
+/// Operators, positions, normals and multipliers of a pair in one scalar.
+#[derive(Debug, Clone, Copy)]
+pub struct Kinematics<T, const NS: usize, const NM: usize> {
+    /// D and M.
+    pub operators: Operators<T, NS, NM>,
+    /// Current positions of the slave nodes.
+    pub slave: [[T; 3]; NS],
+    /// Current positions of the master nodes.
+    pub master: [[T; 3]; NM],
+    /// Unit normals at the slave nodes, out of the slave body.
+    pub normals: [[T; 3]; NS],
+    /// Multipliers of the slave nodes, compression negative; a scalar one in the first component.
+    pub multipliers: [[T; 3]; NS],
+}
+
+impl<T: Real, const NS: usize, const NM: usize> Kinematics<T, NS, NM> {
+    /// Weighted gaps g̃ of this pair alone.
+    #[inline]
+    pub fn gap(&self) -> [T; NS] {
+        weighted_gap(&self.operators, &self.slave, &self.master, &self.normals)
+    }
+}
+
+/// Right-hand side of a pair, by node.
+#[derive(Debug, Clone, Copy)]
+pub struct PairResidual<T, const NS: usize, const NM: usize> {
+    /// Forces on master nodes.
+    pub master: [[T; 3]; NM],
+    /// Forces on slave nodes.
+    pub slave: [[T; 3]; NS],
+    /// Multiplier rows; a scalar one in the first component.
+    pub multipliers: [[T; 3]; NS],
+}
+
+impl<T: Real, const NS: usize, const NM: usize> PairResidual<T, NS, NM> {
+    /// Nothing yet.
+    #[inline]
+    pub fn zero() -> Self {
+        let zero = [T::zero(); 3];
+        Self { master: [zero; NM], slave: [zero; NS], multipliers: [zero; NS] }
+    }
+
+    /// Spreads the force vector p of slave node `j` over both sides: b_slave += D_jk p, b_master −= M_jl p.
+    #[inline]
+    pub fn add_nodal_force(&mut self, operators: &Operators<T, NS, NM>, j: usize, p: [T; 3]) {
+        for k in 0..NS {
+            // Off the diagonal a zero is exact: dual functions.
+            if k == j || operators.d[j][k].value() != 0.0 {
+                (0..3).for_each(|c| self.slave[k][c].add_product(operators.d[j][k], p[c]));
+            }
+        }
+        for l in 0..NM {
+            (0..3).for_each(|c| self.master[l][c].add_product(-operators.m[j][l], p[c]));
+        }
+    }
+}

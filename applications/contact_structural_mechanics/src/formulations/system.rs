@@ -1,0 +1,112 @@
+//! Local systems of a pair: the residual alone, or with its exact tangent by dual numbers.
+
+use super::pair::{Kinematics, PairResidual, SlaveNode};
+use super::{Formulation, Multipliers};
+use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, dimension, operators};
+use zelus_core::scalar::{Dual, Real};
+use zelus_core::vector3::constant;
+
+/// Number of local unknowns of a pair.
+pub const fn local_size<F: Formulation, const NS: usize, const NM: usize>() -> usize {
+    dimension(NS) * (NS + NM) + NS * F::MULTIPLIERS.count(dimension(NS))
+}
+
+/// Writes the right-hand side of a pair; zero without overlap. Returns its operators.
+///
+/// # Panics
+/// If `rhs` does not have [`local_size`] entries.
+pub fn residual<F: Formulation, const NS: usize, const NM: usize>(
+    formulation: &F,
+    geometry: &PairGeometry<f64, NS, NM>,
+    settings: &SegmentationSettings,
+    nodes: &[SlaveNode; NS],
+    multipliers: &[[f64; 3]; NS],
+    history: &F::History<NS, NM>,
+    rhs: &mut [f64],
+) -> Overlap<Operators<f64, NS, NM>> {
+    assert_eq!(rhs.len(), local_size::<F, NS, NM>(), "one entry per local unknown");
+    rhs.fill(0.0);
+    let found = operators(geometry, settings);
+    if let Overlap::Cells(operators) = found {
+        let out = formulation.residual(&kinematics(geometry, operators, multipliers), nodes, history);
+        for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, value| rhs[row] = value);
+    }
+    found
+}
+
+/// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns), row by row; zero without overlap.
+/// `geometry` comes from [`PairGeometry::seeded`]; `NU` is its number of displacement unknowns. Returns the operators.
+///
+/// # Panics
+/// If `rhs` does not have [`local_size`] entries, or `lhs` not the square of them.
+pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize>(
+    formulation: &F,
+    geometry: &PairGeometry<Dual<NU>, NS, NM>,
+    settings: &SegmentationSettings,
+    nodes: &[SlaveNode; NS],
+    multipliers: &[[f64; 3]; NS],
+    history: &F::History<NS, NM>,
+    lhs: &mut [f64],
+    rhs: &mut [f64],
+) -> Overlap<Operators<f64, NS, NM>> {
+    let n = local_size::<F, NS, NM>();
+    assert_eq!(rhs.len(), n, "one entry per local unknown");
+    assert_eq!(lhs.len(), n * n, "one entry per pair of local unknowns");
+    lhs.fill(0.0);
+    rhs.fill(0.0);
+    let Overlap::Cells(dual) = operators(geometry, settings) else { return Overlap::None };
+
+    let out = formulation.residual(&kinematics(geometry, dual, multipliers), nodes, history);
+    for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NU>| {
+        rhs[row] = b.value;
+        for column in 0..NU {
+            lhs[row * n + column] = -b.gradient[column];
+        }
+    });
+
+    // The residual is affine in the multipliers, so their columns need no operators with derivatives.
+    let values = geometry.values();
+    let plain = dual.values();
+    let count = F::MULTIPLIERS.count(dimension(NS));
+    for c in 0..count {
+        let mut pair: Kinematics<Dual<NS>, NS, NM> =
+            kinematics(&values.as_constants(), plain.as_constants(), multipliers);
+        for j in 0..NS {
+            pair.multipliers[j][c] = Dual::variable(multipliers[j][c], j);
+        }
+        let out = formulation.residual(&pair, nodes, history);
+        for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NS>| {
+            for j in 0..NS {
+                lhs[row * n + NU + count * j + c] = -b.gradient[j];
+            }
+        });
+    }
+    Overlap::Cells(plain)
+}
+
+fn kinematics<T: Real, const NS: usize, const NM: usize>(
+    geometry: &PairGeometry<T, NS, NM>,
+    operators: Operators<T, NS, NM>,
+    multipliers: &[[f64; 3]; NS],
+) -> Kinematics<T, NS, NM> {
+    Kinematics {
+        operators,
+        slave: geometry.slave,
+        master: geometry.master,
+        normals: geometry.nodal_normals,
+        multipliers: multipliers.map(constant),
+    }
+}
+
+/// Visits the entries of a residual in the order of the local unknowns.
+#[inline]
+fn for_each_row<T: Real, const NS: usize, const NM: usize>(
+    out: &PairResidual<T, NS, NM>,
+    multipliers: Multipliers,
+    mut visit: impl FnMut(usize, T),
+) {
+    let dim = dimension(NS);
+    let displacements = out.master.iter().chain(&out.slave).flat_map(|b| &b[..dim]);
+    let conditions = out.multipliers.iter().flat_map(|b| &b[..multipliers.count(dim)]);
+    displacements.chain(conditions).enumerate().for_each(|(row, &b)| visit(row, b));
+}

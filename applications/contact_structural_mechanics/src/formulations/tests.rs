@@ -1,0 +1,240 @@
+//! Tangents against central differences, balance of forces, and the algebra of single families.
+
+use super::*;
+use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
+use crate::mortar::{Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential};
+use zelus_core::vector3::normalised;
+
+const ALM: AlmFrictionless = AlmFrictionless { scale_factor: 1.7 };
+const COMPONENTS: AlmFrictionlessComponents = AlmFrictionlessComponents { scale_factor: 1.7 };
+const PENALTY: PenaltyFrictional = PenaltyFrictional { tangent_factor: 0.3 };
+
+/// States of the slave nodes, starting with `first`.
+fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, states: [NodeState; 3]) -> [SlaveNode; NS] {
+    let dim = dimension(NS);
+    std::array::from_fn(|j| SlaveNode {
+        state: states[j % 3],
+        penalty: 20.0 + 5.0 * noise.next(),
+        dynamic_factor: 0.8 + 0.1 * noise.next(),
+        friction: 0.4,
+        tangent: normalised(tangential(
+            std::array::from_fn(|c| if c < dim { noise.next() } else { 0.0 }),
+            pair_normals[j],
+        )),
+    })
+}
+
+fn multipliers<const NS: usize>(noise: &mut Noise) -> [[f64; 3]; NS] {
+    std::array::from_fn(|_| std::array::from_fn(|c| if c < dimension(NS) { noise.next() } else { 0.0 }))
+}
+
+const MIXES: [[NodeState; 3]; 5] = {
+    use NodeState::{Inactive, Slip, Stick};
+    [[Inactive; 3], [Slip; 3], [Stick; 3], [Slip, Inactive, Stick], [Stick, Slip, Inactive]]
+};
+
+fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize>(
+    formulation: &F,
+    history: impl Fn(&PairGeometry<f64, NS, NM>) -> F::History<NS, NM>,
+) {
+    let settings = SegmentationSettings::default();
+    let n = local_size::<F, NS, NM>();
+    let count = F::MULTIPLIERS.count(dimension(NS));
+    let mut checked = 0;
+    for seed in 0..12 {
+        for states in MIXES {
+            let pair = random_pair::<NS, NM>(seed);
+            if operators(&pair, &settings).cells().is_none() {
+                continue;
+            }
+            let mut noise = Noise::new(seed + 100);
+            let nodes = nodes(&pair.nodal_normals, &mut noise, states);
+            let lambda = multipliers::<NS>(&mut noise);
+            let history = history(&pair);
+            let (mut lhs, mut rhs, mut plain) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
+            tangent(formulation, &pair.seeded::<NU>(), &settings, &nodes, &lambda, &history, &mut lhs, &mut rhs);
+            residual(formulation, &pair, &settings, &nodes, &lambda, &history, &mut plain);
+            let size = plain.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
+            rhs.iter().zip(&plain).for_each(|(a, b)| assert!((a - b).abs() < 1e-12 * size, "{a} {b}"));
+
+            let at = |column: usize, step: f64| {
+                let mut out = vec![0.0; n];
+                let (mut moved, mut lambda) = (pair, lambda);
+                if column < NU {
+                    moved = displaced(&pair, column, step);
+                } else {
+                    lambda[(column - NU) / count][(column - NU) % count] += step;
+                }
+                residual(formulation, &moved, &settings, &nodes, &lambda, &history, &mut out);
+                out
+            };
+            let largest = lhs.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
+            for column in 0..n {
+                let h = 1e-6;
+                for (row, (plus, minus)) in at(column, h).iter().zip(at(column, -h)).enumerate() {
+                    let (slope, exact) = (-(plus - minus) / (2.0 * h), lhs[row * n + column]);
+                    assert!(
+                        (slope - exact).abs() < 1e-6 * largest,
+                        "{NS}–{NM} seed {seed} {states:?} row {row} column {column}: {slope} {exact}"
+                    );
+                }
+            }
+            // What is pushed on one side is pushed back on the other.
+            for c in 0..dimension(NS) {
+                let total: f64 = plain[..NU].iter().skip(c).step_by(dimension(NS)).sum();
+                assert!(total.abs() < 1e-10 * size, "forces out of balance by {total}");
+            }
+            checked += 1;
+        }
+    }
+    assert!(checked > 20);
+}
+
+/// Operators of a slightly different configuration, as if at the start of the step.
+fn earlier<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> Operators<f64, NS, NM> {
+    let mut before = *pair;
+    before.master.iter_mut().for_each(|x| x[0] += 0.03);
+    operators(&before, &SegmentationSettings::default()).cells().unwrap()
+}
+
+fn slip_history<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> SlipHistory<NS, NM> {
+    let mut noise = Noise::new(77);
+    let dim = dimension(NS);
+    let mut shifted = |x: [f64; 3]| std::array::from_fn(|c| if c < dim { x[c] + 0.1 * noise.next() } else { 0.0 });
+    SlipHistory {
+        previous: earlier(pair),
+        reference_slave: pair.slave.map(&mut shifted),
+        reference_master: pair.master.map(&mut shifted),
+    }
+}
+
+fn frictional(operator_threshold: f64) -> AlmFrictional {
+    AlmFrictional { scale_factor: 1.7, tangent_factor: 0.3, operator_threshold }
+}
+
+fn all_families<const NS: usize, const NM: usize, const NU: usize>() {
+    check_tangent::<_, NS, NM, NU>(&ALM, |_| ());
+    check_tangent::<_, NS, NM, NU>(&COMPONENTS, |_| ());
+    check_tangent::<_, NS, NM, NU>(&frictional(0.0), slip_history);
+    check_tangent::<_, NS, NM, NU>(&frictional(1e9), slip_history);
+    check_tangent::<_, NS, NM, NU>(&PenaltyFrictionless, |_| ());
+    check_tangent::<_, NS, NM, NU>(&PENALTY, earlier);
+}
+
+#[test]
+fn tangents_match_differences() {
+    for_all_shapes!(all_families);
+}
+
+/// One multiplier along the normal and the same as a vector push equally; their gap rows agree along the normal.
+#[test]
+fn scalar_and_components_agree() {
+    let settings = SegmentationSettings::default();
+    let pair = random_pair::<4, 3>(2);
+    let mut noise = Noise::new(9);
+    let nodes = nodes(&pair.nodal_normals, &mut noise, [NodeState::Slip; 3]);
+    let pressure: [f64; 4] = std::array::from_fn(|_| noise.next());
+    let scalar = pressure.map(|p| [p, 0.0, 0.0]);
+    let vector = std::array::from_fn(|j| pair.nodal_normals[j].map(|n| n * pressure[j]));
+    let (mut a, mut b) = (vec![0.0; 25], vec![0.0; 33]);
+    residual(&ALM, &pair, &settings, &nodes, &scalar, &(), &mut a);
+    residual(&COMPONENTS, &pair, &settings, &nodes, &vector, &(), &mut b);
+    for (x, y) in a[..21].iter().zip(&b) {
+        assert!((x - y).abs() < 1e-13);
+    }
+    for j in 0..4 {
+        let along: f64 = (0..3).map(|c| b[21 + 3 * j + c] * pair.nodal_normals[j][c]).sum();
+        assert!((along - a[21 + j]).abs() < 1e-13);
+    }
+}
+
+/// An open pair without multipliers is stress-free; a closed active one presses the facets apart.
+#[test]
+fn sign_of_the_contact_force() {
+    let slave = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let master = [3, 2, 1, 0].map(|n: usize| [slave[n][0], slave[n][1], -0.01]);
+    let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
+    let pair = PairGeometry { slave, master, nodal_normals: [up; 4], slave_normal: up, master_normal: down };
+    let node = SlaveNode {
+        state: NodeState::Slip,
+        penalty: 50.0,
+        dynamic_factor: 1.0,
+        friction: 0.0,
+        tangent: [1.0, 0.0, 0.0],
+    };
+    let mut rhs = [0.0; 24];
+    residual(&PenaltyFrictionless, &pair, &SegmentationSettings::default(), &[node; 4], &[[0.0; 3]; 4], &(), &mut rhs);
+    // Each slave node: D = 1/4, g̃ = −0.01/4, force = 50 · (−0.01/4) · 1/4 along the normal; ε counts per area here.
+    for n in 0..4 {
+        assert!((rhs[3 * n + 2] - 50.0 * 0.0025 / 4.0).abs() < 1e-15, "the master, below, is pushed up");
+        assert!((rhs[12 + 3 * n + 2] + 50.0 * 0.0025 / 4.0).abs() < 1e-15, "the slave is pushed down");
+    }
+}
+
+#[test]
+fn mesh_tying_is_symmetric_and_linear() {
+    let pair = random_pair::<4, 3>(1);
+    let operators = operators(&pair, &SegmentationSettings::default()).cells().unwrap();
+    let tying = MeshTying { scale_factor: 2.5 };
+    const N: usize = MeshTying::size::<4, 3, 3>();
+    let mut noise = Noise::new(4);
+    let mut unknowns = [0.0; N];
+    unknowns.iter_mut().for_each(|x| *x = noise.next());
+    let node = |n: usize| [unknowns[3 * n], unknowns[3 * n + 1], unknowns[3 * n + 2]];
+    let (mut rhs, mut lhs) = ([0.0; N], vec![0.0; N * N]);
+    tying.residual(
+        &operators,
+        &std::array::from_fn(node),
+        &std::array::from_fn(|n| node(3 + n)),
+        &std::array::from_fn(|n| node(7 + n)),
+        &mut rhs,
+    );
+    tying.tangent::<4, 3, 3>(&operators, &mut lhs);
+    for row in 0..N {
+        let product: f64 = (0..N).map(|column| lhs[row * N + column] * unknowns[column]).sum();
+        assert!((product + rhs[row]).abs() < 1e-14);
+        (0..N).for_each(|column| assert_eq!(lhs[row * N + column], lhs[column * N + row]));
+    }
+}
+
+/// Cost of local systems; run with `--ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+fn cost_of_local_systems() {
+    fn measure<const NS: usize, const NM: usize, const NU: usize>() {
+        fn one<F: Formulation, const NS: usize, const NM: usize, const NU: usize>(
+            name: &str,
+            formulation: &F,
+            history: impl Fn(&PairGeometry<f64, NS, NM>) -> F::History<NS, NM>,
+        ) {
+            let settings = SegmentationSettings::default();
+            let n = local_size::<F, NS, NM>();
+            let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
+            let mut noise = Noise::new(1);
+            let cases: Vec<_> = (0..50)
+                .map(random_pair::<NS, NM>)
+                .filter(|p| operators(p, &settings).cells().is_some())
+                .map(|p| {
+                    (p, nodes(&p.nodal_normals, &mut noise, [NodeState::Slip; 3]), multipliers(&mut noise), history(&p))
+                })
+                .collect();
+            let start = std::time::Instant::now();
+            for (pair, nodes, lambda, history) in (0..40).flat_map(|_| &cases) {
+                residual(formulation, pair, &settings, nodes, lambda, history, &mut rhs);
+            }
+            let plain = start.elapsed().as_secs_f64();
+            let start = std::time::Instant::now();
+            for (pair, nodes, lambda, history) in (0..40).flat_map(|_| &cases) {
+                tangent(formulation, &pair.seeded::<NU>(), &settings, nodes, lambda, history, &mut lhs, &mut rhs);
+            }
+            let dual = start.elapsed().as_secs_f64();
+            let each = 1e6 / (40 * cases.len()) as f64;
+            println!("{NS}–{NM} {name}: residual {:.2} µs, with tangent {:.2} µs", plain * each, dual * each);
+        }
+        one::<_, NS, NM, NU>("ALM scalar", &ALM, |_| ());
+        one::<_, NS, NM, NU>("ALM components", &COMPONENTS, |_| ());
+        one::<_, NS, NM, NU>("ALM frictional", &frictional(0.0), slip_history);
+        one::<_, NS, NM, NU>("penalty frictional", &PENALTY, earlier);
+    }
+    for_all_shapes!(measure);
+}

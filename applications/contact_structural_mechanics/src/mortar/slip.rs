@@ -1,0 +1,85 @@
+//! The weighted slip of the slave nodes of a pair, and the tangential directions it is measured in.
+
+use super::gap::weighted_jump;
+use super::operators::Operators;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{cross, dot, normalised, scale, sub};
+
+/// The part of a vector in the plane with unit normal `normal`: P v = v − (v·n) n.
+#[inline]
+pub fn tangential<T: Real>(vector: [T; 3], normal: [T; 3]) -> [T; 3] {
+    sub(vector, scale(normal, dot(vector, normal)))
+}
+
+/// Objective weighted slip s_j = P [(D − D°) x¹ − (M − M°) x²]_j since the operators D°, M° were taken.
+/// Unaffected by rigid motions; a length times the measure of the facet.
+pub fn objective_slip<T: Real, const NS: usize, const NM: usize>(
+    operators: &Operators<T, NS, NM>,
+    previous: &Operators<f64, NS, NM>,
+    slave: &[[T; 3]; NS],
+    master: &[[T; 3]; NM],
+    normals: &[[T; 3]; NS],
+) -> [[T; 3]; NS] {
+    let jump = weighted_jump(&operators.minus(previous), slave, master);
+    std::array::from_fn(|j| tangential(jump[j], normals[j]))
+}
+
+/// Weighted slip s_j = −P [D δ¹ − M δ²]_j from displacement increments δ.
+/// For pairs whose operators hardly change, where the objective form would measure nothing but noise.
+pub fn incremental_slip<T: Real, const NS: usize, const NM: usize>(
+    operators: &Operators<T, NS, NM>,
+    delta_slave: &[[T; 3]; NS],
+    delta_master: &[[T; 3]; NM],
+    normals: &[[T; 3]; NS],
+) -> [[T; 3]; NS] {
+    let jump = operators.jump(delta_slave, delta_master);
+    std::array::from_fn(|j| tangential(jump[j].map(|x| -x), normals[j]))
+}
+
+/// Whether the objective slip is to be used: both operators changed by more than `threshold` (Frobenius norm).
+pub fn is_objective<T: Real, const NS: usize, const NM: usize>(
+    operators: &Operators<T, NS, NM>,
+    previous: &Operators<f64, NS, NM>,
+    threshold: f64,
+) -> bool {
+    let change = operators.values().minus(previous);
+    let norm = |sum: f64| sum.sqrt();
+    norm(change.d.iter().flatten().map(|x| x * x).sum()) > threshold
+        && norm(change.m.iter().flatten().map(|x| x * x).sum()) > threshold
+}
+
+/// Unit tangent of a slave node: the direction of the tangential part of `vector`, if it has one.
+/// Otherwise a fixed tangent of `normal`; `dim` is 2 or 3, and in the plane the tangent stays in it.
+pub fn tangent(vector: [f64; 3], normal: [f64; 3], dim: usize) -> [f64; 3] {
+    let part = tangential(vector, normal);
+    if dot(vector, vector).sqrt() > f64::EPSILON && dot(part, part).sqrt() > f64::EPSILON {
+        return normalised(part);
+    }
+    let [x, y, z] = normal;
+    let second = normalised(if x.abs() > z.abs() { [y, -x, 0.0] } else { [0.0, z, -y] });
+    let first = cross(second, normal);
+    if dim == 2 && first[2].abs() > f64::EPSILON { second } else { first }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mortar::tests::Noise;
+
+    #[test]
+    fn tangents_are_unit_and_tangential() {
+        let mut noise = Noise::new(5);
+        for _ in 0..50 {
+            for dim in [2, 3] {
+                let flat = |v: [f64; 3]| if dim == 2 { [v[0], v[1], 0.0] } else { v };
+                let normal = normalised(flat(std::array::from_fn(|_| noise.next())));
+                for vector in [[0.0; 3], flat(std::array::from_fn(|_| noise.next()))] {
+                    let t = tangent(vector, normal, dim);
+                    assert!((dot(t, t) - 1.0).abs() < 1e-14 && dot(t, normal).abs() < 1e-12);
+                    assert!(dim == 3 || t[2] == 0.0);
+                    assert!(vector == [0.0; 3] || dot(t, vector) > 0.0);
+                }
+            }
+        }
+    }
+}
