@@ -4,7 +4,9 @@
 mod samples;
 
 use samples::{Brick, contact, fix};
-use zelus_linear_algebra::{Csr, Engine, Layout, SolveReport, Symmetry, System, create};
+use zelus_linear_algebra::{
+    Csr, DirectSettings, Engine, KrylovSettings, Layout, Preconditioner, SolveReport, Symmetry, System, create,
+};
 
 fn show(what: &str, report: &SolveReport) {
     println!(
@@ -45,6 +47,18 @@ fn main() {
     let mut solver = create(Engine::default());
     show("as a general matrix", &solver.solve(&system, &rhs, &mut x).expect("solved"));
     drop(solver);
+    let mut layout = layout;
+    layout.near_null_space = brick.rigid_motions();
+    let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
+    let mut solver = create(Engine::ConjugateGradient(KrylovSettings::default()));
+    x.fill(0.0);
+    show("multigrid", &solver.solve(&system, &rhs, &mut x).expect("solved"));
+    x.fill(0.0);
+    show("again", &solver.solve(&system, &rhs, &mut x).expect("solved"));
+    let jacobi = KrylovSettings { preconditioner: Preconditioner::BlockJacobi, ..Default::default() };
+    let mut solver = create(Engine::ConjugateGradient(jacobi));
+    x.fill(0.0);
+    show("block Jacobi", &solver.solve(&system, &rhs, &mut x).expect("solved"));
 
     let sample = contact(cells * 4 / 5, 0.1, |at| at % 5 != 0);
     println!("two boxes: {} equations, {} entries of coupling", sample.bulk.rows, sample.coupling.entries());
@@ -62,8 +76,7 @@ fn main() {
     show("again", &solver.solve(&system, &rhs, &mut x).expect("solved"));
     system.bulk_values += 1;
     show("new bulk", &solver.solve(&system, &rhs, &mut x).expect("solved"));
-    let mut settings = zelus_linear_algebra::DirectSettings::default();
-    settings.interface_limit = 0;
+    let settings = DirectSettings { interface_limit: 0, ..Default::default() };
     let mut solver = create(Engine::Direct(settings));
     show("without dense interface", &solver.solve(&system, &rhs, &mut x).expect("solved"));
 }

@@ -114,3 +114,16 @@ pub(crate) fn refused(engine: &'static str, refined: &Refined, tolerance: f64) -
         tolerance,
     }
 }
+
+/// Entries without pattern, the same every time.
+pub(crate) fn pseudo_random(n: usize) -> Vec<f64> {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    (0..n)
+        .map(|_| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        })
+        .collect()
+}

@@ -4,23 +4,35 @@
 //! what changed; [`create`] makes a [`LinearSolver`] for it. Every answer has passed a check of its true residual,
 //! and none depends on the number of threads.
 
-mod check;
 mod csr;
-mod dense;
-mod dense_lu;
-mod direct;
-mod equilibrate;
-mod gmres;
-mod interface;
-mod lu;
-mod multifrontal;
-mod ordering;
-mod scatter;
-mod solver;
-mod symbolic;
 mod system;
 pub mod vector;
 
+mod solver;
+
+mod check;
+mod equilibrate;
+
+mod ordering;
+
+mod symbolic;
+
+mod dense;
+mod dense_lu;
+mod multifrontal;
+mod pool;
+mod scatter;
+
+mod direct;
+mod interface;
+mod lu;
+
+mod krylov;
+mod precondition;
+
+mod condition;
+
+pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
 pub use solver::{DirectSettings, Engine, KrylovSettings, LinearSolver, Preconditioner, SolveError, SolveReport};
 pub use system::{Layout, Symmetry, System};
@@ -29,6 +41,12 @@ pub use system::{Layout, Symmetry, System};
 pub fn create(engine: Engine) -> Box<dyn LinearSolver> {
     match engine {
         Engine::Direct(settings) => Box::new(direct::DirectSolver::new(settings)),
-        Engine::Lu | Engine::ConjugateGradient(_) | Engine::Gmres { .. } => Box::new(lu::LuSolver::default()),
+        Engine::Lu => Box::new(lu::LuSolver::default()),
+        Engine::ConjugateGradient(settings) => {
+            Box::new(krylov::KrylovSolver::new(krylov::Method::ConjugateGradient, settings))
+        }
+        Engine::Gmres { krylov: settings, restart } => {
+            Box::new(krylov::KrylovSolver::new(krylov::Method::Gmres { restart }, settings))
+        }
     }
 }

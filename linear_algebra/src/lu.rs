@@ -13,7 +13,7 @@ use crate::csr::Csr;
 use crate::equilibrate;
 use crate::multifrontal::Scaling;
 use crate::solver::{LinearSolver, SolveError, SolveReport};
-use crate::system::System;
+use crate::system::{Stamps, System};
 
 /// Relative residual above which an answer is refused.
 const TOLERANCE: f64 = 1e-6;
@@ -79,7 +79,7 @@ impl SparseLu {
 /// The engine `sparse_lu`: one [`SparseLu`] of the whole matrix, kept while no value changes.
 #[derive(Default)]
 pub(crate) struct LuSolver {
-    factor: Option<(SparseLu, [u64; 4])>,
+    factor: Option<(SparseLu, Stamps)>,
 }
 
 impl LinearSolver for LuSolver {
@@ -90,7 +90,7 @@ impl LinearSolver for LuSolver {
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
         check::input(system, rhs, x)?;
         let start = Instant::now();
-        let stamps = [system.bulk_graph, system.bulk_values, system.coupling_graph, system.coupling_values];
+        let stamps = Stamps::of(system);
         if self.factor.as_ref().is_none_or(|(_, old)| *old != stamps) {
             self.factor = None;
             check::empty_rows(system)?;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::csr::Csr;
 use crate::dense::{self, PARALLEL_WORK, Triangle, view, view_mut};
 use crate::dense_lu::{self, Pivots};
+use crate::pool::Pool;
 use crate::scatter::Scatter;
 use crate::symbolic::{Front, Run, Symbolic};
 
@@ -84,6 +85,7 @@ struct Elimination<'a> {
     scatter: &'a Scatter,
     values: &'a [f64],
     kind: Kind,
+    pool: Pool,
 }
 
 impl Factor {
@@ -104,7 +106,7 @@ impl Factor {
         blocks.resize_with(eliminated, Block::default);
         let scaled = scaling.as_ref().map(|scaling| scaling.apply(matrix));
         let values = scaled.as_deref().unwrap_or(&matrix.values);
-        let work = Elimination { symbolic, scatter, values, kind };
+        let work = Elimination { symbolic, scatter, values, kind, pool: Pool::default() };
         let (tops, root) = symbolic.tops();
         let updates = work.subtrees(&mut blocks, 0, &tops)?;
         let mut factor =
@@ -310,7 +312,7 @@ impl Elimination<'_> {
         }
     }
 
-    /// Eliminates a subtree and gives its update of the rows of its top.
+    /// Eliminates a subtree and gives its update of the rows of its top, in a buffer that may be longer.
     fn eliminate(&self, blocks: &mut [Block], top: usize) -> Result<Vec<f64>, NotPositiveDefinite> {
         let front = &self.symbolic.fronts[top];
         let (own, inner) = blocks.split_last_mut().expect("a subtree has a top");
@@ -329,7 +331,7 @@ impl Elimination<'_> {
                 extend_right(child, update, &mut own.right, pivots);
             }
         }
-        let mut update = vec![0.0; rows * rows];
+        let mut update = self.pool.take(rows * rows);
         match self.kind {
             Kind::Cholesky => {
                 dense::cholesky_panel(&mut own.panel, order, pivots).map_err(|_| NotPositiveDefinite)?;
@@ -344,6 +346,7 @@ impl Elimination<'_> {
         for (&child, child_update) in front.children.iter().zip(&updates) {
             extend_update(&self.symbolic.fronts[child], child_update, symmetric, &mut update, rows, pivots);
         }
+        updates.into_iter().for_each(|update| self.pool.give(update));
         Ok(update)
     }
 

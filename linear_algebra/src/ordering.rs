@@ -1,5 +1,7 @@
 //! Fill-reducing orderings: nested dissection of the graph of the nodes.
 
+use std::sync::{Mutex, PoisonError};
+
 use crate::csr::Csr;
 use crate::solver::SolveError;
 use crate::system::Layout;
@@ -114,6 +116,9 @@ fn compressed_graph(pattern: &Csr, equations: &[Vec<u32>], vertex_of: &[u32]) ->
     graph
 }
 
+/// METIS draws from one random sequence of the process, so that calls at the same time would disturb each other.
+static METIS: Mutex<()> = Mutex::new(());
+
 /// The interior vertices in elimination order, by METIS' nested dissection.
 ///
 /// # Errors
@@ -139,6 +144,7 @@ pub(crate) fn nested_dissection(vertices: &Vertices) -> Result<Vec<u32>, SolveEr
     let mut size = count as i32;
     let mut order = vec![0_i32; count];
     let mut position = vec![0_i32; count];
+    let alone = METIS.lock().unwrap_or_else(PoisonError::into_inner);
     // SAFETY: the arrays have the lengths METIS documents (`starts` count + 1, `targets` starts[count], the others
     // count, `options` METIS_NOPTIONS), the graph is symmetric without loops, and METIS keeps no pointer.
     let status = unsafe {
@@ -153,6 +159,7 @@ pub(crate) fn nested_dissection(vertices: &Vertices) -> Result<Vec<u32>, SolveEr
             position.as_mut_ptr(),
         )
     };
+    drop(alone);
     if status != metis_sys::rstatus_et_METIS_OK {
         return Err(SolveError::Failed(format!("ordering: METIS_NodeND returned {status}")));
     }

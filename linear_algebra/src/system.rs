@@ -139,3 +139,25 @@ impl<'a> System<'a> {
         self.bulk_symmetry != Symmetry::General && (self.active_coupling().is_none() || self.coupling_symmetric)
     }
 }
+
+/// The stamps of a system, to compare with those of the next one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Stamps {
+    pub(crate) bulk_graph: u64,
+    pub(crate) bulk_values: u64,
+    pub(crate) is_coupled: bool,
+    pub(crate) coupling_graph: u64,
+    pub(crate) coupling_values: u64,
+}
+
+impl Stamps {
+    pub(crate) fn of(system: &System<'_>) -> Self {
+        Self {
+            bulk_graph: system.bulk_graph,
+            bulk_values: system.bulk_values,
+            is_coupled: system.active_coupling().is_some(),
+            coupling_graph: system.coupling_graph,
+            coupling_values: system.coupling_values,
+        }
+    }
+}

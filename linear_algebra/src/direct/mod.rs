@@ -9,11 +9,11 @@ mod path;
 use std::time::Instant;
 
 use crate::check::{self, NAMED_EQUATIONS, Refined};
-use crate::gmres::gmres;
 use crate::interface::Interface;
+use crate::krylov::gmres;
 use crate::lu::SparseLu;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
-use crate::system::{Symmetry, System};
+use crate::system::{Stamps, Symmetry, System};
 use crate::vector;
 use path::{Path, Sparse};
 
@@ -52,28 +52,6 @@ impl Way {
             Self::WholeCholesky => "cholesky",
             Self::WholeLu => "multifrontal_lu",
             Self::SparseLu => "sparse_lu",
-        }
-    }
-}
-
-/// Stamps of what was factorised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Stamps {
-    bulk_graph: u64,
-    bulk_values: u64,
-    is_coupled: bool,
-    coupling_graph: u64,
-    coupling_values: u64,
-}
-
-impl Stamps {
-    fn of(system: &System<'_>) -> Self {
-        Self {
-            bulk_graph: system.bulk_graph,
-            bulk_values: system.bulk_values,
-            is_coupled: system.active_coupling().is_some(),
-            coupling_graph: system.coupling_graph,
-            coupling_values: system.coupling_values,
         }
     }
 }
@@ -304,22 +282,9 @@ fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64], before: 
     Refined { relative_residual: progress.relative_residual, steps }
 }
 
-/// Entries without pattern, the same every time.
-fn pseudo_random(n: usize) -> Vec<f64> {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    (0..n)
-        .map(|_| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        })
-        .collect()
-}
-
 /// Whether a right-hand side that no singular matrix could produce is solved.
 fn is_regular(system: &System<'_>, path: &Path) -> bool {
-    let x: Vec<f64> = pseudo_random(system.equations());
+    let x: Vec<f64> = check::pseudo_random(system.equations());
     let mut rhs = vec![0.0; x.len()];
     row_sizes(system, &mut rhs);
     rhs.iter_mut().zip(&x).for_each(|(size, x)| *size *= x);
@@ -345,7 +310,7 @@ fn row_sizes(system: &System<'_>, sizes: &mut [f64]) {
 
 /// A vector the matrix nearly maps to zero, by inverse iteration, and `max |A v|ᵢ / (|A| |v|)ᵢ` over the equations.
 fn null_vector(system: &System<'_>, path: &Path) -> (Vec<f64>, f64) {
-    let mut vector = pseudo_random(system.equations());
+    let mut vector = check::pseudo_random(system.equations());
     for _ in 0..4 {
         path.apply(&mut vector);
         let size = vector.iter().fold(0.0_f64, |m, v| m.max(v.abs()));

@@ -49,6 +49,25 @@ impl Brick {
         i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
     }
 
+    /// The six rigid motions, with equation `3 node + direction`.
+    pub fn rigid_motions(&self) -> Vec<Vec<f64>> {
+        let mut motions = vec![vec![0.0; 3 * self.nodes()]; 6];
+        for k in 0..=self.cells[2] {
+            for j in 0..=self.cells[1] {
+                for i in 0..=self.cells[0] {
+                    let (node, at) = (self.node(i, j, k), [i as f64, j as f64, k as f64]);
+                    for d in 0..3 {
+                        let (e, f) = ((d + 1) % 3, (d + 2) % 3);
+                        motions[d][3 * node + d] = 1.0;
+                        motions[3 + d][3 * node + e] = -at[f];
+                        motions[3 + d][3 * node + f] = at[e];
+                    }
+                }
+            }
+        }
+        motions
+    }
+
     /// Nodes of the layer `k` of the third direction.
     pub fn layer(&self, k: usize) -> Vec<usize> {
         let mut nodes = Vec::new();

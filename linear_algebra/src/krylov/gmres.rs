@@ -1,13 +1,7 @@
 //! Restarted GMRES with a preconditioner from the right, so that its residual is the true one.
 
+use super::Progress;
 use crate::vector::{add_scaled, dot, norm};
-
-/// How far an iteration came.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Progress {
-    pub(crate) iterations: usize,
-    pub(crate) relative_residual: f64,
-}
 
 /// Improves `x` until `‖b - A x‖ ≤ tolerance ‖b‖` or `most` iterations are done.
 ///

@@ -1,0 +1,33 @@
+//! Approximate inverses.
+
+mod aggregation;
+mod block_jacobi;
+mod ilu0;
+mod multigrid;
+mod rectangular;
+
+use crate::csr::Csr;
+use crate::solver::Preconditioner;
+use crate::system::Layout;
+
+/// An approximate inverse.
+pub(crate) trait Precondition: Send + Sync {
+    /// Replaces `x` by an approximation of `A⁻¹ x`.
+    fn apply(&self, x: &mut [f64]);
+}
+
+struct Identity;
+
+impl Precondition for Identity {
+    fn apply(&self, _: &mut [f64]) {}
+}
+
+/// The preconditioner asked for, made for `matrix`.
+pub(crate) fn create(kind: Preconditioner, matrix: &Csr, layout: &Layout) -> Box<dyn Precondition> {
+    match kind {
+        Preconditioner::Identity => Box::new(Identity),
+        Preconditioner::BlockJacobi => Box::new(block_jacobi::BlockJacobi::new(matrix, &layout.node)),
+        Preconditioner::Ilu0 => Box::new(ilu0::Ilu0::new(matrix)),
+        Preconditioner::SmoothedAggregation => Box::new(multigrid::Multigrid::new(matrix, layout)),
+    }
+}
