@@ -8,4 +8,6 @@ pub mod elements;
 pub mod laws;
 mod solvers;
 pub mod tensor;
+#[cfg(test)]
+mod test_model;
 pub mod variables;

@@ -101,8 +101,8 @@ pub fn is_inverted(shape: Shape, space: usize, x: &[Vec3]) -> bool {
     let det = |t: &[Vec3; 3]| if space == 2 { signed(dim, t) } else { measure(dim, t) };
     let rule = ShapeTable::default_of(shape);
     let corners = ShapeTable::at_nodes(shape);
-    let bad = |table: &ShapeTable, points: usize| (0..points).any(|g| !(det(&tangents_at(table, g, x)) > 0.0));
-    dim > 0 && (bad(rule, rule.len()) || bad(corners, shape.cell().corners()))
+    let good = |table: &ShapeTable, points: usize| (0..points).all(|g| det(&tangents_at(table, g, x)) > 0.0);
+    dim > 0 && !(good(rule, rule.len()) && good(corners, shape.cell().corners()))
 }
 
 /// Normal at `xi` with the local area (length) as its magnitude; zero for points and solids.

@@ -84,6 +84,7 @@ fn hexahedron(order: usize) -> Vec<QuadraturePoint> {
     points
 }
 
+#[expect(clippy::excessive_precision, reason = "digits as published; the nearest number is meant")]
 fn triangle(order: usize) -> Vec<QuadraturePoint> {
     let p = |x: f64, y: f64, weight: f64| QuadraturePoint { xi: [x, y, 0.0], weight };
     // The orbit of (a, b, b) in the order b at both, a first, a second.
@@ -109,6 +110,7 @@ fn triangle(order: usize) -> Vec<QuadraturePoint> {
     }
 }
 
+#[expect(clippy::excessive_precision, reason = "digits as published; the nearest number is meant")]
 fn tetrahedron(order: usize) -> Vec<QuadraturePoint> {
     let p = |x: f64, y: f64, z: f64, weight: f64| QuadraturePoint { xi: [x, y, z], weight };
     let orbit = |a: f64, b: f64, w: f64| [p(a, b, b, w), p(b, a, b, w), p(b, b, a, w), p(b, b, b, w)];

@@ -63,6 +63,7 @@ impl<T: Algebra> Sub for Jet<T> {
 
 impl<T: Algebra> Mul for Jet<T> {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule is a sum")]
     fn mul(self, b: Self) -> Self {
         Jet { value: self.value * b.value, d: [0, 1, 2].map(|k| self.d[k] * b.value + self.value * b.d[k]) }
     }

@@ -10,6 +10,8 @@ mod results;
 mod small_displacement;
 mod solid;
 #[cfg(test)]
+mod reference_tests;
+#[cfg(test)]
 mod tests;
 mod total_lagrangian;
 mod updated_lagrangian;

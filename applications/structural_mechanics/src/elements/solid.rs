@@ -153,7 +153,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             h[2][2] = radius(n, u) / strained;
             f[2][2] += h[2][2];
             let r = if F::FINITE && !F::PRESENT { strained } else { present };
-            if !(r > 0.0) {
+            if r <= 0.0 || r.is_nan() {
                 return Err(format!("the radius at Gauss point {} is {r}, not positive", g + 1));
             }
             hoop = n.map(|n| n / r);
@@ -165,7 +165,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             strain.iter_mut().zip(square).for_each(|(e, q)| *e += 0.5 * q);
         }
         let det_f = determinant(&f);
-        if (F::FINITE || !material.law.is_linear()) && !(det_f > 0.0) {
+        if (F::FINITE || !material.law.is_linear()) && (det_f <= 0.0 || det_f.is_nan()) {
             return Err(format!("turned inside out at Gauss point {} (det F = {det_f:.3e})", g + 1));
         }
         if F::PRESENT {
