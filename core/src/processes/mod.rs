@@ -4,6 +4,7 @@
 //! the file of that name in `configs/processes/`. They share two workers: [`AssignToNodes`] for values and fixities of
 //! unknowns, [`AssignToEntities`] for data of conditions and elements.
 
+mod output;
 mod process;
 mod scalar_value;
 mod local_axes;

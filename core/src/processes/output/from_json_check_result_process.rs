@@ -1,0 +1,179 @@
+//! Results compared with those of a JSON file; a difference ends the run.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::control::TimeCounter;
+use super::gauss;
+use super::json_output_process::{fields, node_key, passes};
+use super::place::{PartPath, file_of};
+use super::quantity::{GaussQuantity, Quantity, flag_setting};
+use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::model::{Model, ModelPart, SubPart, Table};
+use crate::parameters::Defaults;
+use crate::processes::{Process, ProcessRequest};
+use crate::register;
+use crate::registry::Build;
+
+/// Differences told in full; more are counted.
+const TOLD: usize = 10;
+
+/// Compares at each point in time that the counter gives.
+struct FromJsonCheck {
+    part: PartPath,
+    file: PathBuf,
+    place: Place,
+    reference: Value,
+    times: Vec<f64>,
+    counter: TimeCounter,
+    quantities: Vec<Quantity>,
+    gauss: Vec<GaussQuantity>,
+    flag: Option<&'static str>,
+    history: bool,
+    tolerance: f64,
+    relative_tolerance: f64,
+}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let required = ["model_part_name", "input_file_name"];
+    let settings = &request.settings_with(|defaults: Defaults| defaults.require(&required))?;
+    let file = file_of(settings, "input_file_name", request, "")?;
+    let place = settings.key_place("input_file_name");
+    let text = std::fs::read_to_string(&file).map_err(|e| {
+        Diagnostic::error("missing-file", format!("the reference results {} cannot be read: {e}", file.display()))
+            .at(place.clone())
+            .remedy("\"input_file_name\" is relative to the deck; a json_output_process writes such a file")
+    })?;
+    let problem = |fact: String| Diagnostic::error("invalid-json", fact).at(Place::file(&file));
+    let reference: Value = serde_json::from_str(&text).map_err(|e| problem(format!("not JSON: {e}")))?;
+    let times = numbers(&reference["TIME"]).ok_or_else(|| problem("there is no list \"TIME\"".to_owned()))?;
+    Ok(Box::new(FromJsonCheck {
+        part: PartPath::new(settings)?,
+        file,
+        place,
+        reference,
+        times,
+        counter: TimeCounter::new(settings)?,
+        quantities: Quantity::list(settings, "check_variables", request.report)?,
+        gauss: GaussQuantity::list(settings, "gauss_points_check_variables", request.report)?,
+        flag: flag_setting(settings, "check_for_flag")?,
+        history: settings.get_bool("historical_value")?,
+        tolerance: settings.get_f64("tolerance")?,
+        relative_tolerance: settings.get_f64("relative_tolerance")?,
+    }))
+}
+
+fn numbers(list: &Value) -> Option<Vec<f64>> {
+    list.as_array()?.iter().map(Value::as_f64).collect()
+}
+
+/// The numbers of a list, of component `at` where it is a list of lists.
+fn component(list: &Value, at: usize) -> Option<Vec<f64>> {
+    let pick = |item: &Value| if item.is_array() { item[at].as_f64() } else { item.as_f64().filter(|_| at == 0) };
+    list.as_array()?.iter().map(pick).collect()
+}
+
+impl FromJsonCheck {
+    /// The reference of component `at` of a quantity in `entry` at `time`: linear between the times of the file.
+    fn expected(&self, entry: &Value, name: &str, at: usize, size: usize, time: f64) -> Option<f64> {
+        let named = (size == 3).then(|| entry.get(format!("{name}_{}", ["X", "Y", "Z"][at]))).flatten();
+        let values = match named {
+            Some(list) => numbers(list),
+            None => component(entry.get(name)?, at),
+        }?;
+        let points: Vec<[f64; 2]> = self.times.iter().zip(values).map(|(&t, v)| [t, v]).collect();
+        (!points.is_empty()).then(|| Table::new(points).value(time))
+    }
+
+    fn is_close(&self, a: f64, b: f64) -> bool {
+        (a - b).abs() <= (self.relative_tolerance * a.abs().max(b.abs())).max(self.tolerance)
+    }
+
+    fn compare(&self, part: &ModelPart, selection: &SubPart) -> Vec<String> {
+        let mut wrong = Vec::new();
+        let time = part.info.time;
+        let fields = fields(part, self.history);
+        let mut values = Vec::new();
+        for &node in selection.nodes.iter().filter(|&&node| passes(&part.nodes.flags, self.flag, node)) {
+            let key = node_key(part, node, false);
+            for quantity in &self.quantities {
+                values.resize(quantity.components(fields), 0.0);
+                quantity.read(fields, node, &mut values);
+                self.judge(&self.reference[&key], &key, &quantity.name, &values, time, &mut wrong);
+            }
+        }
+        for quantity in &self.gauss {
+            gauss::each(part, &part.element_blocks, &selection.elements, quantity, |row, gauss| {
+                let element = selection.elements[row];
+                if !passes(&part.elements.flags, self.flag, element) {
+                    return;
+                }
+                let key = format!("ELEMENT_{}", part.elements.ids[element as usize]);
+                for (point, values) in gauss.values.chunks_exact(gauss.components).enumerate() {
+                    let entry = &self.reference[&key][&quantity.name][point.to_string()];
+                    let place = format!("{key} point {point}");
+                    // The lists of a point stand directly below it: named like the entry they are looked up in.
+                    let entry = serde_json::json!({ &quantity.name: entry });
+                    self.judge(&entry, &place, &quantity.name, values, time, &mut wrong);
+                }
+            });
+        }
+        wrong
+    }
+
+    fn judge(&self, entry: &Value, key: &str, name: &str, values: &[f64], time: f64, wrong: &mut Vec<String>) {
+        for (at, &value) in values.iter().enumerate() {
+            match self.expected(entry, name, at, values.len(), time) {
+                Some(expected) if self.is_close(value, expected) => {}
+                Some(expected) => {
+                    let letter = if values.len() > 1 { format!(" component {at}") } else { String::new() };
+                    wrong.push(format!("{key} {name}{letter}: {value:e}, expected {expected:e}"));
+                }
+                None => {
+                    wrong.push(format!("{key} {name}: not in the file"));
+                    return;
+                }
+            }
+        }
+    }
+}
+
+impl Process for FromJsonCheck {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        self.part.find(model).map(|_| ())
+    }
+
+    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+        let (part, selection) = self.part.find(model)?;
+        if !self.counter.acts(&part.info) {
+            return Ok(());
+        }
+        let wrong = self.compare(part, selection);
+        if wrong.is_empty() {
+            return Ok(());
+        }
+        let told: Vec<&str> = wrong.iter().take(TOLD).map(String::as_str).collect();
+        let more = if wrong.len() > TOLD { format!("\n    and {} more", wrong.len() - TOLD) } else { String::new() };
+        Err(Error::System(format!(
+            "{}: results at time {} differ from {} in {} values (tolerance {:e}, relative {:e}):\n    {}{more}",
+            self.place,
+            part.info.time,
+            self.file.display(),
+            wrong.len(),
+            self.tolerance,
+            self.relative_tolerance,
+            told.join("\n    ")
+        )))
+    }
+}
+
+register! { Process "from_json_check_result_process",
+    aliases: &["FromJsonCheckResultProcess"],
+    about: "compares results with those of a JSON file; a difference ends the run",
+    defaults: include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../configs/processes/from_json_check_result_process.json"
+    )),
+    build: Build::Process(build),
+}

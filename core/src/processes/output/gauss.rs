@@ -1,0 +1,182 @@
+//! Quantities at Gauss points, as means of entities, as values at nodes, and as they are.
+
+use rayon::prelude::*;
+
+use super::quantity::GaussQuantity;
+use crate::entities::{EntityBlock, Gauss, StepView};
+use crate::geometry::Shape;
+use crate::io::results::{Column, GaussResult};
+use crate::model::ModelPart;
+
+/// Not in the selection.
+const OUT: u32 = u32::MAX;
+
+/// Calls `visit` with the position in `selected`, the block, its entity number and the values of every entity that
+/// knows the quantity, blocks and entities in their order.
+fn visit(
+    part: &ModelPart,
+    blocks: &[Box<dyn EntityBlock>],
+    selected: &[u32],
+    quantity: &GaussQuantity,
+    mut visit: impl FnMut(usize, &dyn EntityBlock, usize, &Gauss),
+) {
+    let view = part.view();
+    let mut position = vec![OUT; selected.iter().max().map_or(0, |&last| last as usize + 1)];
+    for (at, &item) in selected.iter().enumerate() {
+        position[item as usize] = at as u32;
+    }
+    for block in blocks {
+        let known = block.gauss_variables();
+        let names = [Some(quantity.name.as_str()), quantity.vector.as_deref()];
+        let Some(name) = names.into_iter().flatten().find(|name| known.contains(name)) else { continue };
+        let wanted: Vec<(usize, usize)> = block
+            .members()
+            .iter()
+            .enumerate()
+            .filter_map(|(at, &member)| position.get(member as usize).filter(|&&p| p != OUT).map(|&p| (at, p as usize)))
+            .collect();
+        let values: Vec<Option<Gauss>> =
+            wanted.par_iter().map(|&(at, _)| values_of(block.as_ref(), &view, name, at)).collect();
+        for ((at, row), gauss) in wanted.into_iter().zip(values) {
+            if let Some(gauss) = gauss.filter(|gauss| !gauss.weights.is_empty()) {
+                visit(row, block.as_ref(), at, &gauss);
+            }
+        }
+    }
+}
+
+fn values_of(block: &dyn EntityBlock, view: &StepView<'_>, name: &str, at: usize) -> Option<Gauss> {
+    block.gauss(view, name, at)
+}
+
+/// One value an entity: the plain mean of its Gauss points; zero where the quantity is not known.
+pub(super) fn means(
+    part: &ModelPart,
+    blocks: &[Box<dyn EntityBlock>],
+    selected: &[u32],
+    quantity: &GaussQuantity,
+) -> Column {
+    let mut found: Vec<(usize, Vec<f64>)> = Vec::new();
+    visit(part, blocks, selected, quantity, |row, _, _, gauss| {
+        let mut mean = vec![0.0; gauss.components];
+        for values in gauss.values.chunks_exact(gauss.components) {
+            mean.iter_mut().zip(values).for_each(|(mean, value)| *mean += value);
+        }
+        mean.iter_mut().for_each(|mean| *mean /= gauss.weights.len() as f64);
+        found.push((row, mean));
+    });
+    let components = found.iter().map(|(_, mean)| mean.len()).max().unwrap_or(1);
+    let mut values = vec![0.0; selected.len() * components];
+    for (row, mean) in found {
+        values[row * components..][..mean.len()].copy_from_slice(&mean);
+    }
+    Column::real(&quantity.name, components, values)
+}
+
+/// One value a node: Σ w J |N_i| v / Σ w J |N_i| over the Gauss points of the active entities around it.
+pub(super) fn at_nodes(
+    part: &ModelPart,
+    blocks: &[Box<dyn EntityBlock>],
+    selected: &[u32],
+    nodes: &[u32],
+    quantity: &GaussQuantity,
+) -> Column {
+    let view = part.view();
+    let mut components = 0;
+    let mut sums: Vec<f64> = Vec::new();
+    let mut weights = vec![0.0; part.nodes.len()];
+    visit(part, blocks, selected, quantity, |_, block, at, gauss| {
+        if !block.is_active(at, &view) {
+            return;
+        }
+        if gauss.components > components {
+            let wider = widen(&sums, components, gauss.components, part.nodes.len());
+            (sums, components) = (wider, gauss.components);
+        }
+        let own = block.nodes(at);
+        for (point, weight) in gauss.weights.iter().enumerate() {
+            let values = &gauss.values[point * gauss.components..][..gauss.components];
+            for (&node, shape) in own.iter().zip(&gauss.shape[point * own.len()..]) {
+                let share = weight * shape.abs();
+                weights[node as usize] += share;
+                let sum = &mut sums[node as usize * components..][..gauss.components];
+                sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+            }
+        }
+    });
+    let components = components.max(1);
+    let mut values = vec![0.0; nodes.len() * components];
+    for (row, &node) in values.chunks_exact_mut(components).zip(nodes) {
+        let weight = weights[node as usize];
+        if weight > 0.0 {
+            row.iter_mut().zip(&sums[node as usize * components..]).for_each(|(value, sum)| *value = sum / weight);
+        }
+    }
+    Column::real(&quantity.name, components, values)
+}
+
+/// The rows of a table with more columns, zeros in the new ones.
+fn widen(values: &[f64], from: usize, to: usize, rows: usize) -> Vec<f64> {
+    let mut out = vec![0.0; rows * to];
+    if from > 0 {
+        out.chunks_exact_mut(to).zip(values.chunks_exact(from)).for_each(|(new, old)| new[..from].copy_from_slice(old));
+    }
+    out
+}
+
+/// The values as they are, in one result for each shape and number of points.
+pub(super) fn as_they_are(
+    part: &ModelPart,
+    blocks: &[Box<dyn EntityBlock>],
+    selected: &[u32],
+    ids: &[usize],
+    quantity: &GaussQuantity,
+) -> Vec<GaussResult> {
+    let mut out: Vec<GaussResult> = Vec::new();
+    visit(part, blocks, selected, quantity, |row, block, _, gauss| {
+        let Some(shape) = block.entry().cell else { return };
+        let (count, components) = (gauss.weights.len(), gauss.components);
+        let same = |r: &GaussResult| r.shape == shape && r.points.len() == count && r.components == components;
+        let at = out.iter().position(same).unwrap_or_else(|| {
+            out.push(GaussResult {
+                name: quantity.name.clone(),
+                shape,
+                points: local_points(shape, gauss),
+                components,
+                cells: Vec::new(),
+                values: Vec::new(),
+            });
+            out.len() - 1
+        });
+        out[at].cells.push(ids[selected[row] as usize]);
+        out[at].values.extend_from_slice(&gauss.values);
+    });
+    out
+}
+
+/// Local coordinates of the Gauss points: Σ N_i ξ_i.
+fn local_points(shape: Shape, gauss: &Gauss) -> Vec<[f64; 3]> {
+    let nodes = shape.cell().points;
+    gauss
+        .shape
+        .chunks_exact(nodes.len())
+        .map(|values| {
+            let mut point = [0.0; 3];
+            for (value, node) in values.iter().zip(nodes) {
+                point.iter_mut().zip(node).for_each(|(x, xi)| *x += value * xi);
+            }
+            point
+        })
+        .collect()
+}
+
+/// The values of every Gauss point of every selected entity that knows the quantity: position and values.
+pub(super) fn each(
+    part: &ModelPart,
+    blocks: &[Box<dyn EntityBlock>],
+    selected: &[u32],
+    quantity: &GaussQuantity,
+    mut use_values: impl FnMut(usize, &Gauss),
+) {
+    visit(part, blocks, selected, quantity, |row, _, _, gauss| use_values(row, gauss));
+}

@@ -1,0 +1,218 @@
+//! Results for GiD as text: a mesh file and a results file, or one pair a step.
+
+use std::fs::OpenOptions;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::control::OutputControl;
+use super::gauss;
+use super::picture::{CellChoice, Mesh};
+use super::place::{PartPath, append, one_of, warn_unused};
+use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
+use crate::diagnostics::{Diagnostic, Error, Result};
+use crate::io::replace_file;
+use crate::io::results::{Column, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step};
+use crate::model::{Model, ModelPart, SubPart};
+use crate::parameters::{Defaults, Settings};
+use crate::processes::{Process, ProcessRequest};
+use crate::register;
+use crate::registry::Build;
+
+/// Where the settings of the files are in `Parameters`.
+const FILES: &str = "postprocess_parameters.result_file_configuration.";
+
+/// Writes the mesh before the loop and results as they come.
+struct GidOutput {
+    part: PartPath,
+    control: OutputControl,
+    /// Path of the files without their endings.
+    base: PathBuf,
+    folder: PathBuf,
+    by_time: bool,
+    single: bool,
+    deformed: bool,
+    elements: bool,
+    conditions: bool,
+    body: bool,
+    history: Vec<Quantity>,
+    values: Vec<Quantity>,
+    flags: Vec<&'static str>,
+    gauss: Vec<GaussQuantity>,
+    written: Vec<PathBuf>,
+}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let adapt = |defaults: Defaults| {
+        defaults.require(&["model_part_name", "output_name"]).renamed(
+            "postprocess_parameters.result_file_configuration.output_frequency",
+            "postprocess_parameters.result_file_configuration.output_interval",
+        )
+    };
+    let settings = &request.settings_with(adapt)?;
+    let key = |name: &str| format!("{FILES}{name}");
+    let flag = |name: &str| format!("{FILES}gidpost_flags.{name}");
+    warnings(settings, request)?;
+    let deformed = one_of(settings, &flag("WriteDeformedMeshFlag"), &["WriteUndeformed", "WriteDeformed"])? == 1;
+    let parts = ["WriteElementsOnly", "WriteConditions", "WriteConditionsOnly"];
+    let cells = one_of(settings, &flag("WriteConditionsFlag"), &parts)?;
+    Ok(Box::new(GidOutput {
+        part: PartPath::new(settings)?,
+        control: OutputControl::new(settings, FILES)?,
+        base: request.folder.join(settings.get_str("output_name")?),
+        folder: request.folder.into(),
+        by_time: one_of(settings, &key("file_label"), &["step", "time"])? == 1,
+        single: one_of(settings, &flag("MultiFileFlag"), &["SingleFile", "MultipleFiles"])? == 0,
+        deformed,
+        elements: cells != 2,
+        conditions: cells != 0,
+        body: settings.get_bool(&key("body_output"))?,
+        history: Quantity::list(settings, &key("nodal_results"), request.report)?,
+        values: Quantity::list(settings, &key("nodal_nonhistorical_results"), request.report)?,
+        flags: flag_list(settings, &key("nodal_flags_results"), request.report)?,
+        gauss: GaussQuantity::list(settings, &key("gauss_point_results"), request.report)?,
+        written: Vec::new(),
+    }))
+}
+
+fn warnings(settings: &Settings, request: &mut ProcessRequest<'_>) -> Result<()> {
+    let mode = format!("{FILES}gidpost_flags.GiDPostMode");
+    let modes = ["GiD_PostBinary", "GiD_PostAscii", "GiD_PostAsciiZipped", "GiD_PostHDF5"];
+    if one_of(settings, &mode, &modes)? != 1 {
+        let fact = format!("\"{}\" is written as text (.post.msh, .post.res)", settings.get_str(&mode)?);
+        let problem = Diagnostic::warning("gid-text", fact).at(settings.key_place(&mode));
+        request.report.push(problem.remedy("GiD reads both; write \"GiD_PostAscii\" to say so"));
+    }
+    let lists = ["plane_output", "elemental_conditional_flags_results", "additional_list_files"];
+    let mut lists = lists.map(|key| format!("{FILES}{key}")).to_vec();
+    lists.push("postprocess_parameters.point_data_configuration".to_owned());
+    for key in lists {
+        if !settings.items(&key)?.is_empty() {
+            request.report.push(warn_unused(settings, &key, "cuts, points and flags of entities are not written"));
+        }
+    }
+    let skin = format!("{FILES}skin_output");
+    if settings.get_bool(&skin)? {
+        request.report.push(warn_unused(settings, &skin, "the skin is not written"));
+    }
+    Ok(())
+}
+
+impl GidOutput {
+    /// The file with an ending, with the label where every step has its own.
+    fn path(&self, label: f64, ending: &str) -> PathBuf {
+        let label = if self.single { String::new() } else { format!("_{label}") };
+        append(&self.base, &format!("{label}.post.{ending}"))
+    }
+
+    /// Meshes of elements and conditions; GiD reads the points of both with the first of them.
+    fn mesh(&self, part: &ModelPart, selection: &SubPart, out: &mut impl Write) -> io::Result<()> {
+        let mut drawn = SubPart { children: Default::default(), ..selection.clone() };
+        if self.conditions {
+            drawn.nodes.extend(selection.conditions.iter().flat_map(|&c| part.conditions.nodes(c)));
+        }
+        let mut with_points = true;
+        for (wanted, choice, kind) in [
+            (self.elements, CellChoice::Elements, GidKind::Element),
+            (self.conditions, CellChoice::Conditions, GidKind::Condition),
+        ] {
+            if wanted {
+                let mesh = Mesh::new(part, &drawn, choice, self.deformed).data;
+                write_gid_mesh(out, &mesh, kind, with_points)?;
+                with_points &= mesh.cells.is_empty();
+            }
+        }
+        Ok(())
+    }
+
+    fn results(&self, part: &ModelPart, selection: &SubPart) -> (Vec<usize>, Vec<Column>, Vec<GaussResult>) {
+        let nodes = &selection.nodes;
+        let mut columns: Vec<Column> = Vec::new();
+        columns.extend(self.history.iter().map(|q| q.gather(&part.nodes.history, nodes)));
+        columns.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, nodes)));
+        columns.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, nodes)));
+        let gauss = self.gauss.iter().flat_map(|quantity| {
+            gauss::as_they_are(part, &part.element_blocks, &selection.elements, &part.elements.ids, quantity)
+        });
+        let gauss = if self.elements { gauss.collect() } else { Vec::new() };
+        (nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect(), columns, gauss)
+    }
+
+    fn label(&self, part: &ModelPart) -> f64 {
+        if self.by_time { part.info.time } else { part.info.step as f64 }
+    }
+
+    /// The file that tells GiD which files belong together.
+    fn write_list(&self) -> Result<()> {
+        let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
+        let name = folder.file_name().map_or_else(|| "results".into(), |name| name.to_string_lossy().into_owned());
+        let kind = if self.single { "Single" } else { "Multiple" };
+        replace_file(&self.folder.join(format!("{name}.post.lst")), |out| {
+            writeln!(out, "{kind}")?;
+            for path in &self.written {
+                writeln!(out, "{}", path.strip_prefix(&self.folder).unwrap_or(path).display())?;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Adds to a file that grows over the run.
+fn add_to(path: &Path, fill: impl FnOnce(&mut BufWriter<std::fs::File>) -> io::Result<()>) -> Result<()> {
+    let done = OpenOptions::new().append(true).open(path).and_then(|file| {
+        let mut out = BufWriter::with_capacity(1 << 16, file);
+        fill(&mut out)?;
+        out.flush()
+    });
+    done.map_err(|e| Error::System(format!("{}: cannot be written: {e}", path.display())))
+}
+
+impl Process for GidOutput {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        self.part.find(model).map(|_| ())
+    }
+
+    fn before_loop(&mut self, model: &mut Model) -> Result<()> {
+        let (part, selection) = self.part.find(model)?;
+        if self.single && self.body {
+            replace_file(&self.path(0.0, "msh"), |out| self.mesh(part, selection, out))?;
+        }
+        Ok(())
+    }
+
+    fn is_output_step(&mut self, model: &Model) -> bool {
+        self.body && self.part.find(model).is_ok_and(|(part, _)| self.control.wants(&part.info))
+    }
+
+    fn print_output(&mut self, model: &mut Model) -> Result<()> {
+        let (part, selection) = self.part.find(model)?;
+        let label = self.label(part);
+        let (ids, columns, gauss) = self.results(part, selection);
+        let path = self.path(label, "res");
+        if !self.single {
+            replace_file(&self.path(label, "msh"), |out| self.mesh(part, selection, out))?;
+        }
+        if self.written.contains(&path) {
+            add_to(&path, |out| write_gid_step(out, label, &ids, &columns, &gauss))?;
+        } else {
+            replace_file(&path, |out| {
+                write_gid_results_head(out, &gauss)?;
+                write_gid_step(out, label, &ids, &columns, &gauss)
+            })?;
+            self.written.push(path);
+            self.write_list()?;
+        }
+        self.control.written(&part.info);
+        Ok(())
+    }
+
+    fn outputs(&self) -> Vec<PathBuf> {
+        self.written.first().cloned().into_iter().collect()
+    }
+}
+
+register! { Process "gid_output_process",
+    aliases: &["GiDOutputProcess"],
+    about: "writes text files for GiD: mesh (.post.msh) and results (.post.res)",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/gid_output_process.json")),
+    build: Build::Process(build),
+}

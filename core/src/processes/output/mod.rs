@@ -1,0 +1,16 @@
+//! Processes that write results or compare them with those of a file.
+//!
+//! Each `*_process.rs` gathers plain data of a model part ([`picture`], [`gauss`]) and hands it to a writer of
+//! [`crate::io::results`]; none of them changes the model.
+
+mod control;
+mod from_json_check_result_process;
+mod gauss;
+mod gid_output_process;
+mod json_output_process;
+mod picture;
+mod place;
+mod quantity;
+#[cfg(test)]
+mod tests;
+mod vtk_output_process;

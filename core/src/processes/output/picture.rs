@@ -1,0 +1,156 @@
+//! What a picture of a model part shows: settings shared by the VTK and VTU processes, and the data they ask for.
+
+use super::gauss;
+use super::place::one_of;
+use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
+use crate::diagnostics::{Report, Result};
+use crate::io::results::{Column, Dataset};
+use crate::model::{EntityTable, ModelPart, SubPart};
+use crate::parameters::Settings;
+use crate::registry::Kind;
+
+/// Which entities are the cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum CellChoice {
+    /// Elements where there are any, else conditions.
+    Automatic,
+    Elements,
+    Conditions,
+}
+
+/// Points and cells of a part, with the indices they come from.
+pub(super) struct Mesh {
+    pub(super) data: Dataset,
+    /// Node index of each point.
+    pub(super) nodes: Vec<u32>,
+    /// Entity index of each cell.
+    pub(super) cells: Vec<u32>,
+    /// Whether the cells are elements or conditions.
+    pub(super) kind: Kind,
+}
+
+impl Mesh {
+    /// The mesh of a part; nodes of its cells belong to it even where the part does not list them.
+    pub(super) fn new(part: &ModelPart, selection: &SubPart, choice: CellChoice, deformed: bool) -> Self {
+        let elements = match choice {
+            CellChoice::Automatic => !selection.elements.is_empty(),
+            CellChoice::Elements => true,
+            CellChoice::Conditions => false,
+        };
+        let (kind, table, chosen) = match elements {
+            true => (Kind::Element, &part.elements, &selection.elements),
+            false => (Kind::Condition, &part.conditions, &selection.conditions),
+        };
+        let drawn = |&&at: &&u32| table.kinds[at as usize].cell.is_some();
+        let cells: Vec<u32> = chosen.iter().filter(drawn).copied().collect();
+        let mut used = vec![false; part.nodes.len()];
+        let own = cells.iter().flat_map(|&cell| table.nodes(cell));
+        selection.nodes.iter().chain(own).for_each(|&node| used[node as usize] = true);
+        let nodes: Vec<u32> = (0..part.nodes.len() as u32).filter(|&node| used[node as usize]).collect();
+        let data = dataset(part, table, &nodes, &cells, deformed);
+        Self { data, nodes, cells, kind }
+    }
+
+    /// The table of the cells.
+    pub(super) fn table<'m>(&self, part: &'m ModelPart) -> &'m EntityTable {
+        if self.kind == Kind::Element { &part.elements } else { &part.conditions }
+    }
+}
+
+fn dataset(part: &ModelPart, table: &EntityTable, nodes: &[u32], cells: &[u32], deformed: bool) -> Dataset {
+    let mut point_of = vec![0_u32; part.nodes.len()];
+    for (point, &node) in nodes.iter().enumerate() {
+        point_of[node as usize] = point as u32;
+    }
+    let positions = if deformed { &part.nodes.current } else { &part.nodes.initial };
+    let mut data = Dataset {
+        point_ids: nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect(),
+        points: nodes.iter().map(|&node| positions[node as usize]).collect(),
+        ..Dataset::default()
+    };
+    for &cell in cells {
+        let at = cell as usize;
+        if let Some(shape) = table.kinds[at].cell {
+            let points = table.nodes(cell).iter().map(|&node| point_of[node as usize]);
+            data.cells.push(table.ids[at], table.properties[at], shape, points);
+        }
+    }
+    data
+}
+
+/// The columns a deck asks for.
+pub(super) struct Picture {
+    choice: CellChoice,
+    deformed: bool,
+    ids: bool,
+    history: Vec<Quantity>,
+    values: Vec<Quantity>,
+    flags: Vec<&'static str>,
+    extrapolated: Vec<GaussQuantity>,
+    element_values: Vec<Quantity>,
+    element_flags: Vec<&'static str>,
+    condition_values: Vec<Quantity>,
+    condition_flags: Vec<&'static str>,
+    gauss: Vec<GaussQuantity>,
+}
+
+impl Picture {
+    /// Reads the keys that VTK and VTU share.
+    pub(super) fn new(settings: &Settings, report: &mut Report) -> Result<Self> {
+        let choice = match one_of(settings, "entity_type", &["automatic", "element", "condition"])? {
+            0 => CellChoice::Automatic,
+            1 => CellChoice::Elements,
+            _ => CellChoice::Conditions,
+        };
+        Ok(Self {
+            choice,
+            deformed: settings.get_bool("write_deformed_configuration")?,
+            ids: settings.get_bool("write_ids")?,
+            history: Quantity::list(settings, "nodal_solution_step_data_variables", report)?,
+            values: Quantity::list(settings, "nodal_data_value_variables", report)?,
+            flags: flag_list(settings, "nodal_flags", report)?,
+            extrapolated: GaussQuantity::list(settings, "gauss_point_variables_extrapolated_to_nodes", report)?,
+            element_values: Quantity::list(settings, "element_data_value_variables", report)?,
+            element_flags: flag_list(settings, "element_flags", report)?,
+            condition_values: Quantity::list(settings, "condition_data_value_variables", report)?,
+            condition_flags: flag_list(settings, "condition_flags", report)?,
+            gauss: GaussQuantity::list(settings, "gauss_point_variables_in_elements", report)?,
+        })
+    }
+
+    /// The picture of one part now.
+    pub(super) fn draw(&self, part: &ModelPart, selection: &SubPart) -> Dataset {
+        let mut mesh = Mesh::new(part, selection, self.choice, self.deformed);
+        mesh.data.point_data = self.point_data(part, selection, &mesh);
+        mesh.data.cell_data = self.cell_data(part, &mesh);
+        mesh.data
+    }
+
+    fn point_data(&self, part: &ModelPart, selection: &SubPart, mesh: &Mesh) -> Vec<Column> {
+        let mut out: Vec<Column> = Vec::new();
+        out.extend(self.history.iter().map(|q| q.gather(&part.nodes.history, &mesh.nodes)));
+        out.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, &mesh.nodes)));
+        for quantity in &self.extrapolated {
+            out.push(gauss::at_nodes(part, &part.element_blocks, &selection.elements, &mesh.nodes, quantity));
+        }
+        out.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, &mesh.nodes)));
+        out.extend(self.ids.then(|| Column::ids("KRATOS_NODE_ID", &mesh.data.point_ids)));
+        out
+    }
+
+    fn cell_data(&self, part: &ModelPart, mesh: &Mesh) -> Vec<Column> {
+        let table = mesh.table(part);
+        let (quantities, flags, blocks, id) = match mesh.kind {
+            Kind::Element => (&self.element_values, &self.element_flags, &part.element_blocks, "KRATOS_ELEMENT_ID"),
+            _ => (&self.condition_values, &self.condition_flags, &part.condition_blocks, "KRATOS_CONDITION_ID"),
+        };
+        let mut out: Vec<Column> = quantities.iter().map(|q| q.gather(&table.data, &mesh.cells)).collect();
+        out.extend(flags.iter().map(|flag| flag_column(&table.flags, flag, &mesh.cells)));
+        out.extend(self.gauss.iter().map(|quantity| gauss::means(part, blocks, &mesh.cells, quantity)));
+        if self.ids {
+            out.push(Column::ids("PROPERTIES_ID", &mesh.data.cells.properties));
+            out.push(Column::ids(id, &mesh.data.cells.ids));
+        }
+        out
+    }
+}

@@ -1,0 +1,129 @@
+//! Named quantities of nodes and entities, read into columns.
+
+use crate::diagnostics::{Diagnostic, Report, Result};
+use crate::io::results::Column;
+use crate::io::variables::unknown_variable;
+use crate::model::flags::flag;
+use crate::model::{Field, Fields, Flags, Named, VariableKind, named, variables};
+use crate::parameters::Settings;
+
+/// A variable, or a component of one, that a column may hold.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Quantity {
+    /// The name the deck uses.
+    pub(super) name: String,
+    variable: Named,
+}
+
+impl Quantity {
+    pub(super) fn new(name: &str) -> Result<Self, Diagnostic> {
+        let variable = named(name).ok_or_else(|| unknown_variable(name))?;
+        Ok(Self { name: name.to_owned(), variable })
+    }
+
+    /// The quantities a list of the deck names; problems go to `report`.
+    pub(super) fn list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
+        each(settings, key, report, Self::new)
+    }
+
+    /// The column it is in.
+    fn column<'f>(&self, fields: &'f Fields) -> Option<&'f Field> {
+        fields.get(self.variable.column().0)
+    }
+
+    /// How many numbers it takes; a quantity that is nowhere stored reads as zero.
+    pub(super) fn components(&self, fields: &Fields) -> usize {
+        match self.variable {
+            Named::Component(_) => 1,
+            Named::Whole(_, kind) => {
+                let natural = if kind == VariableKind::Vector3 { 3 } else { 1 };
+                self.column(fields).map_or(natural, |field| field.components)
+            }
+        }
+    }
+
+    /// Its numbers at one item, to `out`.
+    pub(super) fn read(&self, fields: &Fields, item: u32, out: &mut [f64]) {
+        let Some(field) = self.column(fields) else { return out.fill(0.0) };
+        let at = item as usize * field.components + self.variable.column().1;
+        out.copy_from_slice(&field.levels[0][at..at + out.len()]);
+    }
+
+    /// Its numbers at many items.
+    pub(super) fn gather(&self, fields: &Fields, items: &[u32]) -> Column {
+        let components = self.components(fields);
+        let mut values = vec![0.0; items.len() * components];
+        for (row, &item) in values.chunks_exact_mut(components).zip(items) {
+            self.read(fields, item, row);
+        }
+        Column::real(&self.name, components, values)
+    }
+}
+
+/// A variable at Gauss points; which blocks know it is seen when they are asked.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct GaussQuantity {
+    /// The name the deck uses.
+    pub(super) name: String,
+    /// The name blocks are asked for when they do not know the first: stresses as vectors instead of tensors.
+    pub(super) vector: Option<String>,
+}
+
+impl GaussQuantity {
+    pub(super) fn new(name: &str) -> Result<Self, Diagnostic> {
+        let vector = name.strip_suffix("_TENSOR").map(|stem| format!("{stem}_VECTOR"));
+        let known = |name: &str| variables().contains_key(name);
+        if !known(name) && !vector.as_deref().is_some_and(known) {
+            return Err(unknown_variable(name));
+        }
+        Ok(Self { name: name.to_owned(), vector })
+    }
+
+    /// As [`Quantity::list`].
+    pub(super) fn list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
+        each(settings, key, report, Self::new)
+    }
+}
+
+/// The flags a list of the deck names; problems go to `report`.
+pub(super) fn flag_list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<&'static str>> {
+    each(settings, key, report, known_flag)
+}
+
+/// The flag a setting names; `None` when it is empty.
+///
+/// # Errors
+/// `unknown-flag`.
+pub(super) fn flag_setting(settings: &Settings, key: &str) -> Result<Option<&'static str>> {
+    let name = settings.get_str(key)?;
+    if name.is_empty() {
+        return Ok(None);
+    }
+    known_flag(name).map(Some).map_err(|problem| problem.at(settings.key_place(key)).into())
+}
+
+fn known_flag(name: &str) -> Result<&'static str, Diagnostic> {
+    flag(name).map_err(|hint| Diagnostic::error("unknown-flag", format!("there is no flag {name}")).remedy(hint))
+}
+
+fn each<T>(
+    settings: &Settings,
+    key: &str,
+    report: &mut Report,
+    make: impl Fn(&str) -> Result<T, Diagnostic>,
+) -> Result<Vec<T>> {
+    let mut out = Vec::new();
+    for item in settings.items(key)? {
+        match make(item.str()?) {
+            Ok(made) => out.push(made),
+            Err(problem) => report.push(problem.at(item.place())),
+        }
+    }
+    Ok(out)
+}
+
+/// A flag as numbers: 1 set, 0 unset, -1 undefined.
+pub(super) fn flag_column(flags: &Flags, name: &'static str, items: &[u32]) -> Column {
+    let state = |&item: &u32| flags.get(name, item as usize).map_or(-1.0, |set| f64::from(u8::from(set)));
+    Column::real(name, 1, items.iter().map(state).collect())
+}

@@ -1,0 +1,149 @@
+//! Pictures for ParaView: `vtk_output_process` in Kratos' legacy form, `vtu_output_process` compressed with a PVD series.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use super::control::{OutputControl, Unit};
+use super::picture::Picture;
+use super::place::{PartPath, one_of};
+use crate::diagnostics::{Error, Result};
+use crate::io::results::{VtkFormat, write_pvd, write_vtk, write_vtu};
+use crate::model::{Model, ModelPart, SubPart};
+use crate::parameters::Defaults;
+use crate::processes::{Process, ProcessRequest};
+use crate::register;
+use crate::registry::Build;
+
+/// Writes one file a step and part.
+struct VtkOutput {
+    part: PartPath,
+    control: OutputControl,
+    picture: Picture,
+    /// `None` writes VTU.
+    legacy: Option<VtkFormat>,
+    folder: PathBuf,
+    /// Whether files of earlier runs in the folder are removed.
+    clears: bool,
+    prefix: String,
+    postfix: String,
+    decimals: usize,
+    sub_parts: bool,
+    /// Time and file of every step written, by series.
+    series: BTreeMap<String, Vec<(f64, String)>>,
+}
+
+fn adapt(defaults: Defaults) -> Defaults {
+    defaults
+        .require(&["model_part_name"])
+        .renamed("output_frequency", "output_interval")
+        .renamed("folder_name", "output_path")
+        .renamed("write_properties_id", "write_ids")
+}
+
+fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Process>> {
+    let settings = &request.settings_with(adapt)?;
+    let decimals = settings.get_usize("output_precision")?;
+    let legacy = if is_vtu {
+        None
+    } else {
+        let formats = [VtkFormat::Ascii { precision: decimals }, VtkFormat::Binary];
+        Some(formats[one_of(settings, "file_format", &["ascii", "binary"])?])
+    };
+    let in_folder = settings.get_bool("save_output_files_in_folder")?;
+    let folder = if in_folder { request.folder.join(settings.get_str("output_path")?) } else { request.folder.into() };
+    Ok(Box::new(VtkOutput {
+        part: PartPath::new(settings)?,
+        control: OutputControl::new(settings, "")?,
+        picture: Picture::new(settings, request.report)?,
+        legacy,
+        folder,
+        clears: in_folder,
+        prefix: settings.get_str("custom_name_prefix")?.to_owned(),
+        postfix: settings.get_str("custom_name_postfix")?.to_owned(),
+        decimals,
+        sub_parts: settings.get_bool("output_sub_model_parts")?,
+        series: BTreeMap::new(),
+    }))
+}
+
+impl VtkOutput {
+    fn write(&mut self, part: &ModelPart, selection: &SubPart, path: &str) -> Result<()> {
+        let data = self.picture.draw(part, selection);
+        let label = match self.control.unit {
+            Unit::Step => part.info.step.to_string(),
+            Unit::Time => format!("{:.*}", self.decimals, part.info.time),
+        };
+        let series = format!("{}{}{}", self.prefix, path.replace('.', "_"), self.postfix);
+        let Some(format) = self.legacy else {
+            let file = format!("{series}_{label}.vtu");
+            write_vtu(&self.folder.join(&file), &data)?;
+            let steps = self.series.entry(series.clone()).or_default();
+            steps.push((part.info.time, file));
+            return write_pvd(&self.folder.join(format!("{series}.pvd")), steps);
+        };
+        write_vtk(&self.folder.join(format!("{series}_0_{label}.vtk")), &data, format)
+    }
+
+    /// Removes the pictures of an earlier run, so that no step of it is taken for one of this run.
+    fn clear(&self) -> Result<()> {
+        let endings: &[&str] = if self.legacy.is_some() { &["vtk"] } else { &["vtu", "pvd"] };
+        for entry in std::fs::read_dir(&self.folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            if path.extension().and_then(|e| e.to_str()).is_some_and(|e| endings.contains(&e)) && path.is_file() {
+                std::fs::remove_file(&path)
+                    .map_err(|e| Error::System(format!("{}: cannot be removed: {e}", path.display())))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Process for VtkOutput {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        self.part.find(model).map(|_| ())
+    }
+
+    fn before_loop(&mut self, _model: &mut Model) -> Result<()> {
+        if self.clears { self.clear() } else { Ok(()) }
+    }
+
+    fn is_output_step(&mut self, model: &Model) -> bool {
+        self.part.find(model).is_ok_and(|(part, _)| self.control.wants(&part.info))
+    }
+
+    fn print_output(&mut self, model: &mut Model) -> Result<()> {
+        let path = self.part.path.clone();
+        let (part, selection) = self.part.find(model)?;
+        self.write(part, selection, &path)?;
+        if self.sub_parts {
+            for (name, child) in &selection.children {
+                if !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty() {
+                    self.write(part, child, &format!("{path}.{name}"))?;
+                }
+            }
+        }
+        self.control.written(&part.info);
+        Ok(())
+    }
+
+    fn outputs(&self) -> Vec<PathBuf> {
+        if self.legacy.is_some() {
+            return vec![self.folder.clone()];
+        }
+        self.series.keys().map(|series| self.folder.join(format!("{series}.pvd"))).collect()
+    }
+}
+
+register! { Process "vtk_output_process",
+    aliases: &["VtkOutputProcess"],
+    about: "writes legacy VTK files for ParaView, laid out as Kratos writes them",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/vtk_output_process.json")),
+    build: Build::Process(|request| build(request, false)),
+}
+
+register! { Process "vtu_output_process",
+    aliases: &["VtuOutputProcess"],
+    about: "writes compressed VTU files in double precision and a PVD file that lists them with their times",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/vtu_output_process.json")),
+    build: Build::Process(|request| build(request, true)),
+}
