@@ -91,12 +91,12 @@ fn misplaced(name: &str, seen: &[String], part: &ModelPart) -> Option<Diagnostic
 }
 
 fn read_material(material: &Node, properties: &mut Properties, report: &mut Report) {
-    if let Some(law) = material.get("constitutive_law").and_then(|law| law.get("name")) {
-        if let Some(name) = report.absorb(law.str()) {
-            match law_name(name) {
-                Ok(name) => properties.law = Some(name),
-                Err(problem) => report.push(problem.at(law.place())),
-            }
+    if let Some(law) = material.get("constitutive_law").and_then(|law| law.get("name"))
+        && let Some(name) = report.absorb(law.str())
+    {
+        match law_name(name) {
+            Ok(name) => properties.law = Some(name),
+            Err(problem) => report.push(problem.at(law.place())),
         }
     }
     for member in material.get("Variables").and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order()) {

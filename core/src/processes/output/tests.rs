@@ -193,7 +193,7 @@ fn vtu_files_come_with_a_series() {
 fn json_is_written_by_the_strict_counter_and_checks_itself() {
     let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
     let parameters = r#"{"model_part_name": "Structure", "sub_model_part_name": "Edge", "output_file_name": "r/a.json",
-        "output_variables": ["DISPLACEMENT", "DISPLACEMENT_Y"], "time_frequency": 0.1}"#;
+        "output_variables": ["DISPLACEMENT"], "time_frequency": 0.1}"#;
     let mut process = make("json_output_process", parameters, &mut model, folder.path()).0.unwrap();
     run(process.as_mut(), &mut model, 7, 0.1).unwrap();
     let text = std::fs::read_to_string(folder.path().join("r/a.json")).unwrap();
@@ -202,13 +202,7 @@ fn json_is_written_by_the_strict_counter_and_checks_itself() {
     let times: Vec<f64> = json["TIME"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
     assert_eq!(times, [0.2, 0.30000000000000004, 0.5, 0.7]);
     let node = json["NODE_4"].as_object().unwrap();
-    assert_eq!(
-        node.keys().collect::<Vec<_>>(),
-        ["DISPLACEMENT_X", "DISPLACEMENT_Y", "DISPLACEMENT_Z", "DISPLACEMENT_Y"]
-            .into_iter()
-            .take(3)
-            .collect::<Vec<_>>()
-    );
+    assert_eq!(node.keys().collect::<Vec<_>>(), ["DISPLACEMENT_X", "DISPLACEMENT_Y", "DISPLACEMENT_Z"]);
     assert_eq!(node["DISPLACEMENT_X"], serde_json::json!([8.0, 12.0, 20.0, 28.0]));
     assert!(text.starts_with("{\n  \"TIME\": [\n    0.2,\n"), "{text}");
 
