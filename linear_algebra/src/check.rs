@@ -7,6 +7,9 @@ use crate::vector;
 /// Largest number of equations named in an error.
 pub(crate) const NAMED_EQUATIONS: usize = 16;
 
+/// Nodes without equations that a layout may have, for each equation.
+const NODES_PER_EQUATION: usize = 64;
+
 /// Refuses input whose sizes do not fit or that is not finite.
 pub(crate) fn input(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), SolveError> {
     let n = system.equations();
@@ -21,6 +24,10 @@ pub(crate) fn input(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), S
         if size != n {
             return Err(SolveError::Failed(format!("{what} has {size} equations, the matrix {n}")));
         }
+    }
+    if let Some(i) = system.layout.node.iter().position(|&node| node as usize > NODES_PER_EQUATION * (n + 1024)) {
+        let node = system.layout.node[i];
+        return Err(SolveError::Failed(format!("layout: node {node} of equation {i} is out of range, count from 0")));
     }
     if let Some(i) = rhs.iter().position(|b| !b.is_finite()) {
         return Err(SolveError::Failed(format!("right-hand side of equation {i} is {}", rhs[i])));
@@ -63,6 +70,8 @@ impl Refined {
     }
 }
 
+/// Share of `|A| |x|` that rounding may leave in a residual.
+const ROUNDING: f64 = 1e-14;
 /// Residual at which further refinement gains nothing.
 const GOOD_ENOUGH: f64 = 1e-11;
 
@@ -103,6 +112,26 @@ pub(crate) fn refine(
         best = size;
     }
     Refined { relative_residual: best, steps: most_steps }
+}
+
+/// `|A| |x|`, row by row.
+pub(crate) fn magnitude(system: &System<'_>, x: &[f64]) -> Vec<f64> {
+    let of_row = |i: usize| {
+        let matrices = [Some(system.bulk), system.active_coupling()].into_iter().flatten();
+        matrices
+            .map(|matrix| {
+                let (columns, values) = matrix.row(i);
+                columns.iter().zip(values).map(|(&j, a)| (a * x[j as usize]).abs()).sum::<f64>()
+            })
+            .sum()
+    };
+    (0..x.len()).map(of_row).collect()
+}
+
+/// Whether the residual of `x` is what rounding leaves of the products it is made of, so that no method does better.
+pub(crate) fn is_rounding(system: &System<'_>, rhs: &[f64], x: &[f64]) -> bool {
+    let mut residual = vec![0.0; x.len()];
+    system.residual(rhs, x, &mut residual) <= ROUNDING * vector::norm(&magnitude(system, x))
 }
 
 /// The error for an answer whose residual is too large.

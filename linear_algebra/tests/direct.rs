@@ -160,6 +160,70 @@ fn equal_stamps_reuse_and_new_ones_renew() {
 }
 
 #[test]
+fn the_bulk_of_an_interface_need_not_be_definite_or_symmetric() {
+    let sample = contact(7, 0.1, |at| at % 4 != 0);
+    let mut indefinite = sample.bulk.clone();
+    for i in 0..indefinite.rows {
+        if let Some(at) = indefinite.find(i, i) {
+            indefinite.values[at] -= 0.8e5;
+        }
+    }
+    let mut unsymmetric = sample.bulk.clone();
+    unsymmetric.values.iter_mut().enumerate().for_each(|(at, value)| *value *= 1.0 + 1e-3 * (at % 13) as f64);
+    for (bulk, symmetry) in [(indefinite, Symmetry::Symmetric), (unsymmetric, Symmetry::General)] {
+        let system = System {
+            coupling: Some(&sample.coupling),
+            coupling_symmetric: false,
+            ..System::bulk(&sample.layout, &bulk, symmetry)
+        };
+        let (report, error) = solve_known(&mut *direct(9000), &system);
+        assert_eq!(report.engine, "multifrontal_lu+interface");
+        assert!(error < 1e-6, "{symmetry:?}: {error}");
+    }
+}
+
+#[test]
+fn an_interface_may_move() {
+    let brick = Brick { cells: [7; 3] };
+    let (bulk, layout) = clamped_box(7);
+    let n = bulk.rows;
+    let mut solver = direct(9000);
+    for step in 0..6 {
+        let (a, b) = (brick.node(step, 0, 7), brick.node(7 - step, 7, 7));
+        let spring = [(3 * a, 3 * a, 1.0), (3 * a, 3 * b, -1.0), (3 * b, 3 * a, -1.0), (3 * b, 3 * b, 1.0)];
+        let coupling = Csr::from_triplets(n, &spring);
+        let system = System {
+            coupling: (step != 3).then_some(&coupling),
+            coupling_graph: step as u64,
+            coupling_values: step as u64,
+            ..System::bulk(&layout, &bulk, Symmetry::PositiveDefinite)
+        };
+        let (report, error) = solve_known(&mut *solver, &system);
+        assert_eq!(report.engine, "cholesky+interface");
+        assert!(error < 1e-9, "step {step}: {error}");
+    }
+}
+
+/// Graphs whose elimination trees are as deep or as wide as they get.
+#[test]
+fn odd_graphs_are_factorised() {
+    let n = 20_000;
+    let chain: Vec<(usize, usize, f64)> = (1..n).flat_map(|i| [(i, i - 1, -1.0), (i - 1, i, -1.0)]).collect();
+    let star: Vec<(usize, usize, f64)> = (1..n).flat_map(|i| [(i, 0, -1.0), (0, i, -1.0)]).collect();
+    let band: Vec<(usize, usize, f64)> = (0..n)
+        .flat_map(|i| (1..20).filter(move |d| i + d < n).flat_map(move |d| [(i, i + d, -0.1), (i + d, i, -0.1)]))
+        .collect();
+    for (mut triplets, diagonal) in [(chain, 2.5), (star, 2.0 * n as f64), (band, 4.0), (Vec::new(), 3.0)] {
+        triplets.extend((0..n).map(|i| (i, i, diagonal)));
+        let (bulk, layout) = (Csr::from_triplets(n, &triplets), Layout::scalar(n));
+        for symmetry in [Symmetry::PositiveDefinite, Symmetry::General] {
+            let (_, error) = solve_known(&mut *direct(9000), &System::bulk(&layout, &bulk, symmetry));
+            assert!(error < 1e-10, "{error}");
+        }
+    }
+}
+
+#[test]
 fn a_singular_matrix_names_its_equations() {
     let brick = Brick { cells: [6, 6, 6] };
     let loose = Brick { cells: [2, 2, 2] };
@@ -180,6 +244,30 @@ fn a_singular_matrix_names_its_equations() {
                 assert!(rank_deficiency.is_some());
             }
             other => panic!("a loose body was not noticed: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_body_that_lost_contact_is_named() {
+    for (n, limit) in [(3, 9000), (7, 9000), (7, 0), (10, 9000)] {
+        let sample = contact(n, 0.1, |_| false);
+        let system = System {
+            coupling: Some(&sample.coupling),
+            coupling_symmetric: false,
+            ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+        };
+        let mut x = vec![0.0; system.equations()];
+        let rhs = right_hand_side(x.len());
+        match direct(limit).solve(&system, &rhs, &mut x) {
+            Err(SolveError::Singular { equations, .. }) => {
+                let lower = 3 * (n + 1).pow(3);
+                assert!(
+                    !equations.is_empty() && equations.iter().all(|&i| i >= lower && i < 2 * lower),
+                    "{equations:?}"
+                );
+            }
+            other => panic!("{n} cells: {other:?}"),
         }
     }
 }

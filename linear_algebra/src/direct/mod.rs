@@ -21,6 +21,8 @@ use path::{Path, Sparse};
 const SMALL_INTERFACE: usize = 1500;
 /// Multiplications of an LU of the whole matrix, divided by the square of its size; typical of solids.
 const WHOLE_WORK: f64 = 40.0;
+/// Share of a renewed factorisation of the bulk that a larger dense block may cost at each solve instead.
+const RENEWAL_SHARE: f64 = 0.05;
 /// Largest system given to the slow last resort.
 const SPARSE_LU_LIMIT: usize = 60_000;
 /// Residual that refinement should reach; above it Krylov iteration is tried.
@@ -29,7 +31,7 @@ const WANTED: f64 = 1e-10;
 const KRYLOV_ITERATIONS: usize = 40;
 /// Factorisations without another attempt at Cholesky, after one failed.
 const CHOLESKY_PAUSE: usize = 4;
-/// `‖A v‖ / (‖A‖ ‖v‖)` below which `v` proves the matrix singular.
+/// `‖A v‖ / ‖|A| 1‖` below which a vector `v` of size one proves the matrix singular.
 const NULL_VECTOR: f64 = 1e-10;
 
 /// The ways, from the preferred one to the last resort.
@@ -114,10 +116,11 @@ impl DirectSolver {
             && *graph == system.bulk_graph
             && old.len() == wanted.len()
         {
-            let affordable = needed.max(SMALL_INTERFACE / 2) * 3 / 2;
+            let cube = |order: usize| 2.0 / 3.0 * (order as f64).powi(3);
+            let renewal = RENEWAL_SHARE * WHOLE_WORK * (wanted.len() as f64).powi(2);
             let union: Vec<bool> = old.iter().zip(&wanted).map(|(a, b)| *a || *b).collect();
             let size = count(&union);
-            if size <= affordable.min(self.settings.interface_limit) {
+            if size <= self.settings.interface_limit && cube(size) <= 2.0 * cube(needed) + renewal {
                 *old = union;
                 return size;
             }
@@ -242,7 +245,7 @@ impl DirectSolver {
             return Ok(None);
         }
         let mut refined = check::refine(system, rhs, x, self.settings.refinements, |r| path.apply(r));
-        if !refined.reaches(WANTED) {
+        if !refined.reaches(WANTED) && !check::is_rounding(system, rhs, x) {
             refined = krylov(system, &path, rhs, x, refined);
         }
         let good = refined.reaches(self.settings.tolerance);
@@ -285,8 +288,7 @@ fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64], before: 
 /// Whether a right-hand side that no singular matrix could produce is solved.
 fn is_regular(system: &System<'_>, path: &Path) -> bool {
     let x: Vec<f64> = check::pseudo_random(system.equations());
-    let mut rhs = vec![0.0; x.len()];
-    row_sizes(system, &mut rhs);
+    let mut rhs = check::magnitude(system, &vec![1.0; x.len()]);
     rhs.iter_mut().zip(&x).for_each(|(size, x)| *size *= x);
     let mut solution = vec![0.0; x.len()];
     let mut refined = check::refine(system, &rhs, &mut solution, 2, |r| path.apply(r));
@@ -296,19 +298,7 @@ fn is_regular(system: &System<'_>, path: &Path) -> bool {
     refined.reaches(1e-8)
 }
 
-/// Sum of the sizes of the entries of each row.
-fn row_sizes(system: &System<'_>, sizes: &mut [f64]) {
-    for (i, size) in sizes.iter_mut().enumerate() {
-        *size = [Some(system.bulk), system.active_coupling()]
-            .into_iter()
-            .flatten()
-            .flat_map(|matrix| matrix.row(i).1)
-            .map(|value| value.abs())
-            .sum();
-    }
-}
-
-/// A vector the matrix nearly maps to zero, by inverse iteration, and `max |A v|ᵢ / (|A| |v|)ᵢ` over the equations.
+/// A vector the matrix nearly maps to zero, by inverse iteration, and how nearly: `‖A v‖ / ‖|A| 1‖`, `v` of size one.
 fn null_vector(system: &System<'_>, path: &Path) -> (Vec<f64>, f64) {
     let mut vector = check::pseudo_random(system.equations());
     for _ in 0..4 {
@@ -321,9 +311,8 @@ fn null_vector(system: &System<'_>, path: &Path) -> (Vec<f64>, f64) {
     }
     let mut image = vec![0.0; vector.len()];
     system.mul_vec(&vector, &mut image);
-    let mut sizes = vec![0.0; vector.len()];
-    row_sizes(system, &mut sizes);
-    (vector, vector::norm(&image) / vector::norm(&sizes))
+    let ratio = vector::norm(&image) / vector::norm(&check::magnitude(system, &vec![1.0; vector.len()]));
+    (vector, ratio)
 }
 
 /// Equations with the largest entries of a vector, largest first.

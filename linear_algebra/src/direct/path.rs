@@ -25,7 +25,14 @@ pub(crate) struct Sparse {
 impl Sparse {
     /// Orders `pattern`, keeping the equations of `last` for a dense root.
     pub(crate) fn new(pattern: &Csr, system: &System<'_>, last: &[bool]) -> Result<Self, SolveError> {
-        Ok(Self { symbolic: Arc::new(Symbolic::new(pattern, system.layout, last)?), scatter: None, factor: None })
+        let symbolic = Symbolic::new(pattern, system.layout, last)?;
+        if let Some(front) = symbolic.fronts.iter().find(|front| front.order().pow(2) > u32::MAX as usize) {
+            return Err(SolveError::Failed(format!(
+                "the factor needs a dense block of {} equations: use an iterative engine",
+                front.order()
+            )));
+        }
+        Ok(Self { symbolic: Arc::new(symbolic), scatter: None, factor: None })
     }
 
     /// Factorises `matrix`, which has the pattern given to [`Sparse::new`].
