@@ -1,0 +1,251 @@
+//! The rules by which slave nodes enter and leave contact, stick and slide: pure functions of nodal numbers.
+//!
+//! The augmented normal pressure p̂ = k λ_n + ε WG decides: active if p̂ < 0. WG is the weighted gap of the node summed
+//! over its pairs. Tangentially q̂ = k P λ + c κ ε WS, with the weighted slip WS, is compared with the bound −μ p̂.
+//! No tolerance is applied to p̂; sticking and sliding have a hysteresis.
+
+use crate::formulations::NodeState;
+use crate::mortar::tangential;
+use zelus_core::vector3::{add, dot, norm, scale};
+
+/// Friction coefficients below this count as none.
+const LEAST_FRICTION: f64 = f64::EPSILON;
+
+/// k λ_n + ε WG: the normal pressure, weighted, augmented by the gap; compression is negative.
+/// Without multipliers pass `multiplier` = 0.
+#[inline]
+pub fn augmented_pressure(scale_factor: f64, multiplier: f64, penalty: f64, weighted_gap: f64) -> f64 {
+    scale_factor * multiplier + penalty * weighted_gap
+}
+
+/// What the active-set stage decides for a node without friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalDecision {
+    /// Augmented normal pressure p̂; compression is negative.
+    pub pressure: f64,
+    /// [`NodeState::Slip`] if active.
+    pub state: NodeState,
+    /// Whether the node entered or left contact.
+    pub changed: bool,
+    /// New normal multiplier λ_n = p̂/k of a node that entered contact. One that left keeps its multiplier.
+    pub multiplier: Option<f64>,
+}
+
+/// Decides for a frictionless node: scalar multiplier, the normal part of a vector one, or none at all.
+///
+/// For a vector multiplier a node that enters contact gets `multiplier` times its normal. For penalty methods ignore it.
+pub fn frictionless(state: NodeState, pressure: f64, scale_factor: f64) -> NormalDecision {
+    let now = if pressure < 0.0 { NodeState::Slip } else { NodeState::Inactive };
+    let entered = now.is_active() && !state.is_active();
+    NormalDecision {
+        pressure,
+        state: now,
+        changed: now.is_active() != state.is_active(),
+        multiplier: entered.then_some(pressure / scale_factor),
+    }
+}
+
+/// How stick and slip are told apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SlipRule {
+    /// Contact always slides; stick does not occur.
+    Pure,
+    /// Coulomb's bound on the augmented tangential pressure.
+    Coulomb {
+        /// Weight of the slip in q̂ for nodes that slide already (`slip_augmentation_coefficient`).
+        augmentation: f64,
+        /// Relative margin below the bound at which a sliding node sticks again (`slip_threshold`).
+        threshold: f64,
+    },
+}
+
+/// Nodal numbers that enter a decision with friction; sums over the pairs of the node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionalNode {
+    /// State before the decision.
+    pub state: NodeState,
+    /// Unit normal out of the slave body.
+    pub normal: [f64; 3],
+    /// Vector multiplier λ; zero for penalty methods.
+    pub multiplier: [f64; 3],
+    /// Weighted gap WG, negative in penetration.
+    pub weighted_gap: f64,
+    /// Weighted slip WS.
+    pub weighted_slip: [f64; 3],
+    /// Penalty ε.
+    pub penalty: f64,
+    /// Friction coefficient μ.
+    pub friction: f64,
+    /// Scale factor k.
+    pub scale_factor: f64,
+    /// Ratio κ of tangential to normal penalty.
+    pub tangent_factor: f64,
+}
+
+/// What the active-set stage decides for a node with friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionalDecision {
+    /// Augmented normal pressure p̂; compression is negative.
+    pub pressure: f64,
+    /// Augmented tangential pressure: q̂, cut to the bound on sliding nodes; zero if inactive.
+    pub traction: [f64; 3],
+    /// State from now on.
+    pub state: NodeState,
+    /// Whether the node entered or left contact.
+    pub changed: bool,
+    /// Whether a node that stays in contact went from stick to slip or back.
+    pub slip_changed: bool,
+    /// New multiplier of a node that entered contact. One that left keeps its multiplier.
+    pub multiplier: Option<[f64; 3]>,
+}
+
+/// Decides for a node of the frictional augmented Lagrangian.
+pub fn alm_frictional(node: &FrictionalNode, rule: SlipRule) -> FrictionalDecision {
+    let lambda_n = dot(node.multiplier, node.normal);
+    let pressure = augmented_pressure(node.scale_factor, lambda_n, node.penalty, node.weighted_gap);
+    if pressure >= 0.0 {
+        return inactive(node, pressure);
+    }
+    let sliding = node.state == NodeState::Slip;
+    let (coefficient, margin) = match rule {
+        SlipRule::Coulomb { augmentation, threshold } if sliding => (augmentation, 1.0 - threshold),
+        _ => (1.0, 1.0),
+    };
+    let lambda_t = tangential(node.multiplier, node.normal);
+    let slip = scale(node.weighted_slip, coefficient * node.tangent_factor * node.penalty);
+    let q = add(scale(lambda_t, node.scale_factor), slip);
+    let bound = -node.friction * pressure;
+    let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || norm(q) > margin * bound;
+
+    let entered = !node.state.is_active();
+    let direction = if norm(lambda_t) > 0.0 { lambda_t } else { q };
+    let traction = match (slips, norm(direction)) {
+        (false, _) => q,
+        (true, 0.0) => [0.0; 3],
+        (true, length) => scale(direction, bound / length),
+    };
+    let tangent_part = if node.friction < LEAST_FRICTION { [0.0; 3] } else { q };
+    FrictionalDecision {
+        pressure,
+        traction,
+        state: if slips { NodeState::Slip } else { NodeState::Stick },
+        changed: entered,
+        slip_changed: !entered && rule != SlipRule::Pure && slips != sliding,
+        multiplier: entered.then(|| scale(add(scale(node.normal, pressure), tangent_part), 1.0 / node.scale_factor)),
+    }
+}
+
+/// Decides for a node of the frictional penalty method: it sticks while |κ ε WS| ≤ −μ p̂.
+pub fn penalty_frictional(node: &FrictionalNode, rule: SlipRule) -> FrictionalDecision {
+    let pressure = augmented_pressure(0.0, 0.0, node.penalty, node.weighted_gap);
+    if pressure >= 0.0 {
+        return inactive(node, pressure);
+    }
+    let q = scale(node.weighted_slip, node.tangent_factor * node.penalty);
+    let (bound, length) = (-node.friction * pressure, norm(q));
+    let slips = rule == SlipRule::Pure || length > bound;
+    let entered = !node.state.is_active();
+    FrictionalDecision {
+        pressure,
+        traction: if slips && length > 0.0 { scale(q, bound / length) } else { q },
+        state: if slips { NodeState::Slip } else { NodeState::Stick },
+        changed: entered,
+        slip_changed: !entered && rule != SlipRule::Pure && slips != (node.state == NodeState::Slip),
+        multiplier: None,
+    }
+}
+
+fn inactive(node: &FrictionalNode, pressure: f64) -> FrictionalDecision {
+    FrictionalDecision {
+        pressure,
+        traction: [0.0; 3],
+        state: NodeState::Inactive,
+        changed: node.state.is_active(),
+        slip_changed: false,
+        multiplier: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COULOMB: SlipRule = SlipRule::Coulomb { augmentation: 0.0, threshold: 0.02 };
+
+    fn node(state: NodeState, multiplier: [f64; 3]) -> FrictionalNode {
+        FrictionalNode {
+            state,
+            normal: [0.0, 0.0, 1.0],
+            multiplier,
+            weighted_gap: -0.5,
+            weighted_slip: [0.1, 0.0, 0.0],
+            penalty: 2.0,
+            friction: 0.3,
+            scale_factor: 4.0,
+            tangent_factor: 0.5,
+        }
+    }
+
+    #[test]
+    fn zero_pressure_is_open() {
+        assert_eq!(frictionless(NodeState::Slip, 0.0, 1.0).state, NodeState::Inactive);
+        assert!(frictionless(NodeState::Slip, 0.0, 1.0).changed);
+        assert!(!frictionless(NodeState::Inactive, 0.0, 1.0).changed);
+    }
+
+    #[test]
+    fn entering_contact_sets_the_multiplier() {
+        let pressure = augmented_pressure(4.0, 0.0, 2.0, -0.5);
+        assert_eq!(pressure, -1.0);
+        let decision = frictionless(NodeState::Inactive, pressure, 4.0);
+        assert_eq!((decision.state, decision.changed, decision.multiplier), (NodeState::Slip, true, Some(-0.25)));
+        assert_eq!(frictionless(NodeState::Slip, pressure, 4.0).multiplier, None);
+        // With friction the tangential part comes along: q̂ = κ ε WS = 0.1.
+        let decision = alm_frictional(&node(NodeState::Inactive, [0.0; 3]), COULOMB);
+        assert_eq!(decision.multiplier, Some([0.025, 0.0, -0.25]));
+        assert_eq!((decision.state, decision.changed, decision.slip_changed), (NodeState::Stick, true, false));
+    }
+
+    #[test]
+    fn coulomb_with_hysteresis() {
+        // p̂ = −4·1 − 1 = −5, bound 1.5. Sticking: q̂ = 4 λ_t + 0.1.
+        let decide = |state, lambda_t: f64| alm_frictional(&node(state, [lambda_t, 0.0, -1.0]), COULOMB);
+        assert_eq!(decide(NodeState::Stick, 0.34).state, NodeState::Stick);
+        let slips = decide(NodeState::Stick, 0.36);
+        assert_eq!((slips.state, slips.slip_changed), (NodeState::Slip, true));
+        assert!((slips.traction[0] - 1.5).abs() < 1e-15, "cut to the bound");
+        // Sliding: q̂ = 4 λ_t, against 0.98 of the bound.
+        assert_eq!(decide(NodeState::Slip, 0.37).state, NodeState::Slip);
+        assert_eq!(decide(NodeState::Slip, 0.36).state, NodeState::Stick);
+        let pure = alm_frictional(&node(NodeState::Slip, [0.0, 0.0, -1.0]), SlipRule::Pure);
+        assert_eq!((pure.state, pure.slip_changed), (NodeState::Slip, false));
+    }
+
+    #[test]
+    fn leaving_contact_keeps_the_multiplier() {
+        let open = FrictionalNode { weighted_gap: 5.0, ..node(NodeState::Stick, [0.1, 0.0, -1.0]) };
+        let decision = alm_frictional(&open, COULOMB);
+        assert_eq!((decision.state, decision.changed, decision.multiplier), (NodeState::Inactive, true, None));
+    }
+
+    #[test]
+    fn penalty_sticks_up_to_the_bound() {
+        // p̂ = −1, bound 0.3, |q̂| = |WS|.
+        let decide = |slip| {
+            let node = FrictionalNode { weighted_slip: [0.0, slip, 0.0], ..node(NodeState::Stick, [0.0; 3]) };
+            penalty_frictional(&node, COULOMB)
+        };
+        assert_eq!(decide(0.3).state, NodeState::Stick);
+        let slips = decide(0.6);
+        assert_eq!((slips.state, slips.slip_changed), (NodeState::Slip, true));
+        assert!((slips.traction[1] - 0.3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn no_friction_always_slides() {
+        let smooth = FrictionalNode { friction: 0.0, ..node(NodeState::Inactive, [0.0; 3]) };
+        let decision = alm_frictional(&smooth, COULOMB);
+        assert_eq!((decision.state, decision.traction), (NodeState::Slip, [0.0; 3]));
+        assert_eq!(decision.multiplier, Some([0.0, 0.0, -0.25]));
+    }
+}
