@@ -44,6 +44,29 @@ pub(crate) fn size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
+/// Nodes and displacements of the cells whose numbers the reference program printed.
+pub(crate) fn reference_cell(shape: Shape, space: usize) -> (Vec<Vec3>, Vec<Vec3>) {
+    let points = shape.cell().points.iter().enumerate();
+    let nodes = points.map(|(i, p)| {
+        let mut x = [4.0 + p[0] + 0.3 * p[1] + 0.1 * p[2], 0.8 * p[1] - 1.0, 0.1 * p[0] + 0.7 * p[2]];
+        let mut u = [0.0; 3];
+        for a in 0..space {
+            x[a] += 0.03 * (7.0 * i as f64 + 3.0 * a as f64).sin();
+            u[a] = 0.05 * (5.0 * i as f64 + 2.0 * a as f64).cos();
+        }
+        if space == 2 {
+            x[2] = 0.0;
+        }
+        (x, u)
+    });
+    nodes.unzip()
+}
+
+/// Σ cos(r) v_r.
+pub(crate) fn weighted(values: &[f64]) -> f64 {
+    values.iter().enumerate().map(|(r, v)| (r as f64).cos() * v).sum()
+}
+
 /// One entity with its block.
 pub(crate) struct Single {
     pub(crate) part: ModelPart,

@@ -2,7 +2,7 @@ use zelus_core::geometry::{Shape, mapping};
 use zelus_core::model::Variable;
 use zelus_core::registry::Kind;
 
-use crate::test_model::{Random, Single, Vec3, near, size};
+use crate::test_model::{Random, Single, Vec3, near, reference_cell, size, weighted};
 use crate::variables::*;
 
 fn condition(name: &str, x: &[Vec3]) -> Single {
@@ -92,6 +92,49 @@ fn pressure_on_a_closed_body_balances() {
         single.residual().chunks(3).for_each(|f| (0..3).for_each(|a| total[a] += f[a]));
     }
     assert!(size(&total) < 1e-13);
+}
+
+/// EXTERNAL: Σ cos(r) rhs_r of Kratos 10.4.4 with all loads at once, on the cells of the element references.
+const REFERENCE: &[(&str, f64)] = &[
+    ("LineLoadCondition2D2N", -0.2591252826994275),
+    ("LineLoadCondition2D3N", -0.7520931896028997),
+    ("LineLoadCondition3D2N", -0.704197733960575),
+    ("LineLoadCondition3D3N", 2.95634149931354),
+    ("AxisymLineLoadCondition2D2N", -30.921507820484223),
+    ("AxisymLineLoadCondition2D3N", -56.92241771490636),
+    ("SurfaceLoadCondition3D3N", 0.25338263180370946),
+    ("SurfaceLoadCondition3D4N", -0.7769893026813228),
+    ("SurfaceLoadCondition3D6N", -0.4244103324969331),
+    ("SurfaceLoadCondition3D8N", 1.2401296404850648),
+    ("SurfaceLoadCondition3D9N", 2.739582009421231),
+];
+
+#[test]
+fn forces_agree_with_the_reference_program() {
+    for (name, expected) in REFERENCE {
+        let entry = zelus_core::registry::find(Kind::Condition, name).unwrap();
+        let shape = entry.cell.unwrap();
+        let (x, u) = reference_cell(shape, entry.space);
+        let mut single = condition(name, &x);
+        single.displace(&u);
+        let vector = if shape.dim() == 1 { &LINE_LOAD } else { &SURFACE_LOAD };
+        set_vector(&mut single, vector, [1.0, 2.0, 3.0]);
+        for (variable, value) in [(&POSITIVE_FACE_PRESSURE, 1.5), (&NEGATIVE_FACE_PRESSURE, 0.7), (&PRESSURE, 0.4)] {
+            set(&mut single, variable, value);
+        }
+        let loads: Vec<Vec3> = (0..x.len()).map(|i| [0.2 * i as f64, 0.1, -0.3 * i as f64]).collect();
+        single.set_nodal(vector, &loads);
+        let history = &mut single.part.nodes.history;
+        for (i, p) in history.values_mut(&NEGATIVE_FACE_PRESSURE, 0).iter_mut().enumerate() {
+            *p = 0.3 * i as f64;
+        }
+        for (i, p) in history.values_mut(&POSITIVE_FACE_PRESSURE, 0).iter_mut().enumerate() {
+            *p = 0.1 * (i * i) as f64;
+        }
+        let rhs = single.residual();
+        let value = weighted(&rhs);
+        assert!(near(value, *expected, 1e-12 * size(&rhs) * rhs.len() as f64), "{name}: {value} {expected}");
+    }
 }
 
 #[test]

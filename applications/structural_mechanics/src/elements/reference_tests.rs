@@ -9,10 +9,9 @@
 //! stress of Kirchhoff–Saint-Venant under small strain (Kratos adds ½ ε² to ε there only), and the 15-node prism (Kratos'
 //! shape functions are linear in the triangle at half height, hence not quadratic).
 
-use zelus_core::geometry::Shape;
 use zelus_core::registry::Kind;
 
-use crate::test_model::{Single, Vec3, size};
+use crate::test_model::{Single, reference_cell, size, weighted};
 
 /// Left out of the comparison.
 const OTHER: f64 = f64::NAN;
@@ -55,27 +54,6 @@ const REFERENCE: &[(&str, &str, [f64; 6])] = &[
     ("AxisymTotalLagrangianElement2D4N", "LinearElasticAxisym2DLaw", [OTHER, OTHER, 6.377013765452953, OTHER, -9.830227660580094, 0.788375273011533]),
 ];
 
-fn cell(shape: Shape, space: usize) -> (Vec<Vec3>, Vec<Vec3>) {
-    let points = shape.cell().points.iter().enumerate();
-    let nodes = points.map(|(i, p)| {
-        let mut x = [4.0 + p[0] + 0.3 * p[1] + 0.1 * p[2], 0.8 * p[1] - 1.0, 0.1 * p[0] + 0.7 * p[2]];
-        let mut u = [0.0; 3];
-        for a in 0..space {
-            x[a] += 0.03 * (7.0 * i as f64 + 3.0 * a as f64).sin();
-            u[a] = 0.05 * (5.0 * i as f64 + 2.0 * a as f64).cos();
-        }
-        if space == 2 {
-            x[2] = 0.0;
-        }
-        (x, u)
-    });
-    nodes.unzip()
-}
-
-fn weighted(values: &[f64]) -> f64 {
-    values.iter().enumerate().map(|(r, v)| (r as f64).cos() * v).sum()
-}
-
 fn double_weighted(matrix: &[f64], rows: usize) -> f64 {
     let products: Vec<f64> =
         matrix.chunks(rows).map(|row| row.iter().enumerate().map(|(c, v)| v * (c as f64).sin()).sum()).collect();
@@ -87,7 +65,7 @@ fn agrees_with_the_reference_program() {
     let mut wrong = Vec::new();
     for (name, law, expected) in REFERENCE {
         let entry = zelus_core::registry::find(Kind::Element, name).unwrap();
-        let (x, u) = cell(entry.cell.unwrap(), entry.space);
+        let (x, u) = reference_cell(entry.cell.unwrap(), entry.space);
         let values = [("YOUNG_MODULUS", 100.0), ("POISSON_RATIO", 0.3), ("DENSITY", 2.0), ("THICKNESS", 0.5)];
         let mut single = Single::new(Kind::Element, name, Some(law), &values, &x);
         single.displace(&u);
