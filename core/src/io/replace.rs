@@ -1,4 +1,4 @@
-//! A file that is whole or not there: written beside its name, then renamed onto it.
+//! Files that are whole or not there, written beside their name and renamed onto it, and files that grow.
 
 use crate::diagnostics::{Error, Result};
 use std::fs::{self, File};
@@ -28,6 +28,19 @@ pub fn replace_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::
         let _ = fs::remove_file(&temporary);
         failed("be written", e)
     })
+}
+
+/// Adds to a file that grows over a run; it must exist.
+///
+/// # Errors
+/// [`Error::System`] when the disk refuses.
+pub fn append_to_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    let done = File::options().append(true).open(path).and_then(|file| {
+        let mut writer = BufWriter::with_capacity(1 << 16, file);
+        fill(&mut writer)?;
+        writer.flush()
+    });
+    done.map_err(|e| Error::System(format!("{}: cannot be written: {e}", path.display())))
 }
 
 #[cfg(test)]

@@ -149,7 +149,7 @@ pub fn write_gid_step(
     Ok(())
 }
 
-/// Stresses and strains in Voigt form have the order GiD wants of a matrix.
+/// Matrices have the components (xx, yy, zz, xy, yz, xz).
 fn kind(components: usize) -> &'static str {
     match components {
         1 => "Scalar",

@@ -124,7 +124,7 @@ fn widen(values: &[f64], from: usize, to: usize, rows: usize) -> Vec<f64> {
     out
 }
 
-/// The values as they are, in one result for each shape and number of points.
+/// The values as they are, in one result for each shape and number of points; stresses and strains in GiD's order.
 pub(super) fn as_they_are(
     part: &ModelPart,
     blocks: &[Box<dyn EntityBlock>],
@@ -135,7 +135,8 @@ pub(super) fn as_they_are(
     let mut out: Vec<GaussResult> = Vec::new();
     visit(part, blocks, selected, quantity, |row, block, _, gauss| {
         let Some(shape) = block.entry().cell else { return };
-        let (count, components) = (gauss.weights.len(), gauss.components);
+        let count = gauss.weights.len();
+        let (components, values) = gid_order(&quantity.name, gauss);
         let same = |r: &GaussResult| r.shape == shape && r.points.len() == count && r.components == components;
         let at = out.iter().position(same).unwrap_or_else(|| {
             out.push(GaussResult {
@@ -149,9 +150,23 @@ pub(super) fn as_they_are(
             out.len() - 1
         });
         out[at].cells.push(ids[selected[row] as usize]);
-        out[at].values.extend_from_slice(&gauss.values);
+        out[at].values.extend(values);
     });
     out
+}
+
+/// Symmetric tensors as GiD reads them, (xx, yy, zz, xy, yz, xz); anything else as it is.
+fn gid_order(name: &str, gauss: &Gauss) -> (usize, Vec<f64>) {
+    let is_tensor = name.contains("STRESS") || name.contains("STRAIN");
+    let ordered = |v: &[f64]| match *v {
+        [xx, yy, xy] | [xx, xy, _, yy] => [xx, yy, 0.0, xy, 0.0, 0.0],
+        [xx, xy, xz, _, yy, yz, _, _, zz] => [xx, yy, zz, xy, yz, xz],
+        _ => [0.0; 6],
+    };
+    if is_tensor && matches!(gauss.components, 3 | 4 | 9) {
+        return (6, gauss.values.chunks_exact(gauss.components).flat_map(ordered).collect());
+    }
+    (gauss.components, gauss.values.clone())
 }
 
 /// Local coordinates of the Gauss points: Σ N_i ξ_i.
@@ -179,4 +194,21 @@ pub(super) fn each(
     mut use_values: impl FnMut(usize, &Gauss),
 ) {
     visit(part, blocks, selected, quantity, |row, _, _, gauss| use_values(row, gauss));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tensors_stand_in_the_order_of_gid() {
+        let gauss = |values: &[f64]| Gauss { components: values.len(), values: values.to_vec(), ..Gauss::default() };
+        let order = |name, values: &[f64]| gid_order(name, &gauss(values)).1;
+        assert_eq!(order("PK2_STRESS_TENSOR", &[1., 4., 6., 4., 2., 5., 6., 5., 3.]), [1., 2., 3., 4., 5., 6.]);
+        assert_eq!(order("PK2_STRESS_TENSOR", &[1., 4., 4., 2.]), [1., 2., 0., 4., 0., 0.]);
+        assert_eq!(order("CAUCHY_STRESS_VECTOR", &[1., 2., 4.]), [1., 2., 0., 4., 0., 0.]);
+        assert_eq!(order("CAUCHY_STRESS_VECTOR", &[1., 2., 3., 4., 5., 6.]), [1., 2., 3., 4., 5., 6.]);
+        assert_eq!(order("DISPLACEMENT", &[1., 2., 3.]), [1., 2., 3.]);
+        assert_eq!(order("VON_MISES_STRESS", &[7.]), [7.]);
+    }
 }

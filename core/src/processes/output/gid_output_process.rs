@@ -1,17 +1,16 @@
 //! Results for GiD as text: a mesh file and a results file, or one pair a step.
 
-use std::fs::OpenOptions;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
+use std::path::PathBuf;
 
 use super::control::OutputControl;
 use super::gauss;
 use super::picture::{CellChoice, Mesh};
 use super::place::{PartPath, append, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
-use crate::diagnostics::{Diagnostic, Error, Result};
-use crate::io::replace_file;
+use crate::diagnostics::{Diagnostic, Result};
 use crate::io::results::{Column, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step};
+use crate::io::{append_to_file, replace_file};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::{Defaults, Settings};
 use crate::processes::{Process, ProcessRequest};
@@ -156,16 +155,6 @@ impl GidOutput {
     }
 }
 
-/// Adds to a file that grows over the run.
-fn add_to(path: &Path, fill: impl FnOnce(&mut BufWriter<std::fs::File>) -> io::Result<()>) -> Result<()> {
-    let done = OpenOptions::new().append(true).open(path).and_then(|file| {
-        let mut out = BufWriter::with_capacity(1 << 16, file);
-        fill(&mut out)?;
-        out.flush()
-    });
-    done.map_err(|e| Error::System(format!("{}: cannot be written: {e}", path.display())))
-}
-
 impl Process for GidOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
@@ -192,7 +181,7 @@ impl Process for GidOutput {
             replace_file(&self.path(label, "msh"), |out| self.mesh(part, selection, out))?;
         }
         if self.written.contains(&path) {
-            add_to(&path, |out| write_gid_step(out, label, &ids, &columns, &gauss))?;
+            append_to_file(&path, |out| write_gid_step(out, label, &ids, &columns, &gauss))?;
         } else {
             replace_file(&path, |out| {
                 write_gid_results_head(out, &gauss)?;

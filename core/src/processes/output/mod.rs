@@ -10,6 +10,7 @@ mod gid_output_process;
 mod json_output_process;
 mod picture;
 mod place;
+mod point_output_process;
 mod quantity;
 #[cfg(test)]
 mod tests;

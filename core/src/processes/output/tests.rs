@@ -290,6 +290,26 @@ fn gid_writes_text_and_says_so() {
 }
 
 #[test]
+fn a_point_has_its_history() {
+    let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
+    let parameters = |x: f64| {
+        format!(
+            r#"{{"model_part_name": "Structure", "position": [{x}, 0.5, 0.0], "output_variables": ["DISPLACEMENT", "OUTPUT_TEST_PRESSURE"],
+            "interval": [0.15, "End"], "output_file_settings": {{"file_name": "point", "output_path": "out"}}}}"#
+        )
+    };
+    let mut process = make("point_output_process", &parameters(1.25), &mut model, folder.path()).0.unwrap();
+    run(process.as_mut(), &mut model, 2, 0.1).unwrap();
+    let text = std::fs::read_to_string(folder.path().join("out/point.dat")).unwrap();
+    let wanted = "# Results for \"element\" at position: x: 1.25; y: 0.5; z: 0.0\n\
+        # time DISPLACEMENT_X DISPLACEMENT_Y DISPLACEMENT_Z OUTPUT_TEST_PRESSURE\n0.2 15.0 150.0 0.0 0.0\n";
+    assert_eq!(text, wanted);
+    let mut outside = make("point_output_process", &parameters(2.25), &mut model, folder.path()).0.unwrap();
+    let error = outside.initialize(&mut model).unwrap_err();
+    assert!(error.to_string().contains("point-outside"), "{error}");
+}
+
+#[test]
 fn what_a_deck_names_wrongly_is_said_with_its_place() {
     let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
     let mut said = |name: &str, parameters: &str| {
