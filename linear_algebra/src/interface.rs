@@ -1,5 +1,7 @@
 //! The dense system of the interface: the bulk's Schur complement plus the coupling.
 
+use rayon::prelude::*;
+
 use crate::csr::Csr;
 use crate::dense_lu::{self, Pivots};
 use crate::equilibrate;
@@ -17,11 +19,11 @@ pub(crate) struct DenseFactor {
 }
 
 impl DenseFactor {
-    /// Factorises a column-major matrix of order `n`.
-    pub(crate) fn new(mut values: Vec<f64>, n: usize) -> Self {
-        let scaling = equilibrate::dense(&mut values, n);
-        let pivots = dense_lu::factorise(&mut values, n, PIVOT_LIMIT);
-        Self { order: n, values, pivots, scaling }
+    /// Factorises a column-major matrix that is scaled already.
+    pub(crate) fn new(mut values: Vec<f64>, scaling: Scaling) -> Self {
+        let order = scaling.row.len();
+        let pivots = dense_lu::factorise(&mut values, order, PIVOT_LIMIT);
+        Self { order, values, pivots, scaling }
     }
 
     /// Replaces `x` by the solution.
@@ -89,32 +91,36 @@ impl Interface {
         for (index, &at) in kept.iter().enumerate() {
             dense_index[at as usize] = index as u32;
         }
-        let m = kept.len();
-        let mut values = reuse.map_or_else(Vec::new, |old| old.factor.into_values());
-        values.clear();
-        values.reserve_exact(m * m);
-        for &column in &kept {
-            let column = &schur[n * column as usize..n * (column as usize + 1)];
-            if m == n {
-                values.extend_from_slice(column);
-            } else {
-                values.extend(kept.iter().map(|&row| column[row as usize]));
-            }
-        }
+        let mut entries = Vec::new();
         if let Some(coupling) = coupling {
             for (at, &i) in equations.iter().enumerate() {
-                let (columns, entries) = coupling.row(i as usize);
-                for (&j, &value) in columns.iter().zip(entries).filter(|(_, value)| **value != 0.0) {
+                let (columns, values) = coupling.row(i as usize);
+                for (&j, &value) in columns.iter().zip(values).filter(|(_, value)| **value != 0.0) {
                     let column = local(j);
                     match &mut lone_of[column] {
                         Some(lone) if column != at => lone.others.push((at as u32, value)),
                         Some(_) => {}
-                        None => values[dense_index[at] as usize + m * dense_index[column] as usize] += value,
+                        None => entries.push((dense_index[at] as usize, dense_index[column] as usize, value)),
                     }
                 }
             }
         }
-        Self { lone: lone_of.into_iter().flatten().collect(), kept, factor: DenseFactor::new(values, m) }
+        let scaling = scaling(schur, n, &kept, &entries);
+        let m = kept.len();
+        let mut values = reuse.map_or_else(Vec::new, |old| old.factor.into_values());
+        values.resize(m * m, 0.0);
+        values.par_chunks_mut(m.max(1)).zip(&kept).zip(&scaling.column).with_min_len(16).for_each(
+            |((target, &column), column_scale)| {
+                let source = &schur[n * column as usize..n * (column as usize + 1)];
+                for ((value, &row), row_scale) in target.iter_mut().zip(&kept).zip(&scaling.row) {
+                    *value = source[row as usize] * row_scale * column_scale;
+                }
+            },
+        );
+        for &(i, j, value) in &entries {
+            values[i + m * j] += value * scaling.row[i] * scaling.column[j];
+        }
+        Self { lone: lone_of.into_iter().flatten().collect(), kept, factor: DenseFactor::new(values, scaling) }
     }
 
     /// Replaces `x`, in the order of the interface, by the solution.
@@ -139,6 +145,16 @@ impl Interface {
     pub(crate) fn is_suspicious(&self) -> bool {
         self.factor.is_suspicious()
     }
+}
+
+/// Scale factors of the equations `kept` of a Schur complement plus sparse `entries`.
+///
+/// The diagonal stands for the whole Schur complement, since no entry of a positive definite matrix exceeds the
+/// geometric mean of its diagonal entries; that spares passes over the dense matrix.
+fn scaling(schur: &[f64], n: usize, kept: &[u32], entries: &[(usize, usize, f64)]) -> Scaling {
+    let diagonal = kept.iter().enumerate().map(|(at, &i)| (at, at, schur[i as usize * (n + 1)]));
+    let sample: Vec<(usize, usize, f64)> = diagonal.chain(entries.iter().copied()).collect();
+    equilibrate::factors(&Csr::from_triplets(kept.len(), &sample))
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ impl SparseLu {
     /// # Errors
     /// [`SolveError::Singular`] when the pattern is singular, [`SolveError::Failed`] when memory runs out.
     pub(crate) fn new(matrix: &Csr) -> Result<Self, SolveError> {
-        let scaling = equilibrate::sparse(matrix);
+        let scaling = equilibrate::factors(matrix);
         let by_columns = Csr { values: scaling.apply(matrix), ..matrix.clone() }.transpose();
         let columns: Vec<usize> = by_columns.columns.iter().map(|&j| j as usize).collect();
         let n = matrix.rows;

@@ -105,7 +105,7 @@ pub struct DirectSettings {
 
 impl Default for DirectSettings {
     fn default() -> Self {
-        Self { dense_below: 300, interface_limit: 9000, tolerance: 1e-6, refinements: 3 }
+        Self { dense_below: 150, interface_limit: 9000, tolerance: 1e-6, refinements: 3 }
     }
 }
 

@@ -44,7 +44,7 @@ impl Sparse {
         let (kind, scaling) = if cholesky {
             (Kind::Cholesky, None)
         } else {
-            (Kind::Lu { limit: PIVOT_LIMIT }, Some(equilibrate::sparse(matrix)))
+            (Kind::Lu { limit: PIVOT_LIMIT }, Some(equilibrate::factors(matrix)))
         };
         let old = self.factor.take();
         self.factor = Some(Factor::new(&self.symbolic, scatter, matrix, kind, scaling, old)?);
@@ -92,14 +92,16 @@ impl Path {
 /// One dense LU of the whole system.
 pub(crate) fn dense(system: &System<'_>) -> Path {
     let n = system.equations();
+    let matrix = system.merged();
+    let scaling = equilibrate::factors(&matrix);
     let mut values = vec![0.0; n * n];
-    for matrix in [Some(system.bulk), system.active_coupling()].into_iter().flatten() {
-        for i in 0..n {
-            let (columns, entries) = matrix.row(i);
-            columns.iter().zip(entries).for_each(|(&j, value)| values[i + n * j as usize] += value);
+    for i in 0..n {
+        let (columns, entries) = matrix.row(i);
+        for (&j, value) in columns.iter().zip(entries) {
+            values[i + n * j as usize] = value * scaling.row[i] * scaling.column[j as usize];
         }
     }
-    Path::Dense(DenseFactor::new(values, n))
+    Path::Dense(DenseFactor::new(values, scaling))
 }
 
 /// Equations that must stay in the dense interface: those of the coupling and those the bulk knows nothing of.

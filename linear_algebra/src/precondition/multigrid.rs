@@ -118,7 +118,7 @@ fn factorise(matrix: &Csr, group: Vec<u32>) -> Option<Factor> {
     let layout = Layout { node: group, multiplier: vec![false; n], near_null_space: Vec::new() };
     let symbolic = Arc::new(Symbolic::new(matrix, &layout, &vec![false; n]).ok()?);
     let scatter = Scatter::new(&symbolic, matrix, false);
-    let scaling = crate::equilibrate::sparse(matrix);
+    let scaling = crate::equilibrate::factors(matrix);
     Factor::new(&symbolic, &scatter, matrix, Kind::Lu { limit: 1e-9 }, Some(scaling), None).ok()
 }
 
