@@ -50,8 +50,8 @@ pub const BAD_DECKS: &[BadDeck] = &[
     deck("trailing comma", "\"end_time\": 0.5", "\"end_time\": 0.5,", &[DECK]),
     BadDeck("missing brace", CutAt(DECK, "\"output_processes\""), &[DECK]),
     deck("half a number", "\"time_step\": 1.0", "\"time_step\": 1.e", &["ProjectParameters.json:18"]),
-    deck("missing quote", "\"two_blocks\"", "\"two_blocks", &["ProjectParameters.json:3"]),
-    materials("trailing comma in materials", "\"Tables\": {}", "\"Tables\": {},", &["StructuralMaterials.json:9"]),
+    deck("missing quote", "\"two_blocks\"", "\"two_blocks", &[DECK]),
+    materials("trailing comma in materials", "\"Tables\": {}", "\"Tables\": {},", &[MATERIALS]),
     // types and ranges
     deck(
         "word for a number",
