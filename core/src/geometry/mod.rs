@@ -4,6 +4,7 @@
 //! programs); a [`ShapeTable`] holds shape functions and local gradients at the points of one quadrature rule, ready
 //! for kernels; [`mapping`] works on a cell with given node coordinates. Coordinates are always `[x, y, z]`; planar
 //! models leave `z` alone.
+mod cells;
 pub mod mapping;
 mod quadrature;
 mod reference_cell;

@@ -1,7 +1,7 @@
 //! The names of the reference cells.
 
 use super::ReferenceCell;
-use super::reference_cell::CELLS;
+use super::cells::CELLS;
 
 /// One of the reference cells; the number is that of its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

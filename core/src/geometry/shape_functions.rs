@@ -169,6 +169,7 @@ fn quadratic_simplex<T: Algebra>(n: &mut [T], l: &[T], shape: Shape) {
 }
 
 /// Quadratic serendipity wedge with height `c` in [0, 1]: triangle edges 4 L_a L_b h, uprights 4 L c (1 − c).
+/// Complete in degree 2, unlike Kratos 10.4.4, whose functions are linear in the triangle at half height.
 fn quadratic_prism<T: Algebra>(n: &mut [T], l: [T; 3], c: T) {
     let down = c * -1.0 + 1.0;
     for i in 0..3 {
