@@ -1,5 +1,20 @@
-//! Mortar contact.
+//! Mortar contact: from the surfaces of a deck to the equations of the bodies that touch.
+//!
+//! In the order of the data: [`interface`] makes facets of a deck's parts, [`search`] finds the pairs that may touch,
+//! [`mortar`] integrates a pair to D, M and the weighted gap, [`formulations`] state each method as the residual of one
+//! pair, [`pairs`] run them over blocks, [`interaction`] puts all of it into the Newton loop with the active set as a stage.
+//! `families` registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside them.
+
+pub mod variables;
+pub mod interface;
+pub mod search;
 pub mod mortar;
 pub mod formulations;
 pub mod active_set;
 pub mod penalty_adaptation;
+pub mod pairs;
+pub mod interaction;
+mod families;
+mod processes;
+pub mod criteria;
+mod solver;

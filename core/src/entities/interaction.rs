@@ -26,7 +26,7 @@ impl SetChange {
 ///
 /// Called by the strategy in the order of the methods below. The model part it receives holds no interactions while they
 /// run, so it can be read and changed freely.
-pub trait Interaction: Send {
+pub trait Interaction: Send + Sync {
     /// Short name for the log.
     fn name(&self) -> &str;
 

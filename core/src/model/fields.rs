@@ -81,7 +81,7 @@ impl Fields {
 
     /// Adds a column of zeros by name unless it is there; `components` is 1 or 3.
     pub fn add_named(&mut self, name: &'static str, components: usize) {
-        let (levels, count) = (self.levels, self.count);
+        let (levels, count) = (self.levels.max(1), self.count);
         self.columns.entry(name).or_insert_with(|| Field::new(components, levels, count));
     }
 

@@ -1,0 +1,8 @@
+//! Convergence criteria of contact: displacements and multipliers are measured apart.
+//!
+//! Every tolerance is of a norm. Kratos' own criteria of these names compare sums of squares, so that a tolerance of 1e-4
+//! leaves 1e-2 on the norm there. That the active set no longer changes is asked of every iteration beside them.
+
+mod contact_criterion;
+
+pub use contact_criterion::{ContactCriterion, Form};

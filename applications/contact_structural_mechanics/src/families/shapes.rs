@@ -1,0 +1,41 @@
+//! The pairs of shapes on which every family works, and the names of their conditions.
+
+use zelus_core::geometry::Shape;
+
+use crate::pairs::{ContactBlock, PairBlock, PairFormulation, PairRequest};
+
+/// The block of a family for a pair of shapes (slave, master); `None` for shapes that carry no contact.
+pub(super) fn block<F: PairFormulation>(
+    slave: Shape,
+    master: Shape,
+    request: PairRequest,
+) -> Option<Box<dyn ContactBlock>> {
+    Some(match (slave, master) {
+        (Shape::Line2, Shape::Line2) => PairBlock::<F, 2, 2, 8>::boxed(request),
+        (Shape::Tri3, Shape::Tri3) => PairBlock::<F, 3, 3, 18>::boxed(request),
+        (Shape::Tri3, Shape::Quad4) => PairBlock::<F, 3, 4, 21>::boxed(request),
+        (Shape::Quad4, Shape::Tri3) => PairBlock::<F, 4, 3, 21>::boxed(request),
+        (Shape::Quad4, Shape::Quad4) => PairBlock::<F, 4, 4, 24>::boxed(request),
+        _ => return None,
+    })
+}
+
+/// Registers the conditions of a family, one a pair of shapes, under Kratos' names.
+macro_rules! register_shapes {
+    ($stem:literal, $axisymmetric:expr, $about:literal) => {
+        $crate::families::shapes::register_shapes!(@ concat!($stem, "2D2N"), Line2, 2, $about);
+        $crate::families::shapes::register_shapes!(@ concat!($stem, "3D3N"), Tri3, 3, $about);
+        $crate::families::shapes::register_shapes!(@ concat!($stem, "3D4N"), Quad4, 3, $about);
+        $crate::families::shapes::register_shapes!(@ concat!($stem, "3D3N4N"), Tri3, 3, $about);
+        $crate::families::shapes::register_shapes!(@ concat!($stem, "3D4N3N"), Quad4, 3, $about);
+        $crate::families::shapes::register_shapes!(@ $axisymmetric, Line2, 2, $about);
+    };
+    (@ $name:expr, $shape:ident, $space:literal, $about:literal) => {
+        zelus_core::register! { Condition $name,
+            about: $about,
+            cell: Some(zelus_core::geometry::Shape::$shape),
+            space: $space,
+        }
+    };
+}
+pub(super) use register_shapes;

@@ -1,0 +1,439 @@
+//! The contact of all pairs of a deck: search at step start, gaps and active set in every iteration.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::entities::{EntityBlock, Interaction, SetChange};
+use zelus_core::geometry::Shape;
+use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
+use zelus_core::model::{ModelPart, ScalarVariable, SubPart, variables::NORMAL};
+use zelus_core::parameters::Interval;
+use zelus_core::registry::{self, Kind};
+
+use super::activation;
+use super::step_parameters::{NormalVariation, StepParameters};
+use crate::interface::{
+    AlmParameters, Facet, Interface, Roles, alm_parameters, centre_normal, find_nodal_h, interfaces, nodal_normals,
+    positions,
+};
+use crate::mortar::SegmentationSettings;
+use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous};
+use crate::search::{SearchSettings, candidates};
+use crate::variables::{
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP,
+    WEIGHTED_SLIP,
+};
+
+/// What a deck chooses about contact.
+#[derive(Clone)]
+pub struct ContactSettings {
+    /// Parts of the interfaces by key.
+    pub parts: BTreeMap<String, Vec<String>>,
+    /// Parts on the slave side by key.
+    pub slaves: BTreeMap<String, Vec<String>>,
+    /// The family of conditions.
+    pub family: &'static Family,
+    /// Times in which contact acts.
+    pub interval: Interval,
+    /// When normals follow the iteration.
+    pub normal_variation: NormalVariation,
+    /// Which facets are looked at.
+    pub search: SearchSettings,
+    /// Gap, in mesh sizes, below which a node starts active.
+    pub active_check_factor: f64,
+    /// Whether activation goes by 0.002 of the mesh size instead.
+    pub simple_search: bool,
+    /// Steps between searches.
+    pub database_step_update: usize,
+    /// Penalty and scale factor given by hand.
+    pub manual: Option<AlmParameters>,
+    /// Factor of E/h in eq. 4.11, and ratio of scale factor and penalty.
+    pub estimate: [f64; 2],
+    /// Factor of the estimated penalty; the penalty families need a stiffer spring.
+    pub penalty_factor: f64,
+    /// Least penalty: what takes its place when the estimate is zero.
+    pub least_penalty: f64,
+    /// Whether the scale factor is used; otherwise it is 1.
+    pub use_scale_factor: bool,
+    /// Ratio of tangential and normal penalty.
+    pub tangent_factor: f64,
+    /// Change of the operators beyond which slip is measured objectively.
+    pub operator_threshold: f64,
+    /// Multiple of the geometric tolerance.
+    pub zero_tolerance_factor: f64,
+    /// Gauss rule on the cells.
+    pub integration_order: crate::mortar::IntegrationOrder,
+    /// Whether the plane is rotated about the y axis.
+    pub axisymmetric: bool,
+    /// Whether the active set changes only after a complete Newton loop.
+    pub simplified: bool,
+    /// Whether it is an error when no node is in contact.
+    pub ensure_contact: bool,
+}
+
+/// Contact in a model part.
+pub struct ContactInteraction {
+    settings: ContactSettings,
+    interfaces: Vec<Interface>,
+    slaves: Vec<u32>,
+    /// Interface nodes that lead slave nodes to their interface.
+    blocks: Vec<Box<dyn ContactBlock>>,
+    parameters: Arc<StepParameters>,
+    graph: u64,
+    threshold: f64,
+    steps_since_search: usize,
+    saved: Vec<Pair>,
+    acting: bool,
+}
+
+impl ContactInteraction {
+    /// Contact with these settings; the interfaces are built at once, so that a wrong part is named early.
+    ///
+    /// # Errors
+    /// Parts that do not exist or hold no facets.
+    pub fn new(settings: ContactSettings, part: &mut ModelPart) -> Result<Self> {
+        let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
+        let mut contact = SubPart::new("Contact");
+        for interface in &interfaces {
+            let name = format!("ContactSub{}", interface.key);
+            let child = SubPart { nodes: interface.nodes.clone(), ..SubPart::new(name.clone()) };
+            contact.nodes.extend(&interface.nodes);
+            contact.children.insert(name, child);
+        }
+        contact.normalise();
+        part.tree.children.insert(contact.name.clone(), contact);
+        let parameters = Arc::new(StepParameters {
+            segmentation: SegmentationSettings::default(),
+            scale_factor: 1.0,
+            tangent_factor: settings.tangent_factor,
+            operator_threshold: settings.operator_threshold,
+            normal_variation: settings.normal_variation,
+        });
+        Ok(Self {
+            settings,
+            interfaces,
+            slaves: Vec::new(),
+            blocks: Vec::new(),
+            parameters,
+            graph: 1,
+            threshold: f64::INFINITY,
+            steps_since_search: usize::MAX,
+            saved: Vec::new(),
+            acting: true,
+        })
+    }
+
+    fn pairs(&self) -> Vec<Pair> {
+        self.blocks.iter().flat_map(|block| block.pairs().iter().cloned()).collect()
+    }
+
+    fn facet(&self, interface: u32, facet: u32) -> &Facet {
+        &self.interfaces[interface as usize].facets[facet as usize]
+    }
+
+    fn normal(&self, part: &ModelPart, facet: &Facet) -> [f64; 3] {
+        centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
+    }
+
+    fn updates_normals(&self) -> bool {
+        self.settings.normal_variation != NormalVariation::None
+    }
+
+    /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
+    fn search(&mut self, part: &mut ModelPart) -> Result<()> {
+        let mut known: BTreeMap<PairKey, Pair> = self.pairs().into_iter().map(|pair| (pair.key, pair)).collect();
+        for at in 0..self.interfaces.len() {
+            for (slave, master) in candidates(part, &self.interfaces[at], &self.settings.search) {
+                let key = PairKey { interface: at as u32, slave, master };
+                if let std::collections::btree_map::Entry::Vacant(place) = known.entry(key) {
+                    let slave_normal = self.normal(part, self.facet(key.interface, slave));
+                    let master_normal = self.normal(part, self.facet(key.interface, master));
+                    place.insert(Pair {
+                        key,
+                        slave_normal,
+                        master_normal,
+                        overlapping: true,
+                        previous: Previous::default(),
+                    });
+                }
+            }
+        }
+        let before: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
+        self.make_blocks(known.into_values().collect())?;
+        let overlapping: Vec<bool> =
+            self.blocks.iter().flat_map(|block| block.integrate(&part.view())).map(|i| i.overlapping).collect();
+        let kept: Vec<Pair> = self
+            .pairs()
+            .into_iter()
+            .zip(overlapping)
+            .filter(|(_, overlapping)| *overlapping)
+            .map(|(pair, _)| pair)
+            .collect();
+        self.make_blocks(kept)?;
+        let after: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
+        if before != after {
+            self.graph += 1;
+        }
+        Ok(())
+    }
+
+    fn make_blocks(&mut self, pairs: Vec<Pair>) -> Result<()> {
+        let mut groups: BTreeMap<(Shape, Shape), (Vec<Pair>, Vec<u32>)> = BTreeMap::new();
+        for pair in pairs {
+            let (slave, master) =
+                (self.facet(pair.key.interface, pair.key.slave), self.facet(pair.key.interface, pair.key.master));
+            let (group, nodes) = groups.entry((slave.shape, master.shape)).or_default();
+            nodes.extend(&master.nodes);
+            nodes.extend(&slave.nodes);
+            group.push(pair);
+        }
+        self.blocks.clear();
+        for ((slave, master), (pairs, nodes)) in groups {
+            let name = condition_name(self.settings.family, slave, master, self.settings.axisymmetric);
+            let entry = registry::require(Kind::Condition, &name)?;
+            let request = PairRequest { entry, pairs, nodes, parameters: self.parameters.clone() };
+            let block = (self.settings.family.block)(slave, master, request).ok_or_else(|| {
+                Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
+            })?;
+            self.blocks.push(block);
+        }
+        Ok(())
+    }
+
+    /// Recomputes overlaps, weighted gaps and areas in the present configuration.
+    fn integrate(&mut self, part: &mut ModelPart) {
+        let integrals: Vec<_> = self.blocks.iter().map(|block| block.integrate(&part.view())).collect();
+        let count = part.nodes.len();
+        let (mut gap, mut area, mut slip) = (vec![0.0; count], vec![0.0; count], vec![[0.0; 3]; count]);
+        let mut lonely = vec![true; count];
+        for (block, integrals) in self.blocks.iter_mut().zip(&integrals) {
+            for (at, integral) in integrals.iter().enumerate() {
+                block.pairs_mut()[at].overlapping = integral.overlapping;
+                if !integral.overlapping {
+                    continue;
+                }
+                for (local, &node) in block.slave_nodes(at).iter().enumerate() {
+                    let node = node as usize;
+                    lonely[node] = false;
+                    gap[node] += integral.gap[local];
+                    area[node] += integral.area[local];
+                    (0..3).for_each(|c| slip[node][c] += integral.slip[local][c]);
+                }
+            }
+        }
+        for &node in &self.slaves {
+            part.nodes.flags.set(ISOLATED, node as usize, lonely[node as usize]);
+        }
+        part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
+        part.nodes.values.values_mut(&NODAL_AREA, 0).copy_from_slice(&area);
+        if self.settings.family.frictional {
+            part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slip.as_flattened());
+        }
+    }
+
+    fn refresh_pair_normals(&mut self, part: &ModelPart, slaves: bool) {
+        let mut blocks = std::mem::take(&mut self.blocks);
+        for pair in blocks.iter_mut().flat_map(|block| block.pairs_mut()) {
+            pair.master_normal = self.normal(part, self.facet(pair.key.interface, pair.key.master));
+            if slaves {
+                pair.slave_normal = self.normal(part, self.facet(pair.key.interface, pair.key.slave));
+            }
+        }
+        self.blocks = blocks;
+    }
+
+    fn set_parameters(&mut self, part: &mut ModelPart) {
+        let settings = &self.settings;
+        let estimate = alm_parameters(part, &self.interfaces, settings.estimate[0], settings.estimate[1]);
+        let mut chosen = settings.manual.unwrap_or(AlmParameters {
+            penalty: estimate.penalty * settings.penalty_factor,
+            scale_factor: estimate.scale_factor,
+        });
+        if chosen.penalty < f64::EPSILON {
+            chosen.penalty = settings.least_penalty;
+        }
+        if !settings.use_scale_factor || chosen.scale_factor < f64::EPSILON {
+            chosen.scale_factor = 1.0;
+        }
+        part.info.values.insert(INITIAL_PENALTY.name(), chosen.penalty);
+        part.info.values.insert("SCALE_FACTOR", chosen.scale_factor);
+        part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(chosen.penalty);
+        part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(1.0);
+        let sizes = part.nodes.values.values(&NODAL_H, 0);
+        let mean = |role: Roles| {
+            let nodes: Vec<u32> = self.interfaces.iter().flat_map(|i| i.nodes_of(role)).collect();
+            nodes.iter().map(|&n| sizes[n as usize]).sum::<f64>() / nodes.len().max(1) as f64
+        };
+        self.threshold = mean(Roles::Slave).max(mean(Roles::Master));
+        let thickness = || {
+            let found = self
+                .interfaces
+                .iter()
+                .flat_map(|i| &i.facets)
+                .find_map(|f| part.properties.get(&f.properties)?.number("THICKNESS"));
+            found.unwrap_or(1.0)
+        };
+        self.parameters = Arc::new(StepParameters {
+            segmentation: SegmentationSettings {
+                distance_threshold: self.threshold,
+                zero_tolerance_factor: settings.zero_tolerance_factor,
+                integration_order: settings.integration_order,
+                axisymmetric: settings.axisymmetric.then(thickness),
+            },
+            scale_factor: chosen.scale_factor,
+            ..(*self.parameters).clone()
+        });
+    }
+
+    fn switch_off(&mut self, part: &mut ModelPart) {
+        for &node in self.interfaces.iter().flat_map(|i| &i.nodes) {
+            part.nodes.flags.set(ACTIVE, node as usize, false);
+        }
+        if !self.blocks.is_empty() {
+            self.blocks.clear();
+            self.graph += 1;
+        }
+        activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
+    }
+}
+
+/// Kratos' name of the condition of a pair of shapes.
+fn condition_name(family: &Family, slave: Shape, master: Shape, axisymmetric: bool) -> String {
+    let dimension = if slave == Shape::Line2 { 2 } else { 3 };
+    let stem = if axisymmetric {
+        family.condition.replace("MortarContact", "AxisymMortarContact")
+    } else {
+        family.condition.to_owned()
+    };
+    let mixed = if slave == master { String::new() } else { format!("{}N", master.nodes()) };
+    format!("{stem}{dimension}D{}N{mixed}", slave.nodes())
+}
+
+impl Interaction for ContactInteraction {
+    fn name(&self) -> &str {
+        "contact"
+    }
+
+    fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
+        part.nodes.history.add(&NORMAL);
+        part.nodes.history.add(&WEIGHTED_GAP);
+        if self.settings.family.frictional {
+            part.nodes.history.add(&WEIGHTED_SLIP);
+        }
+        find_nodal_h(part);
+        part.info.marks.insert(CONTACT, true);
+        self.set_parameters(part);
+        self.slaves = self.interfaces.iter().flat_map(|i| i.nodes_of(Roles::Slave)).collect();
+        self.slaves.sort_unstable();
+        self.slaves.dedup();
+        for &node in &self.slaves {
+            part.nodes.flags.set(ACTIVE, node as usize, false);
+            debug_assert!(part.nodes.flags.is(SLAVE, node as usize) && !part.nodes.flags.is(MASTER, node as usize));
+        }
+        nodal_normals(part, &self.interfaces);
+        Ok(())
+    }
+
+    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+        let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
+        unknowns.into_iter().map(|variable| (variable, self.slaves.clone())).collect()
+    }
+
+    fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.acting = self.settings.interval.contains(part.info.time);
+        if !self.acting {
+            self.switch_off(part);
+            return Ok(());
+        }
+        activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
+        nodal_normals(part, &self.interfaces);
+        self.steps_since_search = self.steps_since_search.saturating_add(1);
+        if self.steps_since_search >= self.settings.database_step_update {
+            self.search(part)?;
+            self.steps_since_search = 0;
+        }
+        self.integrate(part);
+        let reach =
+            if self.settings.simple_search { None } else { Some(self.settings.active_check_factor * self.threshold) };
+        activation::start(part, &self.slaves, reach, self.settings.family);
+        self.refresh_pair_normals(part, self.updates_normals());
+        for block in &mut self.blocks {
+            block.keep_operators(&part.view());
+        }
+        Ok(())
+    }
+
+    fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()> {
+        if self.acting {
+            self.integrate(part);
+        }
+        Ok(())
+    }
+
+    fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange> {
+        if !self.acting {
+            return Ok(SetChange::default());
+        }
+        if iteration == 1 || self.updates_normals() {
+            nodal_normals(part, &self.interfaces);
+        }
+        if self.updates_normals() {
+            self.refresh_pair_normals(part, true);
+        }
+        self.integrate(part);
+        let change = activation::update(part, &self.slaves, self.settings.family, &self.parameters);
+        if self.settings.ensure_contact
+            && change.count() == 0
+            && !self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize))
+        {
+            return Err(zelus_core::Error::NotConverged(
+                "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
+            ));
+        }
+        Ok(change)
+    }
+
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        let inactive: Vec<u32> =
+            self.slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ACTIVE, n as usize)).collect();
+        let pressure = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
+        inactive.iter().for_each(|&n| pressure[n as usize] = 0.0);
+        Ok(())
+    }
+
+    fn blocks(&self) -> Vec<&dyn EntityBlock> {
+        self.blocks.iter().map(|block| block.as_entities()).collect()
+    }
+
+    fn graph_version(&self) -> u64 {
+        self.graph
+    }
+
+    fn idle_diagonal(&self) -> f64 {
+        self.parameters.scale_factor
+    }
+
+    fn save(&mut self) {
+        self.saved = self.pairs();
+    }
+
+    fn restore(&mut self) {
+        let saved = std::mem::take(&mut self.saved);
+        // The same shapes were made into blocks before.
+        let _ = self.make_blocks(saved);
+        self.steps_since_search = usize::MAX;
+        self.graph += 1;
+    }
+
+    fn summary(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
+        let active = self.slaves.iter().filter(|&&n| part.nodes.flags.is(ACTIVE, n as usize)).count();
+        let pairs: usize = self.blocks.iter().map(|block| block.pairs().len()).sum();
+        let gaps = part.nodes.history.values(&WEIGHTED_GAP, 0);
+        let areas = part.nodes.values.values(&NODAL_AREA, 0);
+        let deepest = self.slaves.iter().map(|&n| n as usize).filter(|&n| areas.get(n).is_some_and(|a| *a > 0.0));
+        let deepest = deepest.map(|n| gaps[n] / areas[n]).fold(0.0, f64::min);
+        vec![("pairs", pairs as f64), ("active nodes", active as f64), ("deepest penetration", -deepest)]
+    }
+}

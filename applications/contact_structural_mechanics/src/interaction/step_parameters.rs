@@ -1,0 +1,38 @@
+//! What every pair of a run shares.
+
+use crate::mortar::SegmentationSettings;
+
+/// When normals follow the iteration, and whether the tangent knows it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+pub enum NormalVariation {
+    /// Normals of the step, renewed once after its first iteration (`no_derivatives_computation`).
+    #[serde(rename = "no_derivatives_computation")]
+    None,
+    /// Normals of each iteration, constant in the tangent.
+    #[serde(
+        rename = "no_derivatives_computation_with_normal_update",
+        alias = "no_derivatives_computation_with_normal_update"
+    )]
+    Update,
+    /// As [`NormalVariation::Update`], with the variation of the facet's normal in the tangent.
+    #[serde(rename = "elemental_derivatives")]
+    Elemental,
+    /// As [`NormalVariation::Elemental`], with the variation of the nodal normals too.
+    #[serde(rename = "nodal_elemental_derivatives")]
+    NodalElemental,
+}
+
+/// Settings and numbers that the conditions read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepParameters {
+    /// How overlaps are cut and integrated.
+    pub segmentation: SegmentationSettings,
+    /// k: multipliers times k are tractions.
+    pub scale_factor: f64,
+    /// Ratio κ of tangential and normal penalty.
+    pub tangent_factor: f64,
+    /// Change of the operators beyond which slip is measured objectively.
+    pub operator_threshold: f64,
+    /// When normals follow the iteration.
+    pub normal_variation: NormalVariation,
+}

@@ -1,0 +1,261 @@
+//! The facets of a contact interface, from the parts a deck names or from the skin of the bodies.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::geometry::Shape;
+use zelus_core::model::flags::{INTERFACE, MASTER, SLAVE};
+use zelus_core::model::{ModelPart, SubPart};
+use zelus_core::vector3::{dot, sub};
+
+use super::normals::centre_normal;
+
+/// Which sides a facet can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Roles {
+    /// Carries multipliers.
+    Slave,
+    /// Is touched.
+    Master,
+    /// Either, to be decided by each search (self contact).
+    Open,
+}
+
+/// Where a facet comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FacetSource {
+    /// A condition of the mesh, by its index.
+    Condition(u32),
+    /// A face of an element, by the index of the element.
+    Face(u32),
+}
+
+/// One piece of a contact surface; its nodes go round so that the normal points out of the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facet {
+    /// Node indices.
+    pub nodes: Vec<u32>,
+    /// Line2, Tri3 or Quad4.
+    pub shape: Shape,
+    /// What it is part of.
+    pub source: FacetSource,
+    /// Properties id with the elastic constants of the body.
+    pub properties: usize,
+    /// Its side.
+    pub role: Roles,
+}
+
+/// The facets of one contact pair of a deck (one key).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Interface {
+    /// The key, `"0"` to `"9"` and beyond.
+    pub key: String,
+    /// All facets.
+    pub facets: Vec<Facet>,
+    /// Nodes of all facets, ascending.
+    pub nodes: Vec<u32>,
+}
+
+impl Interface {
+    /// Nodes of the facets of one role, ascending.
+    pub fn nodes_of(&self, role: Roles) -> Vec<u32> {
+        let mut nodes: Vec<u32> =
+            self.facets.iter().filter(|f| f.role == role).flat_map(|f| f.nodes.iter().copied()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
+/// Faces of elements by their sorted nodes: element, nodes in the element's order, and how many elements share it.
+type Faces = FxHashMap<Vec<u32>, (u32, Vec<u32>, usize)>;
+
+/// Builds the interfaces a deck names: `parts` and `slaves` are its lists of sub parts by key.
+///
+/// A part with conditions contributes them; one without contributes the element faces whose nodes all belong to it. When
+/// no part is named at all, the whole skin is the interface of key "0".
+///
+/// # Errors
+/// Parts that do not exist, interfaces without facets or without slaves.
+pub fn interfaces(
+    part: &mut ModelPart,
+    parts: &BTreeMap<String, Vec<String>>,
+    slaves: &BTreeMap<String, Vec<String>>,
+) -> Result<Vec<Interface>> {
+    let faces = boundary_faces(part);
+    let mut named: Vec<(&String, &Vec<String>)> = parts.iter().filter(|(_, list)| !list.is_empty()).collect();
+    let zero = "0".to_owned();
+    let whole = Vec::new();
+    let skin = named.is_empty();
+    if skin {
+        named.push((&zero, &whole));
+    }
+    let mut out = Vec::new();
+    for (key, list) in named {
+        let mut found: Vec<Facet> = Vec::new();
+        if skin {
+            let mut all: Vec<&(u32, Vec<u32>, usize)> = faces.values().filter(|(.., shared)| *shared == 1).collect();
+            all.sort();
+            for (element, nodes, _) in all {
+                found.push(facet(part, nodes.clone(), FacetSource::Face(*element), *element)?);
+            }
+        }
+        for name in list {
+            let sub = part.part(name)?.clone();
+            let before = found.len();
+            facets_of(part, &sub, &faces, &mut found)?;
+            if found.len() == before {
+                let fact = format!(
+                    "the contact part {name:?} (pair \"{key}\") has no facets: no conditions, and no element has a face in it"
+                );
+                return Err(Diagnostic::error("empty-contact-part", fact)
+                    .remedy("give it the surface conditions, or all nodes of the surface")
+                    .into());
+            }
+        }
+        let mut seen = std::collections::BTreeSet::new();
+        found.retain(|f| {
+            let mut sorted = f.nodes.clone();
+            sorted.sort_unstable();
+            seen.insert(sorted)
+        });
+        let mut nodes: Vec<u32> = found.iter().flat_map(|f| f.nodes.iter().copied()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        for &node in &nodes {
+            part.nodes.flags.set(INTERFACE, node as usize, true);
+        }
+        out.push(Interface { key: key.clone(), facets: found, nodes });
+    }
+    assign_roles(part, slaves, &mut out)?;
+    Ok(out)
+}
+
+fn assign_roles(
+    part: &mut ModelPart,
+    slaves: &BTreeMap<String, Vec<String>>,
+    interfaces: &mut [Interface],
+) -> Result<()> {
+    for interface in interfaces {
+        let Some(list) = slaves.get(&interface.key).filter(|list| !list.is_empty()) else {
+            continue;
+        };
+        for &node in &interface.nodes {
+            part.nodes.flags.set(MASTER, node as usize, true);
+            part.nodes.flags.set(SLAVE, node as usize, false);
+        }
+        for name in list {
+            let nodes = part.part(name)?.nodes.clone();
+            for node in nodes {
+                part.nodes.flags.set(SLAVE, node as usize, true);
+                part.nodes.flags.set(MASTER, node as usize, false);
+            }
+        }
+        for facet in &mut interface.facets {
+            let slave = facet.nodes.iter().all(|&n| part.nodes.flags.is(SLAVE, n as usize));
+            facet.role = if slave { Roles::Slave } else { Roles::Master };
+        }
+        for (role, word) in [(Roles::Slave, "slave"), (Roles::Master, "master")] {
+            if !interface.facets.iter().any(|f| f.role == role) {
+                let fact = format!("contact pair \"{}\" has no {word} facets", interface.key);
+                let remedy = "\"assume_master_slave\" names the parts on the slave side; \"contact_model_part\" must hold both sides";
+                return Err(Diagnostic::error("empty-contact-side", fact).remedy(remedy).into());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Facet>) -> Result<()> {
+    let mut from_conditions = false;
+    for &at in &sub.conditions {
+        let nodes = part.conditions.nodes(at).to_vec();
+        if nodes.len() < 2 {
+            continue;
+        }
+        from_conditions = true;
+        let mut sorted = nodes.clone();
+        sorted.sort_unstable();
+        let Some((element, ..)) = faces.get(&sorted) else {
+            let fact = format!(
+                "condition {} of contact part {:?} is not a face of any element",
+                part.conditions.ids[at as usize], sub.name
+            );
+            return Err(Diagnostic::error("loose-facet", fact)
+                .remedy("contact surfaces must lie on the skin of a body")
+                .into());
+        };
+        found.push(facet(part, nodes, FacetSource::Condition(at), *element)?);
+    }
+    if from_conditions {
+        return Ok(());
+    }
+    let mut inside = vec![false; part.nodes.len()];
+    sub.nodes.iter().for_each(|&n| inside[n as usize] = true);
+    let mut faces: Vec<&(u32, Vec<u32>, usize)> =
+        faces.values().filter(|(_, nodes, shared)| *shared == 1 && nodes.iter().all(|&n| inside[n as usize])).collect();
+    faces.sort();
+    for (element, nodes, _) in faces {
+        found.push(facet(part, nodes.clone(), FacetSource::Face(*element), *element)?);
+    }
+    Ok(())
+}
+
+/// A facet whose nodes are turned so that its normal leaves the element.
+fn facet(part: &ModelPart, mut nodes: Vec<u32>, source: FacetSource, element: u32) -> Result<Facet> {
+    let plane = part.info.domain_size == 2;
+    let shape = match (nodes.len(), plane) {
+        (2, true) => Shape::Line2,
+        (3, false) => Shape::Tri3,
+        (4, false) => Shape::Quad4,
+        (count, _) => {
+            let fact = format!(
+                "element {}: a facet with {count} nodes cannot carry contact in {} dimensions",
+                part.elements.ids[element as usize], part.info.domain_size
+            );
+            return Err(Diagnostic::error("contact-facet", fact)
+                .remedy("contact works on lines of 2 nodes, triangles of 3 and quadrilaterals of 4")
+                .into());
+        }
+    };
+    let centre = |nodes: &[u32]| {
+        let mut sum = [0.0; 3];
+        for &n in nodes {
+            (0..3).for_each(|c| sum[c] += part.nodes.initial[n as usize][c] / nodes.len() as f64);
+        }
+        sum
+    };
+    let points: Vec<[f64; 3]> = nodes.iter().map(|&n| part.nodes.initial[n as usize]).collect();
+    let outward = sub(centre(&nodes), centre(part.elements.nodes(element)));
+    let Some(normal) = centre_normal(shape, &points) else {
+        let fact = format!("a facet of element {} has no area", part.elements.ids[element as usize]);
+        return Err(Diagnostic::error("degenerate-facet", fact).remedy("mend the mesh").into());
+    };
+    if dot(normal, outward) < 0.0 {
+        nodes.reverse();
+    }
+    let own = match source {
+        FacetSource::Condition(at) => Some(part.conditions.properties[at as usize]),
+        FacetSource::Face(_) => None,
+    };
+    let elastic = |id: &usize| part.properties.get(id).is_some_and(|p| p.number("YOUNG_MODULUS").is_some());
+    let properties = own.filter(elastic).unwrap_or(part.elements.properties[element as usize]);
+    Ok(Facet { nodes, shape, source, properties, role: Roles::Open })
+}
+
+fn boundary_faces(part: &ModelPart) -> Faces {
+    let mut faces = Faces::default();
+    for element in 0..part.elements.len() as u32 {
+        let Some(cell) = part.elements.kinds[element as usize].cell.map(Shape::cell) else { continue };
+        let nodes = part.elements.nodes(element);
+        for face in cell.faces {
+            let face: Vec<u32> = face.nodes.iter().map(|&n| nodes[n]).collect();
+            let mut sorted = face.clone();
+            sorted.sort_unstable();
+            faces.entry(sorted).and_modify(|(.., shared)| *shared += 1).or_insert((element, face, 1));
+        }
+    }
+    faces
+}

@@ -1,0 +1,84 @@
+//! Families of contact conditions: what a `mortar_type` brings along.
+
+use std::sync::Arc;
+
+use zelus_core::analysis::NodalVariable;
+use zelus_core::geometry::Shape;
+use zelus_core::model::{ScalarVariable, Variable};
+use zelus_core::registry::{self, Build, Entry, Kind};
+use zelus_core::{Result, diagnostics::Diagnostic};
+
+use super::pair::Pair;
+use super::pair_block::ContactBlock;
+use crate::interaction::StepParameters;
+
+/// The multipliers of a family.
+#[derive(Clone, Copy)]
+pub enum Multiplier {
+    /// None: the penalty method.
+    None,
+    /// One a slave node, along its normal.
+    Scalar(&'static Variable<f64>),
+    /// One a slave node and direction.
+    Vector(&'static Variable<[f64; 3]>),
+}
+
+impl Multiplier {
+    /// The unknowns in `dimension` dimensions.
+    pub fn unknowns(self, dimension: usize) -> Vec<ScalarVariable> {
+        match self {
+            Self::None => Vec::new(),
+            Self::Scalar(variable) => vec![variable.scalar()],
+            Self::Vector(variable) => (0..dimension as u8).map(|c| variable.component(c)).collect(),
+        }
+    }
+}
+
+/// What a block of pairs is made from.
+pub struct PairRequest {
+    /// The registered condition of this shape.
+    pub entry: &'static Entry,
+    /// The pairs.
+    pub pairs: Vec<Pair>,
+    /// Node indices of each pair: master nodes, then slave nodes.
+    pub nodes: Vec<u32>,
+    /// Settings and numbers of the step.
+    pub parameters: Arc<StepParameters>,
+}
+
+/// A family, registered under its `mortar_type` as a condition with `Build::Factory(&Family {…})`.
+pub struct Family {
+    /// Beginning of the names of its conditions, up to the shape, e.g. `ALMFrictionlessMortarContactCondition`.
+    pub condition: &'static str,
+    /// Its multipliers.
+    pub multiplier: Multiplier,
+    /// Further nodal variables with history.
+    pub variables: &'static [NodalVariable],
+    /// Whether it has friction.
+    pub frictional: bool,
+    /// Whether it works without multipliers and therefore with a larger penalty.
+    pub penalty: bool,
+    /// Makes the block of one pair of shapes (slave, master).
+    pub block: fn(Shape, Shape, PairRequest) -> Option<Box<dyn ContactBlock>>,
+}
+
+/// The family of a `mortar_type`.
+///
+/// # Errors
+/// A name that no family has.
+pub fn find_family(mortar_type: &str) -> Result<&'static Family, Diagnostic> {
+    let found = registry::find(Kind::Condition, mortar_type).and_then(|entry| match entry.build {
+        Build::Factory(factory) => factory.downcast_ref::<Family>(),
+        _ => None,
+    });
+    found.ok_or_else(|| {
+        let families: Vec<&str> = registry::entries()
+            .into_iter()
+            .filter(|e| matches!(e.build, Build::Factory(f) if f.is::<Family>()))
+            .map(|e| e.name)
+            .collect();
+        let hint = zelus_core::diagnostics::did_you_mean(mortar_type, families.iter().copied());
+        Diagnostic::error("mortar-type", format!("there is no contact family {mortar_type:?}"))
+            .remedy(hint.unwrap_or_else(|| format!("families: {}", families.join(", "))))
+    })
+}

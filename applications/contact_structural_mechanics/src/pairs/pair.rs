@@ -1,0 +1,51 @@
+//! One slave facet and one master facet that overlap.
+
+/// Which facets of which interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PairKey {
+    /// Position of the interface.
+    pub interface: u32,
+    /// Slave facet of the interface.
+    pub slave: u32,
+    /// Master facet of the interface.
+    pub master: u32,
+}
+
+/// Operators at the start of the step, against which slip is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Previous {
+    /// D of the start of the step, in the leading rows and columns.
+    pub d: [[f64; 4]; 4],
+    /// M of the start of the step.
+    pub m: [[f64; 4]; 4],
+}
+
+/// A pair with what it remembers between iterations and steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// Its facets.
+    pub key: PairKey,
+    /// Slave normal on which the overlap is cut: that of the step which made the pair, unless normals are updated.
+    pub slave_normal: [f64; 3],
+    /// Master normal onto whose plane points are projected: that of the start of the step, unless normals are updated.
+    pub master_normal: [f64; 3],
+    /// Whether the facets overlap now; a pair that does not is isolated and contributes nothing.
+    pub overlapping: bool,
+    /// Operators at the start of the step.
+    pub previous: Previous,
+}
+
+/// What a pair adds to its slave nodes.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Integral {
+    /// Whether the facets overlap.
+    pub overlapping: bool,
+    /// D_jj (area).
+    pub area: [f64; 4],
+    /// Weighted gap, negative in penetration.
+    pub gap: [f64; 4],
+    /// Weighted slip of the step.
+    pub slip: [[f64; 3]; 4],
+    /// D and M themselves.
+    pub operators: Previous,
+}

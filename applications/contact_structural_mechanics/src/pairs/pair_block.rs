@@ -1,0 +1,307 @@
+//! A block of pairs of one family and one pair of shapes.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::model::flags::{ACTIVE, SLIP};
+use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT, variables::NORMAL};
+use zelus_core::registry::Entry;
+use zelus_core::scalar::{Dual, Real};
+use zelus_core::vector3::{cross, normalised, sub};
+
+use super::family::{Multiplier, PairRequest};
+use super::pair::{Integral, Pair, Previous};
+use crate::formulations::{self, Formulation, NodeState, SlaveNode};
+use crate::interaction::{NormalVariation, StepParameters};
+use crate::mortar::{Operators, Overlap, PairGeometry, dimension, operators, weighted_gap};
+use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI};
+
+/// A formulation as the blocks use it.
+pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
+    /// The formulation with the numbers of the step.
+    fn new(parameters: &StepParameters) -> Self;
+
+    /// The nodal variable of its multipliers.
+    fn multiplier() -> Multiplier;
+
+    /// What a pair remembers, from its state and the positions at the previous step.
+    fn history<const NS: usize, const NM: usize>(
+        pair: &Pair,
+        previous: &PairGeometry<f64, NS, NM>,
+    ) -> Self::History<NS, NM>;
+
+    /// Weighted slip vectors of a pair; zero without friction.
+    fn slip<const NS: usize, const NM: usize>(
+        &self,
+        _operators: &Operators<f64, NS, NM>,
+        _geometry: &PairGeometry<f64, NS, NM>,
+        _history: &Self::History<NS, NM>,
+    ) -> [[f64; 3]; NS] {
+        [[0.0; 3]; NS]
+    }
+}
+
+/// A block of pairs as the interaction sees it.
+pub trait ContactBlock: EntityBlock {
+    /// The pairs.
+    fn pairs(&self) -> &[Pair];
+
+    /// The pairs, to change.
+    fn pairs_mut(&mut self) -> &mut [Pair];
+
+    /// Node indices on the slave side of the `at`-th pair.
+    fn slave_nodes(&self, at: usize) -> &[u32];
+
+    /// Gap, slip and area of every pair in the present configuration.
+    fn integrate(&self, view: &StepView<'_>) -> Vec<Integral>;
+
+    /// Step start: keeps the operators against which slip is measured.
+    fn keep_operators(&mut self, view: &StepView<'_>);
+
+    /// The same block for the assembly.
+    fn as_entities(&self) -> &dyn EntityBlock;
+}
+
+/// Pairs with `NS` slave and `NM` master nodes and `NU` displacement unknowns.
+pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize> {
+    entry: &'static Entry,
+    pairs: Vec<Pair>,
+    nodes: Vec<u32>,
+    parameters: Arc<StepParameters>,
+    formulation: F,
+    unknowns: Vec<LocalUnknown>,
+}
+
+impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> PairBlock<F, NS, NM, NU> {
+    /// The block of a request.
+    pub fn boxed(request: PairRequest) -> Box<dyn ContactBlock> {
+        let dim = dimension(NS);
+        let mut unknowns: Vec<LocalUnknown> = (0..NM + NS)
+            .flat_map(|node| {
+                (0..dim as u8).map(move |c| LocalUnknown { node: node as u8, variable: DISPLACEMENT.component(c) })
+            })
+            .collect();
+        let multipliers: Vec<ScalarVariable> = F::multiplier().unknowns(dim);
+        for node in NM..NM + NS {
+            unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
+        }
+        let formulation = F::new(&request.parameters);
+        let PairRequest { entry, pairs, nodes, parameters } = request;
+        Box::new(Self { entry, pairs, nodes, parameters, formulation, unknowns })
+    }
+
+    fn masters(&self, at: usize) -> [u32; NM] {
+        std::array::from_fn(|n| self.nodes[at * (NM + NS) + n])
+    }
+
+    fn slaves(&self, at: usize) -> [u32; NS] {
+        std::array::from_fn(|n| self.nodes[at * (NM + NS) + NM + n])
+    }
+
+    fn geometry(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
+        let normals = view.nodes.history.values(&NORMAL, 0);
+        let pair = &self.pairs[at];
+        PairGeometry {
+            slave: self.slaves(at).map(|n| view.nodes.current[n as usize]),
+            master: self.masters(at).map(|n| view.nodes.current[n as usize]),
+            nodal_normals: self.slaves(at).map(|n| vector(normals, n)),
+            slave_normal: pair.slave_normal,
+            master_normal: pair.master_normal,
+        }
+    }
+
+    /// The pair with displacements as variables, and normals too where the settings ask for it.
+    fn seeded(
+        &self,
+        at: usize,
+        geometry: &PairGeometry<f64, NS, NM>,
+        view: &StepView<'_>,
+    ) -> PairGeometry<Dual<NU>, NS, NM> {
+        let mut seeded = geometry.seeded::<NU>();
+        if matches!(self.parameters.normal_variation, NormalVariation::Elemental | NormalVariation::NodalElemental) {
+            seeded.slave_normal = facet_normal(&seeded.slave, None);
+            seeded.master_normal = facet_normal(&seeded.master, None);
+        }
+        if self.parameters.normal_variation == NormalVariation::NodalElemental {
+            let lengths = view.nodes.values.values(&NORMAL_LENGTH, 0);
+            for (j, node) in self.slaves(at).into_iter().enumerate() {
+                let own = facet_normal(&seeded.slave, Some(j));
+                let length = lengths[node as usize];
+                let sum = std::array::from_fn(|c| own[c] - own[c].value() + geometry.nodal_normals[j][c] * length);
+                seeded.nodal_normals[j] = normalised(sum);
+            }
+        }
+        seeded
+    }
+
+    fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
+        let displacement = &view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns").levels;
+        let back = &displacement[1.min(displacement.len() - 1)];
+        let position = |n: u32| {
+            let u = vector(back, n);
+            let initial = view.nodes.initial[n as usize];
+            std::array::from_fn(|c| initial[c] + u[c])
+        };
+        PairGeometry {
+            slave: self.slaves(at).map(position),
+            master: self.masters(at).map(position),
+            ..self.geometry(at, view)
+        }
+    }
+
+    fn slave_states(&self, at: usize, view: &StepView<'_>) -> [SlaveNode; NS] {
+        let penalty = view.nodes.values.values(&INITIAL_PENALTY, 0);
+        let factor = view.nodes.values.values(&DYNAMIC_FACTOR, 0);
+        let friction = view.nodes.values.values(&FRICTION_COEFFICIENT, 0);
+        let tangent = view.nodes.values.values(&TANGENT_XI, 0);
+        self.slaves(at).map(|n| {
+            let node = n as usize;
+            let state = match (view.nodes.flags.is(ACTIVE, node), view.nodes.flags.is(SLIP, node)) {
+                (false, _) => NodeState::Inactive,
+                (true, false) => NodeState::Stick,
+                (true, true) => NodeState::Slip,
+            };
+            SlaveNode {
+                state,
+                penalty: penalty[node],
+                dynamic_factor: factor[node],
+                friction: friction.get(node).copied().unwrap_or(0.0),
+                tangent: if tangent.is_empty() { [0.0; 3] } else { vector(tangent, n) },
+            }
+        })
+    }
+
+    fn multipliers(&self, at: usize, view: &StepView<'_>) -> [[f64; 3]; NS] {
+        let history = &view.nodes.history;
+        self.slaves(at).map(|n| match F::multiplier() {
+            Multiplier::None => [0.0; 3],
+            Multiplier::Scalar(variable) => [history.values(variable, 0)[n as usize], 0.0, 0.0],
+            Multiplier::Vector(variable) => vector(history.values(variable, 0), n),
+        })
+    }
+}
+
+fn vector(column: &[f64], node: u32) -> [f64; 3] {
+    let at = 3 * node as usize;
+    [column[at], column[at + 1], column[at + 2]]
+}
+
+/// Unit normal of a facet at its centre, or at one of its nodes.
+fn facet_normal<T: Real, const N: usize>(x: &[[T; 3]; N], node: Option<usize>) -> [T; 3] {
+    match (N, node) {
+        (2, _) => {
+            let t = sub(x[1], x[0]);
+            normalised([t[1], -t[0], T::zero()])
+        }
+        (4, Some(j)) => normalised(cross(sub(x[(j + 1) % 4], x[j]), sub(x[(j + 3) % 4], x[j]))),
+        (4, None) => normalised(cross(sub(x[2], x[0]), sub(x[3], x[1]))),
+        _ => normalised(cross(sub(x[1], x[0]), sub(x[2], x[0]))),
+    }
+}
+
+impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> EntityBlock for PairBlock<F, NS, NM, NU> {
+    fn entry(&self) -> &'static Entry {
+        self.entry
+    }
+
+    fn members(&self) -> &[u32] {
+        &[]
+    }
+
+    fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    fn nodes(&self, at: usize) -> &[u32] {
+        &self.nodes[at * (NM + NS)..(at + 1) * (NM + NS)]
+    }
+
+    fn unknowns(&self) -> &[LocalUnknown] {
+        &self.unknowns
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::General
+    }
+
+    fn is_active(&self, at: usize, _view: &StepView<'_>) -> bool {
+        self.pairs[at].overlapping
+    }
+
+    fn local_systems(
+        &self,
+        view: &StepView<'_>,
+        range: Range<usize>,
+        want: Want,
+        out: &mut LocalSystems,
+    ) -> Result<(), EntityError> {
+        for (slot, at) in range.enumerate() {
+            if !self.pairs[at].overlapping {
+                continue;
+            }
+            let geometry = self.geometry(at, view);
+            let nodes = self.slave_states(at, view);
+            let multipliers = self.multipliers(at, view);
+            let history = F::history(&self.pairs[at], &self.previous(at, view));
+            let settings = &self.parameters.segmentation;
+            let (lhs, rhs) = out.entity(slot);
+            if want == Want::Both {
+                let seeded = self.seeded(at, &geometry, view);
+                formulations::tangent(&self.formulation, &seeded, settings, &nodes, &multipliers, &history, lhs, rhs);
+            } else {
+                formulations::residual(&self.formulation, &geometry, settings, &nodes, &multipliers, &history, rhs);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> ContactBlock for PairBlock<F, NS, NM, NU> {
+    fn pairs(&self) -> &[Pair] {
+        &self.pairs
+    }
+
+    fn pairs_mut(&mut self) -> &mut [Pair] {
+        &mut self.pairs
+    }
+
+    fn slave_nodes(&self, at: usize) -> &[u32] {
+        &self.nodes[at * (NM + NS) + NM..(at + 1) * (NM + NS)]
+    }
+
+    fn integrate(&self, view: &StepView<'_>) -> Vec<Integral> {
+        (0..self.pairs.len())
+            .into_par_iter()
+            .with_min_len(32)
+            .map(|at| {
+                let geometry = self.geometry(at, view);
+                let mut out = Integral::default();
+                if let Overlap::Cells(operators) = operators(&geometry, &self.parameters.segmentation) {
+                    out.overlapping = true;
+                    let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
+                    let history = F::history(&self.pairs[at], &self.previous(at, view));
+                    let slip = self.formulation.slip(&operators, &geometry, &history);
+                    for j in 0..NS {
+                        out.area[j] = operators.d[j].iter().sum();
+                        out.gap[j] = gaps[j];
+                        out.slip[j] = slip[j];
+                        (0..NS).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
+                        (0..NM).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
+                    }
+                }
+                out
+            })
+            .collect()
+    }
+
+    fn keep_operators(&mut self, view: &StepView<'_>) {
+        let kept: Vec<Previous> = self.integrate(view).into_iter().map(|integral| integral.operators).collect();
+        self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
+    }
+
+    fn as_entities(&self) -> &dyn EntityBlock {
+        self
+    }
+}

@@ -1,0 +1,3 @@
+//! The processes of contact.
+
+mod alm_contact_process;

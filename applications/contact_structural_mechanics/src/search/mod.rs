@@ -1,0 +1,7 @@
+//! Which facets may touch: a bounding-volume tree over the masters, then a filter on each pair.
+
+mod candidates;
+mod tree;
+
+pub use candidates::{SearchSettings, candidates};
+pub use tree::{Bounds, Tree};

@@ -1,0 +1,3 @@
+//! What contact adds to the solver's settings.
+
+mod contact_settings;

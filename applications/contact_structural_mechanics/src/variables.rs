@@ -1,0 +1,24 @@
+//! The variables of contact.
+
+use zelus_core::register_variable;
+
+register_variable! {
+    pub LAGRANGE_MULTIPLIER_CONTACT_PRESSURE: f64 = "Normal contact pressure divided by SCALE_FACTOR, negative in compression.";
+    pub VECTOR_LAGRANGE_MULTIPLIER: [f64; 3] = "Contact traction on the slave divided by SCALE_FACTOR, along the outward normal of the slave in tension.";
+    pub SCALAR_LAGRANGE_MULTIPLIER: f64 = "Multiplier of a tied scalar.";
+    pub WEIGHTED_GAP: f64 = "Gap integrated with the dual shape function of a slave node, negative in penetration (length times area).";
+    pub WEIGHTED_SLIP: [f64; 3] = "Slip of the step integrated with the dual shape function of a slave node (length times area).";
+    pub WEIGHTED_SCALAR_RESIDUAL: f64 = "Residual of a tied scalar, integrated with dual shape functions.";
+    pub WEIGHTED_VECTOR_RESIDUAL: [f64; 3] = "Residual of a tied vector, integrated with dual shape functions.";
+    pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
+    pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
+    pub NORMAL_LENGTH: f64 = "Length of the sum of facet normals at a node, before it is made a unit vector.";
+    pub NODAL_H: f64 = "Distance to the nearest node that shares an element (length).";
+    pub INITIAL_PENALTY: f64 = "Penalty parameter of contact (force per length cubed).";
+    pub DYNAMIC_FACTOR: f64 = "Factor of contact forces in the step in which a gap closes.";
+    pub FRICTION_COEFFICIENT: f64 = "Coulomb's coefficient of friction.";
+    pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding.";
+    pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Scale factor times normal multiplier plus penalty times weighted gap; negative when active.";
+    pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";
+    kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";
+}
