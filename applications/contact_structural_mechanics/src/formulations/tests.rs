@@ -126,6 +126,66 @@ fn tangents_match_differences() {
     for_all_shapes!(all_families);
 }
 
+/// Residuals of one family against lines of `reference_residuals.txt`; numbers are nodal vectors, then scalars.
+fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec<f64>], history: F::History<2, 2>) {
+    for line in lines {
+        let vector = |i: usize| [line[3 * i], line[3 * i + 1], line[3 * i + 2]];
+        let pair = PairGeometry { nodal_normals: [vector(4), vector(5)], ..line_pair(line, start) };
+        let nodes = std::array::from_fn(|j| SlaveNode {
+            state: [NodeState::Inactive, NodeState::Stick, NodeState::Slip][line[30 + j] as usize],
+            penalty: line[32 + j],
+            dynamic_factor: line[34 + j],
+            friction: 0.4,
+            tangent: vector(8 + j),
+        });
+        let expected = &line[36..];
+        let mut rhs = vec![0.0; expected.len()];
+        let settings = SegmentationSettings::default();
+        residual(formulation, &pair, &settings, &nodes, &[vector(6), vector(7)], &history, &mut rhs);
+        let size = expected.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        for (row, (a, b)) in rhs.iter().zip(expected).enumerate() {
+            assert!((a - b).abs() <= 1e-12 * size, "row {row}: {a} {b}");
+        }
+    }
+}
+
+/// Nodes from the first vectors of a line, facet normals from the start of the step.
+fn line_pair(line: &[f64], start: &[f64]) -> PairGeometry<f64, 2, 2> {
+    let vector = |of: &[f64], i: usize| [of[3 * i], of[3 * i + 1], of[3 * i + 2]];
+    PairGeometry {
+        slave: [vector(line, 0), vector(line, 1)],
+        master: [vector(line, 2), vector(line, 3)],
+        nodal_normals: [vector(line, 4), vector(line, 5)],
+        slave_normal: vector(start, 6),
+        master_normal: vector(start, 7),
+    }
+}
+
+#[test]
+fn residuals_of_the_reference_program() {
+    let numbers = |text: &str| -> Vec<f64> { text.split(' ').map(|x| x.parse().unwrap()).collect() };
+    let text = include_str!("reference_residuals.txt");
+    let blocks = text.split("start ").skip(1);
+    let mut families = 0;
+    for block in blocks {
+        let (head, rest) = block.split_once('\n').unwrap();
+        let (family, start) = head.split_once(' ').unwrap();
+        let start = numbers(start);
+        let lines: Vec<_> = rest.lines().map(numbers).collect();
+        let vector = |i: usize| [start[25 + 3 * i], start[26 + 3 * i], start[27 + 3 * i]];
+        let previous = operators(&line_pair(&start, &start), &SegmentationSettings::default()).cells().unwrap();
+        let history =
+            SlipHistory { previous, reference_slave: [vector(0), vector(1)], reference_master: [vector(2), vector(3)] };
+        match family {
+            "alm_frictional" => check_references(&frictional(start[24]), &start, &lines, history),
+            "penalty_frictional" => check_references(&PENALTY, &start, &lines, previous),
+            _ => check_references(&COMPONENTS, &start, &lines, ()),
+        }
+        families += 1;
+    }
+    assert_eq!(families, 4);
+}
+
 /// One multiplier along the normal and the same as a vector push equally; their gap rows agree along the normal.
 #[test]
 fn scalar_and_components_agree() {
