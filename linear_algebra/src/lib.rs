@@ -20,8 +20,6 @@ mod symbolic;
 mod dense;
 mod dense_lu;
 mod multifrontal;
-mod pool;
-mod scatter;
 
 mod direct;
 mod interface;
