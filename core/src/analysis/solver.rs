@@ -160,8 +160,13 @@ impl SolverSettings {
                 .remedy("use \"linear\" or \"non_linear\"")
                 .into());
         }
+        let max_iteration = self.settings.get_usize("max_iteration")?;
+        if max_iteration == 0 {
+            let fact = "\"max_iteration\" is 0: no step could be solved";
+            return Err(self.settings.error("max_iteration", "invalid-value", fact).remedy("write at least 1").into());
+        }
         let settings = NewtonSettings {
-            max_iteration: self.settings.get_usize("max_iteration")?,
+            max_iteration,
             linear: analysis == "linear",
             compute_reactions: self.settings.get_bool("compute_reactions")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,

@@ -63,6 +63,12 @@ impl Stage {
                     );
                 }
             }
+            if let Some((start, end)) = start.zip(end)
+                && end <= start
+            {
+                let fact = format!("\"end_time\" {end} is not after \"start_time\" {start}: there is no step to make");
+                problems.push(Diagnostic::error("no-steps", fact).at(data.key_place("end_time")));
+            }
             start.zip(end)
         });
         let user = problems.absorb(deck.require("solver_settings").cloned());
@@ -119,6 +125,9 @@ impl Stage {
             constraints: part.constraints.len(),
             unknowns: part.dofs.len(),
         };
+        for process in &processes {
+            problems.absorb(process.check(model));
+        }
         for warning in problems.finish()? {
             report.warnings.push(warning.to_string());
             monitor.warn(&warning);
@@ -436,7 +445,10 @@ fn make_processes(deck: &Node, folder: &Path, model: &mut Model, problems: &mut 
 fn make_process(item: &Node, folder: &Path, model: &mut Model, problems: &mut Report) -> Result<Box<dyn Process>> {
     let module = match item.get("python_module") {
         Some(module) => module,
-        None => item.require("name")?,
+        None => item.get("name").ok_or_else(|| {
+            let fact = "a process without \"python_module\" or \"name\"";
+            Diagnostic::error("missing-key", fact).at(item.place()).remedy("`zelus list process` shows the names")
+        })?,
     };
     let name = module.str()?.rsplit('.').next().unwrap_or_default();
     let entry = registry::require(Kind::Process, name).map_err(|d| d.at(module.place()))?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::variables::{kind_of, last_of_path, law_name, unknown_variable};
-use crate::diagnostics::{Diagnostic, Report, Result};
+use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::model::{ModelPart, Properties, PropertyValue, Table, VariableKind};
 use crate::parameters::{Document, Node};
 
@@ -105,7 +105,7 @@ fn read_material(material: &Node, properties: &mut Properties, report: &mut Repo
             report.push(unknown_variable(name).at(material.get("Variables").map(|v| v.key_place(&member.key))));
             continue;
         };
-        if let Some(value) = report.absorb(value(&member.node, kind)) {
+        if let Some(value) = report.absorb(value(&member.node, kind).map_err(|error| about(&member.key, error))) {
             properties.values.insert(name.to_owned(), value);
         }
     }
@@ -122,6 +122,17 @@ fn read_material(material: &Node, properties: &mut Properties, report: &mut Repo
     if let Some(inner) = material.get("sub_properties") {
         let fact = "sub-properties are not used: a material is one law and its values";
         report.push(Diagnostic::warning("unused-key", fact).at(inner.place()));
+    }
+}
+
+/// The same problems, named after the variable.
+fn about(key: &str, error: Error) -> Error {
+    match error {
+        Error::Input(mut problems) => {
+            problems.iter_mut().for_each(|problem| problem.fact = format!("{key}: {}", problem.fact));
+            Error::Input(problems)
+        }
+        other => other,
     }
 }
 

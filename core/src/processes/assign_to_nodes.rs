@@ -119,8 +119,11 @@ impl Process for AssignToNodes {
         Ok(())
     }
 
+    fn check(&self, model: &Model) -> Result<()> {
+        self.check_unknowns(model.root(&self.target.path)?)
+    }
+
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
-        self.check_unknowns(model.root(&self.target.path)?)?;
         if self.before_loop {
             // a function like 1/t has no value at TIME 0, and needs none: the first step sets it
             self.held = self.apply(model.root_mut(&self.target.path)?, false)?;

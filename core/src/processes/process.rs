@@ -9,7 +9,8 @@ use crate::registry::Entry;
 
 /// Something done at fixed points of the stage loop, in the order in which the deck lists it.
 ///
-/// Points in time: [`initialize`](Process::initialize), [`before_loop`](Process::before_loop); then each step
+/// Points in time: [`initialize`](Process::initialize), [`check`](Process::check),
+/// [`before_loop`](Process::before_loop); then each step
 /// [`begin_step`](Process::begin_step) – solve – [`end_step`](Process::end_step) – output; at last
 /// [`finalize`](Process::finalize). A step that is cut and retried calls `begin_step` again for each part of it.
 pub trait Process: Send {
@@ -18,6 +19,14 @@ pub trait Process: Send {
     /// # Errors
     /// Whatever the deck asks for that the model cannot give.
     fn initialize(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// All unknowns are known, nothing has run and nothing is written; `zelus check` ends here.
+    ///
+    /// # Errors
+    /// As [`Process::initialize`].
+    fn check(&self, _model: &Model) -> Result<()> {
         Ok(())
     }
 

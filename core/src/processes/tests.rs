@@ -55,6 +55,7 @@ fn refused(module: &str, parameters: &str) -> String {
     let run = |model: &mut Model| {
         let mut process = make(module, parameters, model)?;
         process.initialize(model)?;
+        process.check(model)?;
         process.before_loop(model)?;
         step(&mut *process, model, 0.1)
     };
