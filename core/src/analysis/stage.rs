@@ -241,6 +241,10 @@ impl Stage {
         let start = Instant::now();
         let record = self.strategy.solve_step(model.root_mut(&self.root)?, monitor)?;
         report.add_seconds("solve steps", start.elapsed().as_secs_f64());
+        for warning in std::mem::take(&mut model.root_mut(&self.root)?.messages) {
+            report.warnings.push(warning.to_string());
+            monitor.warn(&warning);
+        }
         monitor.end_step(&record);
         report.steps.push(record.clone());
         Ok(record)

@@ -114,7 +114,7 @@ impl Assembler {
             element_numbers: numbers(&part.element_blocks),
             condition_numbers: numbers(&part.condition_blocks),
             bulk: pattern.zero.clone(),
-            loads: GroupMatrix::new(&part.dofs, &loads, &part.view(), &[]),
+            loads: GroupMatrix::new(&part.dofs, &loads, &[]),
             pattern,
             lumped: lumped_mass,
             interaction_unknowns,
@@ -142,8 +142,7 @@ impl Assembler {
         }
         let graph = interactions.iter().fold(1_u64, |sum, i| sum.wrapping_mul(31).wrapping_add(i.graph_version()));
         if self.coupling_graph != Some(graph) {
-            self.coupling =
-                GroupMatrix::new(&part.dofs, &blocks_of(interactions), &part.view(), &self.interaction_unknowns);
+            self.coupling = GroupMatrix::new(&part.dofs, &blocks_of(interactions), &self.interaction_unknowns);
             self.coupling_graph = Some(graph);
             self.stamps.coupling_graph += 1;
             self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, false);

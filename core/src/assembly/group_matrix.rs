@@ -13,26 +13,26 @@ pub struct GroupMatrix {
     /// The matrix.
     pub matrix: Csr,
     numbers: Vec<Vec<u32>>,
-    idle: Vec<u32>,
+    /// Unknowns that only the blocks of the group touch, if any does.
+    lonely: Vec<u32>,
 }
 
 impl GroupMatrix {
-    /// The pattern of these blocks; unknowns of `lonely` that no active entity touches get a diagonal entry.
-    pub fn new(dofs: &DofTable, blocks: &[&dyn EntityBlock], view: &StepView<'_>, lonely: &[u32]) -> Self {
+    /// The pattern of these blocks; unknowns of `lonely` that nothing touches get a diagonal entry.
+    pub fn new(dofs: &DofTable, blocks: &[&dyn EntityBlock], lonely: &[u32]) -> Self {
         let numbers: Vec<Vec<u32>> = blocks.iter().map(|block| block_numbers(*block, dofs)).collect();
         let mut adjacency = vec![Vec::new(); dofs.len()];
         for (block, numbers) in blocks.iter().zip(&numbers) {
             let size = block.unknowns().len();
-            for at in (0..block.len()).filter(|&at| block.is_active(at, view)) {
+            for at in 0..block.len() {
                 let rows = &numbers[at * size..(at + 1) * size];
                 for &row in rows {
                     adjacency[row as usize].extend_from_slice(rows);
                 }
             }
         }
-        let idle: Vec<u32> = lonely.iter().copied().filter(|&n| adjacency[n as usize].is_empty()).collect();
-        idle.iter().for_each(|&n| adjacency[n as usize].push(n));
-        Self { matrix: Csr::from_pattern(&adjacency), numbers, idle }
+        lonely.iter().for_each(|&n| adjacency[n as usize].push(n));
+        Self { matrix: Csr::from_pattern(&adjacency), numbers, lonely: lonely.to_vec() }
     }
 
     /// Adds the right-hand sides of the blocks the group was made for.
@@ -51,7 +51,7 @@ impl GroupMatrix {
         Ok(())
     }
 
-    /// Recomputes the matrix; idle unknowns get `diagonal`.
+    /// Recomputes the matrix; rows of lonely unknowns that stay empty get `diagonal`.
     ///
     /// # Errors
     /// The first entity that cannot be computed.
@@ -79,8 +79,11 @@ impl GroupMatrix {
                 }
             }
         }
-        for &number in &self.idle {
-            self.matrix.add(number as usize, number as usize, diagonal);
+        for &number in &self.lonely {
+            let row = number as usize;
+            if self.matrix.row(row).1.iter().all(|v| *v == 0.0) {
+                self.matrix.add(row, row, diagonal);
+            }
         }
         Ok(())
     }

@@ -44,6 +44,8 @@ pub struct ModelPart {
     pub condition_blocks: Vec<Box<dyn EntityBlock>>,
     /// What acts between bodies, e.g. contact.
     pub interactions: Vec<Box<dyn Interaction>>,
+    /// Warnings met while running; the stage passes them on after each step.
+    pub messages: Vec<Diagnostic>,
 }
 
 impl ModelPart {

@@ -1,6 +1,6 @@
 //! The contact of all pairs of a deck: search at step start, gaps and active set in every iteration.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use zelus_core::Result;
@@ -20,7 +20,7 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous};
-use crate::search::{SearchSettings, candidates};
+use crate::search::{Candidate, SearchSettings, candidates};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP,
     WEIGHTED_SLIP,
@@ -86,6 +86,7 @@ pub struct ContactInteraction {
     steps_since_search: usize,
     saved: Vec<Pair>,
     acting: bool,
+    warned: bool,
 }
 
 impl ContactInteraction {
@@ -122,6 +123,7 @@ impl ContactInteraction {
             steps_since_search: usize::MAX,
             saved: Vec::new(),
             acting: true,
+            warned: false,
         })
     }
 
@@ -144,9 +146,15 @@ impl ContactInteraction {
     /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
     fn search(&mut self, part: &mut ModelPart) -> Result<()> {
         let mut known: BTreeMap<PairKey, Pair> = self.pairs().into_iter().map(|pair| (pair.key, pair)).collect();
+        let mut beyond = BTreeSet::new();
         for at in 0..self.interfaces.len() {
-            for (slave, master) in candidates(part, &self.interfaces[at], &self.settings.search) {
+            for Candidate { slave, master, within_reach } in
+                candidates(part, &self.interfaces[at], &self.settings.search)
+            {
                 let key = PairKey { interface: at as u32, slave, master };
+                if !within_reach && !known.contains_key(&key) {
+                    beyond.insert(key);
+                }
                 if let std::collections::btree_map::Entry::Vacant(place) = known.entry(key) {
                     let slave_normal = self.normal(part, self.facet(key.interface, slave));
                     let master_normal = self.normal(part, self.facet(key.interface, master));
@@ -164,19 +172,32 @@ impl ContactInteraction {
         self.make_blocks(known.into_values().collect())?;
         let overlapping: Vec<bool> =
             self.blocks.iter().flat_map(|block| block.integrate(&part.view())).map(|i| i.overlapping).collect();
-        let kept: Vec<Pair> = self
+        let (kept, lost): (Vec<Pair>, Vec<Pair>) = self
             .pairs()
             .into_iter()
             .zip(overlapping)
-            .filter(|(_, overlapping)| *overlapping)
-            .map(|(pair, _)| pair)
-            .collect();
+            .filter_map(|(pair, overlapping)| overlapping.then_some(pair))
+            .partition(|pair| !beyond.contains(&pair.key));
+        self.warn_of_reach(part, lost.len());
         self.make_blocks(kept)?;
         let after: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
         if before != after {
             self.graph += 1;
         }
         Ok(())
+    }
+
+    /// Overlaps that the deck's reach leaves out are said once: contact is not enforced there.
+    fn warn_of_reach(&mut self, part: &mut ModelPart, lost: usize) {
+        if lost > 0 && !std::mem::replace(&mut self.warned, true) {
+            let fact = format!(
+                "{lost} pairs of facets overlap but lie beyond the reach of the search; contact has gaps there"
+            );
+            part.messages.push(
+                Diagnostic::warning("search-reach", fact)
+                    .remedy("raise \"search_parameters.search_factor\", or let the finer side be the master"),
+            );
+        }
     }
 
     fn make_blocks(&mut self, pairs: Vec<Pair>) -> Result<()> {

@@ -5,47 +5,82 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, sub};
 
 use super::tree::{Bounds, Tree};
-use crate::interface::{Interface, Roles, centre_normal, positions};
+use crate::interface::{Facet, Interface, Roles, centre_normal, positions};
 
 /// What decides whether a pair is a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
-    /// Reach of the search in radii of the slave facet.
+    /// Reach of the search in radii of the slave facet: centres farther apart are not a pair.
     pub factor: f64,
     /// Least difference of the unit normals: facets that face the same way are not a pair.
     pub normal_orientation_threshold: f64,
 }
 
-/// Candidates (slave facet, master facet) of an interface in the present configuration, ascending.
-pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSettings) -> Vec<(u32, u32)> {
+/// A pair of facets near each other that do not face the same way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Candidate {
+    /// Slave facet of the interface.
+    pub slave: u32,
+    /// Master facet of the interface.
+    pub master: u32,
+    /// Whether the centres are within the reach of the search.
+    pub within_reach: bool,
+}
+
+/// Candidates of an interface in the present configuration, ascending.
+///
+/// The reach is a multiple of the distance from the centre of the slave to its farthest node, as decks set it. Facets whose
+/// boxes meet although their centres are farther apart (masters much larger than the slave) are given too, marked.
+pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSettings) -> Vec<Candidate> {
     let of_role = |role: Roles| -> Vec<u32> {
         (0..interface.facets.len() as u32).filter(|&f| interface.facets[f as usize].role == role).collect()
     };
     let (slaves, masters) = (of_role(Roles::Slave), of_role(Roles::Master));
-    let normal = |f: u32| {
-        let facet = &interface.facets[f as usize];
-        centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
-    };
-    let bounds = |f: u32| Bounds::of(positions(&interface.facets[f as usize], part, &mut [[0.0; 3]; 4]));
-    let tree = Tree::new(masters.iter().map(|&m| bounds(m)).collect());
-    let normals: Vec<[f64; 3]> = masters.iter().map(|&m| normal(m)).collect();
+    let place = |f: u32| Place::of(part, &interface.facets[f as usize]);
+    let places: Vec<Place> = masters.iter().map(|&m| place(m)).collect();
+    let tree = Tree::new(places.iter().map(|p| p.bounds).collect());
     slaves
         .par_iter()
         .with_min_len(64)
         .flat_map_iter(|&slave| {
-            let mut buffer = [[0.0; 3]; 4];
-            let points = positions(&interface.facets[slave as usize], part, &mut buffer);
-            let centre: [f64; 3] =
-                std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);
-            let radius = points.iter().map(|p| norm(sub(*p, centre))).fold(0.0, f64::max);
-            let near = tree.meeting(&Bounds::of(points).grown((settings.factor - 1.0).max(0.0) * radius));
-            let own = normal(slave);
-            let found: Vec<(u32, u32)> = near
+            let own = place(slave);
+            let reach = settings.factor * own.radius;
+            let near = tree.meeting(&own.bounds.grown(reach));
+            let found: Vec<Candidate> = near
                 .into_iter()
-                .filter(|&m| norm(sub(own, normals[m as usize])) >= settings.normal_orientation_threshold)
-                .map(|m| (slave, masters[m as usize]))
+                .map(|m| (m, &places[m as usize]))
+                .filter(|(_, other)| norm(sub(own.normal, other.normal)) >= settings.normal_orientation_threshold)
+                .map(|(m, other)| Candidate {
+                    slave,
+                    master: masters[m as usize],
+                    within_reach: norm(sub(own.centre, other.centre)) <= reach,
+                })
+                .filter(|c| c.within_reach || own.bounds.grown(0.1 * own.radius).meets(&place(c.master).bounds))
                 .collect();
             found
         })
         .collect()
+}
+
+/// Where a facet is.
+struct Place {
+    bounds: Bounds,
+    centre: [f64; 3],
+    normal: [f64; 3],
+    /// Distance from the centre to the farthest node.
+    radius: f64,
+}
+
+impl Place {
+    fn of(part: &ModelPart, facet: &Facet) -> Self {
+        let mut buffer = [[0.0; 3]; 4];
+        let points = positions(facet, part, &mut buffer);
+        let centre: [f64; 3] = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);
+        Self {
+            bounds: Bounds::of(points),
+            centre,
+            normal: centre_normal(facet.shape, points).unwrap_or([0.0; 3]),
+            radius: points.iter().map(|p| norm(sub(*p, centre))).fold(0.0, f64::max),
+        }
+    }
 }

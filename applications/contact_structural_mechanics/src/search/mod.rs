@@ -3,5 +3,5 @@
 mod candidates;
 mod tree;
 
-pub use candidates::{SearchSettings, candidates};
+pub use candidates::{Candidate, SearchSettings, candidates};
 pub use tree::{Bounds, Tree};
