@@ -1,0 +1,5 @@
+//! Additions to zelus, one file each: every file ends in the registration that makes its name known to decks.
+
+mod elastic_foundation_condition;
+mod energy_criterion;
+mod scale_load_process;
