@@ -55,6 +55,11 @@ fn judge(deck: &BadDeck, command: &str) -> (Vec<String>, String) {
     if contents(scratch.path()) != before {
         problems.push(format!("{command} changes files"));
     }
+    let lines: Vec<&str> = message.lines().collect();
+    let bare = lines.windows(2).find(|pair| pair[0].starts_with("error[") && !pair[1].starts_with("    "));
+    if let Some(pair) = bare {
+        problems.push(format!("{command} names no remedy: {}", pair[0]));
+    }
     let unsaid: Vec<_> = says.iter().filter(|word| !message.contains(**word)).collect();
     if !unsaid.is_empty() {
         problems.push(format!("{command} does not say {unsaid:?}"));

@@ -157,3 +157,16 @@ fn an_output_folder_that_is_a_file_is_a_system_failure() {
     assert!(said(&output).contains("mesh.mdpa"), "{}", said(&output));
     assert_eq!(std::fs::read(scratch.path().join("mesh.mdpa")).expect("the mesh"), mesh, "the mesh was written over");
 }
+
+#[test]
+fn a_solver_key_that_contact_lets_pass_is_a_warning_with_a_name() {
+    let scratch = scratch_copy(&root().join("tests/bad_decks/good"));
+    change(scratch.path(), "\"max_iteration\"", "\"max_iterations\"");
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let text = said(&output);
+    assert!(
+        text.contains("warning") && text.contains("max_iterations") && text.contains("\"max_iteration\""),
+        "{text}"
+    );
+}

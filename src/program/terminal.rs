@@ -73,21 +73,23 @@ impl Monitor for Terminal {
             let heads: Vec<String> = record
                 .checks
                 .iter()
-                .map(|c| format!("{:>22}", format!("{} (tol {:.0e})", c.label, c.ratio_tolerance)))
+                .map(|c| format!("{:>33}", format!("{} (tol {:.0e})", c.label, c.ratio_tolerance)))
                 .collect();
             self.line(&format!("   it {}  set changes", heads.join("")));
         }
         let cells: Vec<String> = record
             .checks
             .iter()
-            .map(|c| format!("{:>20.3e} {}", c.ratio, if c.converged { "✓" } else { " " }))
+            .map(|c| format!("{:>31.3e} {}", c.ratio, if c.converged { "✓" } else { " " }))
             .collect();
         let changes = record.active_set_changes + record.stick_slip_changes;
         self.line(&format!("  {:>3} {}  {changes:>6}", record.iteration, cells.join("")));
     }
 
     fn end_step(&mut self, record: &StepRecord) {
-        let numbers: Vec<String> = record.interactions.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        let short = |value: f64| if value.fract() == 0.0 { format!("{value}") } else { format!("{value:.3e}") };
+        let numbers: Vec<String> =
+            record.interactions.iter().map(|(name, value)| format!("{name} {}", short(*value))).collect();
         let state = if record.converged { "converged" } else { "not converged" };
         let extra = if numbers.is_empty() { String::new() } else { format!("; {}", numbers.join(", ")) };
         self.line(&format!("  {state} in {} iterations{extra}", record.iterations.len()));

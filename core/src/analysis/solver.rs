@@ -116,7 +116,8 @@ impl SolverSettings {
             3 => Ok(3),
             other => Err(self
                 .settings
-                .error("domain_size", "domain-size", format!("\"domain_size\" is {other}, it must be 2 or 3"))
+                .error("domain_size", "domain-size", format!("\"domain_size\" is {other}"))
+                .remedy("use 2 in the plane, 3 in space")
                 .into()),
         }
     }

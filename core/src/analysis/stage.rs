@@ -67,7 +67,8 @@ impl Stage {
                 && end <= start
             {
                 let fact = format!("\"end_time\" {end} is not after \"start_time\" {start}: there is no step to make");
-                problems.push(Diagnostic::error("no-steps", fact).at(data.key_place("end_time")));
+                let remedy = "write an \"end_time\" after \"start_time\"";
+                problems.push(Diagnostic::error("no-steps", fact).at(data.key_place("end_time")).remedy(remedy));
             }
             start.zip(end)
         });
@@ -87,6 +88,10 @@ impl Stage {
         if imported.is_none() || problems.has_errors() {
             return Err(finish(problems));
         }
+        problems.absorb(check_dimensions(model.root(&root)?, solver.domain_size()?));
+        if problems.has_errors() {
+            return Err(finish(problems));
+        }
         report.add_seconds("read", start.elapsed().as_secs_f64());
         let start = Instant::now();
         let mut processes = make_processes(deck, folder, model, &mut problems);
@@ -100,8 +105,6 @@ impl Stage {
             return Err(finish(problems));
         }
         let part = model.root_mut(&root)?;
-        let domain_size = solver.domain_size()?;
-        problems.absorb(check_dimensions(part, domain_size));
         problems.absorb(make_blocks(part));
         if problems.has_errors() {
             return Err(finish(problems));

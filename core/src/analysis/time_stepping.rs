@@ -26,6 +26,7 @@ impl TimeStepping {
             if !(length > 0.0 && length.is_finite()) {
                 return Err(Diagnostic::error("time-step", format!("\"time_step\" is {length}, it must be positive"))
                     .at(node.key_place("time_step"))
+                    .remedy("write the length of a step, e.g. 0.1")
                     .into());
             }
             return Ok(Self::Constant(length));

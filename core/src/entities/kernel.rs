@@ -175,7 +175,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
             id: self.ids[at],
             nodes: self.nodes[at].iter().map(|&n| view.nodes.ids[n as usize]).collect(),
             fact,
-            remedy: "see `zelus check`; in a running analysis smaller steps may help",
+            remedy: "check the order and the coordinates of its nodes; in a running analysis, take shorter steps",
         }
     }
 }

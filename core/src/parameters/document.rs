@@ -75,10 +75,7 @@ pub(super) fn parse(text: &str, path: &Path, with_comments: bool) -> Result<(Doc
         let (line, column) = Cursor::new(text).advance(e.range().start);
         let fact = lower_first(&e.kind().to_string());
         let problem = Diagnostic::error("invalid-json", fact).at(Place::at(path, line, column));
-        match remedy(e.kind()) {
-            Some(remedy) => problem.remedy(remedy),
-            None => problem,
-        }
+        problem.remedy(remedy(e.kind()))
     })?;
     let Some(root) = parsed.value else {
         let problem = Diagnostic::error("invalid-json", "the file holds no JSON value").at(Place::file(path));
@@ -93,8 +90,8 @@ pub(super) fn parse(text: &str, path: &Path, with_comments: bool) -> Result<(Doc
     Ok((Document { root, warnings: builder.problems }, comments))
 }
 
-fn remedy(kind: &ParseErrorKind) -> Option<&'static str> {
-    Some(match kind {
+fn remedy(kind: &ParseErrorKind) -> &'static str {
+    match kind {
         ParseErrorKind::TrailingCommasNotAllowed => "remove the comma before the closing bracket",
         ParseErrorKind::ExpectedComma => "separate the values with a comma",
         ParseErrorKind::UnexpectedWord => "only true, false and null stand without quotes",
@@ -106,8 +103,8 @@ fn remedy(kind: &ParseErrorKind) -> Option<&'static str> {
         ParseErrorKind::BareDecimalPointNumbersNotAllowed => "write a digit on both sides of the decimal point",
         ParseErrorKind::NonFiniteNumbersNotAllowed => "write a number; decks use 1e30 for \"unbounded\"",
         ParseErrorKind::MultipleRootJsonValues => "keep one value a file; a bracket may be closed too early",
-        _ => return None,
-    })
+        _ => "look for a quote, comma or bracket that is missing here or before",
+    }
 }
 
 fn lower_first(text: &str) -> String {

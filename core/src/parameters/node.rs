@@ -313,7 +313,7 @@ impl Node {
 
     fn wrong_type(&self, expected: &str) -> Error {
         let fact = format!("expected {expected}, found {} ({self})", self.value.kind());
-        Diagnostic::error("wrong-type", fact).at(self.place()).into()
+        Diagnostic::error("wrong-type", fact).at(self.place()).remedy(format!("write {expected}")).into()
     }
 
     /// The tree as plain JSON, keys in byte order.

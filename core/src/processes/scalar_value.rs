@@ -96,8 +96,20 @@ fn read_csv(node: &Node) -> Result<Table> {
     parse_csv(&std::fs::read_to_string(&path).map_err(unreadable)?, &csv, &path)
 }
 
+/// What stands in a table for a value that is missing.
+const NOT_AVAILABLE: [&str; 5] = ["", "n/a", "na", "nan", "-"];
+
 fn parse_csv(text: &str, csv: &CsvSettings, path: &Path) -> Result<Table> {
-    let number = |cell: &str| cell.trim().trim_matches('"').parse::<f64>().unwrap_or(csv.na_replace);
+    let number = |cell: &str, row: usize| {
+        let cell = cell.trim().trim_matches('"');
+        match cell.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ if NOT_AVAILABLE.iter().any(|word| word.eq_ignore_ascii_case(cell)) => Ok(csv.na_replace),
+            _ => Err(Diagnostic::error("invalid-table", format!("\"{cell}\" is not a number"))
+                .at(Place::at(path, row as u32 + 1, 0))
+                .remedy("a value that is missing is written N/A; \"skiprows\" leaves out the head")),
+        }
+    };
     let mut points = Vec::new();
     for (row, line) in text.lines().enumerate().skip(csv.skiprows).filter(|(_, line)| !line.trim().is_empty()) {
         let cells: Vec<&str> = line.split(csv.delimiter.as_str()).collect();
@@ -111,7 +123,7 @@ fn parse_csv(text: &str, csv: &CsvSettings, path: &Path) -> Result<Table> {
             let problem = Diagnostic::error("invalid-table", fact).at(Place::at(path, row as u32 + 1, 0));
             return Err(problem.remedy("columns count from 0; check \"delimiter\" and \"skiprows\"").into());
         };
-        points.push([number(x), number(y)]);
+        points.push([number(x, row)?, number(y, row)?]);
     }
     if points.is_empty() {
         let problem = Diagnostic::error("invalid-table", "the table has no rows").at(Place::file(path));

@@ -129,12 +129,13 @@ pub fn interfaces(
         }
         out.push(Interface { key: key.clone(), facets: found, nodes });
     }
-    assign_roles(part, slaves, &mut out)?;
+    assign_roles(part, parts, slaves, &mut out)?;
     Ok(out)
 }
 
 fn assign_roles(
     part: &mut ModelPart,
+    parts: &BTreeMap<String, Vec<String>>,
     slaves: &BTreeMap<String, Vec<String>>,
     interfaces: &mut [Interface],
 ) -> Result<()> {
@@ -159,7 +160,12 @@ fn assign_roles(
         }
         for (role, word) in [(Roles::Slave, "slave"), (Roles::Master, "master")] {
             if !interface.facets.iter().any(|f| f.role == role) {
-                let fact = format!("contact pair \"{}\" has no {word} facets", interface.key);
+                let whole = parts.get(&interface.key).map(|names| names.join(", ")).unwrap_or_default();
+                let fact = format!(
+                    "contact pair \"{}\" has no {word} facets: {} is the slave side of {whole}",
+                    interface.key,
+                    list.join(", ")
+                );
                 let remedy = "\"assume_master_slave\" names the parts on the slave side; \"contact_model_part\" must hold both sides";
                 return Err(Diagnostic::error("empty-contact-side", fact).remedy(remedy).into());
             }
@@ -216,7 +222,10 @@ fn facet(part: &ModelPart, mut nodes: Vec<u32>, source: FacetSource, element: u3
                 part.elements.ids[element as usize], part.info.domain_size
             );
             return Err(Diagnostic::error("contact-facet", fact)
-                .remedy("contact works on lines of 2 nodes, triangles of 3 and quadrilaterals of 4")
+                .remedy(
+                    "contact works on lines of 2 nodes in the plane, triangles of 3 and quadrilaterals of 4 in space; is \
+                     \"domain_size\" right?",
+                )
                 .into());
         }
     };

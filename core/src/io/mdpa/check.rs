@@ -113,11 +113,12 @@ pub(super) fn check(document: &mut MdpaDocument, lines: &Lines, problems: &mut P
 }
 
 fn undefined(problems: &mut Problems, line: u32, who: &str, kind: &str, id: u32) {
-    let mut problem = Diagnostic::error("undefined-id", format!("{who} names {kind} {id}, which is not defined"));
-    if kind == "properties" {
-        problem = problem.remedy(format!("write `Begin Properties {id}` and `End Properties`, empty if need be"));
-    }
-    problems.push(line, problem);
+    let problem = Diagnostic::error("undefined-id", format!("{who} names {kind} {id}, which is not defined"));
+    let remedy = match kind {
+        "properties" => format!("write `Begin Properties {id}` and `End Properties`, empty if need be"),
+        _ => format!("correct the id, or define the {kind}"),
+    };
+    problems.push(line, problem.remedy(remedy));
 }
 
 fn nodes(document: &MdpaDocument, lines: &[u32], problems: &mut Problems) -> Ids {
@@ -127,7 +128,8 @@ fn nodes(document: &MdpaDocument, lines: &[u32], problems: &mut Problems) -> Ids
         let Some(first) = known.enter(id, row as u32).map(|first| first as usize) else { continue };
         if coordinates[first] != *position {
             let fact = format!("node {id} is already defined in line {} with other coordinates", lines[first]);
-            problems.error(lines[row], "repeated-node", fact);
+            problems
+                .push(lines[row], Diagnostic::error("repeated-node", fact).remedy("give every node an id of its own"));
         } else {
             let fact = format!("node {id} is already defined in line {}, with the same coordinates", lines[first]);
             problems.push(lines[row], Diagnostic::warning("repeated-node", fact));
@@ -170,27 +172,38 @@ fn tables(tables: &[Table], problems: &mut Problems) -> Ids {
     known
 }
 
-/// Enters the ids; of entities with one id the first is kept.
+/// Enters the ids; an entity that repeats another one is left out, one that differs from it is an error.
 fn entities(kind: &str, blocks: &mut [EntityBlock], lines: &[Vec<u32>], problems: &mut Problems) -> Ids {
     let all = || blocks.iter().flat_map(|block| &block.ids);
     let mut known = Ids::new(all().copied().max().unwrap_or(0), all().count());
     let mut row = 0;
-    for (block, lines) in blocks.iter_mut().zip(lines) {
-        let mut repeated = Vec::new();
+    let mut repeated = Vec::new();
+    for (at, (block, lines)) in blocks.iter().zip(lines).enumerate() {
         for (i, &id) in block.ids.iter().enumerate() {
             if known.enter(id, row).is_some() {
-                let fact = format!("{kind} {id} is already defined; the first one is kept");
-                problems.push(lines[i], Diagnostic::warning("repeated-entity", fact));
-                repeated.push(i);
+                let first = blocks.iter().find_map(|b| Some((b, b.ids.iter().position(|other| *other == id)?)));
+                let same = first.is_some_and(|(b, j)| b.name == block.name && b.nodes_of(j) == block.nodes_of(i));
+                let problem = if same {
+                    Diagnostic::warning(
+                        "repeated-entity",
+                        format!("{kind} {id} is already defined, with the same nodes"),
+                    )
+                } else {
+                    Diagnostic::error("repeated-entity", format!("{kind} {id} is already defined, with other nodes"))
+                        .remedy(format!("give every {kind} an id of its own"))
+                };
+                problems.push(lines[i], problem);
+                repeated.push((at, i));
             }
             row += 1;
         }
-        for &i in repeated.iter().rev() {
-            block.ids.remove(i);
-            block.nodes.drain(i * block.nodes_per_entity..(i + 1) * block.nodes_per_entity);
-            if !block.properties.is_empty() {
-                block.properties.remove(i);
-            }
+    }
+    for (at, i) in repeated.into_iter().rev() {
+        let block = &mut blocks[at];
+        block.ids.remove(i);
+        block.nodes.drain(i * block.nodes_per_entity..(i + 1) * block.nodes_per_entity);
+        if !block.properties.is_empty() {
+            block.properties.remove(i);
         }
     }
     known
@@ -238,7 +251,10 @@ fn sub_model_part(part: &SubModelPart, path: &str, known: &Known, problems: &mut
             let shown: Vec<String> = missing.iter().take(5).map(ToString::to_string).collect();
             let more = if missing.len() > 5 { format!(" and {} more", missing.len() - 5) } else { String::new() };
             let fact = format!("the sub model part {path} names undefined ids ({kind} {}{more})", shown.join(", "));
-            problems.error(part.line.0, "undefined-id", fact);
+            problems.push(
+                part.line.0,
+                Diagnostic::error("undefined-id", fact).remedy("correct the ids, or define what they name"),
+            );
         }
     }
     part.parts.iter().for_each(|inner| sub_model_part(inner, &format!("{path}.{}", inner.name), known, problems));

@@ -221,7 +221,8 @@ impl<'a> Reader<'a> {
         let word = self.heading(open, "an id")?;
         let id = parse_prefix(word.as_bytes()).map(|(value, _)| value).filter(|v| *v >= 0.0 && *v <= u32::MAX.into());
         if id.is_none() {
-            self.problems.error(open.line, "bad-number", format!("`{word}` is not an id of {}", open.kind));
+            let fact = format!("`{word}` is not an id of {}", open.kind);
+            self.problems.push(open.line, Diagnostic::error("bad-number", fact).remedy("write an integer from 0"));
         }
         id.map(|v| v as u32)
     }
@@ -276,10 +277,11 @@ impl<'a> Reader<'a> {
         let line = self.tokens.line;
         if word == b"End" || word == b"Begin" {
             let fact = format!("the last row of the block {} of line {} ends before {what}", open.kind, open.line);
-            self.problems.error(line, "short-row", fact);
+            let remedy = "every row of a block has the same number of entries";
+            self.problems.push(line, Diagnostic::error("short-row", fact).remedy(remedy));
         } else {
             let fact = format!("`{}` is not {what}, in the block {}", text(word), open.kind);
-            self.problems.error(line, "bad-number", fact);
+            self.problems.push(line, Diagnostic::error("bad-number", fact).remedy("correct the row"));
             self.tokens.skip_line();
         }
     }

@@ -109,11 +109,7 @@ impl Expression {
             let start = node.place();
             let place = Place { column: start.column + e.column, ..start };
             let problem = Diagnostic::error("invalid-expression", format!("in \"{text}\": {}", e.fact)).at(place);
-            match e.remedy {
-                Some(remedy) => problem.remedy(remedy),
-                None => problem,
-            }
-            .into()
+            problem.remedy(e.remedy.unwrap_or_else(|| "write e.g. \"2.0*t + sin(pi*X)\"".into())).into()
         })
     }
 
