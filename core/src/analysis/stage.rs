@@ -8,6 +8,7 @@ use super::solver::{SolverSettings, check_dimensions, make_blocks};
 use super::time_stepping::TimeStepping;
 use crate::assembly::DofTable;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
+use crate::entities::MasterSlaveConstraint;
 use crate::io;
 use crate::model::{Fields, Flags, Model, ModelPart, Nodes, ProcessInfo};
 use crate::parameters::{Node, Settings};
@@ -283,6 +284,7 @@ struct Saved {
     nodes: Nodes,
     elements: (Fields, Flags),
     conditions: (Fields, Flags),
+    constraints: Vec<MasterSlaveConstraint>,
     dofs: DofTable,
     info: ProcessInfo,
 }
@@ -294,6 +296,7 @@ impl Saved {
             nodes: part.nodes.clone(),
             elements: (part.elements.data.clone(), part.elements.flags.clone()),
             conditions: (part.conditions.data.clone(), part.conditions.flags.clone()),
+            constraints: part.constraints.clone(),
             dofs: part.dofs.clone(),
             info: part.info.clone(),
         }
@@ -305,6 +308,7 @@ impl Saved {
         (part.conditions.data, part.conditions.flags) = self.conditions;
         part.elements.finish();
         part.conditions.finish();
+        part.constraints = self.constraints;
         part.dofs = self.dofs;
         part.info = self.info;
         part.interactions.iter_mut().for_each(|interaction| interaction.restore());

@@ -127,7 +127,8 @@ impl Assembler {
         &self.equations
     }
 
-    /// Step start: the equations left by fixities and constraints, and the pattern of the interactions.
+    /// Step start, and whenever constraints change: the equations left by fixities and constraints, and the pattern of
+    /// the interactions.
     ///
     /// # Errors
     /// Constraints that contradict each other.

@@ -4,6 +4,7 @@
 //! Δx = T Δx̄ (eq. D.12d) and the solved system is TᵀA T Δx̄ = Tᵀb (eq. D.12e). Without constraints T only drops the fixed
 //! unknowns.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use zelus_linear_algebra::{Csr, Layout};
@@ -116,6 +117,16 @@ impl Equations {
         out
     }
 
+    /// The residual as the equations see it: what slaves carry is added to their masters, and only free unknowns are left.
+    pub fn balanced<'r>(&self, full: &'r [f64]) -> Cow<'r, [f64]> {
+        if !self.has_slaves {
+            return Cow::Borrowed(full);
+        }
+        let mut out = vec![0.0; full.len()];
+        self.free.iter().zip(self.reduce(full)).for_each(|(&n, value)| out[n as usize] = value);
+        Cow::Owned(out)
+    }
+
     /// T v: increments of the equations spread to all unknowns; fixed ones get zero.
     pub fn expand(&self, reduced: &[f64]) -> Vec<f64> {
         self.roles
@@ -222,15 +233,24 @@ fn follow(
 }
 
 /// Makes the values of constrained unknowns obey their constraints: u_s = Σ w u_m + g.
+///
+/// A constraint may follow another one; passes are repeated until nothing changes.
 pub fn impose_constraints(nodes: &mut Nodes, constraints: &[MasterSlaveConstraint]) {
-    for constraint in constraints.iter().filter(|c| c.active) {
-        let value = constraint.masters.iter().fold(constraint.constant, |sum, &((node, variable), weight)| {
-            sum + weight * nodes.history.scalar(variable, node as usize).unwrap_or(0.0)
-        });
-        let (node, variable) = constraint.slave;
-        if let Some(field) = nodes.history.get_mut(variable.column) {
-            let components = field.components;
-            field.levels[0][node as usize * components + variable.offset()] = value;
+    for _ in 0..=constraints.len() {
+        let mut changed = false;
+        for constraint in constraints.iter().filter(|c| c.active) {
+            let value = constraint.masters.iter().fold(constraint.constant, |sum, &((node, variable), weight)| {
+                sum + weight * nodes.history.scalar(variable, node as usize).unwrap_or(0.0)
+            });
+            let (node, variable) = constraint.slave;
+            if let Some(field) = nodes.history.get_mut(variable.column) {
+                let at = node as usize * field.components + variable.offset();
+                changed |= field.levels[0][at] != value;
+                field.levels[0][at] = value;
+            }
+        }
+        if !changed {
+            break;
         }
     }
 }

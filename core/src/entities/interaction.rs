@@ -69,6 +69,16 @@ pub trait Interaction: Send + Sync {
     /// Changes whenever the connectivity of [`Interaction::blocks`] does.
     fn graph_version(&self) -> u64;
 
+    /// Changes whenever what it wrote into [`ModelPart::constraints`] does; the equations are then derived again.
+    fn constraints_version(&self) -> u64 {
+        0
+    }
+
+    /// Whether [`Interaction::after_update`] reads REACTION, which is then that of the updated state.
+    fn needs_reactions(&self) -> bool {
+        false
+    }
+
     /// Diagonal and right-hand side for unknowns of [`Interaction::unknowns`] that no block touches now.
     fn idle_diagonal(&self) -> f64 {
         1.0

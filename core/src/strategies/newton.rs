@@ -115,7 +115,7 @@ impl NewtonRaphson {
             interaction.begin_step(part)?;
         }
         self.assembler.begin_step(part, interactions)?;
-        let prescribed = self.start(part)?;
+        let mut prescribed = self.start(part)?;
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
         }
@@ -129,11 +129,11 @@ impl NewtonRaphson {
                 part.info.nl_iteration = iteration;
             }
             self.assembler.tangents(part, interactions, inertia.as_ref())?;
+            if prescribed.iter().any(|d| *d != 0.0) {
+                self.assembler.subtract_product(&prescribed, &mut residual);
+            }
             if iteration == 1 {
-                if prescribed.iter().any(|d| *d != 0.0) {
-                    self.assembler.subtract_product(&prescribed, &mut residual);
-                }
-                references.push(residual.clone());
+                references.push(self.assembler.equations().balanced(&residual).into_owned());
             }
             let rhs = self.assembler.equations().reduce(&residual);
             let (reduced, linear_residual, engine) = if rhs.iter().all(|v| *v == 0.0) {
@@ -154,9 +154,8 @@ impl NewtonRaphson {
                 (increment, report.relative_residual, report.engine.to_owned())
             };
             let mut increment = self.assembler.equations().expand(&reduced);
-            if iteration == 1 {
-                increment.iter_mut().zip(&prescribed).for_each(|(sum, d)| *sum += d);
-            }
+            increment.iter_mut().zip(&prescribed).for_each(|(sum, d)| *sum += d);
+            prescribed.fill(0.0);
             part.dofs.scatter_add(&increment, &mut part.nodes);
             if !part.constraints.is_empty() {
                 impose_constraints(&mut part.nodes, &part.constraints);
@@ -165,6 +164,12 @@ impl NewtonRaphson {
             if self.settings.move_mesh {
                 part.move_mesh();
             }
+            inertia = self.scheme.inertia(part);
+            if interactions.iter().any(|interaction| interaction.needs_reactions()) {
+                residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
+                write_reactions(part, &residual);
+            }
+            let constraints = constraints_version(interactions);
             let mut change = SetChange::default();
             for interaction in interactions.iter_mut() {
                 let more = interaction.after_update(part, iteration)?;
@@ -172,10 +177,14 @@ impl NewtonRaphson {
                 change.deactivated.extend(more.deactivated);
                 change.stick_slip.extend(more.stick_slip);
             }
-            inertia = self.scheme.inertia(part);
+            if constraints != constraints_version(interactions) {
+                self.assembler.begin_step(part, interactions)?;
+                prescribed = self.constraint_increment(part);
+            }
             residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
+            let balanced = self.assembler.equations().balanced(&residual);
             if iteration == 1 {
-                references.push(residual.clone());
+                references.push(balanced.to_vec());
             }
             let values = self.assembler.values(part);
             let round_off = self.assembler.round_off(part);
@@ -184,7 +193,7 @@ impl NewtonRaphson {
                 nodes: &part.nodes,
                 dofs: &part.dofs,
                 equations: self.assembler.equations(),
-                residual: &residual,
+                residual: &balanced,
                 references: &references,
                 increment: &increment,
                 values: &values,
@@ -206,12 +215,16 @@ impl NewtonRaphson {
                 return Ok((records, Some(format!("iteration {iteration} diverged: values are no longer finite"))));
             }
             if self.settings.linear || (verdict.converged && change.count() == 0) {
-                self.write_reactions(part, &residual);
+                if self.settings.compute_reactions {
+                    write_reactions(part, &residual);
+                }
                 return Ok((records, None));
             }
         }
         let failure = self.explain(part, &records, &residual);
-        self.write_reactions(part, &residual);
+        if self.settings.compute_reactions {
+            write_reactions(part, &residual);
+        }
         Ok((records, Some(failure)))
     }
 
@@ -235,11 +248,10 @@ impl NewtonRaphson {
             .collect();
         if part.constraints.iter().any(|c| c.active) {
             part.dofs.scatter_add(&increment, &mut part.nodes);
-            impose_constraints(&mut part.nodes, &part.constraints);
-            let imposed = self.assembler.values(part);
-            increment = imposed.iter().zip(&start).map(|(a, b)| a - b).collect();
+            let followed = self.constraint_increment(part);
             let back: Vec<f64> = increment.iter().map(|d| -d).collect();
             part.dofs.scatter_add(&back, &mut part.nodes);
+            increment.iter_mut().zip(followed).for_each(|(sum, d)| *sum += d);
         }
         self.scheme.update(part);
         if self.settings.move_mesh {
@@ -248,22 +260,19 @@ impl NewtonRaphson {
         Ok(increment)
     }
 
-    fn write_reactions(&self, part: &mut ModelPart, residual: &[f64]) {
-        if !self.settings.compute_reactions {
-            return;
-        }
-        let dofs = std::mem::take(&mut part.dofs);
-        let reaction = part.nodes.history.values_mut(&variables::REACTION, 0);
-        for (dof, r) in dofs.dofs().iter().zip(residual) {
-            if dof.variable.column == variables::DISPLACEMENT.name() {
-                reaction[3 * dof.node as usize + dof.variable.offset()] = -r;
-            }
-        }
-        part.dofs = dofs;
+    /// What constrained unknowns lack to obey their constraints at the present values of the others.
+    fn constraint_increment(&self, part: &mut ModelPart) -> Vec<f64> {
+        let before = self.assembler.values(part);
+        impose_constraints(&mut part.nodes, &part.constraints);
+        let lack: Vec<f64> = self.assembler.values(part).iter().zip(&before).map(|(after, b)| after - b).collect();
+        let back: Vec<f64> = lack.iter().map(|d| -d).collect();
+        part.dofs.scatter_add(&back, &mut part.nodes);
+        lack
     }
 
     fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {
         let equations = self.assembler.equations();
+        let residual = equations.balanced(residual);
         let worst = equations
             .unknowns()
             .iter()
@@ -288,4 +297,20 @@ impl NewtonRaphson {
             cycling.unwrap_or_default()
         )
     }
+}
+
+fn constraints_version(interactions: &[Box<dyn Interaction>]) -> u64 {
+    interactions.iter().fold(0, |sum, interaction| sum.wrapping_mul(31).wrapping_add(interaction.constraints_version()))
+}
+
+/// REACTION of every displacement: minus the out-of-balance force, which supports and constraints carry.
+fn write_reactions(part: &mut ModelPart, residual: &[f64]) {
+    let dofs = std::mem::take(&mut part.dofs);
+    let reaction = part.nodes.history.values_mut(&variables::REACTION, 0);
+    for (dof, r) in dofs.dofs().iter().zip(residual) {
+        if dof.variable.column == variables::DISPLACEMENT.name() {
+            reaction[3 * dof.node as usize + dof.variable.offset()] = -r;
+        }
+    }
+    part.dofs = dofs;
 }

@@ -1,0 +1,148 @@
+//! Ties the nodes of a part to one of them: u = relation · u_master + constant.
+//!
+//! One constraint a node and component; the constraints hold in steps whose TIME is in the interval.
+
+use std::ops::Range;
+
+use super::process::{Process, ProcessRequest};
+use crate::diagnostics::{Diagnostic, Place, Result};
+use crate::entities::MasterSlaveConstraint;
+use crate::model::{Model, Named, ScalarVariable, SubPart, VariableKind, named};
+use crate::parameters::{Interval, Settings};
+use crate::register;
+use crate::registry::Build;
+
+struct ImposeRigidMovement {
+    root: String,
+    interval: Interval,
+    place: Place,
+    /// Slave and master of each component.
+    variables: Vec<(ScalarVariable, ScalarVariable)>,
+    master: u32,
+    slaves: Vec<u32>,
+    holder: String,
+    relation: f64,
+    constant: f64,
+    /// The constraints it made, by their place in the model part.
+    made: Range<usize>,
+}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings()?;
+    let root = settings.get_str("main_model_part_name")?.to_owned();
+    let place = settings.key_place("model_part_name");
+    let part = request.model.root_mut(&root).map_err(|e| e.at(&settings.key_place("main_model_part_name")))?;
+    let name = settings.get_str("model_part_name")?;
+    let nodes = part.part(name).map_err(|e| e.at(&place))?.nodes.clone();
+    let id = settings.get_usize("master_node_id")?;
+    let master = if id == 0 { nodes.first().copied() } else { part.nodes.find(id) };
+    let master = master.ok_or_else(|| match id {
+        0 => Diagnostic::error("empty-part", format!("the model part {name:?} has no nodes")).at(place.clone()),
+        _ => settings.error("master_node_id", "unknown-node", format!("there is no node {id}")),
+    })?;
+    let masters = components(&settings, "master_variable_name", part.info.domain_size)?;
+    let slaves = match settings.get_str("slave_variable_name")? {
+        "" => masters.clone(),
+        _ => components(&settings, "slave_variable_name", part.info.domain_size)?,
+    };
+    if slaves.len() != masters.len() {
+        let fact = "\"slave_variable_name\" and \"master_variable_name\" differ in their number of components";
+        return Err(settings.error("slave_variable_name", "wrong-type", fact).into());
+    }
+    let holder = match settings.get_str("new_model_part_name")? {
+        "" => name,
+        new => new,
+    };
+    Ok(Box::new(ImposeRigidMovement {
+        root,
+        interval: Interval::from_node(settings.get("interval")?)?,
+        place,
+        variables: slaves.into_iter().zip(masters).collect(),
+        master,
+        slaves: nodes.into_iter().filter(|&n| n != master).collect(),
+        holder: holder.to_owned(),
+        relation: settings.get_f64("relation")?,
+        constant: settings.get_f64("constant")?,
+        made: 0..0,
+    }))
+}
+
+/// The numbers that a variable of these settings stands for.
+fn components(settings: &Settings, key: &str, domain_size: usize) -> Result<Vec<ScalarVariable>> {
+    let name = settings.get_str(key)?;
+    match named(name) {
+        Some(Named::Component(variable)) => Ok(vec![variable]),
+        Some(Named::Whole(column, VariableKind::Scalar)) => Ok(vec![ScalarVariable { column, component: None }]),
+        Some(Named::Whole(column, VariableKind::Vector3)) => {
+            Ok((0..domain_size as u8).map(|c| ScalarVariable { column, component: Some(c) }).collect())
+        }
+        _ => Err(settings
+            .error(key, "unknown-variable", format!("{name:?} is no variable of nodes"))
+            .remedy("name a scalar, a vector or a component, e.g. \"DISPLACEMENT\"")
+            .into()),
+    }
+}
+
+impl Process for ImposeRigidMovement {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root_mut(&self.root)?;
+        let first = part.constraints.len();
+        let mut id = part.constraints.iter().map(|c| c.id).max().unwrap_or(0);
+        for &node in &self.slaves {
+            for &(slave, master) in &self.variables {
+                id += 1;
+                part.constraints.push(MasterSlaveConstraint {
+                    id,
+                    slave: (node, slave),
+                    masters: vec![((self.master, master), self.relation)],
+                    constant: self.constant,
+                    active: false,
+                });
+            }
+        }
+        self.made = first..part.constraints.len();
+        if part.part(&self.holder).is_err() {
+            let nodes = self.slaves.iter().copied().chain([self.master]).collect();
+            let mut new = SubPart { nodes, ..SubPart::new(self.holder.clone()) };
+            new.normalise();
+            part.tree.children.insert(self.holder.clone(), new);
+        }
+        let indices = self.made.start as u32..self.made.end as u32;
+        part.part_mut(&self.holder)?.constraints.extend(indices.clone());
+        part.tree.constraints.extend(indices);
+        part.tree.normalise();
+        Ok(())
+    }
+
+    fn check(&self, model: &Model) -> Result<()> {
+        let part = model.root(&self.root)?;
+        let missing = self.variables.iter().flat_map(|&(slave, master)| {
+            self.slaves.iter().map(move |&node| (node, slave)).chain([(self.master, master)])
+        });
+        match missing.into_iter().find(|&(node, variable)| part.dofs.number_of(variable, node).is_none()) {
+            None => Ok(()),
+            Some((node, variable)) => {
+                let fact = format!("{variable} is not an unknown of node {}", part.nodes.ids[node as usize]);
+                Err(Diagnostic::error("not-an-unknown", fact)
+                    .at(self.place.clone())
+                    .remedy("tie unknowns of nodes that belong to elements, e.g. \"DISPLACEMENT\"")
+                    .into())
+            }
+        }
+    }
+
+    fn begin_step(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root_mut(&self.root)?;
+        let active = self.interval.contains(part.info.time);
+        part.constraints[self.made.clone()].iter_mut().for_each(|constraint| constraint.active = active);
+        Ok(())
+    }
+}
+
+register! { Process "impose_rigid_movement_process",
+    aliases: &["ImposeRigidMovementProcess"],
+    about: "ties the nodes of a part to one of them by linear constraints",
+    source: "eqs. D.12a–e",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/impose_rigid_movement_process.json")),
+    build: Build::Process(build),
+}

@@ -1,0 +1,28 @@
+//! Accepted for decks that name it; solid-shell prisms are not part of the element library.
+
+use super::process::{Process, ProcessRequest};
+use crate::diagnostics::{Diagnostic, Result};
+use crate::register;
+use crate::registry::Build;
+
+struct Sprism;
+
+impl Process for Sprism {}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings_with(crate::parameters::Defaults::lenient)?;
+    let fact = "sprism_process does nothing here: it prepares solid-shell prisms and writes their THICKNESS";
+    request.report.push(
+        Diagnostic::warning("sprism-process", fact)
+            .at(settings.place())
+            .remedy("displacements do not depend on it; remove it if THICKNESS is not needed"),
+    );
+    Ok(Box::new(Sprism))
+}
+
+register! { Process "sprism_process",
+    aliases: &["SPRISMProcess"],
+    about: "accepted without effect: prepares solid-shell prisms",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/sprism_process.json")),
+    build: Build::Process(build),
+}
