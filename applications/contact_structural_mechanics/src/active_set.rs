@@ -18,30 +18,22 @@ pub fn augmented_pressure(scale_factor: f64, multiplier: f64, penalty: f64, weig
     scale_factor * multiplier + penalty * weighted_gap
 }
 
-/// What the active-set stage decides for a node without friction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NormalDecision {
-    /// Augmented normal pressure p̂; compression is negative.
-    pub pressure: f64,
-    /// [`NodeState::Slip`] if active.
-    pub state: NodeState,
-    /// Whether the node entered or left contact.
-    pub changed: bool,
-    /// New normal multiplier λ_n = p̂/k of a node that entered contact. One that left keeps its multiplier.
-    pub multiplier: Option<f64>,
-}
-
-/// Decides for a frictionless node: scalar multiplier, the normal part of a vector one, or none at all.
+/// Decides for a frictionless node, whose active state is [`NodeState::Slip`].
 ///
-/// For a vector multiplier a node that enters contact gets `multiplier` times its normal. For penalty methods ignore it.
-pub fn frictionless(state: NodeState, pressure: f64, scale_factor: f64) -> NormalDecision {
-    let now = if pressure < 0.0 { NodeState::Slip } else { NodeState::Inactive };
-    let entered = now.is_active() && !state.is_active();
-    NormalDecision {
+/// A scalar multiplier enters along the normal, `multiplier` = λ n; penalty methods take none from the decision.
+pub fn frictionless(node: &SlaveNumbers) -> Decision {
+    let pressure = node.pressure();
+    if pressure >= 0.0 {
+        return inactive(node, pressure);
+    }
+    let entered = !node.state.is_active();
+    Decision {
         pressure,
-        state: now,
-        changed: now.is_active() != state.is_active(),
-        multiplier: entered.then_some(pressure / scale_factor),
+        traction: [0.0; 3],
+        state: NodeState::Slip,
+        changed: entered,
+        slip_changed: false,
+        multiplier: entered.then(|| scale(node.normal, pressure / node.scale_factor)),
     }
 }
 
@@ -59,14 +51,14 @@ pub enum SlipRule {
     },
 }
 
-/// Nodal numbers that enter a decision with friction; sums over the pairs of the node.
+/// Nodal numbers that enter a decision; sums over the pairs of the node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrictionalNode {
+pub struct SlaveNumbers {
     /// State before the decision.
     pub state: NodeState,
     /// Unit normal out of the slave body.
     pub normal: [f64; 3],
-    /// Vector multiplier λ; zero for penalty methods.
+    /// Multiplier λ, a scalar one times the normal; zero for penalty methods.
     pub multiplier: [f64; 3],
     /// Weighted gap WG, negative in penetration.
     pub weighted_gap: f64,
@@ -82,9 +74,16 @@ pub struct FrictionalNode {
     pub tangent_factor: f64,
 }
 
-/// What the active-set stage decides for a node with friction.
+impl SlaveNumbers {
+    /// Augmented normal pressure p̂.
+    pub fn pressure(&self) -> f64 {
+        augmented_pressure(self.scale_factor, dot(self.multiplier, self.normal), self.penalty, self.weighted_gap)
+    }
+}
+
+/// What the active-set stage decides for a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrictionalDecision {
+pub struct Decision {
     /// Augmented normal pressure p̂; compression is negative.
     pub pressure: f64,
     /// Augmented tangential pressure: q̂, cut to the bound on sliding nodes; zero if inactive.
@@ -100,9 +99,8 @@ pub struct FrictionalDecision {
 }
 
 /// Decides for a node of the frictional augmented Lagrangian.
-pub fn alm_frictional(node: &FrictionalNode, rule: SlipRule) -> FrictionalDecision {
-    let lambda_n = dot(node.multiplier, node.normal);
-    let pressure = augmented_pressure(node.scale_factor, lambda_n, node.penalty, node.weighted_gap);
+pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
+    let pressure = node.pressure();
     if pressure >= 0.0 {
         return inactive(node, pressure);
     }
@@ -125,7 +123,7 @@ pub fn alm_frictional(node: &FrictionalNode, rule: SlipRule) -> FrictionalDecisi
         (true, length) => scale(direction, bound / length),
     };
     let tangent_part = if node.friction < LEAST_FRICTION { [0.0; 3] } else { q };
-    FrictionalDecision {
+    Decision {
         pressure,
         traction,
         state: if slips { NodeState::Slip } else { NodeState::Stick },
@@ -136,16 +134,16 @@ pub fn alm_frictional(node: &FrictionalNode, rule: SlipRule) -> FrictionalDecisi
 }
 
 /// Decides for a node of the frictional penalty method: it sticks while |κ ε WS| ≤ −μ p̂.
-pub fn penalty_frictional(node: &FrictionalNode, rule: SlipRule) -> FrictionalDecision {
-    let pressure = augmented_pressure(0.0, 0.0, node.penalty, node.weighted_gap);
+pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
+    let pressure = node.pressure();
     if pressure >= 0.0 {
         return inactive(node, pressure);
     }
     let q = scale(node.weighted_slip, node.tangent_factor * node.penalty);
     let (bound, length) = (-node.friction * pressure, norm(q));
-    let slips = rule == SlipRule::Pure || length > bound;
+    let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || length > bound;
     let entered = !node.state.is_active();
-    FrictionalDecision {
+    Decision {
         pressure,
         traction: if slips && length > 0.0 { scale(q, bound / length) } else { q },
         state: if slips { NodeState::Slip } else { NodeState::Stick },
@@ -155,8 +153,9 @@ pub fn penalty_frictional(node: &FrictionalNode, rule: SlipRule) -> FrictionalDe
     }
 }
 
-fn inactive(node: &FrictionalNode, pressure: f64) -> FrictionalDecision {
-    FrictionalDecision {
+/// The decision for a node that is not in contact, whatever its pressure.
+pub fn inactive(node: &SlaveNumbers, pressure: f64) -> Decision {
+    Decision {
         pressure,
         traction: [0.0; 3],
         state: NodeState::Inactive,
@@ -172,8 +171,8 @@ mod tests {
 
     const COULOMB: SlipRule = SlipRule::Coulomb { augmentation: 0.0, threshold: 0.02 };
 
-    fn node(state: NodeState, multiplier: [f64; 3]) -> FrictionalNode {
-        FrictionalNode {
+    fn node(state: NodeState, multiplier: [f64; 3]) -> SlaveNumbers {
+        SlaveNumbers {
             state,
             normal: [0.0, 0.0, 1.0],
             multiplier,
@@ -188,18 +187,18 @@ mod tests {
 
     #[test]
     fn zero_pressure_is_open() {
-        assert_eq!(frictionless(NodeState::Slip, 0.0, 1.0).state, NodeState::Inactive);
-        assert!(frictionless(NodeState::Slip, 0.0, 1.0).changed);
-        assert!(!frictionless(NodeState::Inactive, 0.0, 1.0).changed);
+        let open = |state| SlaveNumbers { weighted_gap: 0.0, ..node(state, [0.0; 3]) };
+        assert_eq!(frictionless(&open(NodeState::Slip)).state, NodeState::Inactive);
+        assert!(frictionless(&open(NodeState::Slip)).changed);
+        assert!(!frictionless(&open(NodeState::Inactive)).changed);
     }
 
     #[test]
     fn entering_contact_sets_the_multiplier() {
-        let pressure = augmented_pressure(4.0, 0.0, 2.0, -0.5);
-        assert_eq!(pressure, -1.0);
-        let decision = frictionless(NodeState::Inactive, pressure, 4.0);
-        assert_eq!((decision.state, decision.changed, decision.multiplier), (NodeState::Slip, true, Some(-0.25)));
-        assert_eq!(frictionless(NodeState::Slip, pressure, 4.0).multiplier, None);
+        let decision = frictionless(&node(NodeState::Inactive, [0.0; 3]));
+        assert_eq!((decision.pressure, decision.state, decision.changed), (-1.0, NodeState::Slip, true));
+        assert_eq!(decision.multiplier, Some([0.0, 0.0, -0.25]));
+        assert_eq!(frictionless(&node(NodeState::Slip, [0.0; 3])).multiplier, None);
         // With friction the tangential part comes along: q̂ = κ ε WS = 0.1.
         let decision = alm_frictional(&node(NodeState::Inactive, [0.0; 3]), COULOMB);
         assert_eq!(decision.multiplier, Some([0.025, 0.0, -0.25]));
@@ -223,7 +222,7 @@ mod tests {
 
     #[test]
     fn leaving_contact_keeps_the_multiplier() {
-        let open = FrictionalNode { weighted_gap: 5.0, ..node(NodeState::Stick, [0.1, 0.0, -1.0]) };
+        let open = SlaveNumbers { weighted_gap: 5.0, ..node(NodeState::Stick, [0.1, 0.0, -1.0]) };
         let decision = alm_frictional(&open, COULOMB);
         assert_eq!((decision.state, decision.changed, decision.multiplier), (NodeState::Inactive, true, None));
     }
@@ -232,7 +231,7 @@ mod tests {
     fn penalty_sticks_up_to_the_bound() {
         // p̂ = −1, bound 0.3, |q̂| = |WS|.
         let decide = |slip| {
-            let node = FrictionalNode { weighted_slip: [0.0, slip, 0.0], ..node(NodeState::Stick, [0.0; 3]) };
+            let node = SlaveNumbers { weighted_slip: [0.0, slip, 0.0], ..node(NodeState::Stick, [0.0; 3]) };
             penalty_frictional(&node, COULOMB)
         };
         assert_eq!(decide(0.3).state, NodeState::Stick);
@@ -243,7 +242,7 @@ mod tests {
 
     #[test]
     fn no_friction_always_slides() {
-        let smooth = FrictionalNode { friction: 0.0, ..node(NodeState::Inactive, [0.0; 3]) };
+        let smooth = SlaveNumbers { friction: 0.0, ..node(NodeState::Inactive, [0.0; 3]) };
         let decision = alm_frictional(&smooth, COULOMB);
         assert_eq!((decision.state, decision.traction), (NodeState::Slip, [0.0; 3]));
         assert_eq!(decision.multiplier, Some([0.0, 0.0, -0.25]));

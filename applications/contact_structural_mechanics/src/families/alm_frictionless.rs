@@ -7,7 +7,7 @@ use super::shapes::{self, register_shapes};
 use crate::formulations::AlmFrictionless;
 use crate::interaction::StepParameters;
 use crate::mortar::PairGeometry;
-use crate::pairs::{Family, Multiplier, Pair, PairFormulation};
+use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
 impl PairFormulation for AlmFrictionless {
@@ -29,7 +29,7 @@ register! { Condition "ALMContactFrictionless",
         condition: "ALMFrictionlessMortarContactCondition",
         multiplier: Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE),
         variables: &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1), ("WEIGHTED_SCALAR_RESIDUAL", 1)],
-        frictional: false,
+        friction: Friction::None,
         penalty: false,
         block: shapes::block::<AlmFrictionless>,
     }),

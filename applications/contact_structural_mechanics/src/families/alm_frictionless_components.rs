@@ -7,7 +7,7 @@ use super::shapes::{self, register_shapes};
 use crate::formulations::AlmFrictionlessComponents;
 use crate::interaction::StepParameters;
 use crate::mortar::PairGeometry;
-use crate::pairs::{Family, Multiplier, Pair, PairFormulation};
+use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
 use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
 
 impl PairFormulation for AlmFrictionlessComponents {
@@ -29,7 +29,7 @@ register! { Condition "ALMContactFrictionlessComponents",
         condition: "ALMFrictionlessComponentsMortarContactCondition",
         multiplier: Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER),
         variables: &[("NORMAL", 3), ("VECTOR_LAGRANGE_MULTIPLIER", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_VECTOR_RESIDUAL", 3)],
-        frictional: false,
+        friction: Friction::None,
         penalty: false,
         block: shapes::block::<AlmFrictionlessComponents>,
     }),

@@ -1,5 +1,9 @@
 //! The families of contact conditions, one file each, registered by their `mortar_type`.
 
+mod alm_frictional;
+mod alm_frictional_pure_slip;
 mod alm_frictionless;
 mod alm_frictionless_components;
+mod penalty_frictional;
+mod penalty_frictionless;
 mod shapes;

@@ -1,6 +1,7 @@
 //! What a formulation sees of a pair, and what it returns.
 
 use crate::mortar::{Operators, weighted_gap};
+use zelus_core::model::flags::{ACTIVE, Flags, SLIP};
 use zelus_core::scalar::Real;
 
 /// Whether a slave node is in contact, and how.
@@ -16,6 +17,16 @@ pub enum NodeState {
 }
 
 impl NodeState {
+    /// The state that the flags ACTIVE and SLIP of a node say.
+    #[inline]
+    pub fn of_flags(flags: &Flags, node: usize) -> Self {
+        match (flags.is(ACTIVE, node), flags.is(SLIP, node)) {
+            (false, _) => Self::Inactive,
+            (true, false) => Self::Stick,
+            (true, true) => Self::Slip,
+        }
+    }
+
     /// Whether the node is in contact.
     #[inline]
     pub fn is_active(self) -> bool {

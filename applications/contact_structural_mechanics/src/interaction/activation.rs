@@ -3,12 +3,15 @@
 use zelus_core::entities::SetChange;
 use zelus_core::model::flags::{ACTIVE, ISOLATED, SLIP};
 use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::vector3::scale;
 
 use super::step_parameters::StepParameters;
-use crate::pairs::{Family, Multiplier};
+use crate::active_set::{self, SlaveNumbers, SlipRule};
+use crate::formulations::NodeState;
+use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA, NODAL_H, NORMAL_GAP,
-    WEIGHTED_GAP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, FRICTION_COEFFICIENT, INITIAL_PENALTY,
+    NODAL_AREA, NODAL_H, NORMAL_GAP, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Gap, in mesh sizes, of the simple activation.
@@ -36,7 +39,7 @@ pub(super) fn clear_inactive_multipliers(part: &mut ModelPart, multiplier: Multi
 /// Step start: a node is active when its gap is below `reach`, or below a share of its mesh size when that is `None`.
 ///
 /// Gaps are weighted gaps over areas, so they are those of the mortar mapping.
-pub(super) fn start(part: &mut ModelPart, slaves: &[u32], reach: Option<f64>, family: &Family) {
+pub(super) fn start(part: &mut ModelPart, slaves: &[u32], reach: Option<f64>, rule: SlipRule) {
     let gaps: Vec<f64> = {
         let weighted = part.nodes.history.values(&WEIGHTED_GAP, 0);
         let areas = part.nodes.values.values(&NODAL_AREA, 0);
@@ -46,15 +49,16 @@ pub(super) fn start(part: &mut ModelPart, slaves: &[u32], reach: Option<f64>, fa
         let sizes = part.nodes.values.values(&NODAL_H, 0);
         slaves.iter().map(|&n| reach.unwrap_or(SIMPLE_REACH * sizes[n as usize])).collect()
     };
-    let frictionless: Vec<bool> = {
+    let slides: Vec<bool> = {
         let friction = part.nodes.values.values(&FRICTION_COEFFICIENT, 0);
-        slaves.iter().map(|&n| friction.get(n as usize).is_none_or(|mu| *mu < f64::EPSILON)).collect()
+        let smooth = |n: u32| friction.get(n as usize).is_none_or(|mu| *mu < f64::EPSILON);
+        slaves.iter().map(|&n| rule == SlipRule::Pure || smooth(n)).collect()
     };
     for (at, &node) in slaves.iter().enumerate() {
         let node = node as usize;
         let active = gaps[at] < reaches[at] && !part.nodes.flags.is(ISOLATED, node);
         part.nodes.flags.set(ACTIVE, node, active);
-        if active && (!family.frictional || frictionless[at]) {
+        if active && slides[at] {
             part.nodes.flags.set(SLIP, node, true);
         } else if active && part.nodes.flags.get(SLIP, node).is_none() {
             part.nodes.flags.set(SLIP, node, false);
@@ -66,59 +70,81 @@ pub(super) fn start(part: &mut ModelPart, slaves: &[u32], reach: Option<f64>, fa
     }
 }
 
-/// The active set of the iteration: a node is active when k λ·n + ε g̃ is negative.
+/// The active set of the iteration, by the rules of [`active_set`].
 ///
 /// A node that becomes active starts from its augmented pressure; one that becomes inactive keeps its multiplier, which the
-/// next solve drives to zero.
+/// next solve drives to zero. Nodes that nothing overlaps are not in contact.
 pub(super) fn update(part: &mut ModelPart, slaves: &[u32], family: &Family, parameters: &StepParameters) -> SetChange {
-    let k = parameters.scale_factor;
     let mut change = SetChange::default();
-    let mut pressures = Vec::with_capacity(slaves.len());
+    let mut decisions = Vec::with_capacity(slaves.len());
     for &node in slaves {
         let at = node as usize;
-        let history = &part.nodes.history;
-        let normal = history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, at));
-        let lambda = match family.multiplier {
-            Multiplier::None => 0.0,
-            Multiplier::Scalar(variable) => history.values(variable, 0)[at],
-            Multiplier::Vector(variable) => {
-                let values = history.values(variable, 0);
-                (0..3).map(|c| values[3 * at + c] * normal[c]).sum()
-            }
+        let numbers = numbers(part, at, family, parameters);
+        let mut decision = match (family.friction, family.penalty) {
+            (Friction::None, _) => active_set::frictionless(&numbers),
+            (_, false) => active_set::alm_frictional(&numbers, parameters.slip_rule),
+            (_, true) => active_set::penalty_frictional(&numbers, parameters.slip_rule),
         };
-        let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
-        let pressure = k * lambda + penalty * history.values(&WEIGHTED_GAP, 0)[at];
-        pressures.push(pressure);
         if part.nodes.flags.is(ISOLATED, at) {
-            if part.nodes.flags.is(ACTIVE, at) {
-                part.nodes.flags.set(ACTIVE, at, false);
-                change.deactivated.push(part.nodes.ids[at]);
-            }
-            continue;
+            decision = active_set::inactive(&numbers, decision.pressure);
         }
-        let (was, now) = (part.nodes.flags.is(ACTIVE, at), pressure < 0.0);
-        if now == was {
-            continue;
+        decisions.push((node, decision));
+        let (id, active) = (part.nodes.ids[at], decision.state.is_active());
+        match (decision.changed, active) {
+            (true, true) => change.activated.push(id),
+            (true, false) => change.deactivated.push(id),
+            (false, _) if decision.slip_changed => change.stick_slip.push(id),
+            (false, _) => {}
         }
-        part.nodes.flags.set(ACTIVE, at, now);
-        if !now {
-            change.deactivated.push(part.nodes.ids[at]);
-            continue;
+        part.nodes.flags.set(ACTIVE, at, active);
+        if active {
+            part.nodes.flags.set(SLIP, at, decision.state == NodeState::Slip);
+        } else if decision.changed && family.frictional() {
+            part.nodes.flags.undefine(SLIP, at);
+            part.nodes.history.values_mut(&WEIGHTED_SLIP, 0)[3 * at..3 * at + 3].fill(0.0);
         }
-        change.activated.push(part.nodes.ids[at]);
-        if !family.frictional {
-            part.nodes.flags.set(SLIP, at, true);
-        }
-        match family.multiplier {
-            Multiplier::None => {}
-            Multiplier::Scalar(variable) => part.nodes.history.values_mut(variable, 0)[at] = pressure / k,
-            Multiplier::Vector(variable) => {
-                let values = part.nodes.history.values_mut(variable, 0);
-                (0..3).for_each(|c| values[3 * at + c] = normal[c] * pressure / k);
+        if let Some(multiplier) = decision.multiplier {
+            match family.multiplier {
+                Multiplier::None => {}
+                Multiplier::Scalar(variable) => {
+                    part.nodes.history.values_mut(variable, 0)[at] = decision.pressure / parameters.scale_factor;
+                }
+                Multiplier::Vector(variable) => {
+                    part.nodes.history.values_mut(variable, 0)[3 * at..3 * at + 3].copy_from_slice(&multiplier);
+                }
             }
         }
     }
-    let column = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
-    slaves.iter().zip(pressures).for_each(|(&n, pressure)| column[n as usize] = pressure);
+    let pressures = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
+    decisions.iter().for_each(|(n, decision)| pressures[*n as usize] = decision.pressure);
+    if family.frictional() {
+        let tractions = part.nodes.values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
+        for (n, decision) in &decisions {
+            tractions[3 * *n as usize..3 * *n as usize + 3].copy_from_slice(&decision.traction);
+        }
+    }
     change
+}
+
+/// What the rules look at, of one slave node.
+fn numbers(part: &ModelPart, at: usize, family: &Family, parameters: &StepParameters) -> SlaveNumbers {
+    let history = &part.nodes.history;
+    let vector_of = |name: &str| history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
+    let normal = vector_of(NORMAL.name());
+    let multiplier = match family.multiplier {
+        Multiplier::None => [0.0; 3],
+        Multiplier::Scalar(variable) => scale(normal, history.values(variable, 0)[at]),
+        Multiplier::Vector(variable) => vector_of(variable.name()),
+    };
+    SlaveNumbers {
+        state: NodeState::of_flags(&part.nodes.flags, at),
+        normal,
+        multiplier,
+        weighted_gap: history.values(&WEIGHTED_GAP, 0)[at],
+        weighted_slip: vector_of(WEIGHTED_SLIP.name()),
+        penalty: part.nodes.values.values(&INITIAL_PENALTY, 0)[at],
+        friction: part.nodes.values.values(&FRICTION_COEFFICIENT, 0).get(at).copied().unwrap_or(0.0),
+        scale_factor: parameters.scale_factor,
+        tangent_factor: parameters.tangent_factor,
+    }
 }

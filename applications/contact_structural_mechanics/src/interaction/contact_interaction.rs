@@ -13,7 +13,10 @@ use zelus_core::parameters::Interval;
 use zelus_core::registry::{self, Kind};
 
 use super::activation;
+use super::adaptation::AdaptationSettings;
+use super::friction::{self, FrictionSettings};
 use super::step_parameters::{NormalVariation, StepParameters};
+use crate::active_set::SlipRule;
 use crate::interface::{
     AlmParameters, Facet, Interface, Roles, alm_parameters, centre_normal, find_nodal_h, interfaces, nodal_normals,
     positions,
@@ -22,8 +25,8 @@ use crate::mortar::SegmentationSettings;
 use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous};
 use crate::search::{Candidate, SearchSettings, candidates};
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP,
-    WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA,
+    NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// What a deck chooses about contact.
@@ -61,14 +64,16 @@ pub struct ContactSettings {
     pub tangent_factor: f64,
     /// Change of the operators beyond which slip is measured objectively.
     pub operator_threshold: f64,
+    /// Coefficients and the rules of stick and slip.
+    pub friction: FrictionSettings,
+    /// What of the parameters is adapted in every iteration.
+    pub adaptation: AdaptationSettings,
     /// Multiple of the geometric tolerance.
     pub zero_tolerance_factor: f64,
     /// Gauss rule on the cells.
     pub integration_order: crate::mortar::IntegrationOrder,
     /// Whether the plane is rotated about the y axis.
     pub axisymmetric: bool,
-    /// Whether the active set changes only after a complete Newton loop.
-    pub simplified: bool,
     /// Whether it is an error when no node is in contact.
     pub ensure_contact: bool,
 }
@@ -110,6 +115,7 @@ impl ContactInteraction {
             scale_factor: 1.0,
             tangent_factor: settings.tangent_factor,
             operator_threshold: settings.operator_threshold,
+            slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
         });
         Ok(Self {
@@ -249,7 +255,7 @@ impl ContactInteraction {
         }
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
         part.nodes.values.values_mut(&NODAL_AREA, 0).copy_from_slice(&area);
-        if self.settings.family.frictional {
+        if self.settings.family.frictional() {
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slip.as_flattened());
         }
     }
@@ -263,6 +269,12 @@ impl ContactInteraction {
             }
         }
         self.blocks = blocks;
+    }
+
+    fn write_tangents(&self, part: &mut ModelPart) {
+        if self.settings.family.frictional() {
+            friction::write_tangents(part, &self.slaves, self.settings.family, self.parameters.slip_rule);
+        }
     }
 
     fn set_parameters(&mut self, part: &mut ModelPart) {
@@ -304,6 +316,7 @@ impl ContactInteraction {
                 axisymmetric: settings.axisymmetric.then(thickness),
             },
             scale_factor: chosen.scale_factor,
+            slip_rule: friction::prepare(part, &self.interfaces, &self.settings.friction, self.settings.family),
             ..(*self.parameters).clone()
         });
     }
@@ -340,7 +353,7 @@ impl Interaction for ContactInteraction {
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
         part.nodes.history.add(&NORMAL);
         part.nodes.history.add(&WEIGHTED_GAP);
-        if self.settings.family.frictional {
+        if self.settings.family.frictional() {
             part.nodes.history.add(&WEIGHTED_SLIP);
         }
         find_nodal_h(part);
@@ -378,7 +391,8 @@ impl Interaction for ContactInteraction {
         self.integrate(part);
         let reach =
             if self.settings.simple_search { None } else { Some(self.settings.active_check_factor * self.threshold) };
-        activation::start(part, &self.slaves, reach, self.settings.family);
+        activation::start(part, &self.slaves, reach, self.parameters.slip_rule);
+        friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, self.settings.friction.reset_frequency);
         self.refresh_pair_normals(part, self.updates_normals());
         for block in &mut self.blocks {
             block.keep_operators(&part.view());
@@ -389,6 +403,7 @@ impl Interaction for ContactInteraction {
     fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()> {
         if self.acting {
             self.integrate(part);
+            self.write_tangents(part);
         }
         Ok(())
     }
@@ -403,8 +418,12 @@ impl Interaction for ContactInteraction {
         if self.updates_normals() {
             self.refresh_pair_normals(part, true);
         }
+        let adaptation = self.settings.adaptation;
+        let gaps = adaptation.gaps(part, &self.slaves);
         self.integrate(part);
         let change = activation::update(part, &self.slaves, self.settings.family, &self.parameters);
+        adaptation.adapt(part, &self.slaves, part.info.value_or(INITIAL_PENALTY.name(), 1.0), &gaps);
+        self.write_tangents(part);
         if self.settings.ensure_contact
             && change.count() == 0
             && !self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize))
@@ -421,6 +440,10 @@ impl Interaction for ContactInteraction {
             self.slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ACTIVE, n as usize)).collect();
         let pressure = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
         inactive.iter().for_each(|&n| pressure[n as usize] = 0.0);
+        if self.settings.family.frictional() {
+            let traction = part.nodes.values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
+            inactive.iter().for_each(|&n| traction[3 * n as usize..3 * n as usize + 3].fill(0.0));
+        }
         Ok(())
     }
 

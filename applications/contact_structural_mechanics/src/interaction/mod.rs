@@ -1,8 +1,12 @@
 //! Contact as a participant in the Newton loop: search, pairs, gaps, active set.
 
 mod activation;
+mod adaptation;
 mod contact_interaction;
+mod friction;
 mod step_parameters;
 
+pub use adaptation::AdaptationSettings;
 pub use contact_interaction::{ContactInteraction, ContactSettings};
+pub use friction::FrictionSettings;
 pub use step_parameters::{NormalVariation, StepParameters};

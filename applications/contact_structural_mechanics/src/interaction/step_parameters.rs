@@ -1,5 +1,6 @@
 //! What every pair of a run shares.
 
+use crate::active_set::SlipRule;
 use crate::mortar::SegmentationSettings;
 
 /// When normals follow the iteration, and whether the tangent knows it.
@@ -33,6 +34,8 @@ pub struct StepParameters {
     pub tangent_factor: f64,
     /// Change of the operators beyond which slip is measured objectively.
     pub operator_threshold: f64,
+    /// How stick and slip are told apart.
+    pub slip_rule: SlipRule,
     /// When normals follow the iteration.
     pub normal_variation: NormalVariation,
 }

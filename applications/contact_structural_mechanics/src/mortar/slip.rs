@@ -3,7 +3,7 @@
 use super::gap::weighted_jump;
 use super::operators::Operators;
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{cross, dot, normalised, scale, sub};
+use zelus_core::vector3::{cross, dot, norm, normalised, scale, sub};
 
 /// The part of a vector in the plane with unit normal `normal`: P v = v − (v·n) n.
 #[inline]
@@ -43,16 +43,16 @@ pub fn is_objective<T: Real, const NS: usize, const NM: usize>(
     threshold: f64,
 ) -> bool {
     let change = operators.values().minus(previous);
-    let norm = |sum: f64| sum.sqrt();
-    norm(change.d.iter().flatten().map(|x| x * x).sum()) > threshold
-        && norm(change.m.iter().flatten().map(|x| x * x).sum()) > threshold
+    let frobenius = |sum: f64| sum.sqrt();
+    frobenius(change.d.iter().flatten().map(|x| x * x).sum()) > threshold
+        && frobenius(change.m.iter().flatten().map(|x| x * x).sum()) > threshold
 }
 
-/// Unit tangent of a slave node: the direction of the tangential part of `vector`, if it has one.
+/// Unit tangent of a slave node: the direction of the tangential part of `vector`, if that is more than its round-off.
 /// Otherwise a fixed tangent of `normal`; `dim` is 2 or 3, and in the plane the tangent stays in it.
 pub fn tangent(vector: [f64; 3], normal: [f64; 3], dim: usize) -> [f64; 3] {
     let part = tangential(vector, normal);
-    if dot(vector, vector).sqrt() > f64::EPSILON && dot(part, part).sqrt() > f64::EPSILON {
+    if norm(part) > f64::EPSILON * norm(vector) {
         return normalised(part);
     }
     let [x, y, z] = normal;

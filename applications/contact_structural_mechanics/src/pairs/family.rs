@@ -34,6 +34,17 @@ impl Multiplier {
     }
 }
 
+/// What a family does about friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Friction {
+    /// Nothing.
+    None,
+    /// Coulomb's law.
+    Coulomb,
+    /// Coulomb's law where contact always slides.
+    PureSlip,
+}
+
 /// What a block of pairs is made from.
 pub struct PairRequest {
     /// The registered condition of this shape.
@@ -54,12 +65,19 @@ pub struct Family {
     pub multiplier: Multiplier,
     /// Further nodal variables with history.
     pub variables: &'static [NodalVariable],
-    /// Whether it has friction.
-    pub frictional: bool,
+    /// Its friction.
+    pub friction: Friction,
     /// Whether it works without multipliers and therefore with a larger penalty.
     pub penalty: bool,
     /// Makes the block of one pair of shapes (slave, master).
     pub block: fn(Shape, Shape, PairRequest) -> Option<Box<dyn ContactBlock>>,
+}
+
+impl Family {
+    /// Whether it has friction, sliding or sticking.
+    pub fn frictional(&self) -> bool {
+        self.friction != Friction::None
+    }
 }
 
 /// The family of a `mortar_type`.

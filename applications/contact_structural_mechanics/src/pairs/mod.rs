@@ -4,6 +4,6 @@ mod family;
 mod pair;
 mod pair_block;
 
-pub use family::{Family, Multiplier, PairRequest, find_family};
+pub use family::{Family, Friction, Multiplier, PairRequest, find_family};
 pub use pair::{Integral, Pair, PairKey, Previous};
 pub use pair_block::{ContactBlock, PairBlock, PairFormulation};

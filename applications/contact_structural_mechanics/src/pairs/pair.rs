@@ -1,5 +1,7 @@
 //! One slave facet and one master facet that overlap.
 
+use crate::mortar::Operators;
+
 /// Which facets of which interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PairKey {
@@ -18,6 +20,16 @@ pub struct Previous {
     pub d: [[f64; 4]; 4],
     /// M of the start of the step.
     pub m: [[f64; 4]; 4],
+}
+
+impl Previous {
+    /// D and M of a pair with these numbers of nodes.
+    pub fn operators<const NS: usize, const NM: usize>(&self) -> Operators<f64, NS, NM> {
+        Operators {
+            d: std::array::from_fn(|j| std::array::from_fn(|k| self.d[j][k])),
+            m: std::array::from_fn(|j| std::array::from_fn(|l| self.m[j][l])),
+        }
+    }
 }
 
 /// A pair with what it remembers between iterations and steps.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::model::flags::{ACTIVE, SLIP};
 use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT, variables::NORMAL};
 use zelus_core::registry::Entry;
 use zelus_core::scalar::{Dual, Real};
@@ -158,13 +157,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
         let tangent = view.nodes.values.values(&TANGENT_XI, 0);
         self.slaves(at).map(|n| {
             let node = n as usize;
-            let state = match (view.nodes.flags.is(ACTIVE, node), view.nodes.flags.is(SLIP, node)) {
-                (false, _) => NodeState::Inactive,
-                (true, false) => NodeState::Stick,
-                (true, true) => NodeState::Slip,
-            };
             SlaveNode {
-                state,
+                state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
                 dynamic_factor: factor[node],
                 friction: friction.get(node).copied().unwrap_or(0.0),

@@ -11,7 +11,7 @@ use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use crate::interaction::{ContactInteraction, ContactSettings, NormalVariation};
+use crate::interaction::{AdaptationSettings, ContactInteraction, ContactSettings, FrictionSettings, NormalVariation};
 use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
 use crate::pairs::find_family;
@@ -35,6 +35,8 @@ struct Parameters {
     use_scale_factor: bool,
     penalty: f64,
     scale_factor: f64,
+    adapt_penalty: bool,
+    max_gap_factor: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -48,7 +50,12 @@ struct Whole {
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
     contact_type: String,
+    friction_coefficients: BTreeMap<String, f64>,
     normal_variation: NormalVariation,
+    not_normal_update_frictional: bool,
+    slip_augmentation_coefficient: f64,
+    slip_threshold: f64,
+    slip_step_reset_frequency: i64,
     tangent_factor: f64,
     operator_threshold: f64,
     zero_tolerance_factor: f64,
@@ -81,9 +88,24 @@ pub struct AlmContactProcess {
 
 impl AlmContactProcess {
     fn boxed(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+        Self::of_families(request, "ALMContact", 1.0, 1.0)
+    }
+
+    /// The process for the families whose names begin with `stem`.
+    ///
+    /// The estimated penalty is multiplied by `penalty_factor`; `least_penalty` takes its place when it is zero.
+    ///
+    /// # Errors
+    /// Settings that do not fit.
+    pub(super) fn of_families(
+        request: &mut ProcessRequest<'_>,
+        stem: &str,
+        penalty_factor: f64,
+        least_penalty: f64,
+    ) -> Result<Box<dyn Process>> {
         let settings = request.settings()?;
-        let (root, interaction) =
-            interaction(&settings, request, &|contact_type| format!("ALMContact{contact_type}"), 1.0, 1.0)?;
+        let family_of = |contact_type: &str| format!("{stem}{contact_type}");
+        let (root, interaction) = interaction(&settings, request, &family_of, penalty_factor, least_penalty)?;
         Ok(Box::new(Self { root, interaction: Some(interaction) }))
     }
 }
@@ -126,7 +148,9 @@ pub(super) fn interaction(
             .into());
     }
     let normal_variation = match whole.normal_variation {
-        NormalVariation::None if updated || family.frictional => NormalVariation::Update,
+        NormalVariation::None if updated || (family.frictional() && !whole.not_normal_update_frictional) => {
+            NormalVariation::Update
+        }
         other => other,
     };
     let chosen = ContactSettings {
@@ -152,10 +176,20 @@ pub(super) fn interaction(
         use_scale_factor: whole.parameters.use_scale_factor,
         tangent_factor: whole.tangent_factor,
         operator_threshold: whole.operator_threshold,
+        friction: FrictionSettings {
+            coefficients: whole.friction_coefficients,
+            slip_augmentation: whole.slip_augmentation_coefficient,
+            slip_threshold: whole.slip_threshold,
+            reset_frequency: usize::try_from(whole.slip_step_reset_frequency).ok().filter(|f| *f > 0),
+        },
+        adaptation: AdaptationSettings {
+            adapt_penalty: whole.parameters.adapt_penalty,
+            max_gap_factor: whole.parameters.max_gap_factor,
+            dynamic_factor: false,
+        },
         zero_tolerance_factor: whole.zero_tolerance_factor,
         integration_order,
         axisymmetric: whole.alternative_formulations.axisymmetric,
-        simplified: false,
         ensure_contact: false,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;

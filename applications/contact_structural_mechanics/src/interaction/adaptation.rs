@@ -1,0 +1,67 @@
+//! The stage that adapts penalties and the dynamic factor node by node, after the active set of an iteration.
+
+use zelus_core::model::ModelPart;
+use zelus_core::model::flags::ACTIVE;
+
+use crate::penalty_adaptation::{adapted_augmented_lagrangian, dynamic_factor};
+use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP};
+
+/// What is adapted.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AdaptationSettings {
+    /// Whether penalties follow Algorithm 7 (`adapt_penalty`).
+    pub adapt_penalty: bool,
+    /// Gap, in mesh sizes, with which Algorithm 7 is content.
+    pub max_gap_factor: f64,
+    /// Whether forces of nodes whose gap has just closed are scaled (`compute_dynamic_factor`).
+    pub dynamic_factor: bool,
+}
+
+impl AdaptationSettings {
+    /// Whether anything is to be done.
+    pub(super) fn acts(self) -> bool {
+        self.adapt_penalty || self.dynamic_factor
+    }
+
+    /// Weighted gaps of the slave nodes before the next integration, when they will be needed.
+    pub(super) fn gaps(self, part: &ModelPart, slaves: &[u32]) -> Vec<f64> {
+        let gaps = part.nodes.history.values(&WEIGHTED_GAP, 0);
+        if self.acts() { slaves.iter().map(|&n| gaps[n as usize]).collect() } else { Vec::new() }
+    }
+
+    /// Adapts INITIAL_PENALTY and DYNAMIC_FACTOR of the slave nodes.
+    ///
+    /// `penalty` is the penalty of the run and `previous` the weighted gaps of the last iterate.
+    pub(super) fn adapt(self, part: &mut ModelPart, slaves: &[u32], penalty: f64, previous: &[f64]) {
+        if !self.acts() {
+            return;
+        }
+        for (&node, &before) in slaves.iter().zip(previous) {
+            let at = node as usize;
+            let values = &mut part.nodes.values;
+            let area = values.values(&NODAL_AREA, 0)[at];
+            if area <= 0.0 {
+                continue;
+            }
+            let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at] / area;
+            let before = before / area;
+            let mut adapted = values.values(&INITIAL_PENALTY, 0)[at];
+            if self.dynamic_factor && part.nodes.flags.is(ACTIVE, at) {
+                // The growth of the penalty with the gap belongs to explicit steps: implicit ones have no bound on it.
+                let (base, factor) = dynamic_factor(penalty, gap, before, self.max_gap_factor, 0.0);
+                if !self.adapt_penalty {
+                    adapted = base;
+                }
+                values.values_mut(&DYNAMIC_FACTOR, 0)[at] = factor;
+            }
+            if self.adapt_penalty {
+                let allowed = self.max_gap_factor * values.values(&NODAL_H, 0)[at];
+                let next = adapted_augmented_lagrangian(adapted, gap, before, allowed);
+                if next.is_normal() {
+                    adapted = next;
+                }
+            }
+            values.values_mut(&INITIAL_PENALTY, 0)[at] = adapted;
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Friction at the nodes: coefficients of a run, stick at step start, the direction of sliding in every iteration.
+
+use std::collections::BTreeMap;
+
+use zelus_core::model::flags::{ACTIVE, SLIP};
+use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::vector3::{norm, scale};
+
+use crate::active_set::SlipRule;
+use crate::interface::Interface;
+use crate::mortar::tangent;
+use crate::pairs::{Family, Friction, Multiplier};
+use crate::variables::{FRICTION_COEFFICIENT, NODAL_AREA, NODAL_H, TANGENT_XI, WEIGHTED_SLIP};
+
+/// What a deck chooses about friction.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FrictionSettings {
+    /// Coefficient by key of the pair, for surfaces whose properties have none.
+    pub coefficients: BTreeMap<String, f64>,
+    /// Weight of the slip in the trial traction of nodes that slide (`slip_augmentation_coefficient`).
+    pub slip_augmentation: f64,
+    /// Relative margin below the bound at which a sliding node sticks again (`slip_threshold`).
+    pub slip_threshold: f64,
+    /// Every so many steps all nodes start in stick; `None` for never (`slip_step_reset_frequency`).
+    pub reset_frequency: Option<usize>,
+}
+
+/// Writes FRICTION_COEFFICIENT, the mean over the facets of a node, and says how stick and slip are told apart.
+/// Without a coefficient anywhere, contact always slides.
+pub(super) fn prepare(
+    part: &mut ModelPart,
+    interfaces: &[Interface],
+    settings: &FrictionSettings,
+    family: &Family,
+) -> SlipRule {
+    let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
+    let mut largest = 0.0_f64;
+    for interface in interfaces {
+        let given = settings.coefficients.get(&interface.key).copied().unwrap_or(0.0);
+        for facet in &interface.facets {
+            let own = part.properties.get(&facet.properties).and_then(|p| p.number(FRICTION_COEFFICIENT.name()));
+            let coefficient = own.unwrap_or(given);
+            largest = largest.max(coefficient);
+            for &node in &facet.nodes {
+                let (sum, count) = &mut sums[node as usize];
+                *sum += coefficient;
+                *count += 1;
+            }
+        }
+    }
+    let column = part.nodes.values.values_mut(&FRICTION_COEFFICIENT, 0);
+    for (slot, (sum, count)) in column.iter_mut().zip(sums) {
+        *slot = sum / count.max(1) as f64;
+    }
+    if family.friction == Friction::PureSlip || largest < f64::EPSILON {
+        SlipRule::Pure
+    } else {
+        SlipRule::Coulomb { augmentation: settings.slip_augmentation, threshold: settings.slip_threshold }
+    }
+}
+
+/// Step start: every so many steps the nodes with friction begin in stick.
+pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRule, frequency: Option<usize>) {
+    if rule == SlipRule::Pure || frequency.is_none_or(|f| !part.info.step.is_multiple_of(f)) {
+        return;
+    }
+    for &node in slaves {
+        let smooth = part.nodes.values.values(&FRICTION_COEFFICIENT, 0)[node as usize] < f64::EPSILON;
+        part.nodes.flags.set(SLIP, node as usize, smooth);
+    }
+}
+
+/// Writes TANGENT_XI of the slave nodes.
+///
+/// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
+/// multipliers, it is that of the weighted slip; slip below round-off of the mesh size has none.
+pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Family, rule: SlipRule) {
+    let dimension = part.info.domain_size;
+    let mut tangents = Vec::with_capacity(slaves.len());
+    for &node in slaves {
+        let at = node as usize;
+        let history = &part.nodes.history;
+        let vector_of = |name: &str| history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
+        let by_slip = || {
+            let (area, size) =
+                (part.nodes.values.values(&NODAL_AREA, 0)[at], part.nodes.values.values(&NODAL_H, 0)[at]);
+            let slip = vector_of(WEIGHTED_SLIP.name());
+            if norm(slip) > f64::EPSILON * size * area { scale(slip, area.recip()) } else { [0.0; 3] }
+        };
+        let direction = match family.multiplier {
+            Multiplier::Vector(variable) if rule != SlipRule::Pure => {
+                if part.nodes.flags.is(ACTIVE, at) {
+                    vector_of(variable.name())
+                } else {
+                    [0.0; 3]
+                }
+            }
+            _ => by_slip(),
+        };
+        tangents.push(tangent(direction, vector_of(NORMAL.name()), dimension));
+    }
+    let column = part.nodes.values.values_mut(&TANGENT_XI, 0);
+    for (&node, tangent) in slaves.iter().zip(&tangents) {
+        column[3 * node as usize..3 * node as usize + 3].copy_from_slice(tangent);
+    }
+}

@@ -1,0 +1,19 @@
+//! Contact by the penalty method: that of the augmented Lagrangian with a stiffer spring and without multipliers.
+
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+use super::alm_contact_process::AlmContactProcess;
+
+/// Factor of the estimated penalty.
+const STIFFER: f64 = 1e4;
+/// Penalty where the estimate is zero.
+const LEAST: f64 = 1e16;
+
+register! { Process "penalty_contact_process",
+    aliases: &["PenaltyContactProcess"],
+    about: "contact by the penalty method on mortar pairs",
+    source: "eqs. 4.11, D.3",
+    defaults: include_str!("../../../../configs/processes/penalty_contact_process.json"),
+    build: Build::Process(|request| AlmContactProcess::of_families(request, "PenaltyContact", STIFFER, LEAST)),
+}
