@@ -1,0 +1,375 @@
+//! The walk over contact families: one pair of facets of every two shapes, through the family's block.
+
+use std::sync::Arc;
+
+use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
+use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, SegmentationSettings};
+use zelus::contact_structural_mechanics::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous};
+use zelus::contact_structural_mechanics::variables::{
+    DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI,
+};
+use zelus_core::entities::{LocalSystems, Want};
+use zelus_core::geometry::Shape;
+use zelus_core::model::flags::{ACTIVE, SLIP};
+use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
+use zelus_core::model::{ModelPart, Nodes};
+use zelus_core::registry::{Build, Kind, entries, find};
+use zelus_core::vector3::{add, cross, dot, normalised, scale, sub};
+
+use super::specimen::{Random, Vec3, difference, size};
+
+const FACETS: [Shape; 3] = [Shape::Line2, Shape::Tri3, Shape::Quad4];
+
+/// One pair and everything its residual depends on.
+#[derive(Clone)]
+struct Setting {
+    slave: Vec<Vec3>,
+    master: Vec<Vec3>,
+    /// Displacements now and at the previous step; masters, then slaves.
+    displacement: [Vec<Vec3>; 2],
+    normals: Vec<Vec3>,
+    tangents: Vec<Vec3>,
+    slave_normal: Vec3,
+    master_normal: Vec3,
+    /// Multipliers of the slave nodes; a scalar one in the first component.
+    multipliers: Vec<Vec3>,
+    /// In contact, sliding.
+    states: Vec<(bool, bool)>,
+    /// How far the masters move after the operators of the previous step are kept.
+    drift: Vec3,
+    operator_threshold: f64,
+    order: usize,
+}
+
+fn facet_normal(x: &[Vec3]) -> Vec3 {
+    match x {
+        [a, b] => normalised([b[1] - a[1], a[0] - b[0], 0.0]),
+        [a, b, c] => normalised(cross(sub(*b, *a), sub(*c, *a))),
+        _ => normalised(cross(sub(x[2], x[0]), sub(x[3], x[1]))),
+    }
+}
+
+impl Setting {
+    /// A partly overlapping pair; `noise` distorts facets and normals.
+    fn new(slave: Shape, master: Shape, seed: u64, noise: f64, states: [(bool, bool); 2]) -> Self {
+        let mut random = Random(seed);
+        let space = if slave == Shape::Line2 { 2 } else { 3 };
+        let unit = |shape: Shape| -> Vec<Vec3> {
+            match shape {
+                Shape::Line2 => vec![[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+                Shape::Tri3 => vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+                _ => vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+            }
+        };
+        let shift = if space == 2 { [0.3, -0.02, 0.0] } else { [0.17, 0.12, 0.02] };
+        let slave_x: Vec<Vec3> = unit(slave).into_iter().map(|x| add(x, random.vector(noise, space))).collect();
+        let master_x: Vec<Vec3> = unit(master)
+            .into_iter()
+            .rev()
+            .map(|x| add(add(scale(x, 1.1), shift), random.vector(noise, space)))
+            .collect();
+        let (slave_normal, master_normal) = (facet_normal(&slave_x), facet_normal(&master_x));
+        let normals: Vec<Vec3> =
+            slave_x.iter().map(|_| normalised(add(slave_normal, random.vector(noise, space)))).collect();
+        let tangents = normals
+            .iter()
+            .map(|&n| {
+                let v = add([1.0, 0.0, 0.0], random.vector(noise, space));
+                normalised(sub(v, scale(n, dot(v, n))))
+            })
+            .collect();
+        let count = slave_x.len() + master_x.len();
+        let mut displacements = || (0..count).map(|_| random.vector(0.05, space)).collect::<Vec<Vec3>>();
+        let displacement = [displacements(), displacements()];
+        let multipliers = slave_x.iter().map(|_| random.vector(1.0, space)).collect();
+        Self {
+            multipliers,
+            states: (0..slave_x.len()).map(|j| states[j % 2]).collect(),
+            drift: if space == 2 { [0.03, 0.0, 0.0] } else { [0.03, -0.02, 0.0] },
+            operator_threshold: 0.0,
+            order: 2,
+            slave: slave_x,
+            master: master_x,
+            displacement,
+            normals,
+            tangents,
+            slave_normal,
+            master_normal,
+        }
+    }
+
+    fn space(&self) -> usize {
+        if self.slave.len() == 2 { 2 } else { 3 }
+    }
+
+    fn shape(nodes: usize) -> Shape {
+        FACETS[nodes - 2]
+    }
+
+    /// Everything turned by R and shifted.
+    fn moved(&self, turn: impl Fn(Vec3) -> Vec3, shift: Vec3, vector_multipliers: bool) -> Self {
+        let all = |vectors: &[Vec3]| vectors.iter().map(|&v| turn(v)).collect::<Vec<Vec3>>();
+        let positions = |x: &[Vec3]| all(x).into_iter().map(|x| add(x, shift)).collect::<Vec<Vec3>>();
+        Self {
+            slave: positions(&self.slave),
+            master: positions(&self.master),
+            displacement: [all(&self.displacement[0]), all(&self.displacement[1])],
+            normals: all(&self.normals),
+            tangents: all(&self.tangents),
+            slave_normal: turn(self.slave_normal),
+            master_normal: turn(self.master_normal),
+            multipliers: if vector_multipliers { all(&self.multipliers) } else { self.multipliers.clone() },
+            drift: turn(self.drift),
+            ..self.clone()
+        }
+    }
+
+    /// The same pair with its nodes counted from another one on.
+    fn recounted(&self, slave_by: usize, master_by: usize) -> Self {
+        let mut other = self.clone();
+        let masters = self.master.len();
+        other.slave.rotate_left(slave_by);
+        other.master.rotate_left(master_by);
+        other.normals.rotate_left(slave_by);
+        other.tangents.rotate_left(slave_by);
+        other.multipliers.rotate_left(slave_by);
+        other.states.rotate_left(slave_by);
+        for level in &mut other.displacement {
+            level[..masters].rotate_left(master_by);
+            level[masters..].rotate_left(slave_by);
+        }
+        other
+    }
+
+    /// The family's block of this pair in a model part; `None` for shapes the family does not know.
+    fn build(&self, family: &Family) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
+        let (slave, master) = (Self::shape(self.slave.len()), Self::shape(self.master.len()));
+        let mixed = if slave == master { String::new() } else { format!("{}N", master.nodes()) };
+        let name = format!("{}{}D{}N{mixed}", family.condition, self.space(), slave.nodes());
+        let entry = find(Kind::Condition, &name);
+        let masters = self.master.len();
+        let current: Vec<Vec3> = self.master.iter().chain(&self.slave).copied().collect();
+        let count = current.len();
+
+        let mut part = ModelPart::new("walk");
+        part.info.domain_size = self.space();
+        let initial = current.iter().zip(&self.displacement[0]).map(|(&x, &u)| sub(x, u)).collect();
+        part.nodes = Nodes::new((1..=count).collect(), initial);
+        part.nodes.history.set_levels(2);
+        part.nodes.history.add(&DISPLACEMENT);
+        part.nodes.history.add(&NORMAL);
+        for &(name, components) in family.variables {
+            part.nodes.history.add_named(name, components);
+        }
+        for (level, u) in self.displacement.iter().enumerate() {
+            part.nodes.history.values_mut(&DISPLACEMENT, level).copy_from_slice(u.as_flattened());
+        }
+        part.nodes.history.values_mut(&NORMAL, 0)[3 * masters..].copy_from_slice(self.normals.as_flattened());
+        part.nodes.values.values_mut(&TANGENT_XI, 0)[3 * masters..].copy_from_slice(self.tangents.as_flattened());
+        part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(20.0);
+        part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(0.8);
+        part.nodes.values.values_mut(&FRICTION_COEFFICIENT, 0).fill(0.4);
+        part.nodes.values.values_mut(&NORMAL_LENGTH, 0).fill(1.0);
+        for (j, &(active, slip)) in self.states.iter().enumerate() {
+            part.nodes.flags.set(ACTIVE, masters + j, active);
+            part.nodes.flags.set(SLIP, masters + j, slip);
+        }
+        let segmentation = SegmentationSettings {
+            integration_order: IntegrationOrder::new(self.order).expect("an order"),
+            ..SegmentationSettings::default()
+        };
+        let parameters = StepParameters {
+            segmentation,
+            scale_factor: 1.7,
+            tangent_factor: 0.3,
+            operator_threshold: self.operator_threshold,
+            normal_variation: NormalVariation::Update,
+        };
+        let pair = Pair {
+            key: PairKey { interface: 0, slave: 0, master: 0 },
+            slave_normal: self.slave_normal,
+            master_normal: self.master_normal,
+            overlapping: true,
+            previous: Previous::default(),
+        };
+        let request = PairRequest {
+            entry: entry.unwrap_or(entries()[0]),
+            pairs: vec![pair],
+            nodes: (0..count as u32).collect(),
+            parameters: Arc::new(parameters),
+        };
+        let block = (family.block)(slave, master, request);
+        assert_eq!(block.is_some(), entry.is_some(), "{name}: the name is registered for the shapes with a block");
+        let mut block = block?;
+        part.move_mesh();
+        let here = part.nodes.current.clone();
+        part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));
+        block.keep_operators(&part.view());
+        part.nodes.current = here;
+        for (row, value) in self.multiplier_rows(block.as_ref()).into_iter().zip(self.multiplier_values(block.as_ref()))
+        {
+            set(&mut part, block.as_ref(), row, value);
+        }
+        Some((part, block))
+    }
+
+    fn multiplier_rows(&self, block: &dyn ContactBlock) -> std::ops::Range<usize> {
+        self.space() * (self.slave.len() + self.master.len())..block.unknowns().len()
+    }
+
+    fn multiplier_values(&self, block: &dyn ContactBlock) -> Vec<f64> {
+        let each = self.multiplier_rows(block).len() / self.slave.len();
+        self.multipliers.iter().flat_map(|lambda| lambda[..each].to_vec()).collect()
+    }
+}
+
+fn set(part: &mut ModelPart, block: &dyn ContactBlock, row: usize, value: f64) {
+    let unknown = block.unknowns()[row];
+    let node = block.nodes(0)[unknown.node as usize] as usize;
+    let field = part.nodes.history.get_mut(unknown.variable.column).expect("a column for each unknown");
+    field.levels[0][node * field.components + unknown.variable.offset()] = value;
+}
+
+fn get(part: &ModelPart, block: &dyn ContactBlock, row: usize) -> f64 {
+    let unknown = block.unknowns()[row];
+    part.nodes.history.scalar(unknown.variable, block.nodes(0)[unknown.node as usize] as usize).expect("a column")
+}
+
+fn system(part: &ModelPart, block: &dyn ContactBlock, want: Want) -> LocalSystems {
+    let mut out = LocalSystems::default();
+    out.reset(1, block.unknowns().len(), want);
+    block.local_systems(&part.view(), 0..1, want, &mut out).expect("a pair that can be computed");
+    out
+}
+
+fn families() -> Vec<(&'static str, &'static Family)> {
+    let of = |build: &'static Build| match build {
+        Build::Factory(factory) => factory.downcast_ref::<Family>(),
+        _ => None,
+    };
+    let found: Vec<_> = entries().into_iter().filter_map(|e| Some((e.name, of(&e.build)?))).collect();
+    assert!(!found.is_empty(), "no contact family is registered");
+    found
+}
+
+const INACTIVE: (bool, bool) = (false, false);
+const STICK: (bool, bool) = (true, false);
+const SLIDING: (bool, bool) = (true, true);
+
+/// Every family on every two shapes in every mix of states, with its name.
+fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
+    for (name, family) in families() {
+        let mut shapes = 0;
+        for (slave, master) in FACETS.into_iter().flat_map(|s| FACETS.map(|m| (s, m))) {
+            if (slave == Shape::Line2) != (master == Shape::Line2) {
+                continue;
+            }
+            for (at, states) in
+                [[INACTIVE; 2], [SLIDING; 2], [STICK; 2], [SLIDING, INACTIVE], [STICK, SLIDING]].into_iter().enumerate()
+            {
+                let setting = Setting::new(slave, master, 7 + at as u64, noise, states);
+                if setting.build(family).is_some() {
+                    shapes += 1;
+                    visit(&format!("{name} {slave:?} on {master:?}, states {states:?}"), family, setting);
+                }
+            }
+        }
+        assert!(shapes > 0, "{name} has no block for any two shapes");
+    }
+}
+
+#[test]
+fn tangents_of_pairs_are_derivatives() {
+    walk(0.05, |name, family, setting| {
+        for operator_threshold in if family.frictional { vec![0.0, 1e9] } else { vec![0.0] } {
+            let setting = Setting { operator_threshold, ..setting.clone() };
+            let (mut part, block) = setting.build(family).expect("a block");
+            let block = block.as_ref();
+            let LocalSystems { lhs, rhs, .. } = system(&part, block, Want::Both);
+            let plain = system(&part, block, Want::Residual).rhs;
+            let force = size(plain.iter().copied());
+            assert!(difference(&rhs, &plain) <= 1e-12 * force, "{name}: the residual depends on what is wanted");
+            if setting.states.iter().any(|(active, _)| *active) {
+                assert!(force > 1e-6, "{name}: the pair has no overlap");
+            }
+            let n = rhs.len();
+            let largest = size(lhs.iter().copied()).max(1e-3);
+            for column in 0..n {
+                let value = get(&part, block, column);
+                let mut at = |h: f64| {
+                    set(&mut part, block, column, value + h);
+                    part.move_mesh();
+                    system(&part, block, Want::Residual).rhs
+                };
+                let h = 1e-6;
+                let (plus, minus) = (at(h), at(-h));
+                at(0.0);
+                for row in 0..n {
+                    let (slope, exact) = (-(plus[row] - minus[row]) / (2.0 * h), lhs[row * n + column]);
+                    let error = (slope - exact).abs();
+                    assert!(error < 1e-6 * largest, "{name}, row {row}, column {column}: {exact} is not {slope}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
+    walk(0.05, |name, family, setting| {
+        let space = setting.space();
+        let (part, block) = setting.build(family).expect("a block");
+        let rhs = system(&part, block.as_ref(), Want::Residual).rhs;
+        let rows = setting.multiplier_rows(block.as_ref());
+        let vectors = rows.len() == space * setting.slave.len();
+        for c in 0..space {
+            let total: f64 = rhs[..rows.start].iter().skip(c).step_by(space).sum();
+            assert!(total.abs() <= 1e-10 * size(rhs.iter().copied()).max(1.0), "{name}: out of balance by {total:e}");
+        }
+
+        let ((s, c), (t, k)) = (0.7_f64.sin_cos(), if space == 3 { 0.4_f64.sin_cos() } else { (0.0, 1.0) });
+        let turn = |v: Vec3| {
+            let (x, y) = (c * v[0] - s * v[1], s * v[0] + c * v[1]);
+            [x, k * y - t * v[2], t * y + k * v[2]]
+        };
+        let shift = [0.4, -0.3, if space == 3 { 0.2 } else { 0.0 }];
+        let (part, block) = setting.moved(turn, shift, vectors).build(family).expect("a block");
+        let after = system(&part, block.as_ref(), Want::Residual).rhs;
+        let turned_rows = if vectors { rhs.len() } else { rows.start };
+        let mut expected: Vec<f64> = rhs[..turned_rows]
+            .chunks(space)
+            .flat_map(|f| {
+                let f = turn(std::array::from_fn(|a| f.get(a).copied().unwrap_or(0.0)));
+                f.into_iter().take(space)
+            })
+            .collect();
+        expected.extend(&rhs[turned_rows..]);
+        let error = difference(&expected, &after);
+        assert!(error <= 1e-8 * size(rhs).max(1.0), "{name}: off by {error:e} after a rigid motion");
+    });
+}
+
+#[test]
+fn the_order_of_a_facets_nodes_does_not_matter() {
+    walk(0.0, |name, family, mut setting| {
+        if setting.space() == 2 {
+            return; // the other order of a line is its other side
+        }
+        // rectangles and a rule of degree six: the integrals are exact however the overlap is cut
+        setting.order = 5;
+        let (part, block) = setting.build(family).expect("a block");
+        let rhs = system(&part, block.as_ref(), Want::Residual).rhs;
+        let (masters, slaves) = (setting.master.len(), setting.slave.len());
+        let each = setting.multiplier_rows(block.as_ref()).len() / slaves;
+        for (slave_by, master_by) in [(1, 0), (0, 1), (2, 1)] {
+            let (part, block) = setting.recounted(slave_by, master_by).build(family).expect("a block");
+            let other = system(&part, block.as_ref(), Want::Residual).rhs;
+            let mut back = other.clone();
+            back[..3 * masters].rotate_right(3 * master_by);
+            back[3 * masters..3 * (masters + slaves)].rotate_right(3 * slave_by);
+            back[3 * (masters + slaves)..].rotate_right(each * slave_by);
+            let error = difference(&rhs, &back);
+            assert!(error <= 1e-8 * size(rhs.iter().copied()).max(1.0), "{name}: off by {error:e}");
+        }
+    });
+}

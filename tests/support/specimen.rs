@@ -1,0 +1,217 @@
+//! One entity of a registered kind on a distorted cell, with its block, ready to be asked for its local system.
+
+use std::collections::BTreeMap;
+
+use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Tangent, Want};
+use zelus_core::geometry::Shape;
+use zelus_core::model::variables::DISPLACEMENT;
+use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, ScalarVariable, VariableKind, variables};
+use zelus_core::registry::{Build, Entry, Kind};
+
+pub type Vec3 = [f64; 3];
+
+/// Reproducible numbers in [−1, 1].
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    pub fn vector(&mut self, size: f64, space: usize) -> Vec3 {
+        std::array::from_fn(|a| if a < space { size * self.next() } else { 0.0 })
+    }
+}
+
+/// The largest absolute value.
+pub fn size(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
+/// The largest difference.
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    size(a.iter().zip(b).map(|(a, b)| a - b))
+}
+
+/// A cell of a shape, distorted by `amount`, at positive x so that it may turn about the y axis.
+pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec<Vec3> {
+    let place = |p: &Vec3| {
+        let x = [4.0 + p[0] + 0.3 * p[1] + 0.1 * p[2], 0.1 * p[0] + 0.8 * p[1] - 1.0, 0.1 * p[0] + 0.7 * p[2]];
+        let noise = random.vector(amount, space);
+        std::array::from_fn(|a| if a < space { x[a] + noise[a] } else { 0.0 })
+    };
+    shape.cell().points.iter().map(place).collect()
+}
+
+/// Which loads a specimen carries.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Loads {
+    /// Every scalar variable, at the entity and its nodes: pressures, which follow the surface.
+    Scalars,
+    /// Every vector variable: forces, which keep their direction.
+    Vectors,
+}
+
+/// One entity with its block.
+pub struct Specimen {
+    pub part: ModelPart,
+    pub block: Box<dyn EntityBlock>,
+    entry: &'static Entry,
+}
+
+impl Specimen {
+    /// One entity on nodes at `x`, connected in the order `nodes`; why it cannot be made with this law otherwise.
+    ///
+    /// Properties that the kind asks for and that are not among the usual ones get the value 1.
+    pub fn new(
+        entry: &'static Entry,
+        law: Option<&str>,
+        x: &[Vec3],
+        nodes: &[u32],
+        loads: Loads,
+    ) -> Result<Self, String> {
+        let mut values: BTreeMap<String, f64> = BTreeMap::new();
+        for (name, value) in [("YOUNG_MODULUS", 100.0), ("POISSON_RATIO", 0.3), ("THICKNESS", 0.5), ("DENSITY", 3.0)] {
+            values.insert(name.to_owned(), value);
+        }
+        loop {
+            match Self::with_properties(entry, law, x, nodes, loads, &values) {
+                Ok(specimen) => return Ok(specimen),
+                Err(problem) => {
+                    let lacks = problem.split_once("have no ").and_then(|(_, rest)| rest.split_whitespace().next());
+                    match lacks.filter(|name| !values.contains_key(*name)) {
+                        Some(name) => values.insert(name.to_owned(), 1.0),
+                        None => return Err(problem),
+                    };
+                }
+            }
+        }
+    }
+
+    fn with_properties(
+        entry: &'static Entry,
+        law: Option<&str>,
+        x: &[Vec3],
+        nodes: &[u32],
+        loads: Loads,
+        values: &BTreeMap<String, f64>,
+    ) -> Result<Self, String> {
+        let mut part = ModelPart::new("walk");
+        part.info.domain_size = entry.space;
+        part.info.delta_time = 0.1;
+        part.nodes = Nodes::new((1..=x.len()).collect(), x.to_vec());
+        part.nodes.history.set_levels(2);
+        part.nodes.history.add(&DISPLACEMENT);
+        let mut properties = Properties::new(1);
+        properties.law = law.map(str::to_owned);
+        let numbers = values.iter().map(|(name, value)| (name.clone(), PropertyValue::Number(*value)));
+        properties.values.extend(numbers);
+        part.properties.insert(1, properties);
+        let table = if entry.kind == Kind::Element { &mut part.elements } else { &mut part.conditions };
+        table.push(1, entry, 1, nodes);
+        table.finish();
+        load(&mut part, entry, loads);
+        let Build::Block(make) = entry.build else { unreachable!("only kinds with a block are walked") };
+        let table = if entry.kind == Kind::Element { &part.elements } else { &part.conditions };
+        let request = BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part };
+        let mut block = make(&request).map_err(|problem| problem.to_string())?;
+        block.initialize(&part.view()).map_err(|problem| problem.to_string())?;
+        let mut specimen = Self { part, block, entry };
+        for unknown in specimen.block.unknowns().to_vec() {
+            let components = if unknown.variable.component.is_some() { 3 } else { 1 };
+            specimen.part.nodes.history.add_named(unknown.variable.column, components);
+        }
+        Ok(specimen)
+    }
+
+    /// Whether the nodes move with their displacements; linear theory stays on the initial geometry.
+    /// (The small-displacement solid of revolution holds the present radius fixed in its tangent.)
+    fn moves(&self) -> bool {
+        self.block.tangent() != Tangent::Constant && !is_linear(self.entry)
+    }
+
+    /// The unknowns: node index and variable, in the order of the rows.
+    pub fn rows(&self) -> Vec<(u32, ScalarVariable)> {
+        let nodes = self.block.nodes(0);
+        self.block.unknowns().iter().map(|u| (nodes[u.node as usize], u.variable)).collect()
+    }
+
+    /// Sets the unknowns, and moves the mesh where forces follow it.
+    pub fn set(&mut self, values: &[f64]) {
+        for ((node, variable), value) in self.rows().into_iter().zip(values) {
+            let field = self.part.nodes.history.get_mut(variable.column).expect("a column for each unknown");
+            field.levels[0][node as usize * field.components + variable.offset()] = *value;
+        }
+        if self.moves() {
+            self.part.move_mesh();
+        }
+    }
+
+    /// Tangent and right-hand side.
+    pub fn system(&self) -> (Vec<f64>, Vec<f64>) {
+        let out = self.local(Want::Both);
+        (out.lhs, out.rhs)
+    }
+
+    /// The right-hand side alone.
+    pub fn residual(&self) -> Vec<f64> {
+        self.local(Want::Residual).rhs
+    }
+
+    fn local(&self, want: Want) -> LocalSystems {
+        let mut out = LocalSystems::default();
+        out.reset(1, self.block.unknowns().len(), want);
+        let result = self.block.local_systems(&self.part.view(), 0..1, want, &mut out);
+        result.unwrap_or_else(|problem| panic!("{}: {}", self.entry.name, problem.fact));
+        out
+    }
+
+    /// −∂residual/∂unknowns at `values` by central differences of fourth order, row by row.
+    pub fn difference_tangent(&mut self, values: &[f64], step: f64) -> Vec<f64> {
+        let n = values.len();
+        let mut out = vec![0.0; n * n];
+        for column in 0..n {
+            let mut at = |h: f64| {
+                let mut moved = values.to_vec();
+                moved[column] += h;
+                self.set(&moved);
+                self.residual()
+            };
+            let (a, b, c, d) = (at(-2.0 * step), at(-step), at(step), at(2.0 * step));
+            for row in 0..n {
+                out[row * n + column] = -(a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row]) / (12.0 * step);
+            }
+        }
+        self.set(values);
+        out
+    }
+}
+
+/// Whether strains are those of linear theory, by the name that says so.
+pub fn is_linear(entry: &Entry) -> bool {
+    entry.name.contains("SmallDisplacement")
+}
+
+/// Whether the plane turns about the y axis.
+pub fn is_axisymmetric(entry: &Entry) -> bool {
+    entry.name.contains("Axisym")
+}
+
+/// Gives the entity and its nodes a value of every variable of the wanted sort.
+fn load(part: &mut ModelPart, entry: &Entry, loads: Loads) {
+    let wanted = if loads == Loads::Scalars { VariableKind::Scalar } else { VariableKind::Vector3 };
+    let mut random = Random(5);
+    let data = if entry.kind == Kind::Element { &mut part.elements.data } else { &mut part.conditions.data };
+    for variable in variables().values().filter(|v| v.kind == wanted && v.name != DISPLACEMENT.name()) {
+        let components = if loads == Loads::Scalars { 1 } else { 3 };
+        for fields in [&mut *data, &mut part.nodes.history] {
+            fields.add_named(variable.name, components);
+            let level = &mut fields.get_mut(variable.name).expect("added above").levels[0];
+            level.chunks_mut(components).for_each(|value| {
+                value[..components.min(entry.space)].fill_with(|| random.next());
+            });
+        }
+    }
+}
