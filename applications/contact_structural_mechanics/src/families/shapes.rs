@@ -23,12 +23,15 @@ pub(super) fn block<F: PairFormulation>(
 /// Registers the conditions of a family, one a pair of shapes, under Kratos' names.
 macro_rules! register_shapes {
     ($stem:literal, $axisymmetric:expr, $about:literal) => {
+        $crate::families::shapes::register_shapes!($stem, $about);
+        $crate::families::shapes::register_shapes!(@ $axisymmetric, Line2, 2, $about);
+    };
+    ($stem:literal, $about:literal) => {
         $crate::families::shapes::register_shapes!(@ concat!($stem, "2D2N"), Line2, 2, $about);
         $crate::families::shapes::register_shapes!(@ concat!($stem, "3D3N"), Tri3, 3, $about);
         $crate::families::shapes::register_shapes!(@ concat!($stem, "3D4N"), Quad4, 3, $about);
         $crate::families::shapes::register_shapes!(@ concat!($stem, "3D3N4N"), Tri3, 3, $about);
         $crate::families::shapes::register_shapes!(@ concat!($stem, "3D4N3N"), Quad4, 3, $about);
-        $crate::families::shapes::register_shapes!(@ $axisymmetric, Line2, 2, $about);
     };
     (@ $name:expr, $shape:ident, $space:literal, $about:literal) => {
         zelus_core::register! { Condition $name,

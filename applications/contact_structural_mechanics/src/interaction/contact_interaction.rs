@@ -6,9 +6,8 @@ use std::sync::Arc;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, Interaction, SetChange};
-use zelus_core::geometry::Shape;
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
-use zelus_core::model::{ModelPart, ScalarVariable, SubPart, variables::NORMAL};
+use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::{self, Kind};
 
@@ -18,12 +17,12 @@ use super::friction::{self, FrictionSettings};
 use super::step_parameters::{NormalVariation, StepParameters};
 use crate::active_set::SlipRule;
 use crate::interface::{
-    AlmParameters, Facet, Interface, Roles, alm_parameters, centre_normal, find_nodal_h, interfaces, nodal_normals,
-    positions,
+    AlmParameters, Facet, Interface, Roles, add_contact_part, alm_parameters, centre_normal, find_nodal_h, interfaces,
+    nodal_normals, positions, slave_nodes,
 };
 use crate::mortar::SegmentationSettings;
-use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous};
-use crate::search::{Candidate, SearchSettings, candidates};
+use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
+use crate::search::{Candidate, SearchSettings, candidates, warn_of_reach};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA,
     NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -101,15 +100,7 @@ impl ContactInteraction {
     /// Parts that do not exist or hold no facets.
     pub fn new(settings: ContactSettings, part: &mut ModelPart) -> Result<Self> {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
-        let mut contact = SubPart::new("Contact");
-        for interface in &interfaces {
-            let name = format!("ContactSub{}", interface.key);
-            let child = SubPart { nodes: interface.nodes.clone(), ..SubPart::new(name.clone()) };
-            contact.nodes.extend(&interface.nodes);
-            contact.children.insert(name, child);
-        }
-        contact.normalise();
-        part.tree.children.insert(contact.name.clone(), contact);
+        add_contact_part(part, &interfaces);
         let parameters = Arc::new(StepParameters {
             segmentation: SegmentationSettings::default(),
             scale_factor: 1.0,
@@ -184,7 +175,7 @@ impl ContactInteraction {
             .zip(overlapping)
             .filter_map(|(pair, overlapping)| overlapping.then_some(pair))
             .partition(|pair| !beyond.contains(&pair.key));
-        self.warn_of_reach(part, lost.len());
+        warn_of_reach(part, lost.len(), &mut self.warned);
         self.make_blocks(kept)?;
         let after: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
         if before != after {
@@ -193,32 +184,17 @@ impl ContactInteraction {
         Ok(())
     }
 
-    /// Overlaps that the deck's reach leaves out are said once: contact is not enforced there.
-    fn warn_of_reach(&mut self, part: &mut ModelPart, lost: usize) {
-        if lost > 0 && !std::mem::replace(&mut self.warned, true) {
-            let fact = format!(
-                "{lost} pairs of facets overlap but lie beyond the reach of the search; contact has gaps there"
-            );
-            part.messages.push(
-                Diagnostic::warning("search-reach", fact)
-                    .remedy("raise \"search_parameters.search_factor\", or let the finer side be the master"),
-            );
-        }
+    /// Name of the conditions up to the shape.
+    fn condition_stem(&self) -> String {
+        let stem = self.settings.family.condition;
+        if self.settings.axisymmetric { stem.replace("MortarContact", "AxisymMortarContact") } else { stem.to_owned() }
     }
 
     fn make_blocks(&mut self, pairs: Vec<Pair>) -> Result<()> {
-        let mut groups: BTreeMap<(Shape, Shape), (Vec<Pair>, Vec<u32>)> = BTreeMap::new();
-        for pair in pairs {
-            let (slave, master) =
-                (self.facet(pair.key.interface, pair.key.slave), self.facet(pair.key.interface, pair.key.master));
-            let (group, nodes) = groups.entry((slave.shape, master.shape)).or_default();
-            nodes.extend(&master.nodes);
-            nodes.extend(&slave.nodes);
-            group.push(pair);
-        }
+        let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
         self.blocks.clear();
         for ((slave, master), (pairs, nodes)) in groups {
-            let name = condition_name(self.settings.family, slave, master, self.settings.axisymmetric);
+            let name = condition_name(&self.condition_stem(), slave, master);
             let entry = registry::require(Kind::Condition, &name)?;
             let request = PairRequest { entry, pairs, nodes, parameters: self.parameters.clone() };
             let block = (self.settings.family.block)(slave, master, request).ok_or_else(|| {
@@ -333,18 +309,6 @@ impl ContactInteraction {
     }
 }
 
-/// Kratos' name of the condition of a pair of shapes.
-fn condition_name(family: &Family, slave: Shape, master: Shape, axisymmetric: bool) -> String {
-    let dimension = if slave == Shape::Line2 { 2 } else { 3 };
-    let stem = if axisymmetric {
-        family.condition.replace("MortarContact", "AxisymMortarContact")
-    } else {
-        family.condition.to_owned()
-    };
-    let mixed = if slave == master { String::new() } else { format!("{}N", master.nodes()) };
-    format!("{stem}{dimension}D{}N{mixed}", slave.nodes())
-}
-
 impl Interaction for ContactInteraction {
     fn name(&self) -> &str {
         "contact"
@@ -359,9 +323,7 @@ impl Interaction for ContactInteraction {
         find_nodal_h(part);
         part.info.marks.insert(CONTACT, true);
         self.set_parameters(part);
-        self.slaves = self.interfaces.iter().flat_map(|i| i.nodes_of(Roles::Slave)).collect();
-        self.slaves.sort_unstable();
-        self.slaves.dedup();
+        self.slaves = slave_nodes(&self.interfaces);
         for &node in &self.slaves {
             part.nodes.flags.set(ACTIVE, node as usize, false);
             debug_assert!(part.nodes.flags.is(SLAVE, node as usize) && !part.nodes.flags.is(MASTER, node as usize));

@@ -5,8 +5,10 @@ mod adaptation;
 mod contact_interaction;
 mod friction;
 mod step_parameters;
+mod tying_interaction;
 
 pub use adaptation::AdaptationSettings;
 pub use contact_interaction::{ContactInteraction, ContactSettings};
 pub use friction::FrictionSettings;
 pub use step_parameters::{NormalVariation, StepParameters};
+pub use tying_interaction::{TyingInteraction, TyingSettings};

@@ -69,6 +69,14 @@ impl Interface {
     }
 }
 
+/// Nodes of all slave facets, ascending.
+pub fn slave_nodes(interfaces: &[Interface]) -> Vec<u32> {
+    let mut nodes: Vec<u32> = interfaces.iter().flat_map(|interface| interface.nodes_of(Roles::Slave)).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
 /// Faces of elements by their sorted nodes: element, nodes in the element's order, and how many elements share it.
 type Faces = FxHashMap<Vec<u32>, (u32, Vec<u32>, usize)>;
 

@@ -80,23 +80,54 @@ impl Family {
     }
 }
 
+/// A family of ties, registered under its `mortar_type` as a condition with `Build::Factory(&TyingFamily {…})`.
+pub struct TyingFamily {
+    /// Its multipliers.
+    pub multiplier: Multiplier,
+    /// Further nodal variables with history.
+    pub variables: &'static [NodalVariable],
+}
+
+fn find<F: 'static>(mortar_type: &str) -> Option<&'static F> {
+    let entry = registry::find(Kind::Condition, mortar_type)?;
+    let Build::Factory(factory) = entry.build else { return None };
+    factory.downcast_ref::<F>()
+}
+
+fn unknown(mortar_type: &str, belongs: impl Fn(&(dyn std::any::Any + Send + Sync)) -> bool) -> Diagnostic {
+    let families: Vec<&str> = registry::entries()
+        .into_iter()
+        .filter(|e| matches!(e.build, Build::Factory(f) if belongs(f)))
+        .map(|e| e.name)
+        .collect();
+    let hint = zelus_core::diagnostics::did_you_mean(mortar_type, families.iter().copied());
+    Diagnostic::error("mortar-type", format!("there is no contact family {mortar_type:?}"))
+        .remedy(hint.unwrap_or_else(|| format!("families: {}", families.join(", "))))
+}
+
 /// The family of a `mortar_type`.
 ///
 /// # Errors
 /// A name that no family has.
 pub fn find_family(mortar_type: &str) -> Result<&'static Family, Diagnostic> {
-    let found = registry::find(Kind::Condition, mortar_type).and_then(|entry| match entry.build {
-        Build::Factory(factory) => factory.downcast_ref::<Family>(),
-        _ => None,
-    });
-    found.ok_or_else(|| {
-        let families: Vec<&str> = registry::entries()
-            .into_iter()
-            .filter(|e| matches!(e.build, Build::Factory(f) if f.is::<Family>()))
-            .map(|e| e.name)
-            .collect();
-        let hint = zelus_core::diagnostics::did_you_mean(mortar_type, families.iter().copied());
-        Diagnostic::error("mortar-type", format!("there is no contact family {mortar_type:?}"))
-            .remedy(hint.unwrap_or_else(|| format!("families: {}", families.join(", "))))
-    })
+    find(mortar_type).ok_or_else(|| unknown(mortar_type, |f| f.is::<Family>()))
+}
+
+/// The family of ties of a `mortar_type`.
+///
+/// # Errors
+/// A name that no such family has.
+pub fn find_tying_family(mortar_type: &str) -> Result<&'static TyingFamily, Diagnostic> {
+    find(mortar_type).ok_or_else(|| unknown(mortar_type, |f| f.is::<TyingFamily>()))
+}
+
+/// The nodal variables that a `mortar_type` of either sort brings along.
+///
+/// # Errors
+/// A name that no family has.
+pub fn variables_of(mortar_type: &str) -> Result<&'static [NodalVariable], Diagnostic> {
+    let contact = find::<Family>(mortar_type).map(|family| family.variables);
+    contact
+        .or_else(|| find::<TyingFamily>(mortar_type).map(|family| family.variables))
+        .ok_or_else(|| unknown(mortar_type, |f| f.is::<Family>() || f.is::<TyingFamily>()))
 }

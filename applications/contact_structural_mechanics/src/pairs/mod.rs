@@ -1,9 +1,17 @@
 //! Contact pairs as blocks: what the search found, in the form the assembly takes.
 
+mod facet_operators;
 mod family;
+mod grouping;
 mod pair;
 mod pair_block;
+mod tying_block;
 
-pub use family::{Family, Friction, Multiplier, PairRequest, find_family};
+pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
+pub use family::{
+    Family, Friction, Multiplier, PairRequest, TyingFamily, find_family, find_tying_family, variables_of,
+};
+pub use grouping::{Groups, condition_name, group_by_shapes};
 pub use pair::{Integral, Pair, PairKey, Previous};
 pub use pair_block::{ContactBlock, PairBlock, PairFormulation};
+pub use tying_block::{TyingRequest, tying_block};

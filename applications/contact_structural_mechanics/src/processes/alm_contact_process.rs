@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use zelus_core::Result;
-use zelus_core::diagnostics::{Diagnostic, did_you_mean};
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::Model;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
+use super::interface_settings::{check_positive, check_search};
 use crate::interaction::{AdaptationSettings, ContactInteraction, ContactSettings, FrictionSettings, NormalVariation};
 use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
@@ -66,20 +67,6 @@ struct Whole {
     alternative_formulations: Alternatives,
 }
 
-/// Names of the reference program's searches; one bounding-volume tree serves them all.
-const SEARCHES: [&str; 10] = [
-    "in_radius",
-    "in_box",
-    "in_radius_with_obb",
-    "in_box_with_obb",
-    "octree_with_obb",
-    "InRadius",
-    "InBox",
-    "InRadiusWithOBB",
-    "InBoxWithOBB",
-    "OctreeWithOBB",
-];
-
 /// The process; all it does is in its interaction.
 pub struct AlmContactProcess {
     root: String,
@@ -128,25 +115,11 @@ pub(super) fn interaction(
         let fact = format!("\"integration_order\" is {}, it must be 1 to 5", whole.integration_order);
         settings.error("integration_order", "integration-order", fact)
     })?;
-    let positive = [
-        ("search_parameters.search_factor", whole.search_parameters.search_factor),
-        ("advance_ALM_parameters.stiffness_factor", whole.parameters.stiffness_factor),
-        ("advance_ALM_parameters.penalty_scale_factor", whole.parameters.penalty_scale_factor),
-    ];
-    if let Some((key, value)) = positive.into_iter().find(|(_, value)| *value <= 0.0) {
-        let fact = format!("\"{key}\" is {value}, it must be positive");
-        return Err(settings.error(key, "invalid-value", fact).remedy("write a number above 0").into());
-    }
-    let type_search = settings.get_str("search_parameters.type_search")?;
-    if !SEARCHES.contains(&type_search) {
-        let fact = format!("there is no search \"{type_search}\"");
-        return Err(settings
-            .error("search_parameters.type_search", "unknown-search", fact)
-            .remedy(
-                did_you_mean(type_search, SEARCHES).unwrap_or_else(|| format!("use one of {}", SEARCHES.join(", "))),
-            )
-            .into());
-    }
+    check_positive(
+        settings,
+        &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
+    )?;
+    check_search(settings)?;
     let normal_variation = match whole.normal_variation {
         NormalVariation::None if updated || (family.frictional() && !whole.not_normal_update_frictional) => {
             NormalVariation::Update

@@ -1,4 +1,6 @@
 //! The processes of contact.
 
 mod alm_contact_process;
+mod interface_settings;
+mod mesh_tying_process;
 mod penalty_contact_process;

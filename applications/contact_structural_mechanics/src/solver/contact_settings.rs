@@ -4,7 +4,7 @@ use zelus_core::analysis::ExtensionDefinition;
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use crate::pairs::find_family;
+use crate::pairs::variables_of;
 
 register! { SolverExtension "contact_settings",
     about: "what the solver needs to know of contact",
@@ -15,8 +15,8 @@ register! { SolverExtension "contact_settings",
             if mortar_type.is_empty() {
                 return Ok(Vec::new());
             }
-            let family = find_family(mortar_type).map_err(|d| d.at(settings.key_place("mortar_type")))?;
-            Ok(family.variables.to_vec())
+            let variables = variables_of(mortar_type).map_err(|d| d.at(settings.key_place("mortar_type")))?;
+            Ok(variables.to_vec())
         },
     }),
 }

@@ -1,0 +1,105 @@
+//! D and M of two facets, for what does not need their derivatives: ties, constraints, mapping.
+
+use rayon::prelude::*;
+use zelus_core::geometry::Shape;
+use zelus_core::model::{ModelPart, variables::NORMAL};
+
+use super::pair::PairKey;
+use crate::interface::{Facet, Interface, centre_normal, positions};
+use crate::mortar::{Overlap, PairGeometry, SegmentationSettings, operators};
+use crate::search::{Candidate, SearchSettings, candidates};
+
+/// D and M of a pair, in the leading rows and columns (area).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FacetOperators {
+    /// D_jk, slave on slave; diagonal where dual functions are in use.
+    pub d: [[f64; 4]; 4],
+    /// M_jl, slave on master.
+    pub m: [[f64; 4]; 4],
+}
+
+/// Two facets that overlap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FacetPair {
+    /// Its facets.
+    pub key: PairKey,
+    /// Its operators at the moment it was made.
+    pub operators: FacetOperators,
+}
+
+/// The operators of two facets as they stand; `None` when they do not overlap or carry no contact.
+///
+/// Nodes of the slave must have their NORMAL.
+pub fn facet_operators(
+    part: &ModelPart,
+    slave: &Facet,
+    master: &Facet,
+    settings: &SegmentationSettings,
+) -> Option<FacetOperators> {
+    match (slave.shape, master.shape) {
+        (Shape::Line2, Shape::Line2) => of_shapes::<2, 2>(part, slave, master, settings),
+        (Shape::Tri3, Shape::Tri3) => of_shapes::<3, 3>(part, slave, master, settings),
+        (Shape::Tri3, Shape::Quad4) => of_shapes::<3, 4>(part, slave, master, settings),
+        (Shape::Quad4, Shape::Tri3) => of_shapes::<4, 3>(part, slave, master, settings),
+        (Shape::Quad4, Shape::Quad4) => of_shapes::<4, 4>(part, slave, master, settings),
+        _ => None,
+    }
+}
+
+fn of_shapes<const NS: usize, const NM: usize>(
+    part: &ModelPart,
+    slave: &Facet,
+    master: &Facet,
+    settings: &SegmentationSettings,
+) -> Option<FacetOperators> {
+    let normals = part.nodes.history.values(&NORMAL, 0);
+    let mut buffer = [[0.0; 3]; 4];
+    let position = |facet: &Facet, at: usize| part.nodes.current[facet.nodes[at] as usize];
+    let geometry = PairGeometry {
+        slave: std::array::from_fn::<_, NS, _>(|j| position(slave, j)),
+        master: std::array::from_fn::<_, NM, _>(|l| position(master, l)),
+        nodal_normals: std::array::from_fn(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
+        slave_normal: centre_normal(slave.shape, positions(slave, part, &mut buffer))?,
+        master_normal: centre_normal(master.shape, positions(master, part, &mut buffer))?,
+    };
+    let found = match operators(&geometry, settings) {
+        Overlap::Cells(found) => found,
+        Overlap::None => return None,
+    };
+    let mut out = FacetOperators::default();
+    for j in 0..NS {
+        out.d[j][..NS].copy_from_slice(&found.d[j]);
+        out.m[j][..NM].copy_from_slice(&found.m[j]);
+    }
+    Some(out)
+}
+
+/// Pairs that overlap now, ascending, without those `known` already; and how many lie beyond the reach of the search.
+pub fn overlapping_pairs(
+    part: &ModelPart,
+    interfaces: &[Interface],
+    search: &SearchSettings,
+    segmentation: &SegmentationSettings,
+    known: &(dyn Fn(&PairKey) -> bool + Sync),
+) -> (Vec<FacetPair>, usize) {
+    let mut kept = Vec::new();
+    let mut lost = 0;
+    for (at, interface) in interfaces.iter().enumerate() {
+        let found: Vec<(bool, FacetPair)> = candidates(part, interface, search)
+            .into_par_iter()
+            .with_min_len(32)
+            .filter_map(|Candidate { slave, master, within_reach }| {
+                let key = PairKey { interface: at as u32, slave, master };
+                let (slave, master) = (&interface.facets[slave as usize], &interface.facets[master as usize]);
+                if known(&key) {
+                    return None;
+                }
+                let operators = facet_operators(part, slave, master, segmentation)?;
+                Some((within_reach, FacetPair { key, operators }))
+            })
+            .collect();
+        lost += found.iter().filter(|(within_reach, _)| !within_reach).count();
+        kept.extend(found.into_iter().filter_map(|(within_reach, pair)| within_reach.then_some(pair)));
+    }
+    (kept, lost)
+}

@@ -1,0 +1,131 @@
+//! A block of tied pairs of one pair of shapes.
+
+use std::ops::Range;
+
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::Shape;
+use zelus_core::model::ScalarVariable;
+use zelus_core::registry::Entry;
+
+use super::facet_operators::FacetPair;
+use crate::formulations::MeshTying;
+use crate::mortar::Operators;
+
+/// What a block of ties is made from.
+pub struct TyingRequest {
+    /// The registered condition of this shape.
+    pub entry: &'static Entry,
+    /// The pairs.
+    pub pairs: Vec<FacetPair>,
+    /// Node indices of each pair: master nodes, then slave nodes.
+    pub nodes: Vec<u32>,
+    /// What is tied.
+    pub tied: Vec<ScalarVariable>,
+    /// The multiplier of each tied number.
+    pub multipliers: Vec<ScalarVariable>,
+    /// SCALE_FACTOR.
+    pub scale_factor: f64,
+}
+
+/// The block of a pair of shapes (slave, master) and any number of tied components; `None` for shapes without ties.
+pub fn tying_block(slave: Shape, master: Shape, request: TyingRequest) -> Option<Box<dyn EntityBlock>> {
+    Some(match (slave, master, request.tied.len()) {
+        (Shape::Line2, Shape::Line2, 1) => TyingBlock::<2, 2, 1>::boxed(request),
+        (Shape::Line2, Shape::Line2, 2) => TyingBlock::<2, 2, 2>::boxed(request),
+        (Shape::Tri3, Shape::Tri3, 1) => TyingBlock::<3, 3, 1>::boxed(request),
+        (Shape::Tri3, Shape::Tri3, 3) => TyingBlock::<3, 3, 3>::boxed(request),
+        (Shape::Tri3, Shape::Quad4, 1) => TyingBlock::<3, 4, 1>::boxed(request),
+        (Shape::Tri3, Shape::Quad4, 3) => TyingBlock::<3, 4, 3>::boxed(request),
+        (Shape::Quad4, Shape::Tri3, 1) => TyingBlock::<4, 3, 1>::boxed(request),
+        (Shape::Quad4, Shape::Tri3, 3) => TyingBlock::<4, 3, 3>::boxed(request),
+        (Shape::Quad4, Shape::Quad4, 1) => TyingBlock::<4, 4, 1>::boxed(request),
+        (Shape::Quad4, Shape::Quad4, 3) => TyingBlock::<4, 4, 3>::boxed(request),
+        _ => return None,
+    })
+}
+
+/// Pairs with `NS` slave and `NM` master nodes and `C` tied numbers a node.
+struct TyingBlock<const NS: usize, const NM: usize, const C: usize> {
+    request: TyingRequest,
+    operators: Vec<Operators<f64, NS, NM>>,
+    unknowns: Vec<LocalUnknown>,
+}
+
+impl<const NS: usize, const NM: usize, const C: usize> TyingBlock<NS, NM, C> {
+    fn boxed(request: TyingRequest) -> Box<dyn EntityBlock> {
+        let row = |node: usize, variable: ScalarVariable| LocalUnknown { node: node as u8, variable };
+        let mut unknowns = Vec::with_capacity(MeshTying::size::<NS, NM, C>());
+        for node in 0..NM + NS {
+            unknowns.extend(request.tied.iter().map(|&variable| row(node, variable)));
+        }
+        for node in NM..NM + NS {
+            unknowns.extend(request.multipliers.iter().map(|&variable| row(node, variable)));
+        }
+        let operators = request.pairs.iter().map(|pair| Operators {
+            d: std::array::from_fn(|j| std::array::from_fn(|k| pair.operators.d[j][k])),
+            m: std::array::from_fn(|j| std::array::from_fn(|l| pair.operators.m[j][l])),
+        });
+        Box::new(Self { operators: operators.collect(), unknowns, request })
+    }
+
+    fn values<const N: usize>(view: &StepView<'_>, nodes: &[u32], variables: &[ScalarVariable]) -> [[f64; C]; N] {
+        std::array::from_fn(|n| {
+            std::array::from_fn(|c| view.nodes.history.scalar(variables[c], nodes[n] as usize).unwrap_or(0.0))
+        })
+    }
+}
+
+impl<const NS: usize, const NM: usize, const C: usize> EntityBlock for TyingBlock<NS, NM, C> {
+    fn entry(&self) -> &'static Entry {
+        self.request.entry
+    }
+
+    fn members(&self) -> &[u32] {
+        &[]
+    }
+
+    fn len(&self) -> usize {
+        self.operators.len()
+    }
+
+    fn nodes(&self, at: usize) -> &[u32] {
+        &self.request.nodes[at * (NM + NS)..(at + 1) * (NM + NS)]
+    }
+
+    fn unknowns(&self) -> &[LocalUnknown] {
+        &self.unknowns
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::Symmetric
+    }
+
+    fn is_active(&self, _at: usize, _view: &StepView<'_>) -> bool {
+        true
+    }
+
+    fn local_systems(
+        &self,
+        view: &StepView<'_>,
+        range: Range<usize>,
+        want: Want,
+        out: &mut LocalSystems,
+    ) -> Result<(), EntityError> {
+        let formulation = MeshTying { scale_factor: self.request.scale_factor };
+        for (slot, at) in range.enumerate() {
+            let (master, slave) = self.nodes(at).split_at(NM);
+            let (lhs, rhs) = out.entity(slot);
+            formulation.residual::<NS, NM, C>(
+                &self.operators[at],
+                &Self::values(view, master, &self.request.tied),
+                &Self::values(view, slave, &self.request.tied),
+                &Self::values(view, slave, &self.request.multipliers),
+                rhs,
+            );
+            if want == Want::Both {
+                formulation.tangent::<NS, NM, C>(&self.operators[at], lhs);
+            }
+        }
+        Ok(())
+    }
+}

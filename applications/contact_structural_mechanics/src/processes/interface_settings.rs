@@ -1,0 +1,97 @@
+//! Settings that all processes of interfaces share, and their checks.
+
+use std::collections::BTreeMap;
+
+use zelus_core::Result;
+use zelus_core::diagnostics::did_you_mean;
+use zelus_core::parameters::Settings;
+
+use crate::mortar::{IntegrationOrder, SegmentationSettings};
+
+/// Names of the reference program's searches; one bounding-volume tree serves them all.
+const SEARCHES: [&str; 10] = [
+    "in_radius",
+    "in_box",
+    "in_radius_with_obb",
+    "in_box_with_obb",
+    "octree_with_obb",
+    "InRadius",
+    "InBox",
+    "InRadiusWithOBB",
+    "InBoxWithOBB",
+    "OctreeWithOBB",
+];
+
+/// Refuses numbers that must be positive and are not.
+///
+/// # Errors
+/// The first of them.
+pub(super) fn check_positive(settings: &Settings, keys: &[&str]) -> Result<()> {
+    for key in keys {
+        let value = settings.get_f64(key)?;
+        if value <= 0.0 {
+            let fact = format!("\"{key}\" is {value}, it must be positive");
+            return Err(settings.error(key, "invalid-value", fact).remedy("write a number above 0").into());
+        }
+    }
+    Ok(())
+}
+
+/// Checks `search_parameters`.
+///
+/// # Errors
+/// A search that does not exist, a reach that is not positive.
+pub(super) fn check_search(settings: &Settings) -> Result<()> {
+    check_positive(settings, &["search_parameters.search_factor"])?;
+    let type_search = settings.get_str("search_parameters.type_search")?;
+    if SEARCHES.contains(&type_search) {
+        return Ok(());
+    }
+    let fact = format!("there is no search \"{type_search}\"");
+    let known = || format!("use one of {}", SEARCHES.join(", "));
+    Err(settings
+        .error("search_parameters.type_search", "unknown-search", fact)
+        .remedy(did_you_mean(type_search, SEARCHES).unwrap_or_else(known))
+        .into())
+}
+
+/// Every pair needs a slave side.
+///
+/// # Errors
+/// No pair at all, or the first one without slaves.
+pub(super) fn check_slaves(
+    settings: &Settings,
+    key: &str,
+    parts: &BTreeMap<String, Vec<String>>,
+    slaves: &BTreeMap<String, Vec<String>>,
+) -> Result<()> {
+    let named: Vec<&String> = parts.iter().filter(|(_, list)| !list.is_empty()).map(|(pair, _)| pair).collect();
+    if named.is_empty() {
+        let fact = format!("\"{key}\" names no part");
+        return Err(settings.error(key, "missing-key", fact).remedy("name the surfaces, {\"0\": [\"Part\"]}").into());
+    }
+    match named.into_iter().find(|pair| slaves.get(*pair).is_none_or(Vec::is_empty)) {
+        None => Ok(()),
+        Some(pair) => {
+            let fact = format!("pair \"{pair}\" has no part in \"assume_master_slave\"");
+            Err(settings
+                .error("assume_master_slave", "missing-key", fact)
+                .remedy("name the parts on the slave side")
+                .into())
+        }
+    }
+}
+
+/// How `integration_order` and `zero_tolerance_factor` cut and integrate overlaps.
+///
+/// # Errors
+/// A Gauss rule that does not exist.
+pub(super) fn segmentation(settings: &Settings) -> Result<SegmentationSettings> {
+    let order = settings.get_usize("integration_order")?;
+    let integration_order = IntegrationOrder::new(order).ok_or_else(|| {
+        let fact = format!("\"integration_order\" is {order}, it must be 1 to 5");
+        settings.error("integration_order", "integration-order", fact)
+    })?;
+    let zero_tolerance_factor = settings.get_f64("zero_tolerance_factor")?;
+    Ok(SegmentationSettings { integration_order, zero_tolerance_factor, ..SegmentationSettings::default() })
+}

@@ -1,0 +1,115 @@
+//! Ties meshes that do not match: reads the settings and puts the interaction into the model part.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::model::{Model, Named, ScalarVariable, VariableKind, named};
+use zelus_core::parameters::{Interval, Settings};
+use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+use super::interface_settings::{check_search, check_slaves, segmentation};
+use crate::interaction::{TyingInteraction, TyingSettings};
+use crate::pairs::find_tying_family;
+use crate::search::SearchSettings;
+
+#[derive(Debug, Deserialize)]
+struct Search {
+    search_factor: f64,
+    database_step_update: usize,
+    normal_orientation_threshold: f64,
+}
+
+#[derive(Debug, Deserialize)]
+struct ScaleFactor {
+    manual_scale_factor: bool,
+    stiffness_factor: f64,
+    scale_factor: f64,
+}
+
+#[derive(Debug, Deserialize)]
+struct Whole {
+    model_part_name: String,
+    mesh_tying_model_part: BTreeMap<String, Vec<String>>,
+    assume_master_slave: BTreeMap<String, Vec<String>>,
+    search_parameters: Search,
+    scale_factor_parameters: ScaleFactor,
+}
+
+struct MeshTyingProcess {
+    root: String,
+    interaction: Option<TyingInteraction>,
+}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings()?;
+    let whole: Whole = settings.parse()?;
+    check_search(&settings)?;
+    check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;
+    let part = request.model.root_mut(&whole.model_part_name)?;
+    let (mortar_type, tied) = tied(&settings, part.info.domain_size)?;
+    let family = find_tying_family(mortar_type)?;
+    if let Some((missing, _)) = family.variables.iter().find(|(name, _)| !part.nodes.history.has(name)) {
+        let fact =
+            format!("\"variable_name\" asks for {mortar_type}, but the solver's \"mortar_type\" brings no {missing}");
+        return Err(settings
+            .error("variable_name", "contact-type", fact)
+            .remedy(format!("set \"contact_settings.mortar_type\" to \"{mortar_type}\""))
+            .into());
+    }
+    let manual = &whole.scale_factor_parameters;
+    let chosen = TyingSettings {
+        parts: whole.mesh_tying_model_part,
+        slaves: whole.assume_master_slave,
+        family,
+        tied,
+        interval: Interval::from_node(settings.get("interval")?)?,
+        search: SearchSettings {
+            factor: whole.search_parameters.search_factor,
+            normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
+        },
+        database_step_update: whole.search_parameters.database_step_update.max(1),
+        segmentation: segmentation(&settings)?,
+        manual: manual.manual_scale_factor.then_some(manual.scale_factor),
+        stiffness_factor: manual.stiffness_factor,
+    };
+    let interaction = TyingInteraction::new(chosen, part)?;
+    Ok(Box::new(MeshTyingProcess { root: whole.model_part_name, interaction: Some(interaction) }))
+}
+
+/// The `mortar_type` that `"variable_name"` needs, and the numbers it stands for.
+fn tied(settings: &Settings, dimension: usize) -> Result<(&'static str, Vec<ScalarVariable>)> {
+    let name = settings.get_str("variable_name")?;
+    match named(name) {
+        Some(Named::Component(variable)) => Ok(("ScalarMeshTying", vec![variable])),
+        Some(Named::Whole(column, VariableKind::Scalar)) => {
+            Ok(("ScalarMeshTying", vec![ScalarVariable { column, component: None }]))
+        }
+        Some(Named::Whole(column, VariableKind::Vector3)) => {
+            let components = (0..dimension as u8).map(|c| ScalarVariable { column, component: Some(c) });
+            Ok(("ComponentsMeshTying", components.collect()))
+        }
+        _ => Err(settings
+            .error("variable_name", "unknown-variable", format!("{name:?} is no variable of nodes"))
+            .remedy("tie a vector, e.g. \"DISPLACEMENT\", or a scalar or component")
+            .into()),
+    }
+}
+
+impl Process for MeshTyingProcess {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let interaction = self.interaction.take().ok_or_else(|| Diagnostic::error("contact", "initialised twice"))?;
+        model.root_mut(&self.root)?.interactions.push(Box::new(interaction));
+        Ok(())
+    }
+}
+
+register! { Process "mesh_tying_process",
+    aliases: &["MeshTyingProcess"],
+    about: "ties meshes that do not match by multipliers on mortar pairs",
+    defaults: include_str!("../../../../configs/processes/mesh_tying_process.json"),
+    build: Build::Process(build),
+}
