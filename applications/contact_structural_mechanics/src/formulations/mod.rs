@@ -28,7 +28,7 @@ pub use mesh_tying::MeshTying;
 pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode};
 pub use penalty_frictional::PenaltyFrictional;
 pub use penalty_frictionless::PenaltyFrictionless;
-pub use system::{local_size, residual, tangent};
+pub use system::{OperatorTangent, local_size, residual, tangent};
 
 use zelus_core::scalar::Real;
 

@@ -34,6 +34,15 @@ pub fn residual<F: Formulation, const NS: usize, const NM: usize>(
     found
 }
 
+/// What a tangent knows of the operators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OperatorTangent {
+    /// Their exact derivative.
+    Exact,
+    /// Nothing: D and M count as constant.
+    Frozen,
+}
+
 /// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns), row by row; zero without overlap.
 /// `geometry` comes from [`PairGeometry::seeded`]; `NU` is its number of displacement unknowns. Returns the operators.
 ///
@@ -43,6 +52,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     formulation: &F,
     geometry: &PairGeometry<Dual<NU>, NS, NM>,
     settings: &SegmentationSettings,
+    knows: OperatorTangent,
     nodes: &[SlaveNode; NS],
     multipliers: &[[f64; 3]; NS],
     history: &F::History<NS, NM>,
@@ -54,7 +64,11 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     assert_eq!(lhs.len(), n * n, "one entry per pair of local unknowns");
     lhs.fill(0.0);
     rhs.fill(0.0);
-    let Overlap::Cells(dual) = operators(geometry, settings) else { return Overlap::None };
+    let found = match knows {
+        OperatorTangent::Exact => operators(geometry, settings).cells(),
+        OperatorTangent::Frozen => operators(&geometry.values(), settings).cells().map(|plain| plain.as_constants()),
+    };
+    let Some(dual) = found else { return Overlap::None };
 
     let out = formulation.residual(&kinematics(geometry, dual, multipliers), nodes, history);
     for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NU>| {

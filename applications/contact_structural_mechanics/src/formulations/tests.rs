@@ -52,7 +52,17 @@ fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usi
             let lambda = multipliers::<NS>(&mut noise);
             let history = history(&pair);
             let (mut lhs, mut rhs, mut plain) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
-            tangent(formulation, &pair.seeded::<NU>(), &settings, &nodes, &lambda, &history, &mut lhs, &mut rhs);
+            tangent(
+                formulation,
+                &pair.seeded::<NU>(),
+                &settings,
+                OperatorTangent::Exact,
+                &nodes,
+                &lambda,
+                &history,
+                &mut lhs,
+                &mut rhs,
+            );
             residual(formulation, &pair, &settings, &nodes, &lambda, &history, &mut plain);
             let size = plain.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
             rhs.iter().zip(&plain).for_each(|(a, b)| assert!((a - b).abs() < 1e-12 * size, "{a} {b}"));
@@ -285,7 +295,17 @@ fn cost_of_local_systems() {
             let plain = start.elapsed().as_secs_f64();
             let start = std::time::Instant::now();
             for (pair, nodes, lambda, history) in (0..40).flat_map(|_| &cases) {
-                tangent(formulation, &pair.seeded::<NU>(), &settings, nodes, lambda, history, &mut lhs, &mut rhs);
+                tangent(
+                    formulation,
+                    &pair.seeded::<NU>(),
+                    &settings,
+                    OperatorTangent::Exact,
+                    nodes,
+                    lambda,
+                    history,
+                    &mut lhs,
+                    &mut rhs,
+                );
             }
             let dual = start.elapsed().as_secs_f64();
             let each = 1e6 / (40 * cases.len()) as f64;

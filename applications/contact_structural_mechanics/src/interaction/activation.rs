@@ -1,5 +1,7 @@
 //! Which slave nodes are in contact: at step start by their gap, in every iteration by the augmented pressure.
 
+use std::collections::BTreeSet;
+
 use zelus_core::entities::SetChange;
 use zelus_core::model::flags::{ACTIVE, ISOLATED, SLIP};
 use zelus_core::model::{ModelPart, variables::NORMAL};
@@ -36,18 +38,32 @@ pub(super) fn clear_inactive_multipliers(part: &mut ModelPart, multiplier: Multi
     }
 }
 
-/// Step start: a node is active when its gap is below `reach`, or below a share of its mesh size when that is `None`.
-///
-/// Gaps are weighted gaps over areas, so they are those of the mortar mapping.
-pub(super) fn start(part: &mut ModelPart, slaves: &[u32], reach: Option<f64>, rule: SlipRule) {
+/// What decides at step start whether a node is in contact.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Start<'a> {
+    /// A gap below this length.
+    Reach(f64),
+    /// A gap below a small share of the mesh size of the node.
+    ShareOfMeshSize,
+    /// These nodes, and those that are in contact already.
+    Touching(&'a BTreeSet<u32>),
+}
+
+/// Step start: which nodes are active. Gaps are weighted gaps over areas, so they are those of the mortar mapping.
+pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, rule: SlipRule) {
     let gaps: Vec<f64> = {
         let weighted = part.nodes.history.values(&WEIGHTED_GAP, 0);
         let areas = part.nodes.values.values(&NODAL_AREA, 0);
         slaves.iter().map(|&n| n as usize).map(|n| if areas[n] > 0.0 { weighted[n] / areas[n] } else { FAR }).collect()
     };
-    let reaches: Vec<f64> = {
+    let near: Vec<bool> = {
         let sizes = part.nodes.values.values(&NODAL_H, 0);
-        slaves.iter().map(|&n| reach.unwrap_or(SIMPLE_REACH * sizes[n as usize])).collect()
+        let near = |(&n, gap): (&u32, &f64)| match start {
+            Start::Reach(reach) => *gap < reach,
+            Start::ShareOfMeshSize => *gap < SIMPLE_REACH * sizes[n as usize],
+            Start::Touching(nodes) => nodes.contains(&n) || part.nodes.flags.is(ACTIVE, n as usize),
+        };
+        slaves.iter().zip(&gaps).map(near).collect()
     };
     let slides: Vec<bool> = {
         let friction = part.nodes.values.values(&FRICTION_COEFFICIENT, 0);
@@ -56,7 +72,7 @@ pub(super) fn start(part: &mut ModelPart, slaves: &[u32], reach: Option<f64>, ru
     };
     for (at, &node) in slaves.iter().enumerate() {
         let node = node as usize;
-        let active = gaps[at] < reaches[at] && !part.nodes.flags.is(ISOLATED, node);
+        let active = near[at] && !part.nodes.flags.is(ISOLATED, node);
         part.nodes.flags.set(ACTIVE, node, active);
         if active && slides[at] {
             part.nodes.flags.set(SLIP, node, true);
@@ -66,7 +82,7 @@ pub(super) fn start(part: &mut ModelPart, slaves: &[u32], reach: Option<f64>, ru
     }
     let column = part.nodes.values.values_mut(&NORMAL_GAP, 0);
     for (at, &node) in slaves.iter().enumerate() {
-        column[node as usize] = if gaps[at] < reaches[at] { gaps[at] } else { 0.0 };
+        column[node as usize] = if near[at] { gaps[at] } else { 0.0 };
     }
 }
 

@@ -11,7 +11,7 @@ use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::{self, Kind};
 
-use super::activation;
+use super::activation::{self, Start};
 use super::adaptation::AdaptationSettings;
 use super::friction::{self, FrictionSettings};
 use super::step_parameters::{NormalVariation, StepParameters};
@@ -22,7 +22,7 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
-use crate::search::{Candidate, SearchSettings, candidates, warn_of_reach};
+use crate::search::{Candidate, GapCheck, SearchSettings, assign_roles, candidates, touching_nodes, warn_of_reach};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA,
     NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -91,6 +91,8 @@ pub struct ContactInteraction {
     saved: Vec<Pair>,
     acting: bool,
     warned: bool,
+    /// Nodes that the direct check found on a master.
+    touching: BTreeSet<u32>,
 }
 
 impl ContactInteraction {
@@ -121,6 +123,7 @@ impl ContactInteraction {
             saved: Vec::new(),
             acting: true,
             warned: false,
+            touching: BTreeSet::new(),
         })
     }
 
@@ -142,14 +145,30 @@ impl ContactInteraction {
 
     /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
     fn search(&mut self, part: &mut ModelPart) -> Result<()> {
-        let mut known: BTreeMap<PairKey, Pair> = self.pairs().into_iter().map(|pair| (pair.key, pair)).collect();
-        let mut beyond = BTreeSet::new();
+        self.assign_open_roles(part);
+        let role = |key: &PairKey, facet: u32| self.facet(key.interface, facet).role;
+        let mut known: BTreeMap<PairKey, Pair> = self
+            .pairs()
+            .into_iter()
+            .filter(|pair| {
+                role(&pair.key, pair.key.slave) == Roles::Slave && role(&pair.key, pair.key.master) == Roles::Master
+            })
+            .map(|pair| (pair.key, pair))
+            .collect();
+        let (mut beyond, mut touching) = (BTreeSet::new(), BTreeSet::new());
         for at in 0..self.interfaces.len() {
             for Candidate { slave, master, within_reach } in
                 candidates(part, &self.interfaces[at], &self.settings.search)
             {
                 let key = PairKey { interface: at as u32, slave, master };
-                if !within_reach && !known.contains_key(&key) {
+                if self.settings.search.check == GapCheck::DirectCheck {
+                    let facets = (self.facet(key.interface, slave), self.facet(key.interface, master));
+                    let nodes = touching_nodes(part, facets.0, facets.1, self.settings.active_check_factor);
+                    if !within_reach || (nodes.is_empty() && !known.contains_key(&key)) {
+                        continue;
+                    }
+                    touching.extend(nodes);
+                } else if !within_reach && !known.contains_key(&key) {
                     beyond.insert(key);
                 }
                 if let std::collections::btree_map::Entry::Vacant(place) = known.entry(key) {
@@ -181,7 +200,40 @@ impl ContactInteraction {
         if before != after {
             self.graph += 1;
         }
+        self.touching = touching;
         Ok(())
+    }
+
+    /// Self contact: each search decides which facets are slaves.
+    fn assign_open_roles(&mut self, part: &mut ModelPart) {
+        if self.interfaces.iter().all(|i| !i.open) {
+            return;
+        }
+        for interface in self.interfaces.iter_mut().filter(|i| i.open) {
+            assign_roles(part, interface, &self.settings.search);
+            for &node in &interface.nodes {
+                part.nodes.flags.set(SLAVE, node as usize, false);
+                part.nodes.flags.set(MASTER, node as usize, true);
+            }
+            for node in interface.nodes_of(Roles::Slave) {
+                part.nodes.flags.set(SLAVE, node as usize, true);
+                part.nodes.flags.set(MASTER, node as usize, false);
+            }
+        }
+        self.slaves = slave_nodes(&self.interfaces);
+        for node in self.interfaces.iter().flat_map(Interface::carriers) {
+            if self.slaves.binary_search(&node).is_err() {
+                part.nodes.flags.set(ACTIVE, node as usize, false);
+            }
+        }
+        activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.carriers());
+    }
+
+    fn carriers(&self) -> Vec<u32> {
+        let mut nodes: Vec<u32> = self.interfaces.iter().flat_map(Interface::carriers).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
     }
 
     /// Name of the conditions up to the shape.
@@ -272,7 +324,8 @@ impl ContactInteraction {
         part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(1.0);
         let sizes = part.nodes.values.values(&NODAL_H, 0);
         let mean = |role: Roles| {
-            let nodes: Vec<u32> = self.interfaces.iter().flat_map(|i| i.nodes_of(role)).collect();
+            let of = |i: &Interface| if i.open { i.nodes.clone() } else { i.nodes_of(role) };
+            let nodes: Vec<u32> = self.interfaces.iter().flat_map(of).collect();
             nodes.iter().map(|&n| sizes[n as usize]).sum::<f64>() / nodes.len().max(1) as f64
         };
         self.threshold = mean(Roles::Slave).max(mean(Roles::Master));
@@ -286,7 +339,7 @@ impl ContactInteraction {
         };
         self.parameters = Arc::new(StepParameters {
             segmentation: SegmentationSettings {
-                distance_threshold: self.threshold,
+                distance_threshold: if settings.search.check == GapCheck::CheckMapping { self.threshold } else { FAR },
                 zero_tolerance_factor: settings.zero_tolerance_factor,
                 integration_order: settings.integration_order,
                 axisymmetric: settings.axisymmetric.then(thickness),
@@ -309,6 +362,9 @@ impl ContactInteraction {
     }
 }
 
+/// A distance beyond everything.
+const FAR: f64 = 1e24;
+
 impl Interaction for ContactInteraction {
     fn name(&self) -> &str {
         "contact"
@@ -324,9 +380,8 @@ impl Interaction for ContactInteraction {
         part.info.marks.insert(CONTACT, true);
         self.set_parameters(part);
         self.slaves = slave_nodes(&self.interfaces);
-        for &node in &self.slaves {
+        for node in self.carriers() {
             part.nodes.flags.set(ACTIVE, node as usize, false);
-            debug_assert!(part.nodes.flags.is(SLAVE, node as usize) && !part.nodes.flags.is(MASTER, node as usize));
         }
         nodal_normals(part, &self.interfaces);
         Ok(())
@@ -334,7 +389,7 @@ impl Interaction for ContactInteraction {
 
     fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
         let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
-        unknowns.into_iter().map(|variable| (variable, self.slaves.clone())).collect()
+        unknowns.into_iter().map(|variable| (variable, self.carriers())).collect()
     }
 
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
@@ -351,9 +406,13 @@ impl Interaction for ContactInteraction {
             self.steps_since_search = 0;
         }
         self.integrate(part);
-        let reach =
-            if self.settings.simple_search { None } else { Some(self.settings.active_check_factor * self.threshold) };
-        activation::start(part, &self.slaves, reach, self.parameters.slip_rule);
+        let start = match self.settings.search.check {
+            GapCheck::DirectCheck => Start::Touching(&self.touching),
+            GapCheck::NoCheck => Start::Reach(f64::MAX),
+            GapCheck::CheckMapping if self.settings.simple_search => Start::ShareOfMeshSize,
+            GapCheck::CheckMapping => Start::Reach(self.settings.active_check_factor * self.threshold),
+        };
+        activation::start(part, &self.slaves, start, self.parameters.slip_rule);
         friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, self.settings.friction.reset_frequency);
         self.refresh_pair_normals(part, self.updates_normals());
         for block in &mut self.blocks {

@@ -56,9 +56,16 @@ pub struct Interface {
     pub facets: Vec<Facet>,
     /// Nodes of all facets, ascending.
     pub nodes: Vec<u32>,
+    /// Whether each search decides the roles (self contact): the deck names no slave side.
+    pub open: bool,
 }
 
 impl Interface {
+    /// Nodes that may carry multipliers, ascending: those of slaves, or all of an open interface.
+    pub fn carriers(&self) -> Vec<u32> {
+        if self.open { self.nodes.clone() } else { self.nodes_of(Roles::Slave) }
+    }
+
     /// Nodes of the facets of one role, ascending.
     pub fn nodes_of(&self, role: Roles) -> Vec<u32> {
         let mut nodes: Vec<u32> =
@@ -135,7 +142,7 @@ pub fn interfaces(
         for &node in &nodes {
             part.nodes.flags.set(INTERFACE, node as usize, true);
         }
-        out.push(Interface { key: key.clone(), facets: found, nodes });
+        out.push(Interface { key: key.clone(), facets: found, nodes, open: false });
     }
     assign_roles(part, parts, slaves, &mut out)?;
     Ok(out)
@@ -149,6 +156,7 @@ fn assign_roles(
 ) -> Result<()> {
     for interface in interfaces {
         let Some(list) = slaves.get(&interface.key).filter(|list| !list.is_empty()) else {
+            interface.open = true;
             continue;
         };
         for &node in &interface.nodes {

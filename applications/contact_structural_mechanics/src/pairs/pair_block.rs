@@ -12,7 +12,7 @@ use zelus_core::vector3::{cross, normalised, sub};
 
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Formulation, NodeState, SlaveNode};
+use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::mortar::{Operators, Overlap, PairGeometry, dimension, operators, weighted_gap};
 use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI};
@@ -135,6 +135,15 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
         seeded
     }
 
+    /// With normals of the step, those after its first iteration count, so that iteration decides a little of the answer.
+    ///
+    /// Kratos leaves part of the operators' derivative out in the plane; constant operators in the first iteration come
+    /// nearest to its normals. From the second iteration on the tangent is exact.
+    fn operator_tangent(&self, view: &StepView<'_>) -> OperatorTangent {
+        let lagging = self.parameters.normal_variation == NormalVariation::None;
+        if NS == 2 && lagging && view.info.nl_iteration == 1 { OperatorTangent::Frozen } else { OperatorTangent::Exact }
+    }
+
     fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
         let displacement = &view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns").levels;
         let back = &displacement[1.min(displacement.len() - 1)];
@@ -243,7 +252,18 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Enti
             let (lhs, rhs) = out.entity(slot);
             if want == Want::Both {
                 let seeded = self.seeded(at, &geometry, view);
-                formulations::tangent(&self.formulation, &seeded, settings, &nodes, &multipliers, &history, lhs, rhs);
+                let knows = self.operator_tangent(view);
+                formulations::tangent(
+                    &self.formulation,
+                    &seeded,
+                    settings,
+                    knows,
+                    &nodes,
+                    &multipliers,
+                    &history,
+                    lhs,
+                    rhs,
+                );
             } else {
                 formulations::residual(&self.formulation, &geometry, settings, &nodes, &multipliers, &history, rhs);
             }

@@ -16,7 +16,7 @@ use crate::interaction::{AdaptationSettings, ContactInteraction, ContactSettings
 use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
 use crate::pairs::find_family;
-use crate::search::SearchSettings;
+use crate::search::{GapCheck, SearchSettings};
 
 #[derive(Debug, Deserialize)]
 struct Search {
@@ -25,6 +25,7 @@ struct Search {
     active_check_factor: f64,
     database_step_update: usize,
     normal_orientation_threshold: f64,
+    check_gap: GapCheck,
 }
 
 #[derive(Debug, Deserialize)]
@@ -135,6 +136,7 @@ pub(super) fn interaction(
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
+            check: whole.search_parameters.check_gap,
         },
         active_check_factor: whole.search_parameters.active_check_factor,
         simple_search: whole.search_parameters.simple_search,

@@ -7,6 +7,19 @@ use zelus_core::vector3::{norm, sub};
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles, centre_normal, positions};
 
+/// How a search decides which slave nodes start the step in contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GapCheck {
+    /// By the gap of the mortar mapping.
+    #[serde(alias = "mapping_check")]
+    CheckMapping,
+    /// By the distance of each node to the master facets.
+    DirectCheck,
+    /// Every node that has a pair.
+    NoCheck,
+}
+
 /// What decides whether a pair is a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
@@ -14,6 +27,8 @@ pub struct SearchSettings {
     pub factor: f64,
     /// Least difference of the unit normals: facets that face the same way are not a pair.
     pub normal_orientation_threshold: f64,
+    /// How contact starts.
+    pub check: GapCheck,
 }
 
 /// A pair of facets near each other that do not face the same way.
@@ -35,7 +50,22 @@ pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSett
     let of_role = |role: Roles| -> Vec<u32> {
         (0..interface.facets.len() as u32).filter(|&f| interface.facets[f as usize].role == role).collect()
     };
-    let (slaves, masters) = (of_role(Roles::Slave), of_role(Roles::Master));
+    among(part, interface, &of_role(Roles::Slave), &of_role(Roles::Master), settings)
+}
+
+/// Unit normal of a facet at its centre, zero when it has no area.
+pub(super) fn facet_normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
+    centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
+}
+
+/// Candidates between two lists of facets.
+pub(super) fn among(
+    part: &ModelPart,
+    interface: &Interface,
+    slaves: &[u32],
+    masters: &[u32],
+    settings: &SearchSettings,
+) -> Vec<Candidate> {
     let place = |f: u32| Place::of(part, &interface.facets[f as usize]);
     let places: Vec<Place> = masters.iter().map(|&m| place(m)).collect();
     let tree = Tree::new(places.iter().map(|p| p.bounds).collect());

@@ -1,9 +1,13 @@
 //! Which facets may touch: a bounding-volume tree over the masters, then a filter on each pair.
 
 mod candidates;
+mod direct_check;
 mod reach;
+mod self_contact;
 mod tree;
 
-pub use candidates::{Candidate, SearchSettings, candidates};
+pub use candidates::{Candidate, GapCheck, SearchSettings, candidates};
+pub use direct_check::touching_nodes;
 pub use reach::warn_of_reach;
+pub use self_contact::assign_roles;
 pub use tree::{Bounds, Tree};

@@ -22,6 +22,7 @@ const TOLD: usize = 10;
 /// Compares at each point in time that the counter gives.
 struct FromJsonCheck {
     part: PartPath,
+    root: String,
     file: PathBuf,
     place: Place,
     reference: Value,
@@ -33,6 +34,14 @@ struct FromJsonCheck {
     history: bool,
     tolerance: f64,
     relative_tolerance: f64,
+    reference_uncertainty: f64,
+}
+
+/// Values that differ, in words: beyond all bounds, and only by what the reference itself leaves open.
+#[derive(Default)]
+struct Differences {
+    wrong: Vec<String>,
+    uncertain: Vec<String>,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
@@ -50,6 +59,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let times = numbers(&reference["TIME"]).ok_or_else(|| problem("there is no list \"TIME\"".to_owned()))?;
     Ok(Box::new(FromJsonCheck {
         part: PartPath::new(settings)?,
+        root: settings.get_str("model_part_name")?.to_owned(),
         file,
         place,
         reference,
@@ -61,6 +71,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         history: settings.get_bool("historical_value")?,
         tolerance: settings.get_f64("tolerance")?,
         relative_tolerance: settings.get_f64("relative_tolerance")?,
+        reference_uncertainty: settings.get_f64("reference_uncertainty")?,
     }))
 }
 
@@ -90,8 +101,8 @@ impl FromJsonCheck {
         (a - b).abs() <= (self.relative_tolerance * a.abs().max(b.abs())).max(self.tolerance)
     }
 
-    fn compare(&self, part: &ModelPart, selection: &SubPart) -> Vec<String> {
-        let mut wrong = Vec::new();
+    fn compare(&self, part: &ModelPart, selection: &SubPart) -> Differences {
+        let mut found = Differences::default();
         let time = part.info.time;
         let fields = fields(part, self.history);
         let mut values = Vec::new();
@@ -100,7 +111,7 @@ impl FromJsonCheck {
             for quantity in &self.quantities {
                 values.resize(quantity.components(fields), 0.0);
                 quantity.read(fields, node, &mut values);
-                self.judge(&self.reference[&key], &key, &quantity.name, &values, time, &mut wrong);
+                self.judge(&self.reference[&key], &key, &quantity.name, &values, time, &mut found);
             }
         }
         for quantity in &self.gauss {
@@ -115,23 +126,26 @@ impl FromJsonCheck {
                     let place = format!("{key} point {point}");
                     // The lists of a point stand directly below it: named like the entry they are looked up in.
                     let entry = serde_json::json!({ &quantity.name: entry });
-                    self.judge(&entry, &place, &quantity.name, values, time, &mut wrong);
+                    self.judge(&entry, &place, &quantity.name, values, time, &mut found);
                 }
             });
         }
-        wrong
+        found
     }
 
-    fn judge(&self, entry: &Value, key: &str, name: &str, values: &[f64], time: f64, wrong: &mut Vec<String>) {
+    fn judge(&self, entry: &Value, key: &str, name: &str, values: &[f64], time: f64, found: &mut Differences) {
         for (at, &value) in values.iter().enumerate() {
             match self.expected(entry, name, at, values.len(), time) {
                 Some(expected) if self.is_close(value, expected) => {}
                 Some(expected) => {
                     let letter = if values.len() > 1 { format!(" component {at}") } else { String::new() };
-                    wrong.push(format!("{key} {name}{letter}: {value:e}, expected {expected:e}"));
+                    let told = format!("{key} {name}{letter}: {value:e}, expected {expected:e}");
+                    let open = self.reference_uncertainty * value.abs().max(expected.abs());
+                    let list = if (value - expected).abs() <= open { &mut found.uncertain } else { &mut found.wrong };
+                    list.push(told);
                 }
                 None => {
-                    wrong.push(format!("{key} {name}: not in the file"));
+                    found.wrong.push(format!("{key} {name}: not in the file"));
                     return;
                 }
             }
@@ -149,22 +163,39 @@ impl Process for FromJsonCheck {
         if !self.counter.acts(&part.info) {
             return Ok(());
         }
-        let wrong = self.compare(part, selection);
-        if wrong.is_empty() {
-            return Ok(());
+        let found = self.compare(part, selection);
+        let time = part.info.time;
+        if !found.wrong.is_empty() {
+            return Err(Error::System(format!("{}: {}", self.place, self.tell(&found.wrong, time))));
         }
-        let told: Vec<&str> = wrong.iter().take(TOLD).map(String::as_str).collect();
-        let more = if wrong.len() > TOLD { format!("\n    and {} more", wrong.len() - TOLD) } else { String::new() };
-        Err(Error::System(format!(
-            "{}: results at time {} differ from {} in {} values (tolerance {:e}, relative {:e}):\n    {}{more}",
-            self.place,
-            part.info.time,
+        if !found.uncertain.is_empty() {
+            let fact = self.tell(&found.uncertain, time);
+            model.root_mut(&self.root)?.messages.push(
+                Diagnostic::warning("check-uncertain", fact)
+                    .at(self.place.clone())
+                    .remedy("the differences are within \"reference_uncertainty\"; set it to 0 to make them errors"),
+            );
+        }
+        Ok(())
+    }
+}
+
+impl FromJsonCheck {
+    fn tell(&self, differences: &[String], time: f64) -> String {
+        let told: Vec<&str> = differences.iter().take(TOLD).map(String::as_str).collect();
+        let more = if differences.len() > TOLD {
+            format!("\n    and {} more", differences.len() - TOLD)
+        } else {
+            String::new()
+        };
+        format!(
+            "results at time {time} differ from {} in {} values (tolerance {:e}, relative {:e}):\n    {}{more}",
             self.file.display(),
-            wrong.len(),
+            differences.len(),
             self.tolerance,
             self.relative_tolerance,
             told.join("\n    ")
-        )))
+        )
     }
 }
 

@@ -1,0 +1,34 @@
+//! The direct check of a pair: which slave nodes touch the master facet itself.
+
+use zelus_core::geometry::mapping::local_coordinates;
+use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::vector3::{dot, scale, sub};
+
+use super::candidates::facet_normal;
+use crate::interface::{Facet, positions};
+use crate::variables::NODAL_H;
+
+/// Slack of local coordinates at the edge of the master.
+const EDGE: f64 = 1e-9;
+
+/// Nodes of `slave` whose distance to the plane of `master` is below `factor` mesh sizes and whose foot lies on it.
+///
+/// The distance runs along the node's normal, or along the master's where the first misses.
+pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f64) -> Vec<u32> {
+    let mut buffer = [[0.0; 3]; 4];
+    let points = positions(master, part, &mut buffer);
+    let normal = facet_normal(part, master);
+    let normals = part.nodes.history.values(&NORMAL, 0);
+    let sizes = part.nodes.values.values(&NODAL_H, 0);
+    let touches = |node: u32, direction: [f64; 3]| {
+        let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
+        let distance = dot(sub(points[0], x), normal) / dot(direction, normal);
+        let foot = std::array::from_fn(|c| x[c] + distance * direction[c]);
+        let inside = || {
+            local_coordinates(master.shape, points, foot).is_some_and(|at| master.shape.cell().contains(at.xi, EDGE))
+        };
+        distance.is_finite() && distance <= factor * size && distance >= -size && inside()
+    };
+    let nodal = |node: u32| std::array::from_fn(|c| normals[3 * node as usize + c]);
+    slave.nodes.iter().copied().filter(|&n| touches(n, nodal(n)) || touches(n, scale(normal, -1.0))).collect()
+}

@@ -1,0 +1,88 @@
+//! Roles of facets whose sides a deck leaves open: each facet that meets others becomes a slave, those masters.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use zelus_core::model::ModelPart;
+use zelus_core::vector3::dot;
+
+use super::candidates::{SearchSettings, among, facet_normal};
+use crate::interface::{Interface, Roles};
+
+/// Gives every facet of an open interface its role for this configuration.
+///
+/// Facets are visited along shared nodes from the first one on. One without a role that faces others becomes a slave, and
+/// those of them that share no node with it nor with another slave become masters. A facet some of whose nodes are masters
+/// is a master; one that meets nothing stays open.
+pub fn assign_roles(part: &ModelPart, interface: &mut Interface, settings: &SearchSettings) {
+    let count = interface.facets.len() as u32;
+    let all: Vec<u32> = (0..count).collect();
+    interface.facets.iter_mut().for_each(|f| f.role = Roles::Open);
+    let mut facing: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for candidate in among(part, interface, &all, &all, settings).into_iter().filter(|c| c.within_reach) {
+        let (a, b) = (&interface.facets[candidate.slave as usize], &interface.facets[candidate.master as usize]);
+        let apart = a.nodes.iter().all(|n| !b.nodes.contains(n));
+        if apart && dot(facet_normal(part, a), facet_normal(part, b)) < 0.0 {
+            facing.entry(candidate.slave).or_default().push(candidate.master);
+        }
+    }
+    let mut side: BTreeMap<u32, Roles> = BTreeMap::new();
+    for facet in walk(interface) {
+        let nodes = interface.facets[facet as usize].nodes.clone();
+        if interface.facets[facet as usize].role != Roles::Open
+            || nodes.iter().any(|n| side.get(n) == Some(&Roles::Master))
+        {
+            continue;
+        }
+        let found: Vec<u32> = facing
+            .get(&facet)
+            .into_iter()
+            .flatten()
+            .copied()
+            .filter(|&other| {
+                interface.facets[other as usize]
+                    .nodes
+                    .iter()
+                    .all(|n| side.get(n) != Some(&Roles::Slave) && !nodes.contains(n))
+            })
+            .collect();
+        if found.is_empty() {
+            continue;
+        }
+        interface.facets[facet as usize].role = Roles::Slave;
+        nodes.iter().for_each(|&n| _ = side.insert(n, Roles::Slave));
+        for other in found {
+            let other = &mut interface.facets[other as usize];
+            other.role = Roles::Master;
+            other.nodes.iter().for_each(|&n| _ = side.insert(n, Roles::Master));
+        }
+    }
+    for facet in &mut interface.facets {
+        let is = |role| facet.nodes.iter().any(|n| side.get(n) == Some(&role));
+        if facet.role == Roles::Slave && is(Roles::Master) {
+            facet.role = Roles::Open;
+        }
+    }
+}
+
+/// Facets in the order in which they are reached over shared nodes, from the first one on.
+fn walk(interface: &Interface) -> Vec<u32> {
+    let mut of_node: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (at, facet) in interface.facets.iter().enumerate() {
+        facet.nodes.iter().for_each(|&n| of_node.entry(n).or_default().push(at as u32));
+    }
+    let mut seen = vec![false; interface.facets.len()];
+    let mut order = Vec::with_capacity(seen.len());
+    for start in 0..seen.len() as u32 {
+        let mut queue = VecDeque::from([start]);
+        while let Some(facet) = queue.pop_front() {
+            if std::mem::replace(&mut seen[facet as usize], true) {
+                continue;
+            }
+            order.push(facet);
+            for node in &interface.facets[facet as usize].nodes {
+                queue.extend(of_node[node].iter().filter(|&&f| !seen[f as usize]));
+            }
+        }
+    }
+    order
+}
