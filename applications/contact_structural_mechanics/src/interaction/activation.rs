@@ -50,7 +50,11 @@ pub(super) enum Start<'a> {
 }
 
 /// Step start: which nodes are active. Gaps are weighted gaps over areas, so they are those of the mortar mapping.
-pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, rule: SlipRule) {
+///
+/// A node in `at_origin`, which faces the very origin of the coordinates, starts inactive unless it is active already: Kratos
+/// takes it as unmapped. Normals of the step are those after its first iteration, so the first guess decides a little of
+/// the answer and is the same here.
+pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, at_origin: &BTreeSet<u32>, rule: SlipRule) {
     let gaps: Vec<f64> = {
         let weighted = part.nodes.history.values(&WEIGHTED_GAP, 0);
         let areas = part.nodes.values.values(&NODAL_AREA, 0);
@@ -63,7 +67,10 @@ pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, rule
             Start::ShareOfMeshSize => *gap < SIMPLE_REACH * sizes[n as usize],
             Start::Touching(nodes) => nodes.contains(&n) || part.nodes.flags.is(ACTIVE, n as usize),
         };
-        slaves.iter().zip(&gaps).map(near).collect()
+        let unmapped = |n: &u32| {
+            at_origin.contains(n) && !matches!(start, Start::Touching(_)) && !part.nodes.flags.is(ACTIVE, *n as usize)
+        };
+        slaves.iter().zip(&gaps).map(|(n, gap)| near((n, gap)) && !unmapped(n)).collect()
     };
     let slides: Vec<bool> = {
         let friction = part.nodes.values.values(&FRICTION_COEFFICIENT, 0);

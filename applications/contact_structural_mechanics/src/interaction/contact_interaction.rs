@@ -10,6 +10,7 @@ use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::{self, Kind};
+use zelus_core::vector3::norm;
 
 use super::activation::{self, Start};
 use super::adaptation::AdaptationSettings;
@@ -93,6 +94,8 @@ pub struct ContactInteraction {
     warned: bool,
     /// Nodes that the direct check found on a master.
     touching: BTreeSet<u32>,
+    /// Slave nodes that face the origin of the coordinates, see [`activation::start`].
+    at_origin: BTreeSet<u32>,
 }
 
 impl ContactInteraction {
@@ -124,6 +127,7 @@ impl ContactInteraction {
             acting: true,
             warned: false,
             touching: BTreeSet::new(),
+            at_origin: BTreeSet::new(),
         })
     }
 
@@ -261,7 +265,8 @@ impl ContactInteraction {
     fn integrate(&mut self, part: &mut ModelPart) {
         let integrals: Vec<_> = self.blocks.iter().map(|block| block.integrate(&part.view())).collect();
         let count = part.nodes.len();
-        let (mut gap, mut area, mut slip) = (vec![0.0; count], vec![0.0; count], vec![[0.0; 3]; count]);
+        let (mut gap, mut area) = (vec![0.0; count], vec![0.0; count]);
+        let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
         let mut lonely = vec![true; count];
         for (block, integrals) in self.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
@@ -275,12 +280,15 @@ impl ContactInteraction {
                     gap[node] += integral.gap[local];
                     area[node] += integral.area[local];
                     (0..3).for_each(|c| slip[node][c] += integral.slip[local][c]);
+                    (0..3).for_each(|c| mapped[node][c] += integral.mapped[local][c]);
                 }
             }
         }
         for &node in &self.slaves {
             part.nodes.flags.set(ISOLATED, node as usize, lonely[node as usize]);
         }
+        let at_origin = |&node: &u32| norm(mapped[node as usize]) <= f64::EPSILON * area[node as usize];
+        self.at_origin = self.slaves.iter().copied().filter(at_origin).collect();
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
         part.nodes.values.values_mut(&NODAL_AREA, 0).copy_from_slice(&area);
         if self.settings.family.frictional() {
@@ -315,7 +323,9 @@ impl ContactInteraction {
         if chosen.penalty < f64::EPSILON {
             chosen.penalty = settings.least_penalty;
         }
-        if !settings.use_scale_factor || chosen.scale_factor < f64::EPSILON {
+        // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.
+        let open = self.interfaces.iter().all(|interface| interface.open);
+        if !settings.use_scale_factor || chosen.scale_factor < f64::EPSILON || (open && settings.manual.is_none()) {
             chosen.scale_factor = 1.0;
         }
         part.info.values.insert(INITIAL_PENALTY.name(), chosen.penalty);
@@ -412,7 +422,7 @@ impl Interaction for ContactInteraction {
             GapCheck::CheckMapping if self.settings.simple_search => Start::ShareOfMeshSize,
             GapCheck::CheckMapping => Start::Reach(self.settings.active_check_factor * self.threshold),
         };
-        activation::start(part, &self.slaves, start, self.parameters.slip_rule);
+        activation::start(part, &self.slaves, start, &self.at_origin, self.parameters.slip_rule);
         friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, self.settings.friction.reset_frequency);
         self.refresh_pair_normals(part, self.updates_normals());
         for block in &mut self.blocks {

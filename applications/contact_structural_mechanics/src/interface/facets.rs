@@ -112,7 +112,7 @@ pub fn interfaces(
         let mut found: Vec<Facet> = Vec::new();
         if skin {
             let mut all: Vec<&(u32, Vec<u32>, usize)> = faces.values().filter(|(.., shared)| *shared == 1).collect();
-            all.sort();
+            all.sort_by_key(|(element, nodes, _)| (part.elements.ids[*element as usize], nodes.clone()));
             for (element, nodes, _) in all {
                 found.push(facet(part, nodes.clone(), FacetSource::Face(*element), *element)?);
             }
@@ -218,7 +218,7 @@ fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Fac
     sub.nodes.iter().for_each(|&n| inside[n as usize] = true);
     let mut faces: Vec<&(u32, Vec<u32>, usize)> =
         faces.values().filter(|(_, nodes, shared)| *shared == 1 && nodes.iter().all(|&n| inside[n as usize])).collect();
-    faces.sort();
+    faces.sort_by_key(|(element, nodes, _)| (part.elements.ids[*element as usize], nodes.clone()));
     for (element, nodes, _) in faces {
         found.push(facet(part, nodes.clone(), FacetSource::Face(*element), *element)?);
     }

@@ -297,10 +297,13 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
                     let history = F::history(&self.pairs[at], &self.previous(at, view));
                     let slip = self.formulation.slip(&operators, &geometry, &history);
+                    let zero = [[0.0; 3]; NS];
+                    let mapped = operators.jump(&zero, &geometry.master).map(|v| v.map(|x| -x));
                     for j in 0..NS {
                         out.area[j] = operators.d[j].iter().sum();
                         out.gap[j] = gaps[j];
                         out.slip[j] = slip[j];
+                        out.mapped[j] = mapped[j];
                         (0..NS).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
                         (0..NM).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
                     }

@@ -70,7 +70,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
-                    check: GapCheck::CheckMapping,
+            check: GapCheck::CheckMapping,
         },
         database_step_update: whole.search_parameters.database_step_update.max(1),
         segmentation: segmentation(&settings)?,
