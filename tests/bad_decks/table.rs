@@ -145,12 +145,7 @@ pub const BAD_DECKS: &[BadDeck] = &[
     deck("unknown search key", "\"search_factor\"", "\"search_facto\"", &["search_facto", "search_factor"]),
     deck("unknown output key", "\"output_interval\"", "\"output_intervall\"", &["output_intervall", "output_interval"]),
     // things that do not go together
-    deck(
-        "friction without multipliers",
-        "\"Frictionless\"",
-        "\"Frictional\"",
-        &["Frictional", "ALMContactFrictionless"],
-    ),
+    deck("friction without multipliers", "\"Frictionless\"", "\"Frictional\"", &["Frictional", "mortar_type"]),
     deck("contact without its solver", "{\"mortar_type\": \"ALMContactFrictionless\"}", "{}", &["mortar_type"]),
     deck(
         "scalar for a vector process",
