@@ -2,7 +2,8 @@
 //!
 //! The augmented normal pressure p̂ = k λ_n + ε WG decides: active if p̂ < 0. WG is the weighted gap of the node summed
 //! over its pairs. Tangentially q̂ = k P λ + c κ ε WS, with the weighted slip WS, is compared with the bound −μ p̂.
-//! No tolerance is applied to p̂; sticking and sliding have a hysteresis.
+//! No tolerance is applied to p̂; sticking and sliding have a hysteresis: a sliding node sticks again when both q̂ with the
+//! weight c of the deck and q̂ with c = 1 say so.
 
 use crate::formulations::NodeState;
 use crate::mortar::tangential;
@@ -105,15 +106,25 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         return inactive(node, pressure);
     }
     let sliding = node.state == NodeState::Slip;
-    let (coefficient, margin) = match rule {
-        SlipRule::Coulomb { augmentation, threshold } if sliding => (augmentation, 1.0 - threshold),
-        _ => (1.0, 1.0),
-    };
     let lambda_t = tangential(node.multiplier, node.normal);
-    let slip = scale(node.weighted_slip, coefficient * node.tangent_factor * node.penalty);
-    let q = add(scale(lambda_t, node.scale_factor), slip);
+    let augmented = |coefficient: f64| {
+        let slip = scale(node.weighted_slip, coefficient * node.tangent_factor * node.penalty);
+        add(scale(lambda_t, node.scale_factor), slip)
+    };
     let bound = -node.friction * pressure;
-    let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || norm(q) > margin * bound;
+    let (q, over) = match rule {
+        // A node that slides on has a slip along its traction, so the full trial lies beyond the bound. Without asking
+        // for it, a pressure that still moves between iterations makes nodes stick and slide in turn.
+        SlipRule::Coulomb { augmentation, threshold } if sliding => {
+            let q = augmented(augmentation);
+            (q, norm(q) > (1.0 - threshold) * bound || norm(augmented(1.0)) > bound)
+        }
+        _ => {
+            let q = augmented(1.0);
+            (q, norm(q) > bound)
+        }
+    };
+    let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || over;
 
     let entered = !node.state.is_active();
     let direction = if norm(lambda_t) > 0.0 { lambda_t } else { q };
@@ -213,9 +224,11 @@ mod tests {
         let slips = decide(NodeState::Stick, 0.36);
         assert_eq!((slips.state, slips.slip_changed), (NodeState::Slip, true));
         assert!((slips.traction[0] - 1.5).abs() < 1e-15, "cut to the bound");
-        // Sliding: q̂ = 4 λ_t, against 0.98 of the bound.
+        // Sliding: q̂ = 4 λ_t, against 0.98 of the bound, and the full trial, against all of it.
         assert_eq!(decide(NodeState::Slip, 0.37).state, NodeState::Slip);
-        assert_eq!(decide(NodeState::Slip, 0.36).state, NodeState::Stick);
+        assert_eq!(decide(NodeState::Slip, 0.36).state, NodeState::Slip);
+        assert_eq!(decide(NodeState::Slip, 0.34).state, NodeState::Stick);
+        assert_eq!(decide(NodeState::Slip, -0.36).state, NodeState::Stick);
         let pure = alm_frictional(&node(NodeState::Slip, [0.0, 0.0, -1.0]), SlipRule::Pure);
         assert_eq!((pure.state, pure.slip_changed), (NodeState::Slip, false));
     }

@@ -29,6 +29,10 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub variables: fn(&Settings) -> Result<Vec<NodalVariable>>,
+    /// Marks of the model part that are set, for interactions to read.
+    ///
+    /// An error names a setting that does not fit.
+    pub marks: fn(&Settings) -> Result<Vec<&'static str>>,
 }
 
 /// The settings of a stage's solver, checked, with what they ask for.
@@ -39,6 +43,7 @@ pub struct SolverSettings {
     pub user: Node,
     definition: &'static SolverDefinition,
     variables: Vec<NodalVariable>,
+    marks: Vec<&'static str>,
 }
 
 impl SolverSettings {
@@ -71,6 +76,7 @@ impl SolverSettings {
         let mut problems = Report::new();
         let settings = Settings::validate(&own, &defaults, &mut problems);
         let mut variables = definition.variables.to_vec();
+        let mut marks = Vec::new();
         let mut merged = settings.as_ref().map(|s| s.node().clone());
         for (extension, mut member) in extensions {
             let defaults = Defaults::parse(extension.name, extension.defaults)?;
@@ -79,6 +85,9 @@ impl SolverSettings {
             let factory = factory.downcast_ref::<ExtensionDefinition>().expect("an ExtensionDefinition");
             if let Some(more) = problems.absorb((factory.variables)(&checked)) {
                 variables.extend(more);
+            }
+            if let Some(more) = problems.absorb((factory.marks)(&checked)) {
+                marks.extend(more);
             }
             if let Some(Node { value: Value::Object(members), .. }) = &mut merged {
                 member.node = checked.node().clone();
@@ -89,10 +98,10 @@ impl SolverSettings {
             report.push(warning);
         }
         let node = merged.unwrap_or_else(|| user.clone());
-        Ok(Self { settings: Settings::unchecked(entry.name, node), user: user.clone(), definition, variables })
+        Ok(Self { settings: Settings::unchecked(entry.name, node), user: user.clone(), definition, variables, marks })
     }
 
-    /// Gives the nodes their variables with history and the buffer its length.
+    /// Gives the nodes their variables with history, the buffer its length, and the part its marks.
     ///
     /// # Errors
     /// Settings that are not what they should be.
@@ -102,6 +111,9 @@ impl SolverSettings {
         part.nodes.history.set_levels(levels);
         for &(name, components) in &self.variables {
             part.nodes.history.add_named(name, components);
+        }
+        for mark in &self.marks {
+            part.info.marks.insert(mark, true);
         }
         Ok(())
     }

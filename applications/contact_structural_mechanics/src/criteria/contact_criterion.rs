@@ -1,12 +1,16 @@
 //! Residual or increment of each block, against tolerances of its own.
 
 use zelus_core::Result;
+use zelus_core::parameters::Settings;
 use zelus_core::register;
 use zelus_core::registry::Build;
 use zelus_core::strategies::{
     Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
     is_round_off,
 };
+
+use super::frictional_criterion::FrictionalCriterion;
+use crate::pairs::{Multiplier, find_family};
 
 /// What of a block is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,11 +21,36 @@ pub enum Form {
     Increment,
 }
 
+impl Form {
+    /// The word for it in the names of tolerances.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Residual => "residual",
+            Self::Increment => "displacement",
+        }
+    }
+}
+
 /// A tolerance relative to a reference, and one of the root mean square.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Tolerance {
-    relative: f64,
-    absolute: f64,
+pub(super) struct Tolerance {
+    pub(super) relative: f64,
+    pub(super) absolute: f64,
+}
+
+impl Tolerance {
+    /// Reads `STEM_relative_tolerance` and `STEM_absolute_tolerance`.
+    pub(super) fn read(settings: &Settings, stem: &str) -> Result<Self> {
+        Ok(Self {
+            relative: settings.get_f64(&format!("{stem}_relative_tolerance"))?,
+            absolute: settings.get_f64(&format!("{stem}_absolute_tolerance"))?,
+        })
+    }
+
+    /// Whether a measure is within one of the two.
+    pub(super) fn met(self, ratio: f64, absolute: f64) -> bool {
+        ratio <= self.relative || absolute <= self.absolute
+    }
 }
 
 /// Displacements and multipliers, each in its form.
@@ -37,18 +66,10 @@ impl ContactCriterion {
     /// # Errors
     /// Settings that are not numbers.
     pub fn from_settings(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Result<Self> {
-        let settings = request.settings;
-        let tolerance = |stem: String| -> Result<Tolerance> {
-            Ok(Tolerance {
-                relative: settings.get_f64(&format!("{stem}_relative_tolerance"))?,
-                absolute: settings.get_f64(&format!("{stem}_absolute_tolerance"))?,
-            })
-        };
-        let word = |form| if form == Form::Residual { "residual" } else { "displacement" };
-        let primary_tolerance = tolerance(word(primary).to_owned())?;
-        let contact = settings.node().get("contact_settings").is_some();
+        let primary_tolerance = Tolerance::read(request.settings, primary.word())?;
+        let contact = request.settings.node().get("contact_settings").is_some();
         let multiplier_tolerance = if contact {
-            tolerance(format!("contact_settings.contact_{}", word(multiplier)))?
+            Tolerance::read(request.settings, &format!("contact_settings.contact_{}", multiplier.word()))?
         } else {
             primary_tolerance
         };
@@ -64,6 +85,11 @@ impl ConvergenceCriterion for ContactCriterion {
         }
         Verdict::all(checks)
     }
+}
+
+/// The check of displacements.
+pub(super) fn measure_primary(measures: &Measures<'_>, primary: (Form, Tolerance)) -> Check {
+    check(measures, Block::Primary, primary)
 }
 
 fn check(measures: &Measures<'_>, block: Block, (form, tolerance): (Form, Tolerance)) -> Check {
@@ -93,11 +119,19 @@ fn check(measures: &Measures<'_>, block: Block, (form, tolerance): (Form, Tolera
         ratio_tolerance: tolerance.relative,
         absolute,
         absolute_tolerance: tolerance.absolute,
-        converged: done || ratio <= tolerance.relative || absolute <= tolerance.absolute,
+        converged: done || tolerance.met(ratio, absolute),
     }
 }
 
 fn single(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Result<Box<dyn ConvergenceCriterion>> {
+    let settings = request.settings;
+    let decomposed = settings.node().get("contact_settings").is_some()
+        && settings.get_bool("contact_settings.frictional_decomposed")?
+        && find_family(settings.get_str("contact_settings.mortar_type")?)
+            .is_ok_and(|family| family.frictional() && !matches!(family.multiplier, Multiplier::None));
+    if decomposed {
+        return Ok(Box::new(FrictionalCriterion::from_settings(request, primary, multiplier)?));
+    }
     Ok(Box::new(ContactCriterion::from_settings(request, primary, multiplier)?))
 }
 

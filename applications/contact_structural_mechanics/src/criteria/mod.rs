@@ -4,5 +4,7 @@
 //! leaves 1e-2 on the norm there. That the active set no longer changes is asked of every iteration beside them.
 
 mod contact_criterion;
+mod frictional_criterion;
 
 pub use contact_criterion::{ContactCriterion, Form};
+pub use frictional_criterion::FrictionalCriterion;

@@ -7,7 +7,7 @@ use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, Interaction, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
-use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL};
+use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::{self, Kind};
 use zelus_core::vector3::norm;
@@ -24,6 +24,7 @@ use crate::interface::{
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
 use crate::search::{Candidate, GapCheck, SearchSettings, assign_roles, candidates, touching_nodes, warn_of_reach};
+use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA,
     NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -74,8 +75,6 @@ pub struct ContactSettings {
     pub integration_order: crate::mortar::IntegrationOrder,
     /// Whether the plane is rotated about the y axis.
     pub axisymmetric: bool,
-    /// Whether it is an error when no node is in contact.
-    pub ensure_contact: bool,
 }
 
 /// Contact in a model part.
@@ -388,6 +387,16 @@ impl Interaction for ContactInteraction {
         }
         find_nodal_h(part);
         part.info.marks.insert(CONTACT, true);
+        self.settings.adaptation.dynamic_factor =
+            part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name());
+        if part.info.is(SIMPLIFIED_SEMI_SMOOTH_NEWTON) {
+            let fact =
+                "\"simplified_semi_smooth_newton\" is not followed: the active set is updated in every iteration";
+            part.messages.push(
+                Diagnostic::warning("simplified-newton", fact)
+                    .remedy("nothing to do: the converged state is the same; leave the setting out to silence this"),
+            );
+        }
         self.set_parameters(part);
         self.slaves = slave_nodes(&self.interfaces);
         for node in self.carriers() {
@@ -455,7 +464,7 @@ impl Interaction for ContactInteraction {
         let change = activation::update(part, &self.slaves, self.settings.family, &self.parameters);
         adaptation.adapt(part, &self.slaves, part.info.value_or(INITIAL_PENALTY.name(), 1.0), &gaps);
         self.write_tangents(part);
-        if self.settings.ensure_contact
+        if part.info.is(ENSURE_CONTACT)
             && change.count() == 0
             && !self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize))
         {

@@ -8,7 +8,7 @@ use zelus_core::vector3::{norm, scale};
 
 use crate::active_set::SlipRule;
 use crate::interface::Interface;
-use crate::mortar::tangent;
+use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::{FRICTION_COEFFICIENT, NODAL_AREA, NODAL_H, TANGENT_XI, WEIGHTED_SLIP};
 
@@ -73,9 +73,12 @@ pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRul
 /// Writes TANGENT_XI of the slave nodes.
 ///
 /// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
-/// multipliers, it is that of the weighted slip; slip below round-off of the mesh size has none.
+/// multipliers, it is that of the weighted slip. A node that has neither above round-off keeps the direction it had: at step
+/// start that is a far better guess than any fixed tangent.
 pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Family, rule: SlipRule) {
     let dimension = part.info.domain_size;
+    let old = part.nodes.values.values(&TANGENT_XI, 0);
+    let before = |at: usize| old.get(3 * at..3 * at + 3).map_or([0.0; 3], |t| [t[0], t[1], t[2]]);
     let mut tangents = Vec::with_capacity(slaves.len());
     for &node in slaves {
         let at = node as usize;
@@ -97,7 +100,9 @@ pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Fami
             }
             _ => by_slip(),
         };
-        tangents.push(tangent(direction, vector_of(NORMAL.name()), dimension));
+        let normal = vector_of(NORMAL.name());
+        let kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
+        tangents.push(tangent(if kept { before(at) } else { direction }, normal, dimension));
     }
     let column = part.nodes.values.values_mut(&TANGENT_XI, 0);
     for (&node, tangent) in slaves.iter().zip(&tangents) {

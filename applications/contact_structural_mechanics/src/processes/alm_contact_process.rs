@@ -165,7 +165,6 @@ pub(super) fn interaction(
         zero_tolerance_factor: whole.zero_tolerance_factor,
         integration_order,
         axisymmetric: whole.alternative_formulations.axisymmetric,
-        ensure_contact: false,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     check_variables(part, family, settings)?;

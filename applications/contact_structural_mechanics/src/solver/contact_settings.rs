@@ -6,6 +6,13 @@ use zelus_core::registry::Build;
 
 use crate::pairs::variables_of;
 
+/// No node in contact is an error.
+pub const ENSURE_CONTACT: &str = "ENSURE_CONTACT";
+/// Contact forces are scaled in the step in which a gap closes.
+pub const COMPUTE_DYNAMIC_FACTOR: &str = "COMPUTE_DYNAMIC_FACTOR";
+/// The deck asks for an active set that changes only between complete Newton loops.
+pub const SIMPLIFIED_SEMI_SMOOTH_NEWTON: &str = "SIMPLIFIED_SEMI_SMOOTH_NEWTON";
+
 register! { SolverExtension "contact_settings",
     about: "what the solver needs to know of contact",
     defaults: include_str!("../../../../configs/solvers/contact_settings.json"),
@@ -17,6 +24,19 @@ register! { SolverExtension "contact_settings",
             }
             let variables = variables_of(mortar_type).map_err(|d| d.at(settings.key_place("mortar_type")))?;
             Ok(variables.to_vec())
+        },
+        marks: |settings| {
+            let mut marks = Vec::new();
+            for (key, mark) in [
+                ("ensure_contact", ENSURE_CONTACT),
+                ("compute_dynamic_factor", COMPUTE_DYNAMIC_FACTOR),
+                ("simplified_semi_smooth_newton", SIMPLIFIED_SEMI_SMOOTH_NEWTON),
+            ] {
+                if settings.get_bool(key)? {
+                    marks.push(mark);
+                }
+            }
+            Ok(marks)
         },
     }),
 }

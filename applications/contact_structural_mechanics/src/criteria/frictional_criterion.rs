@@ -1,0 +1,154 @@
+//! Displacements and, of the multipliers, normal, sticking and sliding parts, each against tolerances of its own.
+//!
+//! The multiplier entries r of a node split into (r·n) n and the rest. The rest belongs to the sticking or the sliding
+//! part by the state of the node; without friction or contact the whole node belongs to the normal part.
+
+use zelus_core::Result;
+use zelus_core::model::variables::NORMAL;
+use zelus_core::strategies::{Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_round_off};
+use zelus_core::vector3::{dot, sub};
+
+use super::contact_criterion::{Form, Tolerance, measure_primary};
+use crate::formulations::NodeState;
+use crate::mortar::tangential;
+use crate::variables::FRICTION_COEFFICIENT;
+
+/// The criterion of the families with friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionalCriterion {
+    primary: (Form, Tolerance),
+    multiplier: Form,
+    tolerances: [Tolerance; 3],
+    /// Tangential measure, relative to the normal one, that counts as none.
+    threshold: f64,
+}
+
+/// Parts of the multipliers: positions in arrays.
+const PARTS: [&[&str; 2]; 3] = [
+    &["normal multiplier residual", "normal multiplier increment"],
+    &["stick residual", "stick increment"],
+    &["slip residual", "slip increment"],
+];
+
+impl FrictionalCriterion {
+    /// With the tolerances of the solver settings and of `contact_settings` for these forms.
+    ///
+    /// # Errors
+    /// Settings that are not numbers.
+    pub fn from_settings(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Result<Self> {
+        let of =
+            |stem: &str| Tolerance::read(request.settings, &format!("contact_settings.{stem}_{}", multiplier.word()));
+        Ok(Self {
+            primary: (primary, Tolerance::read(request.settings, primary.word())?),
+            multiplier,
+            tolerances: [of("contact")?, of("frictional_stick_contact")?, of("frictional_slip_contact")?],
+            threshold: request.settings.get_f64("contact_settings.ratio_normal_tangent_threshold")?,
+        })
+    }
+}
+
+/// Sum of squares and number of entries of each part.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Sizes {
+    squares: [f64; 3],
+    counts: [usize; 3],
+}
+
+impl Sizes {
+    fn norm(&self, part: usize) -> f64 {
+        self.squares[part].sqrt()
+    }
+
+    fn add(&mut self, part: usize, vector: [f64; 3], entries: usize) {
+        self.squares[part] += dot(vector, vector);
+        self.counts[part] += entries;
+    }
+}
+
+/// Splits the multiplier entries of a vector over all unknowns. `whole` counts each node's entries in full in all its
+/// parts, as befits sizes of round-off, which have no sign.
+fn split(measures: &Measures<'_>, vector: &[f64], whole: bool) -> Sizes {
+    let nodes = measures.nodes;
+    let mut entries = vec![([0.0; 3], 0_usize); nodes.len()];
+    for &unknown in measures.equations.unknowns() {
+        let dof = &measures.dofs.dofs()[unknown as usize];
+        if dof.multiplier {
+            let (values, count) = &mut entries[dof.node as usize];
+            values[dof.variable.offset()] = vector[unknown as usize];
+            *count += 1;
+        }
+    }
+    let normals = nodes.history.get(NORMAL.name());
+    let friction = nodes.values.values(&FRICTION_COEFFICIENT, 0);
+    let mut sizes = Sizes::default();
+    for (at, (values, count)) in entries.into_iter().enumerate().filter(|(_, (_, count))| *count > 0) {
+        let smooth = friction.get(at).is_none_or(|mu| *mu < f64::EPSILON);
+        let part = match NodeState::of_flags(&nodes.flags, at) {
+            NodeState::Stick if !smooth => 1,
+            NodeState::Slip if !smooth => 2,
+            _ => {
+                sizes.add(0, values, count);
+                continue;
+            }
+        };
+        let tangent = if whole { values } else { tangential(values, normals.map_or([0.0; 3], |n| n.vector(0, at))) };
+        sizes.add(0, if whole { values } else { sub(values, tangent) }, 1);
+        sizes.add(part, tangent, count - 1);
+    }
+    sizes
+}
+
+impl ConvergenceCriterion for FrictionalCriterion {
+    fn judge(&self, measures: &Measures<'_>) -> Verdict {
+        let mut checks = vec![measure_primary(measures, self.primary)];
+        let (sizes, references, round_off) = match self.multiplier {
+            Form::Residual => (
+                split(measures, measures.residual, false),
+                measures.references.iter().map(|r| split(measures, r, false)).collect(),
+                Some(split(measures, measures.round_off, true)),
+            ),
+            Form::Increment => {
+                (split(measures, measures.increment, false), vec![split(measures, measures.values, false)], None)
+            }
+        };
+        let normal = sizes.norm(0) / (sizes.counts[0].max(1) as f64).sqrt();
+        for part in 0..3 {
+            let size = sizes.norm(part);
+            let absolute = size / (sizes.counts[part].max(1) as f64).sqrt();
+            let reference = references.iter().map(|r: &Sizes| r.norm(part)).fold(0.0, f64::max);
+            let reference = if reference > 0.0 { reference } else { size };
+            let ratio = if size > 0.0 { size / reference } else { 0.0 };
+            let tolerance = self.tolerances[part];
+            let converged = round_off.is_some_and(|r| is_round_off(size, r.norm(part)))
+                || tolerance.met(ratio, absolute)
+                || (part > 0 && absolute <= self.threshold * normal);
+            checks.push(Check {
+                label: PARTS[part][usize::from(self.multiplier == Form::Increment)],
+                ratio,
+                ratio_tolerance: tolerance.relative,
+                absolute,
+                absolute_tolerance: tolerance.absolute,
+                converged,
+            });
+        }
+        Verdict::all(checks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use zelus_core::vector3::norm;
+
+    #[test]
+    fn parts_add_up() {
+        let (n, r) = ([0.6, 0.8, 0.0], [1.0, -2.0, 0.0]);
+        let t = tangential(r, n);
+        let mut sizes = Sizes::default();
+        sizes.add(0, sub(r, t), 1);
+        sizes.add(2, t, 1);
+        assert!((sizes.squares[0] + sizes.squares[2] - 5.0).abs() < 1e-14);
+        assert!((sizes.norm(0) - 1.0).abs() < 1e-14 && (norm(t) - sizes.norm(2)).abs() < 1e-14);
+        assert_eq!(sizes.counts, [1, 0, 1]);
+    }
+}
