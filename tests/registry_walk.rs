@@ -7,6 +7,8 @@
 mod pairs;
 #[path = "support/specimen.rs"]
 mod specimen;
+#[path = "support/ties.rs"]
+mod ties;
 
 use specimen::{Loads, Random, Specimen, Vec3, cell, difference, is_axisymmetric, is_linear, size};
 use zelus as _;

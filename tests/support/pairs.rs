@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
+use zelus::contact_structural_mechanics::active_set::SlipRule;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, SegmentationSettings};
-use zelus::contact_structural_mechanics::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous};
+use zelus::contact_structural_mechanics::pairs::{
+    ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name,
+};
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI,
 };
-use zelus_core::entities::{LocalSystems, Want};
+use zelus_core::entities::{EntityBlock, LocalSystems, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::flags::{ACTIVE, SLIP};
 use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
@@ -18,7 +21,8 @@ use zelus_core::vector3::{add, cross, dot, normalised, scale, sub};
 
 use super::specimen::{Random, Vec3, difference, size};
 
-const FACETS: [Shape; 3] = [Shape::Line2, Shape::Tri3, Shape::Quad4];
+/// The shapes of facets.
+pub const FACETS: [Shape; 3] = [Shape::Line2, Shape::Tri3, Shape::Quad4];
 
 /// One pair and everything its residual depends on.
 #[derive(Clone)]
@@ -144,8 +148,7 @@ impl Setting {
     /// The family's block of this pair in a model part; `None` for shapes the family does not know.
     fn build(&self, family: &Family) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
         let (slave, master) = (Self::shape(self.slave.len()), Self::shape(self.master.len()));
-        let mixed = if slave == master { String::new() } else { format!("{}N", master.nodes()) };
-        let name = format!("{}{}D{}N{mixed}", family.condition, self.space(), slave.nodes());
+        let name = condition_name(family.condition, slave, master);
         let entry = find(Kind::Condition, &name);
         let masters = self.master.len();
         let current: Vec<Vec3> = self.master.iter().chain(&self.slave).copied().collect();
@@ -184,6 +187,7 @@ impl Setting {
             tangent_factor: 0.3,
             operator_threshold: self.operator_threshold,
             normal_variation: NormalVariation::Update,
+            slip_rule: SlipRule::Coulomb { augmentation: 0.0, threshold: 0.02 },
         };
         let pair = Pair {
             key: PairKey { interface: 0, slave: 0, master: 0 },
@@ -223,19 +227,21 @@ impl Setting {
     }
 }
 
-fn set(part: &mut ModelPart, block: &dyn ContactBlock, row: usize, value: f64) {
+/// Sets the unknown of a row.
+pub fn set(part: &mut ModelPart, block: &dyn EntityBlock, row: usize, value: f64) {
     let unknown = block.unknowns()[row];
     let node = block.nodes(0)[unknown.node as usize] as usize;
     let field = part.nodes.history.get_mut(unknown.variable.column).expect("a column for each unknown");
     field.levels[0][node * field.components + unknown.variable.offset()] = value;
 }
 
-fn get(part: &ModelPart, block: &dyn ContactBlock, row: usize) -> f64 {
+fn get(part: &ModelPart, block: &dyn EntityBlock, row: usize) -> f64 {
     let unknown = block.unknowns()[row];
     part.nodes.history.scalar(unknown.variable, block.nodes(0)[unknown.node as usize] as usize).expect("a column")
 }
 
-fn system(part: &ModelPart, block: &dyn ContactBlock, want: Want) -> LocalSystems {
+/// The local system of the only pair.
+pub fn system(part: &ModelPart, block: &dyn EntityBlock, want: Want) -> LocalSystems {
     let mut out = LocalSystems::default();
     out.reset(1, block.unknowns().len(), want);
     block.local_systems(&part.view(), 0..1, want, &mut out).expect("a pair that can be computed");
@@ -281,7 +287,7 @@ fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
 #[test]
 fn tangents_of_pairs_are_derivatives() {
     walk(0.05, |name, family, setting| {
-        for operator_threshold in if family.frictional { vec![0.0, 1e9] } else { vec![0.0] } {
+        for operator_threshold in if family.frictional() { vec![0.0, 1e9] } else { vec![0.0] } {
             let setting = Setting { operator_threshold, ..setting.clone() };
             let (mut part, block) = setting.build(family).expect("a block");
             let block = block.as_ref();

@@ -1,0 +1,87 @@
+//! The walk over families of ties: their block for every two shapes, with operators as a pair might have them.
+
+use zelus::contact_structural_mechanics::pairs::{
+    FacetOperators, FacetPair, Multiplier, PairKey, TyingFamily, TyingRequest, condition_name, tying_block,
+};
+use zelus_core::entities::{EntityBlock, Want};
+use zelus_core::geometry::Shape;
+use zelus_core::model::variables::DISPLACEMENT;
+use zelus_core::model::{ModelPart, Nodes};
+use zelus_core::registry::{Build, Entry, Kind, entries, find};
+
+use super::pairs::{FACETS, set, system};
+use super::specimen::{Random, difference, size};
+
+/// Operators that carry constants over: each row of D and M has the same sum.
+fn operators(slaves: usize, masters: usize, random: &mut Random) -> FacetOperators {
+    let mut out = FacetOperators::default();
+    for j in 0..slaves {
+        out.m[j][..masters].fill_with(|| 0.3 + 0.2 * random.next());
+        out.d[j][j] = out.m[j].iter().sum();
+    }
+    out
+}
+
+fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart, Box<dyn EntityBlock>)> {
+    let space = if slave == Shape::Line2 { 2 } else { 3 };
+    let multipliers = family.multiplier.unknowns(space);
+    let tied = match family.multiplier {
+        Multiplier::Scalar(_) | Multiplier::None => vec![DISPLACEMENT.component(0)],
+        Multiplier::Vector(_) => (0..space as u8).map(|c| DISPLACEMENT.component(c)).collect(),
+    };
+    let count = slave.nodes() + master.nodes();
+    let mut part = ModelPart::new("walk");
+    part.nodes = Nodes::new((1..=count).collect(), vec![[0.0; 3]; count]);
+    part.nodes.history.add(&DISPLACEMENT);
+    for &(name, components) in family.variables {
+        part.nodes.history.add_named(name, components);
+    }
+    let entry: Option<&'static Entry> =
+        find(Kind::Condition, &condition_name("MeshTyingMortarCondition", slave, master));
+    let pair = FacetPair {
+        key: PairKey { interface: 0, slave: 0, master: 0 },
+        operators: operators(slave.nodes(), master.nodes(), &mut Random(3)),
+    };
+    let request = TyingRequest {
+        entry: entry.unwrap_or(entries()[0]),
+        pairs: vec![pair],
+        nodes: (0..count as u32).collect(),
+        tied,
+        multipliers,
+        scale_factor: 1.7,
+    };
+    let made = tying_block(slave, master, request);
+    assert_eq!(made.is_some(), entry.is_some(), "{slave:?} on {master:?}: registered for the shapes with a block");
+    made.map(|block| (part, block))
+}
+
+#[test]
+fn ties_are_linear_symmetric_and_carry_rigid_shifts() {
+    let families = entries().into_iter().filter_map(|entry| match entry.build {
+        Build::Factory(factory) => Some((entry.name, factory.downcast_ref::<TyingFamily>()?)),
+        _ => None,
+    });
+    let mut walked = 0;
+    for (name, family) in families {
+        for (slave, master) in FACETS.into_iter().flat_map(|s| FACETS.map(|m| (s, m))) {
+            let Some((mut part, block)) = block(family, slave, master) else { continue };
+            let block = block.as_ref();
+            let n = block.unknowns().len();
+            let mut random = Random(4);
+            let values: Vec<f64> = (0..n).map(|_| random.next()).collect();
+            values.iter().enumerate().for_each(|(row, value)| set(&mut part, block, row, *value));
+            let out = system(&part, block, Want::Both);
+            let label = format!("{name} {slave:?} on {master:?}");
+            let product: Vec<f64> =
+                (0..n).map(|i| -(0..n).map(|j| out.lhs[i * n + j] * values[j]).sum::<f64>()).collect();
+            assert!(difference(&out.rhs, &product) < 1e-13 * size(out.lhs.iter().copied()), "{label}: b is not −K x");
+            assert!((0..n * n).all(|e| out.lhs[e] == out.lhs[e % n * n + e / n]), "{label}: not symmetric");
+            let multipliers = n - n * slave.nodes() / (master.nodes() + 2 * slave.nodes());
+            (0..n).for_each(|row| set(&mut part, block, row, if row < multipliers { 0.4 } else { 0.0 }));
+            let shifted = size(system(&part, block, Want::Residual).rhs);
+            assert!(shifted < 1e-13, "{label}: a rigid shift leaves {shifted:e}");
+            walked += 1;
+        }
+    }
+    assert!(walked > 0, "no family of ties is registered");
+}
