@@ -4,8 +4,9 @@
     compare.py [--zelus PROGRAM] [--threads 2] [--rounds 3] [--ours DECK] DECK...
 
 A DECK is a ProjectParameters.json or its folder. Both programs run on a scratch copy, by turns, and the time is that
-of the whole process; the table gives the shortest of the rounds. `--ours` names a deck that zelus runs in place of the
-DECK before it (say, one that differs in the linear solver). A run that fails shows as such and ends in exit code 1.
+of the whole process; the table gives the shortest of the rounds. Comparisons with stored results, and output in a
+format that one program does not know, are left out. `--ours` names a deck that zelus runs in place of the one DECK
+(say, one that differs in the linear solver). A run that fails shows as such and ends in exit code 1.
 
 The reference is found by the environment: KRATOS_PYTHON is a Python that has KratosMultiphysics with the structural
 and the contact application. KRATOS_RUN may name a script that runs a deck given as its argument; without it a
@@ -45,15 +46,15 @@ def deck_of(path):
 
 
 def without_checks(folder, name):
-    """Takes the comparisons with stored results out of a deck: they are no part of the work that is timed."""
+    """Takes out of a deck what is no part of the work, or what only one of the programs knows."""
     path = os.path.join(folder, name)
     with open(path) as file:
         deck = json.load(file)
     for part in ("processes", "output_processes"):
         for key, items in list(deck.get(part, {}).items()):
             if isinstance(items, list):
-                checks = ("from_json_check_result_process", "json_output_process", "check_")
-                deck[part][key] = [i for i in items if not str(i.get("python_module", "")).startswith(checks)]
+                names = ("from_json_check_result_process", "json_output_process", "vtu_output_process", "check_")
+                deck[part][key] = [i for i in items if not str(i.get("python_module", "")).startswith(names)]
     with open(path, "w") as file:
         json.dump(deck, file, indent=1)
 
