@@ -14,9 +14,11 @@
 
 pub mod program;
 
+use zelus_constrained_optimization as _;
 use zelus_contact_structural_mechanics as _;
 use zelus_structural_mechanics as _;
 
+pub use zelus_constrained_optimization as constrained_optimization;
 pub use zelus_contact_structural_mechanics as contact_structural_mechanics;
 pub use zelus_core as core;
 pub use zelus_core::analysis::{RunOptions, RunReport, check, run};

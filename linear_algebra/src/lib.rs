@@ -29,9 +29,11 @@ mod krylov;
 mod precondition;
 
 mod condition;
+mod rank;
 
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
+pub use rank::rank;
 pub use solver::{DirectSettings, Engine, KrylovSettings, LinearSolver, Preconditioner, SolveError, SolveReport};
 pub use system::{Layout, Symmetry, System};
 

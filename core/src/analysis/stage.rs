@@ -16,7 +16,7 @@ use crate::processes::{Process, ProcessRequest};
 use crate::registry::{self, Build, Kind};
 use crate::strategies::{Monitor, NewtonRaphson, StepRecord};
 
-/// Halvings of a step that does not converge before the run ends.
+/// Halvings of a step where the solver has no `"step_cutting"` or it is true.
 const CUTS: u32 = 6;
 
 /// A stage that is ready to run.
@@ -26,6 +26,8 @@ pub(super) struct Stage {
     start_time: f64,
     end_time: f64,
     stepping: TimeStepping,
+    /// Halvings of a step that does not converge before the run ends.
+    cuts: u32,
     strategy: NewtonRaphson,
     processes: Vec<Box<dyn Process>>,
 }
@@ -80,6 +82,8 @@ impl Stage {
         });
         let Some(solver) = solver else { return Err(finish(problems)) };
         let stepping = problems.absorb(solver.settings.get("time_stepping").and_then(TimeStepping::from_node));
+        let cutting = solver.settings.node().get("step_cutting").map(Node::bool);
+        let cuts = if problems.absorb(cutting.unwrap_or(Ok(true))) == Some(false) { 0 } else { CUTS };
         problems.absorb(solver.domain_size());
         problems.absorb(solver.scheme().map(|_| ()));
         problems.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
@@ -144,6 +148,7 @@ impl Stage {
             start_time,
             end_time,
             stepping: stepping.expect("checked above"),
+            cuts,
             strategy,
             processes,
         })
@@ -215,11 +220,15 @@ impl Stage {
                 continue;
             }
             let failure = record.failure.unwrap_or_default();
-            if length <= whole / f64::from(1 << CUTS) {
+            if length <= whole / f64::from(1 << self.cuts) {
+                let tried = match self.cuts {
+                    0 => "the solver does not cut steps".to_owned(),
+                    cuts => format!("{cuts} halvings of the step did not help"),
+                };
                 return Err(Error::NotConverged(format!(
-                    "step {} to time {to}: {failure}\n    {} halvings of the step did not help; results up to time {from} are \
-                     written. Try a shorter \"time_step\", more \"max_iteration\", or look at the nodes named",
-                    record.step, CUTS
+                    "step {} to time {to}: {failure}\n    {tried}; results up to time {from} are written. Try a shorter \
+                     \"time_step\", more \"max_iteration\", or look at the nodes named",
+                    record.step
                 )));
             }
             monitor.note(&format!("step {} to time {to}: {failure}; retried with half the step", record.step));

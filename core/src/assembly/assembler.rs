@@ -241,7 +241,8 @@ impl Assembler {
         self.loads.assemble(&load_blocks(part), &view, 0.0)?;
         self.seconds.bulk += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let diagonal = interactions.iter().map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
+        let acting = interactions.iter().filter(|i| !i.blocks().is_empty());
+        let diagonal = acting.map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
         self.coupling.assemble(&blocks_of(interactions), &view, diagonal)?;
         self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;

@@ -84,6 +84,11 @@ pub trait Interaction: Send + Sync {
         1.0
     }
 
+    /// The balance of an iterate is known: of the starting one (iteration 0) and of each after a solve.
+    ///
+    /// `residual` holds the equations that are solved. For those who watch; nothing may change.
+    fn observe(&mut self, _part: &ModelPart, _iteration: usize, _residual: &[f64]) {}
+
     /// Keeps what a retried step must restore.
     fn save(&mut self);
 

@@ -81,10 +81,22 @@ fn explain(error: &SolveError, assembler: &Assembler, dofs: &DofTable, nodes: &N
             format!("{} of node {}", dof.variable, nodes.ids[dof.node as usize])
         })
         .collect();
-    let rank = rank_deficiency.map(|r| format!(", at least {r} free motions")).unwrap_or_default();
+    let only_multipliers =
+        equations.iter().all(|&e| unknowns.get(e).is_some_and(|&n| dofs.dofs()[n as usize].multiplier));
+    let rank = match rank_deficiency {
+        _ if only_multipliers => zelus_linear_algebra::rank(&assembler.system())
+            .map(|rank| format!(": its rank is {rank}, its size {}", unknowns.len())),
+        free => free.map(|r| format!(", at least {r} free motions")),
+    }
+    .unwrap_or_default();
+    let remedy = if only_multipliers {
+        "more constraints act than the unknowns can obey, or inactive ones have no equation: remove some, or let a \
+         penalty impose them"
+    } else {
+        "some body can move freely: support it, or check that contact holds it from the first step"
+    };
     Error::System(format!(
-        "the system of equations is singular{rank}; suspicious: {}\n    some body can move freely: support it, or check \
-         that contact holds it from the first step",
+        "the system of equations is singular{rank}; suspicious: {}\n    {remedy}",
         names.join(", ")
     ))
 }

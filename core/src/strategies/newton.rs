@@ -136,6 +136,9 @@ impl NewtonRaphson {
                 references.push(self.assembler.equations().balanced(&residual).into_owned());
             }
             let rhs = self.assembler.equations().reduce(&residual);
+            if iteration == 1 {
+                interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
+            }
             let (reduced, linear_residual, engine) = if rhs.iter().all(|v| *v == 0.0) {
                 (vec![0.0; rhs.len()], 0.0, "none: nothing out of balance".to_owned())
             } else {
@@ -185,6 +188,10 @@ impl NewtonRaphson {
             let balanced = self.assembler.equations().balanced(&residual);
             if iteration == 1 {
                 references.push(balanced.to_vec());
+            }
+            if !interactions.is_empty() {
+                let balance = self.assembler.equations().reduce(&residual);
+                interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
             }
             let values = self.assembler.values(part);
             let round_off = self.assembler.round_off(part);

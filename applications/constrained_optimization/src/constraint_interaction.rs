@@ -1,0 +1,149 @@
+//! The constraints in the Newton loop: which of them act, and what a method changes between iterates.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use zelus_core::diagnostics::Result;
+use zelus_core::entities::{EntityBlock, Interaction, SetChange};
+use zelus_core::model::{ModelPart, ScalarVariable};
+use zelus_core::registry::{self, Kind};
+
+use crate::constraint_block::ConstraintBlock;
+use crate::constraints::Constraint;
+use crate::method::{ConstraintState, MULTIPLIERS, Method};
+use crate::variables::{CONSTRAINT_MULTIPLIER, CONSTRAINT_PENALTY, CONSTRAINT_VIOLATION};
+
+/// Name of every interaction that imposes constraints.
+pub const NAME: &str = "constraints";
+
+/// All constraints of one model part under one method.
+pub struct ConstraintInteraction<M: Method> {
+    conditions: Vec<u32>,
+    method: Arc<M>,
+    blocks: Vec<ConstraintBlock<M>>,
+    saved: Vec<Vec<ConstraintState>>,
+}
+
+impl<M: Method> ConstraintInteraction<M> {
+    /// The interaction of those of `conditions` that are constraints.
+    pub fn new(method: M, part: &ModelPart, conditions: &[u32]) -> Self {
+        let is_constraint = |at: &&u32| Constraint::is_kind(part.conditions.kinds[**at as usize]);
+        let conditions = conditions.iter().filter(is_constraint).copied().collect();
+        Self { conditions, method: Arc::new(method), blocks: Vec::new(), saved: Vec::new() }
+    }
+
+    /// Brings gaps and multipliers of the states up to date and lets `change` act on each; writes what criteria and output
+    /// read.
+    fn update(&mut self, part: &mut ModelPart, mut change: impl FnMut(&M, &Constraint, &mut ConstraintState)) {
+        for block in &mut self.blocks {
+            let mut states = std::mem::take(&mut block.states);
+            for (constraint, state) in block.constraints().iter().zip(&mut states) {
+                let node = constraint.node as usize;
+                (state.gap, state.round_off) = constraint.gap(&part.nodes);
+                if M::MULTIPLIERS > 0 {
+                    let value = |variable| part.nodes.history.values(variable, 0)[node];
+                    state.multiplier =
+                        constraint.sign * MULTIPLIERS[..M::MULTIPLIERS].iter().map(|v| value(v)).sum::<f64>();
+                }
+                change(&self.method, constraint, state);
+                if M::MULTIPLIERS == 0 {
+                    part.nodes.history.values_mut(&CONSTRAINT_MULTIPLIER, 0)[node] = constraint.sign * state.multiplier;
+                }
+                let tension = if state.active { state.multiplier } else { 0.0 };
+                let values = &mut part.nodes.values;
+                values.values_mut(&CONSTRAINT_VIOLATION, 0)[node] = (-state.gap).max(tension).max(0.0);
+                values.values_mut(&CONSTRAINT_PENALTY, 0)[node] = state.penalty;
+            }
+            block.states = states;
+        }
+    }
+}
+
+impl<M: Method> Interaction for ConstraintInteraction<M> {
+    fn name(&self) -> &str {
+        NAME
+    }
+
+    fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
+        let mut groups: BTreeMap<&'static str, Vec<Constraint>> = BTreeMap::new();
+        for &at in &self.conditions {
+            let kind = part.conditions.kinds[at as usize].name;
+            groups.entry(kind).or_default().push(Constraint::new(part, at as usize)?);
+        }
+        MULTIPLIERS.iter().take(M::MULTIPLIERS.max(1)).for_each(|variable| part.nodes.history.add(variable));
+        self.blocks = groups
+            .into_iter()
+            .map(|(kind, constraints)| {
+                let entry = registry::find(Kind::Condition, kind).expect("the name of a registered kind");
+                ConstraintBlock::new(entry, constraints, Arc::clone(&self.method))
+            })
+            .collect();
+        Ok(())
+    }
+
+    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+        let nodes: Vec<u32> = self.blocks.iter().flat_map(|b| b.constraints().iter().map(|c| c.node)).collect();
+        MULTIPLIERS[..M::MULTIPLIERS].iter().map(|variable| (variable.scalar(), nodes.clone())).collect()
+    }
+
+    fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.update(part, |method, _, state| {
+            state.previous_gap = state.gap;
+            state.penalty = method.penalty();
+            state.active = method.may_start_active() && method.is_active(state);
+        });
+        Ok(())
+    }
+
+    fn after_prediction(&mut self, _part: &mut ModelPart) -> Result<()> {
+        Ok(())
+    }
+
+    fn after_update(&mut self, part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
+        let ids = part.nodes.ids.clone();
+        let mut change = SetChange::default();
+        self.update(part, |method, constraint, state| {
+            let before = state.active;
+            method.update(state);
+            state.previous_gap = state.gap;
+            state.active = method.is_active(state);
+            match (before, state.active) {
+                (false, true) => change.activated.push(ids[constraint.node as usize]),
+                (true, false) => change.deactivated.push(ids[constraint.node as usize]),
+                _ => {}
+            }
+        });
+        Ok(change)
+    }
+
+    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
+        Ok(())
+    }
+
+    fn blocks(&self) -> Vec<&dyn EntityBlock> {
+        self.blocks.iter().map(|block| block as &dyn EntityBlock).collect()
+    }
+
+    fn graph_version(&self) -> u64 {
+        0
+    }
+
+    fn idle_diagonal(&self) -> f64 {
+        self.method.idle_diagonal()
+    }
+
+    fn save(&mut self) {
+        self.saved = self.blocks.iter().map(|block| block.states.clone()).collect();
+    }
+
+    fn restore(&mut self) {
+        for (block, states) in self.blocks.iter_mut().zip(&self.saved) {
+            block.states.clone_from(states);
+        }
+    }
+
+    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        let active = self.blocks.iter().flat_map(|block| &block.states).filter(|state| state.active).count();
+        vec![("active constraints", active as f64)]
+    }
+}

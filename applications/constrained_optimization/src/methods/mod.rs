@@ -1,0 +1,63 @@
+//! The methods: one file each, with its functional, its process and its settings.
+
+mod augmented_lagrangian;
+mod double_lagrange_multiplier;
+mod lagrange_multiplier;
+mod penalty;
+mod uzawa;
+
+pub use augmented_lagrangian::AugmentedLagrangian;
+pub use double_lagrange_multiplier::DoubleLagrangeMultiplier;
+pub use lagrange_multiplier::LagrangeMultiplier;
+pub use penalty::Penalty;
+pub use uzawa::Uzawa;
+
+use zelus_core::diagnostics::Result;
+use zelus_core::model::Model;
+use zelus_core::parameters::Settings;
+use zelus_core::processes::{Process, ProcessRequest};
+
+use crate::constraint_interaction::ConstraintInteraction;
+use crate::method::Method;
+
+/// The process of a method: puts its interaction into the model part.
+struct MethodProcess<M> {
+    path: String,
+    method: Option<M>,
+}
+
+/// Reads the settings of a method into the struct that is the method, and makes its process.
+fn process<M: Method + serde::de::DeserializeOwned>(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings_with(|defaults| defaults.require(&["model_part_name"]))?;
+    let path = settings.get_str("model_part_name")?.to_owned();
+    request
+        .model
+        .root(&path)
+        .and_then(|root| root.part(&path))
+        .map_err(|e| e.at(&settings.key_place("model_part_name")))?;
+    for key in ["penalty", "max_gap", "min_gap", "scale_factor", "coupling"] {
+        positive(&settings, key)?;
+    }
+    Ok(Box::new(MethodProcess { path, method: Some(settings.parse::<M>()?) }))
+}
+
+fn positive(settings: &Settings, key: &str) -> Result<()> {
+    match settings.node().get(key).map(|node| node.f64()).transpose()? {
+        Some(value) if value <= 0.0 || !value.is_finite() => {
+            let fact = format!("\"{key}\" is {value}");
+            Err(settings.error(key, "invalid-value", fact).remedy("write a positive number").into())
+        }
+        _ => Ok(()),
+    }
+}
+
+impl<M: Method> Process for MethodProcess<M> {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let Some(method) = self.method.take() else { return Ok(()) };
+        let root = model.root_mut(&self.path)?;
+        let conditions = root.part(&self.path)?.conditions.clone();
+        let interaction = ConstraintInteraction::new(method, root, &conditions);
+        root.interactions.push(Box::new(interaction));
+        Ok(())
+    }
+}
