@@ -24,11 +24,16 @@ const TANGENT_AT_REST: &[(&str, &str, &str)] = &[
     ("UpdatedLagrangian", "LinearElastic", "the law gives the same numbers as every stress measure"),
 ];
 
-/// Every registered kind with a block and a law that fits it; conditions have none.
+/// Every registered kind of body or boundary with a block, and a law that fits it; conditions have none.
+///
+/// Kinds without a space, as springs on a number, have no motions to check.
 fn kinds() -> Vec<(&'static Entry, Shape, Option<&'static str>)> {
     let mut out = Vec::new();
     for entry in entries() {
         let Build::Block(_) = entry.build else { continue };
+        if entry.space == 0 {
+            continue;
+        }
         let shape = entry.cell.unwrap_or_else(|| panic!("{} has no cell", entry.name));
         if entry.kind == Kind::Condition {
             out.push((entry, shape, None));

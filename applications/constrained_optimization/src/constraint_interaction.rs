@@ -25,10 +25,8 @@ pub struct ConstraintInteraction<M: Method> {
 }
 
 impl<M: Method> ConstraintInteraction<M> {
-    /// The interaction of those of `conditions` that are constraints.
-    pub fn new(method: M, part: &ModelPart, conditions: &[u32]) -> Self {
-        let is_constraint = |at: &&u32| Constraint::is_kind(part.conditions.kinds[**at as usize]);
-        let conditions = conditions.iter().filter(is_constraint).copied().collect();
+    /// The interaction of these conditions, which are constraints.
+    pub fn new(method: M, conditions: Vec<u32>) -> Self {
         Self { conditions, method: Arc::new(method), blocks: Vec::new(), saved: Vec::new() }
     }
 

@@ -8,7 +8,7 @@ use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnkno
 use zelus_core::geometry::Shape;
 use zelus_core::model::{ModelPart, Nodes, PropertyValue};
 use zelus_core::register;
-use zelus_core::registry::{Build, Entry};
+use zelus_core::registry::Build;
 
 use crate::constraint_interaction::NAME;
 use crate::variables::POSITION;
@@ -32,9 +32,16 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// Whether a kind of condition is a constraint.
-    pub fn is_kind(entry: &Entry) -> bool {
-        entry.name == WALL || LINEAR.contains(&entry.name)
+    /// Those conditions of the part at `path` that are constraints.
+    ///
+    /// # Errors
+    /// A path without a part.
+    pub fn among(root: &ModelPart, path: &str) -> Result<Vec<u32>> {
+        let is_constraint = |at: &&u32| {
+            let name = root.conditions.kinds[**at as usize].name;
+            name == WALL || LINEAR.contains(&name)
+        };
+        Ok(root.part(path)?.conditions.iter().filter(is_constraint).copied().collect())
     }
 
     /// The constraint of condition number `at` in the table of `part`.

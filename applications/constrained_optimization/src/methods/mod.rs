@@ -3,6 +3,7 @@
 mod augmented_lagrangian;
 mod double_lagrange_multiplier;
 mod lagrange_multiplier;
+mod master_slave_elimination;
 mod penalty;
 mod uzawa;
 
@@ -18,6 +19,7 @@ use zelus_core::parameters::Settings;
 use zelus_core::processes::{Process, ProcessRequest};
 
 use crate::constraint_interaction::ConstraintInteraction;
+use crate::constraints::Constraint;
 use crate::method::Method;
 
 /// The process of a method: puts its interaction into the model part.
@@ -26,19 +28,24 @@ struct MethodProcess<M> {
     method: Option<M>,
 }
 
+fn settings(request: &mut ProcessRequest<'_>) -> Result<Settings> {
+    request.settings_with(|defaults| defaults.require(&["model_part_name"]))
+}
+
+/// The part whose constraints are meant; it exists.
+fn part_path(settings: &Settings, request: &ProcessRequest<'_>) -> Result<String> {
+    let path = settings.get_str("model_part_name")?;
+    let found = request.model.root(path).and_then(|root| root.part(path));
+    found.map(|_| path.to_owned()).map_err(|error| error.at(&settings.key_place("model_part_name")))
+}
+
 /// Reads the settings of a method into the struct that is the method, and makes its process.
 fn process<M: Method + serde::de::DeserializeOwned>(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
-    let settings = request.settings_with(|defaults| defaults.require(&["model_part_name"]))?;
-    let path = settings.get_str("model_part_name")?.to_owned();
-    request
-        .model
-        .root(&path)
-        .and_then(|root| root.part(&path))
-        .map_err(|e| e.at(&settings.key_place("model_part_name")))?;
+    let settings = settings(request)?;
     for key in ["penalty", "max_gap", "min_gap", "scale_factor", "coupling"] {
         positive(&settings, key)?;
     }
-    Ok(Box::new(MethodProcess { path, method: Some(settings.parse::<M>()?) }))
+    Ok(Box::new(MethodProcess { path: part_path(&settings, request)?, method: Some(settings.parse::<M>()?) }))
 }
 
 fn positive(settings: &Settings, key: &str) -> Result<()> {
@@ -55,9 +62,8 @@ impl<M: Method> Process for MethodProcess<M> {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let Some(method) = self.method.take() else { return Ok(()) };
         let root = model.root_mut(&self.path)?;
-        let conditions = root.part(&self.path)?.conditions.clone();
-        let interaction = ConstraintInteraction::new(method, root, &conditions);
-        root.interactions.push(Box::new(interaction));
+        let conditions = Constraint::among(root, &self.path)?;
+        root.interactions.push(Box::new(ConstraintInteraction::new(method, conditions)));
         Ok(())
     }
 }
