@@ -96,7 +96,8 @@ fn problems_of(expected: &Expected, folder: &Path) -> Vec<String> {
         let found = written.get(printed.iterate, &printed.what).unwrap_or(f64::NAN);
         let close = (found / printed.value - 1.0).abs() <= printed.relative_tolerance;
         if !close {
-            problems.push(format!("iterate {}: {} {found:e}, printed {:e}", printed.iterate, printed.what, printed.value));
+            problems
+                .push(format!("iterate {}: {} {found:e}, printed {:e}", printed.iterate, printed.what, printed.value));
         }
     }
     problems

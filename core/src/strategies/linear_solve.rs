@@ -95,8 +95,5 @@ fn explain(error: &SolveError, assembler: &Assembler, dofs: &DofTable, nodes: &N
     } else {
         "some body can move freely: support it, or check that contact holds it from the first step"
     };
-    Error::System(format!(
-        "the system of equations is singular{rank}; suspicious: {}\n    {remedy}",
-        names.join(", ")
-    ))
+    Error::System(format!("the system of equations is singular{rank}; suspicious: {}\n    {remedy}", names.join(", ")))
 }
