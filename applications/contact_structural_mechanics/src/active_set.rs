@@ -2,8 +2,8 @@
 //!
 //! The augmented normal pressure p̂ = k λ_n + ε WG decides: active if p̂ < 0. WG is the weighted gap of the node summed
 //! over its pairs. Tangentially q̂ = k P λ + c κ ε WS, with the weighted slip WS, is compared with the bound −μ p̂.
-//! No tolerance is applied to p̂; sticking and sliding have a hysteresis: a sliding node sticks again when both q̂ with the
-//! weight c of the deck and q̂ with c = 1 say so.
+//! No tolerance is applied to p̂. A sliding node sticks again when its slip has turned against its traction and q̂, with the
+//! weight c of the deck or with c = 1, has fallen below the bound by a margin.
 
 use crate::formulations::NodeState;
 use crate::mortar::tangential;
@@ -65,6 +65,8 @@ pub struct SlaveNumbers {
     pub weighted_gap: f64,
     /// Weighted slip WS.
     pub weighted_slip: [f64; 3],
+    /// Unit tangent τ in which the last solve took a sliding node to slide.
+    pub tangent: [f64; 3],
     /// Penalty ε.
     pub penalty: f64,
     /// Friction coefficient μ.
@@ -113,11 +115,12 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     };
     let bound = -node.friction * pressure;
     let (q, over) = match rule {
-        // A node that slides on has a slip along its traction, so the full trial lies beyond the bound. Without asking
-        // for it, a pressure that still moves between iterations makes nodes stick and slide in turn.
+        // Sliding is at the bound by its own equation, and right as long as the slip goes along the traction. Comparing
+        // sizes alone makes nodes stick and slide in turn while pressures and normals still move between iterations.
         SlipRule::Coulomb { augmentation, threshold } if sliding => {
             let q = augmented(augmentation);
-            (q, norm(q) > (1.0 - threshold) * bound || norm(augmented(1.0)) > bound)
+            let least = norm(q).min(norm(augmented(1.0)));
+            (q, dot(node.tangent, node.weighted_slip) > 0.0 || least > (1.0 - threshold) * bound)
         }
         _ => {
             let q = augmented(1.0);
@@ -127,7 +130,13 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || over;
 
     let entered = !node.state.is_active();
-    let direction = if norm(lambda_t) > 0.0 { lambda_t } else { q };
+    let direction = if sliding && rule != SlipRule::Pure {
+        node.tangent
+    } else if norm(lambda_t) > 0.0 {
+        lambda_t
+    } else {
+        q
+    };
     let traction = match (slips, norm(direction)) {
         (false, _) => q,
         (true, 0.0) => [0.0; 3],
@@ -189,6 +198,7 @@ mod tests {
             multiplier,
             weighted_gap: -0.5,
             weighted_slip: [0.1, 0.0, 0.0],
+            tangent: [1.0, 0.0, 0.0],
             penalty: 2.0,
             friction: 0.3,
             scale_factor: 4.0,
@@ -224,11 +234,14 @@ mod tests {
         let slips = decide(NodeState::Stick, 0.36);
         assert_eq!((slips.state, slips.slip_changed), (NodeState::Slip, true));
         assert!((slips.traction[0] - 1.5).abs() < 1e-15, "cut to the bound");
-        // Sliding: q̂ = 4 λ_t, against 0.98 of the bound, and the full trial, against all of it.
-        assert_eq!(decide(NodeState::Slip, 0.37).state, NodeState::Slip);
-        assert_eq!(decide(NodeState::Slip, 0.36).state, NodeState::Slip);
-        assert_eq!(decide(NodeState::Slip, 0.34).state, NodeState::Stick);
-        assert_eq!(decide(NodeState::Slip, -0.36).state, NodeState::Stick);
+        // Sliding along the traction goes on, whatever its size; against it, 0.98 of the bound decides.
+        assert_eq!(decide(NodeState::Slip, 0.1).state, NodeState::Slip);
+        let turned = |lambda_t: f64| {
+            let node = node(NodeState::Slip, [lambda_t, 0.0, -1.0]);
+            alm_frictional(&SlaveNumbers { weighted_slip: [-0.1, 0.0, 0.0], ..node }, COULOMB)
+        };
+        assert_eq!(turned(0.4).state, NodeState::Slip);
+        assert_eq!(turned(0.39).state, NodeState::Stick);
         let pure = alm_frictional(&node(NodeState::Slip, [0.0, 0.0, -1.0]), SlipRule::Pure);
         assert_eq!((pure.state, pure.slip_changed), (NodeState::Slip, false));
     }

@@ -10,10 +10,11 @@ use zelus_core::vector3::scale;
 use super::step_parameters::StepParameters;
 use crate::active_set::{self, SlaveNumbers, SlipRule};
 use crate::formulations::NodeState;
+use crate::mortar::tangent;
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, FRICTION_COEFFICIENT, INITIAL_PENALTY,
-    NODAL_AREA, NODAL_H, NORMAL_GAP, WEIGHTED_GAP, WEIGHTED_SLIP,
+    NODAL_AREA, NODAL_H, NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Gap, in mesh sizes, of the simple activation.
@@ -126,6 +127,11 @@ pub(super) fn update(part: &mut ModelPart, slaves: &[u32], family: &Family, para
             part.nodes.flags.undefine(SLIP, at);
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0)[3 * at..3 * at + 3].fill(0.0);
         }
+        let slides = decision.state == NodeState::Slip && numbers.state != NodeState::Slip;
+        if slides && family.frictional() && decision.traction != [0.0; 3] {
+            let direction = tangent(decision.traction, numbers.normal, part.info.domain_size);
+            part.nodes.values.values_mut(&TANGENT_XI, 0)[3 * at..3 * at + 3].copy_from_slice(&direction);
+        }
         if let Some(multiplier) = decision.multiplier {
             match family.multiplier {
                 Multiplier::None => {}
@@ -165,6 +171,12 @@ fn numbers(part: &ModelPart, at: usize, family: &Family, parameters: &StepParame
         multiplier,
         weighted_gap: history.values(&WEIGHTED_GAP, 0)[at],
         weighted_slip: vector_of(WEIGHTED_SLIP.name()),
+        tangent: part
+            .nodes
+            .values
+            .values(&TANGENT_XI, 0)
+            .get(3 * at..3 * at + 3)
+            .map_or([0.0; 3], |t| [t[0], t[1], t[2]]),
         penalty: part.nodes.values.values(&INITIAL_PENALTY, 0)[at],
         friction: part.nodes.values.values(&FRICTION_COEFFICIENT, 0).get(at).copied().unwrap_or(0.0),
         scale_factor: parameters.scale_factor,
