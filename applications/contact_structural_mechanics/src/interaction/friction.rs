@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::model::flags::{ACTIVE, SLIP};
+use zelus_core::model::flags::SLIP;
 use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::{norm, scale};
 
 use crate::active_set::SlipRule;
+use crate::formulations::NodeState;
 use crate::interface::Interface;
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Friction, Multiplier};
@@ -72,9 +73,10 @@ pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRul
 
 /// Writes TANGENT_XI of the slave nodes.
 ///
-/// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
-/// multipliers, it is that of the weighted slip. A node that has neither above round-off keeps the direction it had: at step
-/// start that is a far better guess than any fixed tangent.
+/// The direction is that of the tangential multiplier of a sticking node; one that slides keeps the direction in which it
+/// began, since its multiplier follows from it. Where contact always slides, and without multipliers, it is that of the
+/// weighted slip. A node that has none of them above round-off keeps the direction it had: at step start that is a far
+/// better guess than any fixed tangent.
 pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Family, rule: SlipRule) {
     let dimension = part.info.domain_size;
     let old = part.nodes.values.values(&TANGENT_XI, 0);
@@ -92,10 +94,9 @@ pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Fami
         };
         let direction = match family.multiplier {
             Multiplier::Vector(variable) if rule != SlipRule::Pure => {
-                if part.nodes.flags.is(ACTIVE, at) {
-                    vector_of(variable.name())
-                } else {
-                    [0.0; 3]
+                match NodeState::of_flags(&part.nodes.flags, at) {
+                    NodeState::Stick => vector_of(variable.name()),
+                    NodeState::Slip | NodeState::Inactive => [0.0; 3],
                 }
             }
             _ => by_slip(),
