@@ -33,6 +33,23 @@ fn the_map_of_the_code_names_only_paths_that_exist() {
 }
 
 #[test]
+fn the_guides_name_only_paths_that_exist() {
+    let mut missing: Vec<String> =
+        ["README.md", "CHANGELOG.md"].iter().flat_map(|n| missing_in(&root().join(n))).collect();
+    let mut pending = vec![root().join("docs")];
+    while let Some(folder) = pending.pop() {
+        for path in std::fs::read_dir(&folder).expect("a folder").map(|e| e.expect("an entry").path()) {
+            if path.is_dir() {
+                pending.push(path);
+            } else if path.extension().is_some_and(|end| end == "md") {
+                missing.extend(missing_in(&path));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+#[test]
 fn links_between_documents_lead_somewhere() {
     let mut missing = Vec::new();
     let mut pending = vec![root()];
