@@ -1,8 +1,9 @@
 //! Loads on lines: force per length, and in the plane pressure.
 //!
 //! f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ with t = ∂x/∂ξ along the line: positive p pushes to the left of its direction,
-//! into a body that runs counter-clockwise. K_ij = ∫ N_i p N_j,ξ [[0, 1], [−1, 0]] dξ. THICKNESS does not enter, except
-//! that axisymmetric loads carry the factor 2πr/THICKNESS, as in Kratos.
+//! into a body that runs counter-clockwise. K_ij = ∫ N_i N_j,ξ (p [[0, 1], [−1, 0]] − q ⊗ t/|t|) dξ; the second part is the
+//! stretch of the line on which q acts. THICKNESS does not enter, except that axisymmetric loads carry the factor
+//! 2πr/THICKNESS, as in Kratos.
 
 use std::f64::consts::PI;
 
@@ -80,7 +81,23 @@ impl<const AXISYMMETRIC: bool, const NODES: usize, const SIZE: usize> Kernel<NOD
                 rhs[2 * i] += n * (weight * size * load[0] - p * t[1]);
                 rhs[2 * i + 1] += n * (weight * size * load[1] + p * t[0]);
             }
-            if pressed && !lhs.is_empty() {
+            if lhs.is_empty() {
+                continue;
+            }
+            for (i, n_i) in n.iter().enumerate() {
+                for (j, ([slope], n_j)) in dn.iter().zip(n).enumerate() {
+                    for a in 0..2 {
+                        for b in 0..2 {
+                            lhs[(2 * i + a) * SIZE + 2 * j + b] -= weight * n_i * load[a] * slope * t[b] / size;
+                        }
+                        if AXISYMMETRIC {
+                            // the circumference grows with the radius
+                            lhs[(2 * i + a) * SIZE + 2 * j] -= weight / radius * size * n_i * load[a] * n_j;
+                        }
+                    }
+                }
+            }
+            if pressed {
                 for (i, n_i) in n.iter().enumerate() {
                     for (j, ([slope], n_j)) in dn.iter().zip(n).enumerate() {
                         let k = p * n_i * slope;
@@ -116,7 +133,7 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SpatialLineL
     }
 
     fn tangent(&self) -> Tangent {
-        Tangent::Zero
+        Tangent::General
     }
 
     fn local_system(
@@ -125,17 +142,30 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SpatialLineL
         _state: &(),
         view: &StepView<'_>,
         _want: Want,
-        _lhs: &mut [f64],
+        lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
         let q = vector_load(entity, view, &LINE_LOAD);
         for g in 0..self.rule.len() {
             let (n, dn) = (&self.rule.n::<NODES>()[g], &self.rule.dn::<NODES, 1>()[g]);
-            let weight = self.rule.weight(g) * length(tangent_vector(dn, &entity.current));
+            let t = tangent_vector(dn, &entity.current);
+            let (weight, size) = (self.rule.weight(g), length(t));
             let load = interpolate(n, &q);
             for (i, n) in n.iter().enumerate() {
                 for a in 0..3 {
-                    rhs[3 * i + a] += weight * n * load[a];
+                    rhs[3 * i + a] += weight * size * n * load[a];
+                }
+            }
+            if lhs.is_empty() {
+                continue;
+            }
+            for (i, n) in n.iter().enumerate() {
+                for (j, [slope]) in dn.iter().enumerate() {
+                    for a in 0..3 {
+                        for b in 0..3 {
+                            lhs[(3 * i + a) * SIZE + 3 * j + b] -= weight * n * load[a] * slope * t[b] / size;
+                        }
+                    }
                 }
             }
         }

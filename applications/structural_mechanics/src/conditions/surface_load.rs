@@ -1,12 +1,13 @@
 //! Loads on surfaces: force per area, and pressure.
 //!
 //! f_i = ∫ N_i (q |n| + p n) dξ dη with n = t_1 × t_2, t_1 = ∂x/∂ξ, t_2 = ∂x/∂η: positive p pushes along n.
-//! K_ij = ∫ p N_i (N_j,ξ [t_2]× − N_j,η [t_1]×) dξ dη with [a]× v = a × v.
+//! K_ij = ∫ N_i (p (N_j,ξ [t_2]× − N_j,η [t_1]×) − q ⊗ (N_j,ξ t_2 × n̂ + N_j,η n̂ × t_1)) dξ dη with [a]× v = a × v and
+//! n̂ = n/|n|: the second part is the stretch of the area on which q acts.
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
-use zelus_core::vector3::{cross, norm};
+use zelus_core::vector3::{cross, norm, scale};
 
 use super::load::{displacements, interpolate, pressure, register_conditions, vector_load};
 use crate::variables::SURFACE_LOAD;
@@ -59,7 +60,24 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SurfaceLoad 
                     rhs[3 * i + a] += n * (weight * area * load[a] + p * normal[a]);
                 }
             }
-            if pressed && !lhs.is_empty() {
+            if lhs.is_empty() {
+                continue;
+            }
+            if load.iter().any(|q| *q != 0.0) {
+                let unit = scale(normal, 1.0 / area);
+                let (along, across) = (cross(t2, unit), cross(unit, t1));
+                for (j, slope) in dn.iter().enumerate() {
+                    for (i, n) in n.iter().enumerate() {
+                        for a in 0..3 {
+                            for b in 0..3 {
+                                let stretch = slope[0] * along[b] + slope[1] * across[b];
+                                lhs[(3 * i + a) * SIZE + 3 * j + b] -= weight * n * load[a] * stretch;
+                            }
+                        }
+                    }
+                }
+            }
+            if pressed {
                 for (j, slope) in dn.iter().enumerate() {
                     let axis: [f64; 3] = std::array::from_fn(|a| p * (slope[0] * t2[a] - slope[1] * t1[a]));
                     let skew = [[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]];

@@ -171,7 +171,12 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         if F::PRESENT {
             (dn, det) = physical_gradients(&entity.current, local);
         }
-        Ok(Point { dn, hoop, weight: table.weight(g) * det * turn, state: StrainState { strain, f, det_f } })
+        Ok(Point {
+            dn,
+            hoop,
+            weight: table.weight(g) * det * turn,
+            state: StrainState { strain, f, det_f, small: !F::FINITE },
+        })
     }
 
     /// Derivative of the strain with respect to the displacements, one row a Voigt component.
@@ -254,7 +259,13 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         let shape = Shape::of(DIM, NODES).expect("solids are registered for known shapes only");
         let materials = Material::all(request, shape)?;
         let constant = !F::FINITE && !Self::AXISYMMETRIC && materials.iter().all(|m| m.law.is_linear());
-        let tangent = if constant { Tangent::Constant } else { Tangent::Symmetric };
+        let tangent = if constant {
+            Tangent::Constant
+        } else if !F::FINITE && materials.iter().any(|m| !m.law.is_linear()) {
+            Tangent::General
+        } else {
+            Tangent::Symmetric
+        };
         Ok(Self { shape, materials, tangent, formulation: PhantomData })
     }
 
@@ -285,6 +296,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         let material = self.material(entity);
         let u = self.displacement(entity, view);
         let acceleration = nodal_vectors(entity, view, &VOLUME_ACCELERATION);
+        let whole = self.tangent == Tangent::General;
         let mut upper = [[0.0; SIZE]; SIZE];
         let mut d = [[0.0; S]; S];
         for g in 0..material.rule.len() {
@@ -315,7 +327,8 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
             }
             for (b, db) in b.iter().zip(&db) {
                 for (r, (out, &b)) in upper.iter_mut().zip(b).enumerate() {
-                    out[r..].iter_mut().zip(&db[r..]).for_each(|(out, db)| *out += b * db);
+                    let first = if whole { 0 } else { r };
+                    out[first..].iter_mut().zip(&db[first..]).for_each(|(out, db)| *out += b * db);
                 }
             }
             if F::FINITE {
@@ -327,7 +340,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
                 lhs[r * SIZE + r] += upper[r][r];
                 for c in r + 1..SIZE {
                     lhs[r * SIZE + c] += upper[r][c];
-                    lhs[c * SIZE + r] += upper[r][c];
+                    lhs[c * SIZE + r] += if whole { upper[c][r] } else { upper[r][c] };
                 }
             }
         }

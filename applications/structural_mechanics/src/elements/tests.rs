@@ -48,10 +48,9 @@ fn tangents_match_differences() {
             continue;
         }
         let x = random.cell(shape, 0.05, space);
-        // the law's matrix is the derivative up to the strain in small-displacement elements
+        // J = det(1 + ε) and C = 1 + 2ε do not fit together, so this tangent is not symmetric
         let curved = formulation == "SmallDisplacementElement" && law.starts_with("HyperElastic");
-        let amount = if curved { 1e-9 } else { 0.05 };
-        let u: Vec<Vec3> = x.iter().map(|_| random.vector(amount, space)).collect();
+        let u: Vec<Vec3> = x.iter().map(|_| random.vector(0.05, space)).collect();
         let mut single = element(&name, &law, &x);
         single.displace(&u);
         let (k, rhs) = single.system();
@@ -59,10 +58,9 @@ fn tangents_match_differences() {
         let moved = formulation != "SmallDisplacementElement";
         let differences = single.difference_tangent(&u, space, moved);
         let error = k.iter().zip(&differences).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-        let tolerance = if curved { 1e-5 } else { 1e-8 };
-        assert!(error < tolerance * size(&k), "{name} {law}: {error:e} of {:e}", size(&k));
+        assert!(error < 1e-8 * size(&k), "{name} {law}: {error:e} of {:e}", size(&k));
         let n = rhs.len();
-        assert!((0..n * n).all(|e| k[e] == k[e % n * n + e / n]), "{name} {law}: symmetric");
+        assert!(curved || (0..n * n).all(|e| k[e] == k[e % n * n + e / n]), "{name} {law}: symmetric");
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! W = ½ λ ln²J − μ ln J + ½ μ (tr C − 3); S = μ (1 − C⁻¹) + λ ln J C⁻¹;
 //! D_ijkl = λ C⁻¹_ij C⁻¹_kl + (μ − λ ln J)(C⁻¹_ik C⁻¹_jl + C⁻¹_il C⁻¹_jk).
-//! In the plane C_zz = 1. A small-displacement element gives C = 1 + 2ε and J = det(1 + ε), as in Kratos; D is then the
-//! derivative of S up to terms of the order of the strain.
+//! In the plane C_zz = 1. A small-displacement element gives C = 1 + 2ε and J = det(1 + ε), as in Kratos; the first term of
+//! D is then λ C⁻¹ ⊗ (1 + ε)⁻¹, which is not symmetric.
 
 use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
@@ -38,10 +38,11 @@ impl<const S: usize> ConstitutiveLaw<S> for HyperElastic {
     fn pk2(&self, state: &StrainState<S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
         let (pairs, k) = (pairs::<S>(), inverse(&right_cauchy_green(state)));
         let pressure = self.lambda * state.det_f.ln();
+        let volume = if state.small { inverse(&state.f) } else { k };
         if let Some(tangent) = tangent {
             for (row, (i, j)) in tangent.iter_mut().zip(pairs) {
                 for (entry, (p, q)) in row.iter_mut().zip(pairs) {
-                    *entry = self.lambda * k[i][j] * k[p][q]
+                    *entry = self.lambda * k[i][j] * volume[p][q]
                         + (self.mu - pressure) * (k[i][p] * k[j][q] + k[i][q] * k[j][p]);
                 }
             }

@@ -18,6 +18,8 @@ pub struct StrainState<const S: usize> {
     pub f: Tensor,
     /// Determinant of `f`, positive.
     pub det_f: f64,
+    /// Whether `strain` is the small strain and `f` is 1 + strain.
+    pub small: bool,
 }
 
 /// Which stress an element integrates.
