@@ -98,20 +98,20 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
     }
 
     fn after_update(&mut self, part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
-        let ids = part.nodes.ids.clone();
-        let mut change = SetChange::default();
+        let (mut activated, mut deactivated) = (Vec::new(), Vec::new());
         self.update(part, |method, constraint, state| {
             let before = state.active;
             method.update(state);
             state.previous_gap = state.gap;
             state.active = method.is_active(state);
             match (before, state.active) {
-                (false, true) => change.activated.push(ids[constraint.node as usize]),
-                (true, false) => change.deactivated.push(ids[constraint.node as usize]),
+                (false, true) => activated.push(constraint.node),
+                (true, false) => deactivated.push(constraint.node),
                 _ => {}
             }
         });
-        Ok(change)
+        let ids = |nodes: Vec<u32>| nodes.into_iter().map(|node| part.nodes.ids[node as usize]).collect();
+        Ok(SetChange { activated: ids(activated), deactivated: ids(deactivated), ..SetChange::default() })
     }
 
     fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {

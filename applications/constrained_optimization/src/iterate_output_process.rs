@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::Deserialize;
-use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::diagnostics::{Diagnostic, Place, Result};
 use zelus_core::entities::{EntityBlock, Interaction, SetChange};
 use zelus_core::io::replace_file;
-use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, named};
+use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
@@ -36,6 +36,7 @@ struct IterateOutput {
     root: String,
     file: PathBuf,
     columns: Vec<Column>,
+    place: Place,
     table: Table,
 }
 
@@ -52,6 +53,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         root: settings.get_str("model_part_name")?.to_owned(),
         file: request.folder.join(settings.get_str("output_file_name")?),
         columns: settings.get("columns")?.parse("columns")?,
+        place: settings.key_place("columns"),
         table: Table::default(),
     }))
 }
@@ -60,9 +62,7 @@ impl Column {
     fn find(&self, part: &ModelPart) -> Result<(ScalarVariable, u32)> {
         let variable = match named(&self.variable) {
             Some(Named::Component(variable)) => Some(variable),
-            Some(Named::Whole(column, zelus_core::model::VariableKind::Scalar)) => {
-                Some(ScalarVariable { column, component: None })
-            }
+            Some(Named::Whole(column, VariableKind::Scalar)) => Some(ScalarVariable { column, component: None }),
             _ => None,
         };
         let variable = variable.ok_or_else(|| {
@@ -80,7 +80,8 @@ impl Column {
 impl Process for IterateOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.root)?;
-        let columns = self.columns.iter().map(|column| column.find(part)).collect::<Result<_>>()?;
+        let found: Result<_> = self.columns.iter().map(|column| column.find(part)).collect();
+        let columns = found.map_err(|error| error.at(&self.place))?;
         part.interactions.push(Box::new(Watch { columns, table: Arc::clone(&self.table) }));
         Ok(())
     }

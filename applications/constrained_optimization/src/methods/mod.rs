@@ -5,6 +5,8 @@ mod double_lagrange_multiplier;
 mod lagrange_multiplier;
 mod master_slave_elimination;
 mod penalty;
+#[cfg(test)]
+mod tests;
 mod uzawa;
 
 pub use augmented_lagrangian::AugmentedLagrangian;
