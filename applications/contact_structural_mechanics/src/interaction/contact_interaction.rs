@@ -91,6 +91,7 @@ pub struct ContactInteraction {
     saved: Vec<Pair>,
     acting: bool,
     warned: bool,
+    warned_of_friction: bool,
     /// Nodes that the direct check found on a master.
     touching: BTreeSet<u32>,
     /// Slave nodes that face the origin of the coordinates, see [`activation::start`].
@@ -125,6 +126,7 @@ impl ContactInteraction {
             saved: Vec::new(),
             acting: true,
             warned: false,
+            warned_of_friction: false,
             touching: BTreeSet::new(),
             at_origin: BTreeSet::new(),
         })
@@ -483,6 +485,11 @@ impl Interaction for ContactInteraction {
         if self.settings.family.frictional() {
             let traction = part.nodes.values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
             inactive.iter().for_each(|&n| traction[3 * n as usize..3 * n as usize + 3].fill(0.0));
+            if !self.warned_of_friction {
+                let warning = friction::warn_of_pushing(part, &self.slaves, self.settings.family.multiplier);
+                self.warned_of_friction = warning.is_some();
+                part.messages.extend(warning);
+            }
         }
         Ok(())
     }

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::model::flags::SLIP;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::model::flags::{ACTIVE, SLIP};
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::{norm, scale};
+use zelus_core::vector3::{dot, norm, scale};
 
 use crate::active_set::SlipRule;
 use crate::formulations::NodeState;
@@ -12,6 +13,9 @@ use crate::interface::Interface;
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::{FRICTION_COEFFICIENT, NODAL_AREA, NODAL_H, TANGENT_XI, WEIGHTED_SLIP};
+
+/// Slip, in mesh sizes, below which its direction says nothing.
+const LEAST_SLIP: f64 = 1e-6;
 
 /// What a deck chooses about friction.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -73,10 +77,9 @@ pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRul
 
 /// Writes TANGENT_XI of the slave nodes.
 ///
-/// The direction is that of the tangential multiplier of a sticking node; one that slides keeps the direction in which it
-/// began, since its multiplier follows from it. Where contact always slides, and without multipliers, it is that of the
-/// weighted slip. A node that has none of them above round-off keeps the direction it had: at step start that is a far
-/// better guess than any fixed tangent.
+/// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
+/// multipliers, it is that of the weighted slip. A node that has neither above round-off keeps the direction it had: at step
+/// start that is a far better guess than any fixed tangent.
 pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Family, rule: SlipRule) {
     let dimension = part.info.domain_size;
     let old = part.nodes.values.values(&TANGENT_XI, 0);
@@ -94,9 +97,10 @@ pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Fami
         };
         let direction = match family.multiplier {
             Multiplier::Vector(variable) if rule != SlipRule::Pure => {
-                match NodeState::of_flags(&part.nodes.flags, at) {
-                    NodeState::Stick => vector_of(variable.name()),
-                    NodeState::Slip | NodeState::Inactive => [0.0; 3],
+                if part.nodes.flags.is(ACTIVE, at) {
+                    vector_of(variable.name())
+                } else {
+                    [0.0; 3]
                 }
             }
             _ => by_slip(),
@@ -109,4 +113,32 @@ pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Fami
     for (&node, tangent) in slaves.iter().zip(&tangents) {
         column[3 * node as usize..3 * node as usize + 3].copy_from_slice(tangent);
     }
+}
+
+/// The warning that friction pushes sliding nodes along the slip of the accepted step: it took its direction from the first,
+/// sticking iterate, and the normals have turned by more than the angle of friction since.
+pub(super) fn warn_of_pushing(part: &ModelPart, slaves: &[u32], multiplier: Multiplier) -> Option<Diagnostic> {
+    let Multiplier::Vector(variable) = multiplier else { return None };
+    let vector_of = |name: &str, at: usize| part.nodes.history.get(name).map_or([0.0; 3], |f| f.vector(0, at));
+    let friction = part.nodes.values.values(&FRICTION_COEFFICIENT, 0);
+    let (areas, sizes) = (part.nodes.values.values(&NODAL_AREA, 0), part.nodes.values.values(&NODAL_H, 0));
+    let pushed = |at: &usize| {
+        let slip = vector_of(WEIGHTED_SLIP.name(), *at);
+        let traction = tangential(vector_of(variable.name(), *at), vector_of(NORMAL.name(), *at));
+        NodeState::of_flags(&part.nodes.flags, *at) == NodeState::Slip
+            && friction[*at] >= f64::EPSILON
+            && norm(slip) > LEAST_SLIP * sizes[*at] * areas[*at]
+            && dot(slip, traction) < 0.0
+    };
+    let nodes: Vec<usize> = slaves.iter().map(|&n| n as usize).filter(pushed).map(|at| part.nodes.ids[at]).collect();
+    let first = nodes.first()?;
+    let fact = format!(
+        "step {}: friction pushes {} sliding nodes along their motion, e.g. node {first}",
+        part.info.step,
+        nodes.len()
+    );
+    Some(
+        Diagnostic::warning("friction-direction", fact)
+            .remedy("shorten \"time_step\": the surfaces turn too far in it"),
+    )
 }
