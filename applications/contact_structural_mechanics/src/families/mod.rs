@@ -5,6 +5,7 @@ mod alm_frictional_pure_slip;
 mod alm_frictionless;
 mod alm_frictionless_components;
 mod mesh_tying;
+mod mpc;
 mod penalty_frictional;
 mod penalty_frictionless;
 mod shapes;

@@ -356,7 +356,12 @@ impl ContactInteraction {
                 axisymmetric: settings.axisymmetric.then(thickness),
             },
             scale_factor: chosen.scale_factor,
-            slip_rule: friction::prepare(part, &self.interfaces, &self.settings.friction, self.settings.family),
+            slip_rule: friction::prepare(
+                part,
+                &self.interfaces,
+                &self.settings.friction,
+                self.settings.family.friction,
+            ),
             ..(*self.parameters).clone()
         });
     }

@@ -36,7 +36,7 @@ pub(super) fn prepare(
     part: &mut ModelPart,
     interfaces: &[Interface],
     settings: &FrictionSettings,
-    family: &Family,
+    friction: Friction,
 ) -> SlipRule {
     let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
     let mut largest = 0.0_f64;
@@ -57,7 +57,7 @@ pub(super) fn prepare(
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {
         *slot = sum / count.max(1) as f64;
     }
-    if family.friction == Friction::PureSlip || largest < f64::EPSILON {
+    if friction == Friction::PureSlip || largest < f64::EPSILON {
         SlipRule::Pure
     } else {
         SlipRule::Coulomb { augmentation: settings.slip_augmentation, threshold: settings.slip_threshold }

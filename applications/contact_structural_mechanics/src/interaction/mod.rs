@@ -4,11 +4,15 @@ mod activation;
 mod adaptation;
 mod contact_interaction;
 mod friction;
+mod mpc_interaction;
+mod mpc_relation;
+mod nodal_forces;
 mod step_parameters;
 mod tying_interaction;
 
 pub use adaptation::AdaptationSettings;
 pub use contact_interaction::{ContactInteraction, ContactSettings};
 pub use friction::FrictionSettings;
+pub use mpc_interaction::{MpcInteraction, MpcKind, MpcSettings};
 pub use step_parameters::{NormalVariation, StepParameters};
 pub use tying_interaction::{TyingInteraction, TyingSettings};

@@ -18,6 +18,28 @@ pub struct FacetOperators {
     pub m: [[f64; 4]; 4],
 }
 
+impl FacetOperators {
+    /// Row `j` of D⁻¹ M for `slaves` and `masters` nodes: the weights with which the master's values reach the slave node.
+    /// They add up to one. D counts as diagonal, which it is where dual functions are in use.
+    pub fn weights(&self, j: usize, slaves: usize, masters: usize) -> [f64; 4] {
+        let d: f64 = self.d[j][..slaves].iter().sum();
+        let mut out = [0.0; 4];
+        (0..masters).for_each(|l| out[l] = self.m[j][l] / d);
+        out
+    }
+
+    /// (D v¹ − M v²)_j of nodal vectors.
+    pub fn jump(&self, j: usize, slave: &[[f64; 3]], master: &[[f64; 3]]) -> [f64; 3] {
+        let mut out = [0.0; 3];
+        for c in 0..3 {
+            let of_slave: f64 = slave.iter().zip(&self.d[j]).map(|(v, d)| d * v[c]).sum();
+            let of_master: f64 = master.iter().zip(&self.m[j]).map(|(v, m)| m * v[c]).sum();
+            out[c] = of_slave - of_master;
+        }
+        out
+    }
+}
+
 /// Two facets that overlap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FacetPair {

@@ -1,0 +1,105 @@
+//! Contact and ties by constraints: reads the settings and puts the interaction into the model part.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use zelus_core::Result;
+use zelus_core::diagnostics::{Diagnostic, did_you_mean};
+use zelus_core::model::Model;
+use zelus_core::parameters::{Interval, Settings};
+use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+use super::interface_settings::{check_search, check_slaves, segmentation};
+use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings};
+use crate::search::SearchSettings;
+
+/// Names of `contact_type`, each also with the ending of [`UPDATED`].
+const TYPES: [(&str, MpcKind, bool); 4] = [
+    ("Frictionless", MpcKind::Frictionless, false),
+    ("Frictional", MpcKind::Frictional, false),
+    ("FrictionalPureSlip", MpcKind::Frictional, true),
+    ("MeshTying", MpcKind::MeshTying, false),
+];
+const UPDATED: &str = "WithNormalUpdate";
+
+#[derive(Debug, Deserialize)]
+struct Search {
+    search_factor: f64,
+    database_step_update: usize,
+    normal_orientation_threshold: f64,
+}
+
+#[derive(Debug, Deserialize)]
+struct Whole {
+    model_part_name: String,
+    contact_model_part: BTreeMap<String, Vec<String>>,
+    assume_master_slave: BTreeMap<String, Vec<String>>,
+    friction_coefficients: BTreeMap<String, f64>,
+    reaction_check_stiffness_factor: f64,
+    update_condition_relation_step: bool,
+    search_parameters: Search,
+}
+
+struct MpcContactProcess {
+    root: String,
+    interaction: Option<MpcInteraction>,
+}
+
+fn contact_type(settings: &Settings) -> Result<(MpcKind, bool)> {
+    let name = settings.get_str("contact_type")?;
+    let stem = name.strip_suffix(UPDATED).unwrap_or(name);
+    if let Some(&(_, kind, pure_slip)) = TYPES.iter().find(|(known, ..)| *known == stem) {
+        return Ok((kind, pure_slip));
+    }
+    let known = TYPES.map(|(known, ..)| known);
+    let fact = format!("there is no contact type {name:?} by constraints");
+    Err(settings
+        .error("contact_type", "contact-type", fact)
+        .remedy(did_you_mean(name, known).unwrap_or_else(|| format!("use one of {}", known.join(", "))))
+        .into())
+}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings()?;
+    let whole: Whole = settings.parse()?;
+    let (kind, pure_slip) = contact_type(&settings)?;
+    check_search(&settings)?;
+    check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
+    let chosen = MpcSettings {
+        parts: whole.contact_model_part,
+        slaves: whole.assume_master_slave,
+        kind,
+        pure_slip,
+        friction: FrictionSettings { coefficients: whole.friction_coefficients, ..FrictionSettings::default() },
+        interval: Interval::from_node(settings.get("interval")?)?,
+        search: SearchSettings {
+            factor: whole.search_parameters.search_factor,
+            normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
+        },
+        database_step_update: whole.search_parameters.database_step_update.max(1),
+        segmentation: segmentation(&settings)?,
+        reaction_check_stiffness_factor: whole.reaction_check_stiffness_factor,
+        update_relations: whole.update_condition_relation_step,
+    };
+    let part = request.model.root_mut(&whole.model_part_name)?;
+    let interaction = MpcInteraction::new(chosen, part)?;
+    Ok(Box::new(MpcContactProcess { root: whole.model_part_name, interaction: Some(interaction) }))
+}
+
+impl Process for MpcContactProcess {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let interaction = self.interaction.take().ok_or_else(|| Diagnostic::error("contact", "initialised twice"))?;
+        model.root_mut(&self.root)?.interactions.push(Box::new(interaction));
+        Ok(())
+    }
+}
+
+register! { Process "mpc_contact_process",
+    aliases: &["MPCContactProcess"],
+    about: "contact and ties by linear constraints that active nodes obey",
+    source: "eqs. D.12a–e",
+    defaults: include_str!("../../../../configs/processes/mpc_contact_process.json"),
+    build: Build::Process(build),
+}

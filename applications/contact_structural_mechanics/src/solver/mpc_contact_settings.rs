@@ -1,0 +1,26 @@
+//! `mpc_contact_settings` of the solver: contact by constraints needs no unknowns of its own.
+
+use zelus_core::analysis::ExtensionDefinition;
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+/// Mark of the step data: relations are made anew in every iteration.
+pub(crate) const UPDATE_EACH_ITERATION: &str = "UPDATE_EACH_NL_ITERATION";
+
+register! { SolverExtension "mpc_contact_settings",
+    about: "what the solver needs to know of contact by constraints",
+    defaults: include_str!("../../../../configs/solvers/mpc_contact_settings.json"),
+    build: Build::Factory(&ExtensionDefinition {
+        variables: |settings| {
+            let mut variables = vec![("NORMAL", 3), ("WEIGHTED_GAP", 1)];
+            if settings.get_str("contact_type")?.starts_with("Frictional") {
+                variables.push(("WEIGHTED_SLIP", 3));
+            }
+            Ok(variables)
+        },
+        marks: |settings| {
+            let update = settings.get_bool("update_each_nl_iteration")?;
+            Ok(update.then_some(UPDATE_EACH_ITERATION).into_iter().collect())
+        },
+    }),
+}
