@@ -14,5 +14,6 @@ pub use adaptation::AdaptationSettings;
 pub use contact_interaction::{ContactInteraction, ContactSettings};
 pub use friction::FrictionSettings;
 pub use mpc_interaction::{MpcInteraction, MpcKind, MpcSettings};
+pub use mpc_relation::Weights;
 pub use step_parameters::{NormalVariation, StepParameters};
 pub use tying_interaction::{TyingInteraction, TyingSettings};

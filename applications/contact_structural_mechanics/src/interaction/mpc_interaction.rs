@@ -17,7 +17,7 @@ use zelus_core::vector3::{dot, norm, scale, sub};
 
 use super::activation;
 use super::friction::{self, FrictionSettings};
-use super::mpc_relation::{Hold, NodeRelation, PairRelation, node_relations};
+use super::mpc_relation::{Hold, NodeRelation, PairRelation, Weights, node_relations};
 use super::nodal_forces::NodalForces;
 use crate::active_set::SlipRule;
 use crate::interface::{Interface, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes};
@@ -65,6 +65,8 @@ pub struct MpcSettings {
     pub reaction_check_stiffness_factor: f64,
     /// Whether relations are made anew at each step.
     pub update_relations: bool,
+    /// By what the rows of a node are divided.
+    pub weights: Weights,
 }
 
 /// Contact by constraints in a model part.
@@ -140,24 +142,26 @@ impl MpcInteraction {
         for pair in pairs {
             self.pairs.insert(pair.key, PairRelation::new(part, &self.interfaces, pair));
         }
-        self.nodes = node_relations(self.pairs.iter().map(|(key, relation)| (key.interface, relation)));
+        let pairs = self.pairs.iter().map(|(key, relation)| (key.interface, relation));
+        self.nodes = node_relations(pairs, &self.interfaces, self.settings.weights);
     }
 
-    /// Nodes that follow several masters pass forces on only approximately, unless the master is held.
+    /// Nodes that follow several masters pass forces on wrongly, unless the master is held.
     fn warn_of_unlike_meshes(&mut self, part: &mut ModelPart) {
         if self.warned {
             return;
         }
         let dimension = part.info.domain_size as u8;
         let deforms = |node: u32| (0..dimension).any(|c| !part.dofs.is_fixed(DISPLACEMENT.component(c), node));
-        let mixed = self.pairs.values().filter(|relation| relation.is_mixed()).count();
+        let mixed = self.nodes.values().filter(|relation| relation.is_mixed()).count();
         if mixed > 0 && self.nodes.values().flat_map(|n| &n.weights).any(|&(node, _)| deforms(node)) {
             self.warned = true;
-            let fact = format!("{mixed} pairs of unlike facets are joined by constraints on deformable bodies");
-            part.messages
-                .push(Diagnostic::warning("mpc-unlike-meshes", fact).remedy(
-                    "stresses at the interface are approximate; use alm_contact_process or mesh_tying_process",
-                ));
+            let fact = format!(
+                "constraints join unlike meshes of deformable bodies at {mixed} slave nodes: stresses there are wrong"
+            );
+            part.messages.push(Diagnostic::warning("mpc-unlike-meshes", fact).remedy(
+                "use alm_contact_process or mesh_tying_process; \"consistent_weights\" at least keeps rigid motions",
+            ));
         }
     }
 
@@ -238,7 +242,7 @@ impl MpcInteraction {
             };
             if was != now {
                 part.nodes.flags.set(ACTIVE, at, now);
-                if now {
+                if now && self.settings.kind == MpcKind::Frictional {
                     let smooth = part.nodes.values.values(&FRICTION_COEFFICIENT, 0)[at] < f64::EPSILON;
                     part.nodes.flags.set(SLIP, at, smooth || self.slip_rule == SlipRule::Pure);
                 }

@@ -1,7 +1,9 @@
 //! How slave nodes follow master facets: u¹ = B u² + offset with B = D⁻¹ M of each pair.
 //!
 //! Rows of B with negative entries extrapolate, since the node is beside the master, and are left out; the rows that
-//! remain at a node are averaged. The offset closes the gap of the moment the relation is made.
+//! remain at a node are added, each divided by the number of slave facets of the node. On like meshes that is their mean.
+//! On unlike meshes more or fewer rows remain, and the weights do not add up to one unless [`Weights::Consistent`] divides
+//! by the number of rows. The offset keeps an opening of the moment the relation is made and closes a penetration.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +11,7 @@ use zelus_core::entities::MasterSlaveConstraint;
 use zelus_core::model::{ModelPart, variables::DISPLACEMENT, variables::NORMAL};
 use zelus_core::vector3::{dot, sub};
 
-use crate::interface::Interface;
+use crate::interface::{Interface, Roles};
 use crate::pairs::FacetPair;
 
 /// Entries of B below this are negative.
@@ -34,15 +36,24 @@ struct Row {
     normal: [f64; 3],
 }
 
-/// A slave node with the mean of its rows.
+/// A slave node with the sum of its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NodeRelation {
-    /// Master nodes and their weights, which add up to one.
+    /// Master nodes and their weights.
     pub weights: Vec<(u32, f64)>,
     /// What is added (length).
     pub offset: [f64; 3],
     /// Unit normal of the slave.
     pub normal: [f64; 3],
+}
+
+/// By what the rows of a node are divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weights {
+    /// The number of slave facets of the node, as in the reference program.
+    ByFacets,
+    /// The number of rows, so that the weights of a node add up to one.
+    Consistent,
 }
 
 /// What of a slave node follows its masters.
@@ -81,17 +92,12 @@ impl PairRelation {
                 (0..3).for_each(|c| apart[c] -= weight * x[c]);
                 (0..3).for_each(|c| offset[c] -= weight * u[c]);
             }
-            let gap = -dot(normal, apart);
-            (0..3).for_each(|c| offset[c] += normal[c] * gap);
+            let penetration = dot(normal, apart).max(0.0);
+            (0..3).for_each(|c| offset[c] -= normal[c] * penetration);
             let kept = master.nodes.iter().copied().zip(weights.iter().copied()).filter(|(_, w)| *w > NEGLIGIBLE);
             rows.push(Row { node, weights: kept.collect(), offset, normal });
         }
         Self { rows }
-    }
-
-    /// Whether a node follows more than one master, which is so where the meshes are unlike.
-    pub(super) fn is_mixed(&self) -> bool {
-        self.rows.iter().any(|row| row.weights.iter().all(|(_, w)| *w < 1.0 - 1e-6))
     }
 
     /// The slave nodes that follow.
@@ -100,8 +106,12 @@ impl PairRelation {
     }
 }
 
-/// The mean of the rows at each slave node; a node in several interfaces follows the first.
-pub(super) fn node_relations<'p>(pairs: impl Iterator<Item = (u32, &'p PairRelation)>) -> BTreeMap<u32, NodeRelation> {
+/// The sum of the rows at each slave node, divided as `weights` says; a node in several interfaces follows the first.
+pub(super) fn node_relations<'p>(
+    pairs: impl Iterator<Item = (u32, &'p PairRelation)>,
+    interfaces: &[Interface],
+    weights: Weights,
+) -> BTreeMap<u32, NodeRelation> {
     let mut rows: BTreeMap<u32, (u32, Vec<&Row>)> = BTreeMap::new();
     for (interface, pair) in pairs {
         for row in &pair.rows {
@@ -111,11 +121,21 @@ pub(super) fn node_relations<'p>(pairs: impl Iterator<Item = (u32, &'p PairRelat
             }
         }
     }
-    rows.into_iter().map(|(node, (_, list))| (node, mean(&list))).collect()
+    let mut facets: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+    for (at, interface) in interfaces.iter().enumerate() {
+        for node in interface.facets.iter().filter(|f| f.role == Roles::Slave).flat_map(|f| &f.nodes) {
+            *facets.entry((at as u32, *node)).or_insert(0) += 1;
+        }
+    }
+    let count = |node: u32, interface: u32, rows: usize| match weights {
+        Weights::ByFacets => facets.get(&(interface, node)).copied().unwrap_or(rows),
+        Weights::Consistent => rows,
+    };
+    rows.into_iter().map(|(node, (at, list))| (node, sum(&list, count(node, at, list.len())))).collect()
 }
 
-fn mean(rows: &[&Row]) -> NodeRelation {
-    let share = 1.0 / rows.len() as f64;
+fn sum(rows: &[&Row], count: usize) -> NodeRelation {
+    let share = 1.0 / count.max(1) as f64;
     let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
     let mut offset = [0.0; 3];
     for row in rows {
@@ -126,6 +146,11 @@ fn mean(rows: &[&Row]) -> NodeRelation {
 }
 
 impl NodeRelation {
+    /// Whether the node follows more than one master or not quite one, which is so where the meshes are unlike.
+    pub(super) fn is_mixed(&self) -> bool {
+        !matches!(self.weights[..], [(_, weight)] if (weight - 1.0).abs() < 1e-6)
+    }
+
     /// What the node is ahead of its masters: u¹ − B u², at a time level.
     pub(super) fn lead(&self, part: &ModelPart, node: u32, level: usize) -> [f64; 3] {
         let levels = part.nodes.history.get(DISPLACEMENT.name()).map_or(0, |field| field.levels.len());

@@ -12,7 +12,7 @@ use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::interface_settings::{check_search, check_slaves, segmentation};
-use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings};
+use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings, Weights};
 use crate::search::SearchSettings;
 
 /// Names of `contact_type`, each also with the ending of [`UPDATED`].
@@ -39,6 +39,7 @@ struct Whole {
     friction_coefficients: BTreeMap<String, f64>,
     reaction_check_stiffness_factor: f64,
     update_condition_relation_step: bool,
+    consistent_weights: bool,
     search_parameters: Search,
 }
 
@@ -82,6 +83,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         segmentation: segmentation(&settings)?,
         reaction_check_stiffness_factor: whole.reaction_check_stiffness_factor,
         update_relations: whole.update_condition_relation_step,
+        weights: if whole.consistent_weights { Weights::Consistent } else { Weights::ByFacets },
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = MpcInteraction::new(chosen, part)?;
