@@ -28,7 +28,7 @@ use crate::solver::UPDATE_EACH_ITERATION;
 use crate::variables::{FRICTION_COEFFICIENT, NODAL_AREA, NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 
 /// Penetration, in mesh sizes, below which a free node stays free: round-off of positions.
-const PENETRATION: f64 = 1e-9;
+const PENETRATION: f64 = 1e-12;
 
 /// What constraints enforce.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -233,13 +233,10 @@ impl MpcInteraction {
             let Some(relation) = self.nodes.get(&node) else { continue };
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             let was = part.nodes.flags.is(ACTIVE, at);
-            let now = if was {
-                let force = dot(reaction(part, node), relation.normal);
-                area > 0.0 && force < -self.release * area
-            } else {
-                let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
-                area > 0.0 && gap / area < -PENETRATION * part.nodes.values.values(&NODAL_H, 0)[at]
-            };
+            let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
+            let penetrates = gap < -PENETRATION * part.nodes.values.values(&NODAL_H, 0)[at] * area;
+            let presses = was && dot(reaction(part, node), relation.normal) < -self.release * area;
+            let now = area > 0.0 && (presses || penetrates);
             if was != now {
                 part.nodes.flags.set(ACTIVE, at, now);
                 if now && self.settings.kind == MpcKind::Frictional {

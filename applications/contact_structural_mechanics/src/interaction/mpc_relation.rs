@@ -3,7 +3,8 @@
 //! Rows of B with negative entries extrapolate, since the node is beside the master, and are left out; the rows that
 //! remain at a node are added, each divided by the number of slave facets of the node. On like meshes that is their mean.
 //! On unlike meshes more or fewer rows remain, and the weights do not add up to one unless [`Weights::Consistent`] divides
-//! by the number of rows. The offset keeps an opening of the moment the relation is made and closes a penetration.
+//! by the number of rows. The offset closes the gap of the moment the relation is made; in the first step of a run, as in
+//! the reference program, an opening is kept and closes with the second.
 
 use std::collections::BTreeMap;
 
@@ -33,6 +34,7 @@ struct Row {
     node: u32,
     weights: Vec<(u32, f64)>,
     offset: [f64; 3],
+    opening: [f64; 3],
     normal: [f64; 3],
 }
 
@@ -41,8 +43,10 @@ struct Row {
 pub(super) struct NodeRelation {
     /// Master nodes and their weights.
     pub weights: Vec<(u32, f64)>,
-    /// What is added (length).
+    /// What is added to close the gap (length).
     pub offset: [f64; 3],
+    /// The part of it that closes an opening.
+    pub opening: [f64; 3],
     /// Unit normal of the slave.
     pub normal: [f64; 3],
 }
@@ -92,10 +96,11 @@ impl PairRelation {
                 (0..3).for_each(|c| apart[c] -= weight * x[c]);
                 (0..3).for_each(|c| offset[c] -= weight * u[c]);
             }
-            let penetration = dot(normal, apart).max(0.0);
-            (0..3).for_each(|c| offset[c] -= normal[c] * penetration);
+            let gap = -dot(normal, apart);
+            (0..3).for_each(|c| offset[c] += normal[c] * gap);
+            let opening = normal.map(|n| n * gap.max(0.0));
             let kept = master.nodes.iter().copied().zip(weights.iter().copied()).filter(|(_, w)| *w > NEGLIGIBLE);
-            rows.push(Row { node, weights: kept.collect(), offset, normal });
+            rows.push(Row { node, weights: kept.collect(), offset, opening, normal });
         }
         Self { rows }
     }
@@ -137,12 +142,13 @@ pub(super) fn node_relations<'p>(
 fn sum(rows: &[&Row], count: usize) -> NodeRelation {
     let share = 1.0 / count.max(1) as f64;
     let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
-    let mut offset = [0.0; 3];
+    let (mut offset, mut opening) = ([0.0; 3], [0.0; 3]);
     for row in rows {
         row.weights.iter().for_each(|&(node, w)| *weights.entry(node).or_insert(0.0) += share * w);
         (0..3).for_each(|c| offset[c] += share * row.offset[c]);
+        (0..3).for_each(|c| opening[c] += share * row.opening[c]);
     }
-    NodeRelation { weights: weights.into_iter().collect(), offset, normal: rows[0].normal }
+    NodeRelation { weights: weights.into_iter().collect(), offset, opening, normal: rows[0].normal }
 }
 
 impl NodeRelation {
@@ -173,6 +179,7 @@ impl NodeRelation {
         out: &mut Vec<MasterSlaveConstraint>,
     ) {
         let dimension = part.info.domain_size;
+        let offset = if part.info.step <= 1 { sub(self.offset, self.opening) } else { self.offset };
         let is_free = |c: usize| !part.dofs.is_fixed(DISPLACEMENT.component(c as u8), node);
         let mut push = |component: usize, masters, constant| {
             let slave = (node, DISPLACEMENT.component(component as u8));
@@ -183,7 +190,7 @@ impl NodeRelation {
             Hold::All => {
                 for c in (0..dimension).filter(|&c| is_free(c)) {
                     let masters = self.weights.iter().map(|&(m, w)| ((m, DISPLACEMENT.component(c as u8)), w));
-                    push(c, masters.collect(), self.offset[c]);
+                    push(c, masters.collect(), offset[c]);
                 }
             }
             Hold::Normal => {
@@ -201,7 +208,7 @@ impl NodeRelation {
                         masters.push(((node, component), -factor));
                     }
                 }
-                push(chosen, masters, dot(n, self.offset) / n[chosen]);
+                push(chosen, masters, dot(n, offset) / n[chosen]);
             }
         }
     }
