@@ -4,7 +4,7 @@
 //! released when the constraint would have to pull, and held again when it penetrates. A node sticks while the tangential
 //! force of its constraint is below Coulomb's bound; beyond, that bound acts on it and on its masters instead.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -267,7 +267,14 @@ impl MpcInteraction {
             let held = reaction(part, node);
             let bound = part.nodes.values.values(&FRICTION_COEFFICIENT, 0)[at] * (-dot(held, n)).max(0.0);
             let sliding = part.nodes.flags.is(SLIP, at);
-            let wanted = if sliding { scale(moved, -1.0) } else { tangential(held) };
+            // A sliding node keeps the direction in which it began, a node that began to slide without one goes against
+            // its motion.
+            let kept = norm(before[at]) > 0.0;
+            let wanted = match (sliding, kept) {
+                (true, true) => tangential(before[at]),
+                (true, false) => scale(moved, -1.0),
+                (false, _) => tangential(held),
+            };
             // A node that slides along with its friction would gain energy: it sticks.
             let slides = if self.slip_rule == SlipRule::Pure {
                 true
@@ -282,7 +289,7 @@ impl MpcInteraction {
             }
             let size = norm(wanted);
             let resolved = f64::EPSILON * part.nodes.values.values(&NODAL_H, 0)[at];
-            if !slides || size == 0.0 || (sliding && size <= resolved) {
+            if !slides || size == 0.0 || (sliding && !kept && size <= resolved) {
                 continue;
             }
             let force = scale(wanted, bound / size);
@@ -353,7 +360,7 @@ impl Interaction for MpcInteraction {
             let nodes: Vec<u32> = self.nodes.keys().copied().collect();
             nodes.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, true));
         } else {
-            activation::start(part, &self.slaves, None, self.slip_rule);
+            activation::start(part, &self.slaves, activation::Start::ShareOfMeshSize, &BTreeSet::new(), self.slip_rule);
             friction::start_in_stick(part, &self.slaves, self.slip_rule, self.settings.friction.reset_frequency);
         }
         self.clear_forces();

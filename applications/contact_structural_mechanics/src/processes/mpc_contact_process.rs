@@ -13,7 +13,7 @@ use zelus_core::registry::Build;
 
 use super::interface_settings::{check_search, check_slaves, segmentation};
 use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings, Weights};
-use crate::search::SearchSettings;
+use crate::search::{GapCheck, SearchSettings};
 
 /// Names of `contact_type`, each also with the ending of [`UPDATED`].
 const TYPES: [(&str, MpcKind, bool); 4] = [
@@ -78,6 +78,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
+            check: GapCheck::CheckMapping,
         },
         database_step_update: whole.search_parameters.database_step_update.max(1),
         segmentation: segmentation(&settings)?,

@@ -1,0 +1,196 @@
+//! Maps a nodal variable from one surface to another that lies on it, by mortar: v_j = c Σ (M v)_j / Σ D_jj.
+
+use std::collections::BTreeMap;
+
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::model::{Field, Model, ModelPart, Named, named, variables::NORMAL};
+use zelus_core::parameters::{Interval, Settings};
+use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+use super::interface_settings::{check_positive, segmentation};
+use crate::interface::{Interface, interfaces, nodal_normals};
+use crate::mortar::SegmentationSettings;
+use crate::pairs::{FacetPair, overlapping_pairs};
+use crate::search::{GapCheck, SearchSettings};
+
+/// Least difference of unit normals of facets that face each other.
+const FACING: f64 = 0.1;
+
+/// A column of nodal values, or one component of it.
+struct Quantity {
+    column: &'static str,
+    offset: usize,
+    components: usize,
+    historical: bool,
+}
+
+impl Quantity {
+    fn new(settings: &Settings, key: &str, fallback: &str, historical: &str) -> Result<Self> {
+        let name = match settings.get_str(key)? {
+            "" => settings.get_str(fallback)?,
+            name => name,
+        };
+        let found = named(name).ok_or_else(|| {
+            settings
+                .error(key, "unknown-variable", format!("there is no variable {name:?}"))
+                .remedy("`zelus list variable` shows what there is")
+        })?;
+        let (column, offset, components) = found.column();
+        Ok(Self { column, offset, components, historical: settings.get_bool(historical)? })
+    }
+
+    fn width(&self) -> usize {
+        match named(self.column) {
+            Some(Named::Whole(name, kind)) => Named::Whole(name, kind).column().2,
+            _ => self.components,
+        }
+    }
+
+    fn field<'p>(&self, part: &'p mut ModelPart) -> Result<&'p mut Field> {
+        if self.historical {
+            return part.nodes.history.field_mut(self.column);
+        }
+        part.nodes.values.add_named(self.column, self.width());
+        part.nodes.values.field_mut(self.column)
+    }
+}
+
+struct Mapper {
+    root: String,
+    origin_part: String,
+    destination_part: String,
+    interval: Interval,
+    origin: Quantity,
+    destination: Quantity,
+    coefficient: f64,
+    search: SearchSettings,
+    segmentation: SegmentationSettings,
+    update: bool,
+    interface: Vec<Interface>,
+    pairs: Vec<FacetPair>,
+}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let required = ["origin_model_part_name", "destination_model_part_name"];
+    let settings = request.settings_with(|defaults| defaults.require(&required))?;
+    check_positive(&settings, &["search_parameters.search_factor", "distance_threshold"])?;
+    for key in ["origin_are_conditions", "destination_are_conditions"] {
+        if !settings.get_bool(key)? {
+            let fact = format!("\"{key}\" is false, but surfaces are made of conditions or of nodes of element faces");
+            return Err(settings.error(key, "invalid-value", fact).into());
+        }
+    }
+    let origin_part = settings.get_str("origin_model_part_name")?.to_owned();
+    let destination_part = settings.get_str("destination_model_part_name")?.to_owned();
+    let root = origin_part.split('.').next().unwrap_or_default().to_owned();
+    if destination_part.split('.').next() != Some(&root) {
+        let fact = "origin and destination belong to different root parts";
+        return Err(settings.error("destination_model_part_name", "unknown-model-part", fact).into());
+    }
+    let part = request.model.root_mut(&root).map_err(|e| e.at(&settings.key_place("origin_model_part_name")))?;
+    part.part(&origin_part).map_err(|e| e.at(&settings.key_place("origin_model_part_name")))?;
+    part.part(&destination_part).map_err(|e| e.at(&settings.key_place("destination_model_part_name")))?;
+    let origin = Quantity::new(&settings, "origin_variable", "origin_variable", "origin_variable_historical")?;
+    let destination =
+        Quantity::new(&settings, "destination_variable", "origin_variable", "destination_variable_historical")?;
+    if origin.components != destination.components {
+        let fact = "\"origin_variable\" and \"destination_variable\" differ in their number of components";
+        return Err(settings.error("destination_variable", "wrong-type", fact).into());
+    }
+    Ok(Box::new(Mapper {
+        root,
+        origin_part,
+        destination_part,
+        interval: Interval::from_node(settings.get("interval")?)?,
+        origin,
+        destination,
+        coefficient: settings.get_f64("mapping_coefficient")?,
+        search: SearchSettings {
+            factor: settings.get_f64("search_parameters.search_factor")?,
+            normal_orientation_threshold: FACING,
+            check: GapCheck::CheckMapping,
+        },
+        segmentation: SegmentationSettings {
+            distance_threshold: settings.get_f64("distance_threshold")?,
+            ..segmentation(&settings)?
+        },
+        update: settings.get_bool("update_interface")?,
+        interface: Vec::new(),
+        pairs: Vec::new(),
+    }))
+}
+
+impl Mapper {
+    /// The overlaps as they stand; flags of contact on the same nodes are left as they are.
+    fn find_pairs(&mut self, part: &mut ModelPart) -> Result<()> {
+        if self.interface.is_empty() {
+            let flags = part.nodes.flags.clone();
+            let key = "0".to_owned();
+            let parts = BTreeMap::from([(key.clone(), vec![self.origin_part.clone(), self.destination_part.clone()])]);
+            let slaves = BTreeMap::from([(key, vec![self.destination_part.clone()])]);
+            let found = interfaces(part, &parts, &slaves);
+            part.nodes.flags = flags;
+            self.interface = found?;
+        }
+        part.nodes.history.add(&NORMAL);
+        nodal_normals(part, &self.interface);
+        let (pairs, _) = overlapping_pairs(part, &self.interface, &self.search, &self.segmentation, &|_| false);
+        if pairs.is_empty() {
+            let fact = format!("{} and {} do not overlap: nothing is mapped", self.origin_part, self.destination_part);
+            return Err(Diagnostic::error("nothing-mapped", fact)
+                .remedy("name two surfaces that face each other")
+                .into());
+        }
+        self.pairs = pairs;
+        Ok(())
+    }
+}
+
+impl Process for Mapper {
+    fn begin_step(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root_mut(&self.root)?;
+        if !self.interval.contains(part.info.time) {
+            return Ok(());
+        }
+        if self.pairs.is_empty() || self.update {
+            self.find_pairs(part)?;
+        }
+        let count = self.origin.components;
+        let from = self.origin.field(part)?;
+        let (width, values) = (from.components, from.levels[0].clone());
+        let mut sums = vec![0.0; count * part.nodes.len()];
+        let mut areas = vec![0.0; part.nodes.len()];
+        for pair in &self.pairs {
+            let facets = &self.interface[pair.key.interface as usize].facets;
+            let (slave, master) = (&facets[pair.key.slave as usize], &facets[pair.key.master as usize]);
+            for (j, &node) in slave.nodes.iter().enumerate() {
+                areas[node as usize] += pair.operators.d[j][..slave.nodes.len()].iter().sum::<f64>();
+                for (l, &other) in master.nodes.iter().enumerate() {
+                    for c in 0..count {
+                        sums[count * node as usize + c] +=
+                            pair.operators.m[j][l] * values[width * other as usize + self.origin.offset + c];
+                    }
+                }
+            }
+        }
+        let offset = self.destination.offset;
+        let to = self.destination.field(part)?;
+        let width = to.components;
+        for (node, area) in areas.iter().enumerate().filter(|(_, area)| **area > 0.0) {
+            for c in 0..count {
+                to.levels[0][width * node + offset + c] = self.coefficient * sums[count * node + c] / area;
+            }
+        }
+        Ok(())
+    }
+}
+
+register! { Process "simple_mortar_mapper_process",
+    aliases: &["SimpleMortarMapperProcess", "basic_mapping_process", "BasicMappingProcess"],
+    about: "maps a nodal variable between two surfaces that face each other, by dual mortar",
+    defaults: include_str!("../../../../configs/processes/simple_mortar_mapper_process.json"),
+    build: Build::Process(build),
+}
