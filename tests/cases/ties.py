@@ -90,6 +90,70 @@ def tied_column(folder, requirement, lower, upper, slave="upper", rise=0.25, pro
                [material("Lower", 1, law, YOUNG, POISSON), material("Upper", 2, law, YOUNG, POISSON)], mesh, checks)
 
 
+def pressed_and_opened(folder, requirement, shape, divisions):
+    """Two confined blocks of like meshes, pressed onto each other, pulled apart and pressed again, by constraints."""
+    dim = int(shape[0])
+    up, last, size = "xyz"[dim - 1], dim - 1, [1.0, 0.8][:dim - 1]
+    lower, upper = (2.0e9, 0.3), (1.0e9, 0.2)
+    mesh = Mesh()
+    count = [divisions] * (dim - 1) + [2]
+    low = Box(mesh, "Lower", shape, count, [0.0] * dim, size + [1.0])
+    top = Box(mesh, "Upper", shape, count, [0.0] * (dim - 1) + [1.0], size + [2.0])
+    family = "Line" if dim == 2 else "Surface"
+    slave, master = top.conditions(up + "0", family), low.conditions(up + "1", family)
+    mesh.part("Slave", top.side_nodes[up + "0"], (), slave)
+    mesh.part("Interface", low.side_nodes[up + "1"] + top.side_nodes[up + "0"], (), slave + master)
+    mesh.part("Bottom", low.side_nodes[up + "0"])
+    mesh.part("Top", top.side_nodes[up + "1"])
+    constraints = [fix("Bottom", **{up: 0.0}), fix("Top", **{up: "-0.01*cos(pi*(t - 1))"})]
+    for axis in "xyz"[:last]:
+        ids = set()
+        for box in (low, top):
+            ids.update(box.side_nodes[axis + "0"] + box.side_nodes[axis + "1"])
+        constraints.append(fix(mesh.part("Sides" + axis.upper(), ids), **{axis: 0.0}))
+    m1, m2 = oedometer(*lower), oedometer(*upper)
+    checks = []
+    for time, moved in ((1.0, -0.01), (2.0, 0.01), (3.0, -0.01)):
+        pressure = max(0.0, -moved) / (1.0 / m1 + 1.0 / m2)
+        low_field, top_field = [0.0] * 4, [0.0] * 4
+        low_field[last + 1] = -pressure / m1
+        top_field[last + 1] = -pressure / m2
+        top_field[0] = moved + 2.0 * pressure / m2
+        for box, field in ((low, low_field), (top, top_field)):
+            checks.append(check("DISPLACEMENT_" + up.upper(), 1e-12, f"{box.name.lower()}.json", affine=field, time=time))
+    contact = process("mpc_contact_process",
+                      {"model_part_name": "Structure", "contact_model_part": {"0": ["Interface"]},
+                       "assume_master_slave": {"0": ["Slave"]}}, CONTACT)
+    law = "3d" if dim == 3 else "strain"
+    write_case(folder, requirement, "The confined stack has uniform pressure and affine displacement; the tolerance is that of "
+               "the solution of the equations.",
+               parameters("mesh", solver(dim, "mesh", mpc_contact_settings={"contact_type": "Frictionless"}), constraints, (),
+                          [contact], [json_output("lower.json", ["DISPLACEMENT"], "Lower"),
+                                      json_output("upper.json", ["DISPLACEMENT"], "Upper")], 3.0),
+               [material("Lower", 1, law, *lower), material("Upper", 2, law, *upper)], mesh, checks)
+
+
+def mapped_field(folder, requirement):
+    """An affine temperature of one surface reaches the unlike surface it lies on."""
+    mesh = Mesh()
+    low = Box(mesh, "Lower", "2D4N", [3, 2], [0.0, 0.0], [1.0, 1.0])
+    top = Box(mesh, "Upper", "2D4N", [5, 2], [0.0, 1.0], [1.0, 2.0])
+    mesh.part("Origin", low.side_nodes["y1"], (), low.conditions("y1", "Line"))
+    mesh.part("Destination", top.side_nodes["y0"], (), top.conditions("y0", "Line"))
+    mesh.part("Held", low.nodes + top.nodes)
+    give = process("assign_vector_variable_process", {
+        "model_part_name": "Structure.Origin", "variable_name": "VOLUME_ACCELERATION", "constrained": [False] * 3,
+        "value": ["2.0 + 3.0*X", 0.0, 0.0], "interval": [0.0, "End"]})
+    carry = process("simple_mortar_mapper_process", {
+        "origin_model_part_name": "Structure.Origin", "destination_model_part_name": "Structure.Destination",
+        "origin_variable": "VOLUME_ACCELERATION_X"}, CONTACT)
+    write_case(folder, requirement, "Mortar mapping reproduces affine fields; the tolerance is round-off.",
+               parameters("mesh", solver(2, "mesh"), [fix("Held", x=0.0, y=0.0), give, carry],
+                          outputs=[json_output("results.json", ["VOLUME_ACCELERATION"], "Destination")]),
+               [material("Lower", 1, "strain", YOUNG, POISSON), material("Upper", 2, "strain", YOUNG, POISSON)], mesh,
+               [check("VOLUME_ACCELERATION_X", 1e-12, affine=[2.0, 3.0, 0.0, 0.0])])
+
+
 def write():
     rigid_plate("constraints/rigid_plate", "Nodes tied to one of them move alike, and their loads add up.")
     rigid_plate("constraints/rigid_plate_elimination", "The elimination builder gives the answer of the block builder.",
@@ -105,3 +169,6 @@ def write():
                 process_name="mpc_contact_process")
     tied_column("mpc/tying_matching_hexahedra", "Constraints that tie matching hexahedra pass a patch test.", ("3D8N", 2), ("3D8N", 2),
                 process_name="mpc_contact_process")
+    pressed_and_opened("mpc/pressed_and_opened", "Constraints press, let go and press again.", "2D4N", 3)
+    pressed_and_opened("mpc/pressed_and_opened_hexahedra", "Constraints press, let go and press again in space.", "3D8N", 2)
+    mapped_field("mpc/mapped_field", "A field is mapped between unlike surfaces.")
