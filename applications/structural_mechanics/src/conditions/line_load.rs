@@ -11,7 +11,7 @@ use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 
-use super::load::{displacements, interpolate, pressure, register_conditions, thickness, vector_load};
+use super::load::{counts_stretch, displacements, interpolate, pressure, register_conditions, thickness, vector_load};
 use crate::variables::LINE_LOAD;
 
 /// Force per length and pressure on a line in the plane.
@@ -84,7 +84,7 @@ impl<const AXISYMMETRIC: bool, const NODES: usize, const SIZE: usize> Kernel<NOD
             if lhs.is_empty() {
                 continue;
             }
-            for (i, n_i) in n.iter().enumerate() {
+            for (i, n_i) in n.iter().enumerate().filter(|_| counts_stretch(view)) {
                 for (j, ([slope], n_j)) in dn.iter().zip(n).enumerate() {
                     for a in 0..2 {
                         for b in 0..2 {
@@ -156,7 +156,7 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SpatialLineL
                     rhs[3 * i + a] += weight * size * n * load[a];
                 }
             }
-            if lhs.is_empty() {
+            if lhs.is_empty() || !counts_stretch(view) {
                 continue;
             }
             for (i, n) in n.iter().enumerate() {

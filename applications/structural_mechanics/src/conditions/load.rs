@@ -46,6 +46,14 @@ pub(super) fn pressure<const NODES: usize>(entity: &Gather<'_, NODES>, view: &St
     out
 }
 
+/// Whether the tangent counts the stretch of the area that a load acts on: not in the first iteration of a step.
+///
+/// Contact normals of a step are those after its first iteration, which therefore is the reference program's: it leaves the
+/// stretch out. From the second iteration on the tangent is exact.
+pub(super) fn counts_stretch(view: &StepView<'_>) -> bool {
+    view.info.nl_iteration != 1
+}
+
 /// THICKNESS of the condition's properties, 1 when not given.
 pub(super) fn thickness<const NODES: usize>(entity: &Gather<'_, NODES>) -> f64 {
     entity.properties.number("THICKNESS").unwrap_or(1.0)

@@ -9,7 +9,7 @@ use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView,
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::vector3::{cross, norm, scale};
 
-use super::load::{displacements, interpolate, pressure, register_conditions, vector_load};
+use super::load::{counts_stretch, displacements, interpolate, pressure, register_conditions, vector_load};
 use crate::variables::SURFACE_LOAD;
 
 /// Force per area and pressure on a surface in space.
@@ -63,7 +63,7 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SurfaceLoad 
             if lhs.is_empty() {
                 continue;
             }
-            if load.iter().any(|q| *q != 0.0) {
+            if counts_stretch(view) && load.iter().any(|q| *q != 0.0) {
                 let unit = scale(normal, 1.0 / area);
                 let (along, across) = (cross(t2, unit), cross(unit, t1));
                 for (j, slope) in dn.iter().enumerate() {
