@@ -87,6 +87,7 @@ pub struct MpcInteraction {
     warned: bool,
     reach_warned: bool,
     saved: BTreeMap<PairKey, PairRelation>,
+    saved_forces: Vec<[f64; 3]>,
 }
 
 impl MpcInteraction {
@@ -114,6 +115,7 @@ impl MpcInteraction {
             warned: false,
             reach_warned: false,
             saved: BTreeMap::new(),
+            saved_forces: Vec::new(),
         })
     }
 
@@ -203,7 +205,8 @@ impl MpcInteraction {
                 let hold = match self.settings.kind {
                     MpcKind::Frictionless => Hold::Normal,
                     MpcKind::Frictional if part.nodes.flags.is(SLIP, node as usize) => Hold::Normal,
-                    MpcKind::Frictional | MpcKind::MeshTying => Hold::All,
+                    MpcKind::Frictional => Hold::Stick,
+                    MpcKind::MeshTying => Hold::All,
                 };
                 relation.constraints(part, node, hold, &mut next_id, &mut constraints);
             }
@@ -363,7 +366,6 @@ impl Interaction for MpcInteraction {
             activation::start(part, &self.slaves, activation::Start::ShareOfMeshSize, &BTreeSet::new(), self.slip_rule);
             friction::start_in_stick(part, &self.slaves, self.slip_rule, self.settings.friction.reset_frequency);
         }
-        self.clear_forces();
         self.write_constraints(part);
         Ok(())
     }
@@ -424,10 +426,14 @@ impl Interaction for MpcInteraction {
 
     fn save(&mut self) {
         self.saved = self.pairs.clone();
+        self.saved_forces = self.friction.as_ref().map(|friction| friction.forces.clone()).unwrap_or_default();
     }
 
     fn restore(&mut self) {
         self.pairs = std::mem::take(&mut self.saved);
+        if let Some(friction) = &mut self.friction {
+            friction.forces = std::mem::take(&mut self.saved_forces);
+        }
         self.steps_since_search = usize::MAX;
     }
 

@@ -65,8 +65,10 @@ pub enum Weights {
 pub(super) enum Hold {
     /// The displacement along the normal.
     Normal,
-    /// All components.
+    /// All components, at the offset of the relation.
     All,
+    /// All components: along the normal at the offset of the relation, in the tangent where the step began.
+    Stick,
 }
 
 fn vector(column: &[f64], node: u32) -> [f64; 3] {
@@ -186,8 +188,15 @@ impl NodeRelation {
             out.push(MasterSlaveConstraint { id: *next_id, slave, masters, constant, active: true });
             *next_id += 1;
         };
+        let offset = if hold == Hold::Stick {
+            let lead = self.lead(part, node, 1);
+            let closing = dot(self.normal, sub(offset, lead));
+            std::array::from_fn(|c| lead[c] + self.normal[c] * closing)
+        } else {
+            offset
+        };
         match hold {
-            Hold::All => {
+            Hold::All | Hold::Stick => {
                 for c in (0..dimension).filter(|&c| is_free(c)) {
                     let masters = self.weights.iter().map(|&(m, w)| ((m, DISPLACEMENT.component(c as u8)), w));
                     push(c, masters.collect(), offset[c]);

@@ -84,7 +84,11 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         segmentation: segmentation(&settings)?,
         reaction_check_stiffness_factor: whole.reaction_check_stiffness_factor,
         update_relations: whole.update_condition_relation_step,
-        weights: if whole.consistent_weights { Weights::Consistent } else { Weights::ByFacets },
+        weights: if whole.consistent_weights || kind == MpcKind::Frictional {
+            Weights::Consistent
+        } else {
+            Weights::ByFacets
+        },
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = MpcInteraction::new(chosen, part)?;
