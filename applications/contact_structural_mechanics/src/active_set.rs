@@ -123,8 +123,11 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
             (q, dot(node.tangent, node.weighted_slip) > 0.0 || least > (1.0 - threshold) * bound)
         }
         _ => {
+            // A node that enters while it moves more along the surface than into it was not held: holding it at once would
+            // tear it off again.
+            let dragged = !node.state.is_active() && norm(node.weighted_slip) > node.weighted_gap.abs();
             let q = augmented(1.0);
-            (q, norm(q) > bound)
+            (q, dragged || norm(q) > bound)
         }
     };
     let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || over;
@@ -142,14 +145,13 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         (true, 0.0) => [0.0; 3],
         (true, length) => scale(direction, bound / length),
     };
-    let tangent_part = if node.friction < LEAST_FRICTION { [0.0; 3] } else { q };
     Decision {
         pressure,
         traction,
         state: if slips { NodeState::Slip } else { NodeState::Stick },
         changed: entered,
         slip_changed: !entered && rule != SlipRule::Pure && slips != sliding,
-        multiplier: entered.then(|| scale(add(scale(node.normal, pressure), tangent_part), 1.0 / node.scale_factor)),
+        multiplier: entered.then(|| scale(add(scale(node.normal, pressure), traction), 1.0 / node.scale_factor)),
     }
 }
 
@@ -224,6 +226,11 @@ mod tests {
         let decision = alm_frictional(&node(NodeState::Inactive, [0.0; 3]), COULOMB);
         assert_eq!(decision.multiplier, Some([0.025, 0.0, -0.25]));
         assert_eq!((decision.state, decision.changed, decision.slip_changed), (NodeState::Stick, true, false));
+        // One that is dragged along more than pressed in enters sliding, with the traction of the bound.
+        let dragged = SlaveNumbers { weighted_slip: [0.6, 0.0, 0.0], ..node(NodeState::Inactive, [0.0; 3]) };
+        let decision = alm_frictional(&dragged, COULOMB);
+        assert_eq!((decision.state, decision.traction), (NodeState::Slip, [0.3, 0.0, 0.0]));
+        assert_eq!(decision.multiplier, Some([0.075, 0.0, -0.25]));
     }
 
     #[test]

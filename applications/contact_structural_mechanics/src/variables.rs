@@ -18,6 +18,7 @@ register_variable! {
     pub DYNAMIC_FACTOR: f64 = "Factor of contact forces in the step in which a gap closes.";
     pub FRICTION_COEFFICIENT: f64 = "Coulomb's coefficient of friction.";
     pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding.";
+    pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";
     pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Scale factor times normal multiplier plus penalty times weighted gap; negative when active.";
     pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";
     kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";

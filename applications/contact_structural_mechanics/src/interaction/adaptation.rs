@@ -6,6 +6,9 @@ use zelus_core::model::flags::ACTIVE;
 use crate::penalty_adaptation::{adapted_augmented_lagrangian, dynamic_factor};
 use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP};
 
+/// Least share of the penalty of the run: a gap that turns from round-off to open would otherwise take all of it away.
+const LEAST_SHARE: f64 = 1e-3;
+
 /// What is adapted.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AdaptationSettings {
@@ -29,7 +32,7 @@ impl AdaptationSettings {
         if self.acts() { slaves.iter().map(|&n| gaps[n as usize]).collect() } else { Vec::new() }
     }
 
-    /// Adapts INITIAL_PENALTY and DYNAMIC_FACTOR of the slave nodes.
+    /// Adapts INITIAL_PENALTY and DYNAMIC_FACTOR of the active slave nodes.
     ///
     /// `penalty` is the penalty of the run and `previous` the weighted gaps of the last iterate.
     pub(super) fn adapt(self, part: &mut ModelPart, slaves: &[u32], penalty: f64, previous: &[f64]) {
@@ -40,13 +43,14 @@ impl AdaptationSettings {
             let at = node as usize;
             let values = &mut part.nodes.values;
             let area = values.values(&NODAL_AREA, 0)[at];
-            if area <= 0.0 {
+            // The gap of an open node says nothing about its penalty.
+            if area <= 0.0 || !part.nodes.flags.is(ACTIVE, at) {
                 continue;
             }
             let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at] / area;
             let before = before / area;
             let mut adapted = values.values(&INITIAL_PENALTY, 0)[at];
-            if self.dynamic_factor && part.nodes.flags.is(ACTIVE, at) {
+            if self.dynamic_factor {
                 // The growth of the penalty with the gap belongs to explicit steps: implicit ones have no bound on it.
                 let (base, factor) = dynamic_factor(penalty, gap, before, self.max_gap_factor, 0.0);
                 if !self.adapt_penalty {
@@ -57,8 +61,8 @@ impl AdaptationSettings {
             if self.adapt_penalty {
                 let allowed = self.max_gap_factor * values.values(&NODAL_H, 0)[at];
                 let next = adapted_augmented_lagrangian(adapted, gap, before, allowed);
-                if next.is_normal() {
-                    adapted = next;
+                if next.is_finite() {
+                    adapted = next.max(LEAST_SHARE * penalty);
                 }
             }
             values.values_mut(&INITIAL_PENALTY, 0)[at] = adapted;

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::flags::{ACTIVE, SLIP};
+use zelus_core::model::flags::SLIP;
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::{dot, norm, scale};
+use zelus_core::vector3::{cross, dot, norm, scale};
 
 use crate::active_set::SlipRule;
 use crate::formulations::NodeState;
 use crate::interface::Interface;
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Friction, Multiplier};
-use crate::variables::{FRICTION_COEFFICIENT, NODAL_AREA, NODAL_H, TANGENT_XI, WEIGHTED_SLIP};
+use crate::variables::{FRICTION_COEFFICIENT, NODAL_AREA, NODAL_H, TANGENT_ETA, TANGENT_XI, WEIGHTED_SLIP};
 
 /// Slip, in mesh sizes, below which its direction says nothing.
 const LEAST_SLIP: f64 = 1e-6;
@@ -77,8 +77,8 @@ pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRul
 
 /// Writes TANGENT_XI of the slave nodes.
 ///
-/// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
-/// multipliers, it is that of the weighted slip. A node that has neither above round-off keeps the direction it had: at step
+/// The direction is that of the tangential multiplier of an active node. Where contact always slides, without multipliers,
+/// and for sliding nodes in space, whose direction is more than a sign, it is that of the weighted slip. A node that has neither above round-off keeps the direction it had: at step
 /// start that is a far better guess than any fixed tangent.
 pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Family, rule: SlipRule) {
     let dimension = part.info.domain_size;
@@ -97,10 +97,13 @@ pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Fami
         };
         let direction = match family.multiplier {
             Multiplier::Vector(variable) if rule != SlipRule::Pure => {
-                if part.nodes.flags.is(ACTIVE, at) {
-                    vector_of(variable.name())
-                } else {
-                    [0.0; 3]
+                let multiplier = vector_of(variable.name());
+                match NodeState::of_flags(&part.nodes.flags, at) {
+                    NodeState::Inactive => [0.0; 3],
+                    NodeState::Slip if dimension == 3 => {
+                        Some(by_slip()).filter(|s| *s != [0.0; 3]).unwrap_or(multiplier)
+                    }
+                    NodeState::Stick | NodeState::Slip => multiplier,
                 }
             }
             _ => by_slip(),
@@ -109,9 +112,16 @@ pub(super) fn write_tangents(part: &mut ModelPart, slaves: &[u32], family: &Fami
         let kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
         tangents.push(tangent(if kept { before(at) } else { direction }, normal, dimension));
     }
-    let column = part.nodes.values.values_mut(&TANGENT_XI, 0);
-    for (&node, tangent) in slaves.iter().zip(&tangents) {
-        column[3 * node as usize..3 * node as usize + 3].copy_from_slice(tangent);
+    let across: Vec<[f64; 3]> = {
+        let normals = part.nodes.history.values(&NORMAL, 0);
+        let normal = |n: u32| std::array::from_fn(|c| normals[3 * n as usize + c]);
+        slaves.iter().zip(&tangents).map(|(&n, tangent)| cross(normal(n), *tangent)).collect()
+    };
+    for (variable, vectors) in [(&TANGENT_XI, &tangents), (&TANGENT_ETA, &across)] {
+        let column = part.nodes.values.values_mut(variable, 0);
+        for (&node, vector) in slaves.iter().zip(vectors) {
+            column[3 * node as usize..3 * node as usize + 3].copy_from_slice(vector);
+        }
     }
 }
 
