@@ -232,6 +232,7 @@ impl ContactInteraction {
             }
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.carriers());
+        nodal_normals(part, &self.interfaces);
     }
 
     fn carriers(&self) -> Vec<u32> {

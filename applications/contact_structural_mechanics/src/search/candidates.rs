@@ -93,16 +93,16 @@ pub(super) fn among(
 }
 
 /// Where a facet is.
-struct Place {
+pub(super) struct Place {
     bounds: Bounds,
-    centre: [f64; 3],
-    normal: [f64; 3],
+    pub(super) centre: [f64; 3],
+    pub(super) normal: [f64; 3],
     /// Distance from the centre to the farthest node.
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 impl Place {
-    fn of(part: &ModelPart, facet: &Facet) -> Self {
+    pub(super) fn of(part: &ModelPart, facet: &Facet) -> Self {
         let mut buffer = [[0.0; 3]; 4];
         let points = positions(facet, part, &mut buffer);
         let centre: [f64; 3] = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);

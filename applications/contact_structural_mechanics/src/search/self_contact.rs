@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::dot;
+use zelus_core::vector3::{dot, sub};
 
-use super::candidates::{SearchSettings, among, facet_normal};
+use super::candidates::{Place, SearchSettings, among};
 use crate::interface::{Interface, Roles};
 
 /// Gives every facet of an open interface its role for this configuration.
@@ -21,7 +21,10 @@ pub fn assign_roles(part: &ModelPart, interface: &mut Interface, settings: &Sear
     for candidate in among(part, interface, &all, &all, settings).into_iter().filter(|c| c.within_reach) {
         let (a, b) = (&interface.facets[candidate.slave as usize], &interface.facets[candidate.master as usize]);
         let apart = a.nodes.iter().all(|n| !b.nodes.contains(n));
-        if apart && dot(facet_normal(part, a), facet_normal(part, b)) < 0.0 {
+        let (from, to) = (Place::of(part, a), Place::of(part, b));
+        // the two sides of one body look away from each other, farther behind than a facet that has come through
+        let ahead = dot(sub(to.centre, from.centre), from.normal) > -from.radius;
+        if apart && ahead && dot(from.normal, to.normal) < 0.0 {
             facing.entry(candidate.slave).or_default().push(candidate.master);
         }
     }
