@@ -212,7 +212,7 @@ fn json_is_written_by_the_strict_counter_and_checks_itself() {
         part.nodes.history.values_mut(&DISPLACEMENT, 0).iter_mut().for_each(|u| *u *= scale);
         let parameters = format!(
             r#"{{"model_part_name": "Structure.Edge", "input_file_name": "r/a.json", "time_frequency": 0.0,
-            "check_variables": ["DISPLACEMENT"], "tolerance": {tolerance}}}"#
+            "check_variables": ["DISPLACEMENT"], "tolerance": {tolerance}, "reference_uncertainty": 0.0}}"#
         );
         let mut process = make("from_json_check_result_process", &parameters, &mut model, folder.path()).0.unwrap();
         run(process.as_mut(), &mut model, 7, 0.1)
