@@ -212,7 +212,7 @@ impl Stage {
             let saved = Saved::of(model.root_mut(&self.root)?);
             let record = self.attempt(to, model, report, monitor)?;
             if record.converged {
-                self.accept(model, report)?;
+                self.accept(model, report, monitor)?;
                 if last {
                     return Ok(());
                 }
@@ -254,16 +254,13 @@ impl Stage {
         let start = Instant::now();
         let record = self.strategy.solve_step(model.root_mut(&self.root)?, monitor)?;
         report.add_seconds("solve steps", start.elapsed().as_secs_f64());
-        for warning in std::mem::take(&mut model.root_mut(&self.root)?.messages) {
-            report.warnings.push(warning.to_string());
-            monitor.warn(&warning);
-        }
+        self.pass_on_messages(model, report, monitor)?;
         monitor.end_step(&record);
         report.steps.push(record.clone());
         Ok(record)
     }
 
-    fn accept(&mut self, model: &mut Model, report: &mut RunReport) -> Result<()> {
+    fn accept(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
         self.strategy.accept_step(model.root_mut(&self.root)?)?;
         let start = Instant::now();
         for process in &mut self.processes {
@@ -284,6 +281,15 @@ impl Stage {
             }
         }
         report.add_seconds("output", start.elapsed().as_secs_f64());
+        self.pass_on_messages(model, report, monitor)
+    }
+
+    /// Hands warnings met by processes and interactions to the monitor and the report.
+    fn pass_on_messages(&self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
+        for warning in std::mem::take(&mut model.root_mut(&self.root)?.messages) {
+            report.warnings.push(warning.to_string());
+            monitor.warn(&warning);
+        }
         Ok(())
     }
 }
