@@ -219,7 +219,9 @@ impl Assembler {
         self.ensure_constant(part)?;
         let start = Instant::now();
         let view = part.view();
-        let variable = part.element_blocks.iter().chain(&part.condition_blocks).any(|b| is_variable(b.as_ref()));
+        // Follower loads are not symmetric and have a matrix of their own.
+        let variable = part.element_blocks.iter().any(|b| is_variable(b.as_ref()))
+            || part.condition_blocks.iter().any(|b| b.tangent() == Tangent::Symmetric);
         let key =
             inertia.map_or([0.0; 2], |i| [i.mass_factor + i.alpha * i.damping_factor, 1.0 + i.beta * i.damping_factor]);
         let stale = variable || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
