@@ -14,6 +14,7 @@ mod check;
 mod equilibrate;
 
 mod ordering;
+mod partition;
 
 mod symbolic;
 
@@ -33,6 +34,7 @@ mod rank;
 
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
+pub use partition::{WeightedGraph, partition_graph};
 pub use rank::rank;
 pub use solver::{DirectSettings, Engine, KrylovSettings, LinearSolver, Preconditioner, SolveError, SolveReport};
 pub use system::{Layout, Symmetry, System};

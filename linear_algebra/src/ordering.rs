@@ -117,7 +117,7 @@ fn compressed_graph(pattern: &Csr, equations: &[Vec<u32>], vertex_of: &[u32]) ->
 }
 
 /// METIS draws from one random sequence of the process, so that calls at the same time would disturb each other.
-static METIS: Mutex<()> = Mutex::new(());
+pub(crate) static METIS: Mutex<()> = Mutex::new(());
 
 /// The interior vertices in elimination order, by METIS' nested dissection.
 ///
