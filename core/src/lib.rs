@@ -10,6 +10,7 @@ pub mod vector3;
 pub mod geometry;
 pub mod registry;
 pub mod model;
+pub mod partition;
 pub mod entities;
 pub mod io;
 pub mod assembly;

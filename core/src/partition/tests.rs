@@ -1,0 +1,140 @@
+use std::collections::HashMap;
+
+use super::{Partition, Surface, partition, surfaces};
+use crate::geometry::Shape;
+use crate::model::{ModelPart, Nodes, SubPart};
+use crate::parameters::Document;
+use crate::registry::{Entry, Kind};
+
+static HEXAHEDRON: Entry =
+    Entry { cell: Some(Shape::Hex8), space: 3, ..Entry::new(Kind::Element, "TestHexahedron", file!(), line!()) };
+static QUADRILATERAL: Entry =
+    Entry { cell: Some(Shape::Quad4), space: 3, ..Entry::new(Kind::Condition, "TestQuadrilateral", file!(), line!()) };
+
+/// Two cubes of `n`³ cells on each other, their meshes apart; part `Contact` holds both touching sides.
+pub(super) fn two_blocks(n: usize) -> ModelPart {
+    let mut part = ModelPart::new("Structure");
+    let side = n + 1;
+    let number = |block: usize, i: usize, j: usize, k: usize| (block * side.pow(3) + (k * side + j) * side + i) as u32;
+    let mut points = Vec::new();
+    for block in 0..2 {
+        for k in 0..side {
+            for j in 0..side {
+                points.extend((0..side).map(|i| [i as f64, j as f64, (k + block * n) as f64].map(|x| x / n as f64)));
+            }
+        }
+    }
+    part.nodes = Nodes::new((1..=points.len()).collect(), points);
+    for block in 0..2 {
+        for (i, j, k) in (0..n * n * n).map(|at| (at % n, at / n % n, at / n / n)) {
+            let corner = |a, b, c| number(block, i + a, j + b, k + c);
+            let nodes = [
+                corner(0, 0, 0),
+                corner(1, 0, 0),
+                corner(1, 1, 0),
+                corner(0, 1, 0),
+                corner(0, 0, 1),
+                corner(1, 0, 1),
+                corner(1, 1, 1),
+                corner(0, 1, 1),
+            ];
+            part.elements.push(part.elements.len() + 1, &HEXAHEDRON, 1, &nodes);
+            let at = part.conditions.len() + 1;
+            if block == 1 && k == 0 {
+                part.conditions.push(at, &QUADRILATERAL, 1, &[nodes[3], nodes[2], nodes[1], nodes[0]]);
+            }
+        }
+    }
+    let layer = |block: usize, k: usize| (0..side * side).map(move |at| number(block, at % side, at / side, k));
+    let mut slave = SubPart::new("Slave");
+    slave.nodes = layer(1, 0).collect();
+    let mut contact = SubPart::new("Contact");
+    contact.nodes = layer(0, n).chain(layer(1, 0)).collect();
+    part.tree.children.insert("Slave".into(), slave);
+    part.tree.children.insert("Contact".into(), contact);
+    part
+}
+
+/// The surfaces of [`two_blocks`], as a deck names them.
+pub(super) fn its_surfaces(part: &ModelPart) -> Vec<Surface> {
+    let deck = r#"{"processes": {"contact": [{"Parameters": {"contact_model_part": {"0": ["Contact"]},
+        "assume_master_slave": {"0": ["Structure.Slave"]}}}]}}"#;
+    surfaces(&Document::from_str(deck, "deck.json").unwrap().root, part)
+}
+
+fn sizes(partition: &Partition) -> Vec<usize> {
+    let mut sizes = vec![0; partition.ranks];
+    partition.elements.iter().for_each(|&rank| sizes[rank as usize] += 1);
+    sizes
+}
+
+#[test]
+fn every_element_has_one_rank_and_the_loads_are_even() {
+    let part = two_blocks(6);
+    let surfaces = its_surfaces(&part);
+    for ranks in [1, 2, 3, 4, 8, 100, 432] {
+        let cut = partition(&part, &surfaces, ranks).unwrap();
+        assert_eq!(cut, partition(&part, &surfaces, ranks).unwrap(), "the same twice");
+        assert_eq!(sizes(&cut).iter().sum::<usize>(), 432);
+        assert!(sizes(&cut).iter().all(|&size| size > 0), "{ranks}");
+        let mut load = vec![0_usize; ranks];
+        cut.elements.iter().for_each(|&rank| load[rank as usize] += 1);
+        let slaves = cut.facets.iter().filter(|facet| facet.slave);
+        slaves.for_each(|facet| load[cut.elements[facet.element as usize] as usize] += super::FACET_WEIGHT as usize);
+        if ranks <= 8 {
+            let mean = load.iter().sum::<usize>() / ranks;
+            assert!(*load.iter().max().unwrap() <= mean + mean / 20 + 5, "{ranks}: {load:?}");
+        }
+    }
+}
+
+#[test]
+fn nodes_and_conditions_go_with_elements() {
+    let part = two_blocks(4);
+    let cut = partition(&part, &its_surfaces(&part), 5).unwrap();
+    let mut near: HashMap<u32, Vec<u32>> = HashMap::new();
+    for element in 0..part.elements.len() as u32 {
+        for &node in part.elements.nodes(element) {
+            near.entry(node).or_default().push(cut.elements[element as usize]);
+        }
+    }
+    for (node, owner) in cut.nodes.iter().enumerate() {
+        assert!(near[&(node as u32)].contains(owner));
+    }
+    for (condition, rank) in cut.conditions.iter().enumerate() {
+        let first = part.conditions.nodes(condition as u32)[0];
+        assert!(near[&first].contains(rank));
+    }
+    let mut owned = vec![0_usize; 5];
+    cut.nodes.iter().for_each(|&rank| owned[rank as usize] += 1);
+    assert!(owned.iter().all(|&n| n * 10 > 250 * 8 / 10 / 2), "{owned:?}");
+}
+
+#[test]
+fn facets_that_face_each_other_tend_to_share_a_rank() {
+    let part = two_blocks(6);
+    let cut = partition(&part, &its_surfaces(&part), 4).unwrap();
+    assert_eq!(cut.facets.len(), 72);
+    assert_eq!(cut.facets.iter().filter(|facet| facet.slave).count(), 36);
+    let rank = |facet: &super::ContactFacet| cut.elements[facet.element as usize];
+    let together = cut.facets.iter().filter(|facet| facet.slave).filter(|slave| {
+        cut.facets.iter().any(|master| !master.slave && master.centre == slave.centre && rank(master) == rank(slave))
+    });
+    assert!(together.count() >= 30);
+}
+
+#[test]
+fn a_deck_without_parts_of_contact_means_the_whole_skin() {
+    let part = two_blocks(2);
+    let deck = r#"{"processes": {"contact": [{"Parameters": {"contact_model_part": {"0": []}}}]}}"#;
+    let found = surfaces(&Document::from_str(deck, "deck.json").unwrap().root, &part);
+    assert_eq!(found, [Surface { whole_skin: true, ..Surface::default() }]);
+    assert_eq!(partition(&part, &found, 2).unwrap().facets.len(), 48);
+}
+
+#[test]
+fn more_ranks_than_elements_are_refused() {
+    let error = partition(&two_blocks(1), &[], 3).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("2 elements cannot be shared by 3 ranks"), "{error}");
+}
