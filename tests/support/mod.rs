@@ -18,6 +18,14 @@ pub fn scratch_copy(folder: &Path) -> tempfile::TempDir {
     scratch
 }
 
+/// Replaces a text in a file of a folder.
+pub fn change(folder: &Path, file: &str, find: &str, with: &str) {
+    let path = folder.join(file);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    assert!(text.contains(find), "{file} does not have {find:?}");
+    std::fs::write(path, text.replace(find, with)).expect("the changed file");
+}
+
 fn copy_into(from: &Path, to: &Path) {
     for entry in std::fs::read_dir(from).unwrap_or_else(|e| panic!("{}: {e}", from.display())) {
         let entry = entry.expect("a folder entry");
@@ -98,6 +106,16 @@ impl Results {
             return Err(format!("{}: no step was written", path.display()));
         }
         Ok(Self { root, times })
+    }
+
+    /// Number of steps written.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Times of the steps written.
+    pub fn times(&self) -> &[f64] {
+        &self.times
     }
 
     /// The position of a time, of the last one for `None`.

@@ -10,6 +10,8 @@ register! { Solver "ConstrainedOptimization",
     source: "eqs. D.2, D.5c",
     defaults: include_str!("../../../configs/solvers/constrained_optimization.json"),
     build: Build::Factory(&SolverDefinition {
+        variant: |_| None,
+        explicit: false,
         variables: &[("POSITION", 1)],
         scheme: |_| Ok("static".to_owned()),
         adapt: |defaults| defaults.require(&["model_part_name", "model_import_settings"]),

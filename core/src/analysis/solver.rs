@@ -6,8 +6,9 @@ use crate::model::{EntityTable, ModelPart};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registry::{self, Build, Entry, Kind};
 use crate::strategies::{
-    ConvergenceCriterion, CriterionFactory, CriterionRequest, NewtonRaphson, NewtonSettings, Scheme, SchemeFactory,
-    SchemeRequest,
+    CentralDifferences, ConvergenceCriterion, CriterionFactory, CriterionRequest, ExplicitSchemeFactory,
+    ExplicitSettings, ExplicitStrategy, NewtonRaphson, NewtonSettings, Scheme, SchemeFactory, SchemeRequest,
+    SolutionStrategy,
 };
 
 /// A variable with history on the nodes: name and number of components.
@@ -15,8 +16,12 @@ pub type NodalVariable = (&'static str, usize);
 
 /// What an application registers for a `solver_type`, as `Build::Factory(&SolverDefinition {…})`.
 pub struct SolverDefinition {
+    /// Registered solver that these settings, as the user wrote them, ask for instead; `None` for this one.
+    pub variant: fn(&Node) -> Option<&'static str>,
     /// Variables with history that every node gets.
     pub variables: &'static [NodalVariable],
+    /// Whether steps are explicit: without iterations, with a lumped mass.
+    pub explicit: bool,
     /// Registered name of the time scheme that these settings ask for.
     pub scheme: fn(&Settings) -> Result<String>,
     /// Names the deprecated spellings of settings.
@@ -33,6 +38,14 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub marks: fn(&Settings) -> Result<Vec<&'static str>>,
+}
+
+/// A time scheme of one of the two methods.
+pub enum TimeScheme {
+    /// Solved for by iteration.
+    Implicit(Box<dyn Scheme>),
+    /// From forces to motion directly.
+    Explicit(CentralDifferences),
 }
 
 /// The settings of a stage's solver, checked, with what they ask for.
@@ -53,9 +66,10 @@ impl SolverSettings {
     /// Everything that does not fit, gathered.
     pub fn new(user: &Node, report: &mut Report) -> Result<Self> {
         let solver_type = user.require("solver_type")?;
-        let entry = registry::require(Kind::Solver, solver_type.str()?).map_err(|d| d.at(solver_type.place()))?;
-        let Build::Factory(definition) = entry.build else { unreachable!("solvers register a factory") };
-        let definition = definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition");
+        let (mut entry, mut definition) = find_solver(solver_type.str()?).map_err(|e| e.at(&solver_type.place()))?;
+        if let Some(name) = (definition.variant)(user) {
+            (entry, definition) = find_solver(name)?;
+        }
         let mut own = user.clone();
         let mut extensions = Vec::new();
         let mut lenient = false;
@@ -137,12 +151,22 @@ impl SolverSettings {
     /// The time scheme.
     ///
     /// # Errors
-    /// A name that is not registered.
-    pub fn scheme(&self) -> Result<Box<dyn Scheme>> {
+    /// A name that is not registered, or a scheme of the other time integration method.
+    pub fn scheme(&self) -> Result<TimeScheme> {
         let name = (self.definition.scheme)(&self.settings)?;
         let entry = registry::require(Kind::Scheme, &name).map_err(|d| d.at(self.settings.key_place("scheme_type")))?;
         let Build::Factory(factory) = entry.build else { unreachable!("schemes register a factory") };
-        factory.downcast_ref::<SchemeFactory>().expect("a SchemeFactory")(&SchemeRequest { settings: &self.settings })
+        let request = SchemeRequest { settings: &self.settings };
+        let scheme = match factory.downcast_ref::<ExplicitSchemeFactory>() {
+            Some(make) => TimeScheme::Explicit(make(&request)?),
+            None => TimeScheme::Implicit(factory.downcast_ref::<SchemeFactory>().expect("a SchemeFactory")(&request)?),
+        };
+        if matches!(scheme, TimeScheme::Explicit(_)) != self.definition.explicit {
+            let fact = format!("\"scheme_type\" {name:?} does not fit the \"time_integration_method\"");
+            let remedy = "\"central_differences\" is explicit, all others are implicit";
+            return Err(self.settings.error("scheme_type", "scheme-method", fact).remedy(remedy).into());
+        }
+        Ok(scheme)
     }
 
     /// The convergence criterion.
@@ -162,7 +186,14 @@ impl SolverSettings {
     ///
     /// # Errors
     /// Names that are not registered.
-    pub fn strategy(&self, part: &mut ModelPart, report: &mut Report) -> Result<(NewtonRaphson, String)> {
+    pub fn strategy(&self, part: &mut ModelPart, report: &mut Report) -> Result<(Box<dyn SolutionStrategy>, String)> {
+        let scheme = match self.scheme()? {
+            TimeScheme::Explicit(scheme) => {
+                let strategy = ExplicitStrategy::new(ExplicitSettings::new(&self.settings)?, scheme, part)?;
+                return Ok((Box::new(strategy), "explicit: no linear solver".to_owned()));
+            }
+            TimeScheme::Implicit(scheme) => scheme,
+        };
         let (solver, says) = super::linear_solvers::make(&self.settings.sub("linear_solver_settings")?)?;
         let analysis = self.settings.get_str("analysis_type")?;
         if !matches!(analysis, "linear" | "non_linear") {
@@ -184,11 +215,16 @@ impl SolverSettings {
             compute_reactions: self.settings.get_bool("compute_reactions")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
         };
-        let scheme = self.scheme()?;
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
-        Ok((NewtonRaphson::new(settings, scheme, criterion, solver, part), says))
+        Ok((Box::new(NewtonRaphson::new(settings, scheme, criterion, solver, part)), says))
     }
+}
+
+fn find_solver(name: &str) -> Result<(&'static Entry, &'static SolverDefinition)> {
+    let entry = registry::require(Kind::Solver, name)?;
+    let Build::Factory(definition) = entry.build else { unreachable!("solvers register a factory") };
+    Ok((entry, definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition")))
 }
 
 /// Makes the blocks of a part from its tables: one for each kind and properties.

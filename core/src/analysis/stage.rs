@@ -14,7 +14,7 @@ use crate::model::{Fields, Flags, Model, ModelPart, Nodes, ProcessInfo};
 use crate::parameters::{Node, Settings};
 use crate::processes::{Process, ProcessRequest};
 use crate::registry::{self, Build, Kind};
-use crate::strategies::{Monitor, NewtonRaphson, StepRecord};
+use crate::strategies::{Monitor, SolutionStrategy, StepRecord};
 
 /// Halvings of a step where the solver has no `"step_cutting"` or it is true.
 const CUTS: u32 = 6;
@@ -28,7 +28,7 @@ pub(super) struct Stage {
     stepping: TimeStepping,
     /// Halvings of a step that does not converge before the run ends.
     cuts: u32,
-    strategy: NewtonRaphson,
+    strategy: Box<dyn SolutionStrategy>,
     processes: Vec<Box<dyn Process>>,
 }
 
@@ -83,7 +83,7 @@ impl Stage {
         let Some(solver) = solver else { return Err(finish(problems)) };
         let stepping = problems.absorb(solver.settings.get("time_stepping").and_then(TimeStepping::from_node));
         let cutting = solver.settings.node().get("step_cutting").map(Node::bool);
-        let cuts = if problems.absorb(cutting.unwrap_or(Ok(true))) == Some(false) { 0 } else { CUTS };
+        let mut cuts = if problems.absorb(cutting.unwrap_or(Ok(true))) == Some(false) { 0 } else { CUTS };
         problems.absorb(solver.domain_size());
         problems.absorb(solver.scheme().map(|_| ()));
         problems.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
@@ -124,6 +124,9 @@ impl Stage {
             return Err(finish(problems));
         }
         let (strategy, says) = solver.strategy(part, &mut problems)?;
+        if !strategy.can_retry() {
+            cuts = 0;
+        }
         monitor.note(&says);
         report.linear_solver = says;
         report.sizes = Sizes {
@@ -166,7 +169,7 @@ impl Stage {
             finals.absorb(process.finalize(model));
             report.outputs.extend(process.outputs());
         }
-        let seconds = self.strategy.linear_seconds;
+        let seconds = self.strategy.linear_seconds();
         for (phase, seconds) in ["linear: order", "linear: factor", "linear: solve"].into_iter().zip(seconds) {
             report.add_seconds(phase, seconds);
         }
@@ -188,7 +191,8 @@ impl Stage {
         model.root_mut(&self.root)?.info.time = self.start_time;
         let mut time = self.start_time;
         while time < self.end_time {
-            let target = time + self.stepping.next(time)?;
+            let asked = self.stepping.next(time)?;
+            let target = time + self.strategy.step_length(model.root_mut(&self.root)?, asked)?;
             self.reach(target, model, report, monitor)?;
             time = model.root(&self.root)?.info.time;
         }
@@ -209,7 +213,8 @@ impl Stage {
             let from = model.root(&self.root)?.info.time;
             let last = length >= (target - from) * (1.0 - 1e-12);
             let to = if last { target } else { from + length };
-            let saved = Saved::of(model.root_mut(&self.root)?);
+            let part = model.root_mut(&self.root)?;
+            let saved = self.strategy.can_retry().then(|| Saved::of(part));
             let record = self.attempt(to, model, report, monitor)?;
             if record.converged {
                 self.accept(model, report, monitor)?;
@@ -220,7 +225,7 @@ impl Stage {
                 continue;
             }
             let failure = record.failure.unwrap_or_default();
-            if length <= whole / f64::from(1 << self.cuts) {
+            let Some(saved) = saved.filter(|_| length > whole / f64::from(1 << self.cuts)) else {
                 let tried = match self.cuts {
                     0 => "the solver does not cut steps".to_owned(),
                     cuts => format!("{cuts} halvings of the step did not help"),
@@ -230,7 +235,7 @@ impl Stage {
                      \"time_step\", more \"max_iteration\", or look at the nodes named",
                     record.step
                 )));
-            }
+            };
             monitor.note(&format!("step {} to time {to}: {failure}; retried with half the step", record.step));
             saved.restore(model.root_mut(&self.root)?);
             length = 0.5 * (to - from);
@@ -247,7 +252,10 @@ impl Stage {
         let part = model.root_mut(&self.root)?;
         part.info.step += 1;
         part.clone_time_step(to);
-        monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
+        let announced = (part.info.step - 1) % self.strategy.announce_every() == 0;
+        if announced {
+            monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
+        }
         for process in &mut self.processes {
             process.begin_step(model)?;
         }
@@ -255,7 +263,9 @@ impl Stage {
         let record = self.strategy.solve_step(model.root_mut(&self.root)?, monitor)?;
         report.add_seconds("solve steps", start.elapsed().as_secs_f64());
         self.pass_on_messages(model, report, monitor)?;
-        monitor.end_step(&record);
+        if announced || !record.converged {
+            monitor.end_step(&record);
+        }
         report.steps.push(record.clone());
         Ok(record)
     }

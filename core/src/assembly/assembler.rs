@@ -366,6 +366,17 @@ impl Assembler {
         }
         Ok(self.mass.as_ref().expect("just made"))
     }
+
+    /// Row sums of the mass matrix, a number an unknown.
+    ///
+    /// # Errors
+    /// As [`Assembler::mass`].
+    pub fn lumped_mass(&mut self, part: &ModelPart) -> Result<Vec<f64>> {
+        let values = self.mass(part)?.to_vec();
+        let mut out = vec![0.0; part.dofs.len()];
+        self.mul_subtract(&values, &vec![-1.0; part.dofs.len()], &mut out);
+        Ok(out)
+    }
 }
 
 fn is_variable(block: &dyn EntityBlock) -> bool {

@@ -8,6 +8,9 @@ register_variable! {
     pub ACCELERATION: [f64; 3] = "Acceleration (length per time squared).";
     pub REACTION: [f64; 3] = "Force of the supports on the node: minus the residual (force).";
     pub NORMAL: [f64; 3] = "Outward unit normal of the surface at the node.";
+    pub MIDDLE_VELOCITY: [f64; 3] = "Velocity half a step after VELOCITY, in explicit integration (length per time).";
+    pub FORCE_RESIDUAL: [f64; 3] = "External minus internal forces that explicit integration accelerates (force).";
+    pub NODAL_MASS: f64 = "Lumped mass of the node in explicit integration (mass).";
     kind TIME: Scalar = "Time of the step.";
     kind DELTA_TIME: Scalar = "Length of the step in time.";
     kind STEP: Integer = "Number of the step, from 1.";

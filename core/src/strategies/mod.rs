@@ -1,25 +1,33 @@
 //! The solution of one step: time scheme, Newton's iteration, convergence criteria.
 //!
 //! A [`Scheme`] says what inertia adds and how rates follow displacements; a [`ConvergenceCriterion`] judges and changes
-//! nothing; [`NewtonRaphson`] iterates. The active set of contact is a stage of each iteration, see
+//! nothing; [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each iteration, see
 //! [`crate::entities::Interaction::after_update`].
 
 mod bossak_scheme;
+mod central_differences;
 mod criterion;
+mod critical_step;
 mod displacement_criterion;
+mod explicit;
 mod linear_solve;
 mod newton;
+mod reactions;
 mod records;
 mod residual_criterion;
 mod scheme;
+mod strategy;
 
 pub use bossak_scheme::BossakScheme;
+pub use central_differences::CentralDifferences;
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
     is_round_off, norm,
 };
 pub use displacement_criterion::DisplacementCriterion;
+pub use explicit::{ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy};
 pub use newton::{NewtonRaphson, NewtonSettings};
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
 pub use residual_criterion::ResidualCriterion;
 pub use scheme::{Scheme, SchemeFactory, SchemeRequest, StaticScheme};
+pub use strategy::SolutionStrategy;

@@ -4,12 +4,14 @@ use zelus_linear_algebra::LinearSolver;
 
 use super::criterion::{ConvergenceCriterion, Measures};
 use super::linear_solve;
+use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
+use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, impose_constraints};
-use crate::diagnostics::{Error, Result};
+use crate::diagnostics::Result;
 use crate::entities::{Interaction, SetChange};
-use crate::model::{ModelPart, variables};
+use crate::model::ModelPart;
 
 /// How a step is iterated.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,8 +33,25 @@ pub struct NewtonRaphson {
     criterion: Box<dyn ConvergenceCriterion>,
     solver: Box<dyn LinearSolver>,
     assembler: Assembler,
-    /// Seconds spent in linear solves: symbolic, numeric, solution.
-    pub linear_seconds: [f64; 3],
+    linear_seconds: [f64; 3],
+}
+
+impl SolutionStrategy for NewtonRaphson {
+    fn assembler(&self) -> &Assembler {
+        &self.assembler
+    }
+
+    fn linear_seconds(&self) -> [f64; 3] {
+        self.linear_seconds
+    }
+
+    fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
+        recorded(part, |part, interactions| self.iterate(part, interactions, monitor))
+    }
+
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        accept(part)
+    }
 }
 
 impl NewtonRaphson {
@@ -48,60 +67,6 @@ impl NewtonRaphson {
         let assembler = Assembler::new(part, &interactions, scheme.lumped_mass());
         part.interactions = interactions;
         Self { settings, scheme, criterion, solver, assembler, linear_seconds: [0.0; 3] }
-    }
-
-    /// The system of the last step.
-    pub fn assembler(&self) -> &Assembler {
-        &self.assembler
-    }
-
-    /// Solves the step whose time, fixities and prescribed values are set; the record says whether it converged.
-    ///
-    /// # Errors
-    /// A singular system, a failed solver or search. An entity that cannot be computed (e.g. inverted) makes the step
-    /// not converged instead.
-    pub fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
-        let mut interactions = std::mem::take(&mut part.interactions);
-        let result = self.iterate(part, &mut interactions, monitor);
-        let mut record = StepRecord {
-            step: part.info.step,
-            time: part.info.time,
-            delta_time: part.info.delta_time,
-            interactions: interactions
-                .iter()
-                .flat_map(|i| i.summary(part))
-                .map(|(name, value)| (name.to_owned(), value))
-                .collect(),
-            ..StepRecord::default()
-        };
-        part.interactions = interactions;
-        match result {
-            Ok((iterations, failure)) => {
-                record.iterations = iterations;
-                record.converged = failure.is_none();
-                record.failure = failure;
-            }
-            Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => {
-                record.failure = Some(Error::Input(problems).to_string());
-            }
-            Err(error) => return Err(error),
-        }
-        Ok(record)
-    }
-
-    /// The step is accepted: history advances, once.
-    ///
-    /// # Errors
-    /// An entity that cannot be computed.
-    pub fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        let mut blocks = std::mem::take(&mut part.element_blocks);
-        let result = blocks.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
-        part.element_blocks = blocks;
-        result?;
-        let mut interactions = std::mem::take(&mut part.interactions);
-        let result = interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part));
-        part.interactions = interactions;
-        result
     }
 
     fn iterate(
@@ -308,16 +273,4 @@ impl NewtonRaphson {
 
 fn constraints_version(interactions: &[Box<dyn Interaction>]) -> u64 {
     interactions.iter().fold(0, |sum, interaction| sum.wrapping_mul(31).wrapping_add(interaction.constraints_version()))
-}
-
-/// REACTION of every displacement: minus the out-of-balance force, which supports and constraints carry.
-fn write_reactions(part: &mut ModelPart, residual: &[f64]) {
-    let dofs = std::mem::take(&mut part.dofs);
-    let reaction = part.nodes.history.values_mut(&variables::REACTION, 0);
-    for (dof, r) in dofs.dofs().iter().zip(residual) {
-        if dof.variable.column == variables::DISPLACEMENT.name() {
-            reaction[3 * dof.node as usize + dof.variable.offset()] = -r;
-        }
-    }
-    part.dofs = dofs;
 }

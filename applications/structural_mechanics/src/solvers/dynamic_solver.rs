@@ -4,7 +4,7 @@ use zelus_core::analysis::{NodalVariable, SolverDefinition};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-const VARIABLES: [NodalVariable; 10] = {
+pub(super) const VARIABLES: [NodalVariable; 10] = {
     let [a, b, c, d, e, f, g, h] = super::VARIABLES;
     [a, b, c, d, e, f, g, h, ("VELOCITY", 3), ("ACCELERATION", 3)]
 };
@@ -14,14 +14,19 @@ register! { Solver "Dynamic",
     about: "motion with inertia, integrated in time by a scheme",
     defaults: include_str!("../../../../configs/solvers/dynamic.json"),
     build: Build::Factory(&SolverDefinition {
+        variant: |user| {
+            let method = user.get("time_integration_method").and_then(|method| method.str().ok());
+            (method == Some("explicit")).then_some("ExplicitDynamic")
+        },
         variables: &VARIABLES,
+        explicit: false,
         scheme: |settings| {
             let method = settings.get_str("time_integration_method")?;
             if method != "implicit" {
                 let fact = format!("\"time_integration_method\" is \"{method}\"");
                 return Err(settings
                     .error("time_integration_method", "time-integration", fact)
-                    .remedy("use \"implicit\"")
+                    .remedy("use \"implicit\" or \"explicit\"")
                     .into());
             }
             settings.get_str("scheme_type").map(str::to_owned)

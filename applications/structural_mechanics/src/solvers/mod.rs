@@ -1,6 +1,7 @@
 //! The solvers of structural problems, by `solver_type`.
 
 mod dynamic_solver;
+mod explicit_solver;
 mod static_solver;
 
 use zelus_core::analysis::NodalVariable;

@@ -1,0 +1,296 @@
+//! Explicit integration: no iteration, one residual a step, a diagonal mass.
+//!
+//! Contact takes part as in Newton's iteration, but once a step and at the old positions: `begin_step`, `after_prediction`
+//! and `after_update` of each interaction, then its blocks in the residual. An interaction that shortens the steps while
+//! it acts sets the mark CONTACT and the value DELTA_TIME_FACTOR_FOR_CONTACT of [`crate::model::ProcessInfo`].
+
+use super::central_differences::CentralDifferences;
+use super::critical_step::critical_step;
+use super::reactions::write_reactions;
+use super::records::{IterationRecord, Monitor, StepRecord};
+use super::scheme::SchemeRequest;
+use super::strategy::{SolutionStrategy, accept, recorded};
+use crate::assembly::{Assembler, Inertia, impose_constraints};
+use crate::diagnostics::{Diagnostic, Result};
+use crate::entities::Interaction;
+use crate::model::ModelPart;
+use crate::model::variables::{ACCELERATION, DISPLACEMENT, FORCE_RESIDUAL, NODAL_MASS, VELOCITY};
+use crate::parameters::Settings;
+
+/// Part of the critical step that a predicted step takes.
+const SAFETY: f64 = 0.8;
+/// Steps between two that are announced.
+const ANNOUNCED: usize = 100;
+
+/// Makes the update of an explicit scheme; registered as `Build::Factory(&(make as ExplicitSchemeFactory))`.
+pub type ExplicitSchemeFactory = fn(&SchemeRequest<'_>) -> Result<CentralDifferences>;
+
+/// How explicit steps are made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExplicitSettings {
+    /// 0: the deck's steps; 1: the critical step of the start; 2 and more: estimated again while running.
+    pub prediction_level: usize,
+    /// Steps between two estimates.
+    pub refresh: usize,
+    /// Longest step that a prediction may give.
+    pub max_delta_time: f64,
+    /// Rayleigh's factors of mass (1/time) and stiffness (time).
+    pub rayleigh: [f64; 2],
+    /// Whether prescribed unknowns move to the values they are given.
+    pub follow_prescribed: bool,
+    /// Whether REACTION is computed.
+    pub compute_reactions: bool,
+    /// Whether nodes follow DISPLACEMENT.
+    pub move_mesh: bool,
+}
+
+impl ExplicitSettings {
+    /// From the solver settings.
+    ///
+    /// # Errors
+    /// Values that make no sense, with their places.
+    pub fn new(settings: &Settings) -> Result<Self> {
+        let max_delta_time = settings.get_f64("max_delta_time")?;
+        if max_delta_time <= 0.0 {
+            let fact = format!("\"max_delta_time\" is {max_delta_time}, it must be positive");
+            return Err(settings.error("max_delta_time", "time-step", fact).remedy("1.0 is the usual value").into());
+        }
+        Ok(Self {
+            prediction_level: settings.get_usize("time_step_prediction_level")?,
+            refresh: settings.get_usize("delta_time_refresh")?.max(1),
+            max_delta_time,
+            rayleigh: [settings.get_f64("rayleigh_alpha")?, settings.get_f64("rayleigh_beta")?],
+            follow_prescribed: settings.get_bool("follow_prescribed_motion")?,
+            compute_reactions: settings.get_bool("compute_reactions")?,
+            move_mesh: settings.get_bool("move_mesh_flag")?,
+        })
+    }
+}
+
+/// Steps of an explicit scheme with its lumped mass.
+pub struct ExplicitStrategy {
+    settings: ExplicitSettings,
+    scheme: CentralDifferences,
+    assembler: Assembler,
+    /// Lumped mass of each unknown.
+    mass: Vec<f64>,
+    /// The predicted step and the steps made since.
+    predicted: Option<(f64, usize)>,
+    warned: bool,
+}
+
+impl ExplicitStrategy {
+    /// Numbers the unknowns of `part`, whose blocks and interactions are ready, and lumps the mass.
+    ///
+    /// # Errors
+    /// Lagrange multipliers, which have no mass; an entity that cannot be computed.
+    pub fn new(settings: ExplicitSettings, scheme: CentralDifferences, part: &mut ModelPart) -> Result<Self> {
+        let interactions = std::mem::take(&mut part.interactions);
+        let mut assembler = Assembler::new(part, &interactions, true);
+        part.interactions = interactions;
+        if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.multiplier) {
+            let fact = format!("explicit integration cannot carry the Lagrange multipliers {}", dof.variable.column);
+            let remedy = "use contact by penalty, \"mortar_type\": \"PenaltyContactFrictionless\"";
+            return Err(Diagnostic::error("explicit-multipliers", fact).remedy(remedy).into());
+        }
+        scheme.prepare(part);
+        part.nodes.history.add(&FORCE_RESIDUAL);
+        let mass = assembler.lumped_mass(part)?;
+        let mut worst: Option<(usize, f64)> = None;
+        let column = part.nodes.values.values_mut(&NODAL_MASS, 0);
+        for (dof, &m) in part.dofs.dofs().iter().zip(&mass) {
+            column[dof.node as usize] = m;
+            if worst.is_none_or(|(_, smallest)| m < smallest) {
+                worst = Some((part.nodes.ids[dof.node as usize], m));
+            }
+        }
+        if let Some((node, m)) = worst.filter(|(_, m)| *m <= 0.0) {
+            let fact = format!("the lumped mass of node {node} is {m}, explicit integration needs a positive one");
+            let remedy = "give a DENSITY, or elements whose lumped mass is positive (e.g. 2D4N instead of 2D8N)";
+            return Err(Diagnostic::error("lumped-mass", fact).remedy(remedy).into());
+        }
+        Ok(Self { settings, scheme, assembler, mass, predicted: None, warned: false })
+    }
+
+    /// Estimates the longest stable step in the present state.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn critical_step(&mut self, part: &mut ModelPart) -> Result<f64> {
+        let interactions = std::mem::take(&mut part.interactions);
+        let prepared = self.assembler.begin_step(part, &interactions);
+        let result = prepared.and_then(|()| self.assembler.tangents(part, &interactions, None));
+        part.interactions = interactions;
+        result?;
+        Ok(critical_step(&self.assembler, &self.reduced_mass(), self.settings.rayleigh))
+    }
+
+    /// Mass of each equation; what slaves carry is lumped on their masters.
+    fn reduced_mass(&self) -> Vec<f64> {
+        let equations = self.assembler.equations();
+        let mut carried = equations.expand(&vec![1.0; equations.len()]);
+        carried.iter_mut().zip(&self.mass).for_each(|(share, m)| *share *= m);
+        equations.reduce(&carried)
+    }
+
+    fn advance(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+    ) -> Result<(Vec<IterationRecord>, Option<String>)> {
+        part.info.nl_iteration = 0;
+        let targets = self.assembler.values(part);
+        self.step_back(part);
+        for interaction in interactions.iter_mut() {
+            interaction.begin_step(part)?;
+        }
+        self.assembler.begin_step(part, interactions)?;
+        for interaction in interactions.iter_mut() {
+            interaction.after_prediction(part)?;
+            interaction.after_update(part, 1)?;
+        }
+        self.assembler.begin_step(part, interactions)?;
+        let damping = self.damping(part);
+        let residual = self.assembler.residual(part, interactions, damping.as_ref())?;
+        let equations = self.assembler.equations();
+        let force = equations.reduce(&residual);
+        let mass = self.reduced_mass();
+        let acceleration = equations.expand(&force.iter().zip(&mass).map(|(f, m)| f / m).collect::<Vec<f64>>());
+        let start = self.assembler.values(part);
+        let moved = (0..targets.len()).find(|&n| equations.is_fixed(n) && targets[n] != start[n]);
+        let target = |n: usize| {
+            let follow = self.settings.follow_prescribed;
+            equations.is_fixed(n).then(|| if follow { targets[n] } else { start[n] })
+        };
+        let dofs = std::mem::take(&mut part.dofs);
+        self.scheme.advance(&mut part.nodes.history, &dofs, &acceleration, part.info.delta_time, target);
+        part.dofs = dofs;
+        if !part.constraints.is_empty() {
+            impose_constraints(&mut part.nodes, &part.constraints);
+        }
+        self.write_residual(part, &residual);
+        if self.settings.compute_reactions {
+            write_reactions(part, &self.unbalanced(part, &residual));
+        }
+        if self.settings.move_mesh {
+            part.move_mesh();
+        }
+        if let Some(number) = moved.filter(|_| !self.settings.follow_prescribed) {
+            self.warn_of_motion(part, number);
+        }
+        let broken = self.assembler.values(part).iter().position(|v| !v.is_finite());
+        Ok((Vec::new(), broken.map(|number| self.explain(part, number))))
+    }
+
+    /// Puts prescribed unknowns back to where they are now: forces are those of the step's start.
+    fn step_back(&self, part: &mut ModelPart) {
+        for dof in part.dofs.dofs() {
+            if part.dofs.is_fixed(dof.variable, dof.node)
+                && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
+            {
+                let at = dof.node as usize * field.components + dof.variable.offset();
+                field.levels[0][at] = field.levels[1][at];
+            }
+        }
+    }
+
+    /// Damping forces of the velocity stored with the last step.
+    fn damping(&self, part: &ModelPart) -> Option<Inertia> {
+        let velocity = part.nodes.history.values(&VELOCITY, 0);
+        let of = |node: u32, offset: usize| velocity[3 * node as usize + offset];
+        Some(Inertia {
+            mass_factor: 0.0,
+            damping_factor: 0.0,
+            alpha: self.settings.rayleigh[0],
+            beta: self.settings.rayleigh[1],
+            acceleration: vec![0.0; part.dofs.len()],
+            velocity: part.dofs.dofs().iter().map(|dof| of(dof.node, dof.variable.offset())).collect(),
+        })
+        .filter(|inertia| inertia.alpha != 0.0 || inertia.beta != 0.0)
+    }
+
+    /// What supports and constraints must carry: the residual less the inertia.
+    fn unbalanced(&self, part: &ModelPart, residual: &[f64]) -> Vec<f64> {
+        let acceleration = part.nodes.history.values(&ACCELERATION, 0);
+        let of = |node: u32, offset: usize| acceleration[3 * node as usize + offset];
+        let forces = part.dofs.dofs().iter().zip(residual).zip(&self.mass);
+        forces.map(|((dof, r), m)| r - m * of(dof.node, dof.variable.offset())).collect()
+    }
+
+    fn write_residual(&self, part: &mut ModelPart, residual: &[f64]) {
+        let column = part.nodes.history.values_mut(&FORCE_RESIDUAL, 0);
+        for (dof, r) in part.dofs.dofs().iter().zip(residual) {
+            if dof.variable.column == DISPLACEMENT.name() {
+                column[3 * dof.node as usize + dof.variable.offset()] = *r;
+            }
+        }
+    }
+
+    fn warn_of_motion(&mut self, part: &mut ModelPart, number: usize) {
+        if !std::mem::replace(&mut self.warned, true) {
+            let dof = &part.dofs.dofs()[number];
+            let node = part.nodes.ids[dof.node as usize];
+            let fact =
+                format!("{} of node {node} is fixed and given another value: it stays where it is", dof.variable);
+            let remedy = "explicit integration holds fixed unknowns, as Kratos does; \"follow_prescribed_motion\": true \
+                          in the solver settings moves them";
+            part.messages.push(Diagnostic::warning("prescribed-motion", fact).remedy(remedy));
+        }
+    }
+
+    fn explain(&self, part: &ModelPart, number: usize) -> String {
+        let dof = &part.dofs.dofs()[number];
+        let node = part.nodes.ids[dof.node as usize];
+        format!("{} of node {node} is no longer finite: the step is longer than the critical one", dof.variable)
+    }
+}
+
+impl SolutionStrategy for ExplicitStrategy {
+    fn step_length(&mut self, part: &mut ModelPart, asked: f64) -> Result<f64> {
+        let stale = match self.predicted {
+            None => true,
+            Some((_, steps)) => self.settings.prediction_level > 1 && steps >= self.settings.refresh,
+        };
+        if stale {
+            let critical = self.critical_step(part)?;
+            if self.settings.prediction_level == 0 && asked > critical {
+                let fact = format!("the step {asked:.3e} is longer than the critical one, {critical:.3e}");
+                let remedy = "the motion can grow without bound: shorten \"time_step\", or let \
+                              \"time_step_prediction_level\": 1 choose it";
+                part.messages.push(Diagnostic::warning("critical-step", fact).remedy(remedy));
+            }
+            self.predicted = Some(((SAFETY * critical).min(self.settings.max_delta_time), 0));
+        }
+        let mut length = asked;
+        if let Some((predicted, steps)) = &mut self.predicted {
+            *steps += 1;
+            if self.settings.prediction_level > 0 {
+                length = *predicted;
+            }
+        }
+        if part.info.is("CONTACT") {
+            length *= part.info.value_or("DELTA_TIME_FACTOR_FOR_CONTACT", 1.0);
+        }
+        Ok(length)
+    }
+
+    fn can_retry(&self) -> bool {
+        false
+    }
+
+    fn announce_every(&self) -> usize {
+        ANNOUNCED
+    }
+
+    fn solve_step(&mut self, part: &mut ModelPart, _monitor: &mut dyn Monitor) -> Result<StepRecord> {
+        recorded(part, |part, interactions| self.advance(part, interactions))
+    }
+
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        accept(part)
+    }
+
+    fn assembler(&self) -> &Assembler {
+        &self.assembler
+    }
+}

@@ -1,0 +1,97 @@
+//! What the stage asks of the solution of a step, whether it iterates or not.
+
+use super::records::{IterationRecord, Monitor, StepRecord};
+use crate::assembly::Assembler;
+use crate::diagnostics::{Error, Result};
+use crate::entities::Interaction;
+use crate::model::ModelPart;
+
+/// Solves the steps of one model part, one after another.
+pub trait SolutionStrategy: Send {
+    /// Length of the next step, from the one that `time_stepping` gives.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    fn step_length(&mut self, _part: &mut ModelPart, asked: f64) -> Result<f64> {
+        Ok(asked)
+    }
+
+    /// Whether a step that fails may be tried again in shorter ones.
+    fn can_retry(&self) -> bool {
+        true
+    }
+
+    /// Steps between two that are announced: more than 1 where steps are many and short.
+    fn announce_every(&self) -> usize {
+        1
+    }
+
+    /// Solves the step whose time, fixities and prescribed values are set; the record says whether it converged.
+    ///
+    /// # Errors
+    /// A singular system, a failed solver or search. An entity that cannot be computed (e.g. inverted) makes the step
+    /// not converged instead.
+    fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord>;
+
+    /// The step is accepted: history advances, once.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()>;
+
+    /// The system of the last step.
+    fn assembler(&self) -> &Assembler;
+
+    /// Seconds spent in linear solves: symbolic, numeric, solution.
+    fn linear_seconds(&self) -> [f64; 3] {
+        [0.0; 3]
+    }
+}
+
+/// Lets blocks and interactions advance their history.
+///
+/// # Errors
+/// An entity that cannot be computed.
+pub(super) fn accept(part: &mut ModelPart) -> Result<()> {
+    let mut blocks = std::mem::take(&mut part.element_blocks);
+    let result = blocks.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
+    part.element_blocks = blocks;
+    result?;
+    let mut interactions = std::mem::take(&mut part.interactions);
+    let result = interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part));
+    part.interactions = interactions;
+    result
+}
+
+/// Runs `solve` on a part without its interactions and puts down what came of it: iterations and the reason of a failure.
+///
+/// # Errors
+/// As `solve`, but an entity that cannot be computed becomes the reason of a failure.
+pub(super) fn recorded<R>(part: &mut ModelPart, solve: R) -> Result<StepRecord>
+where
+    R: FnOnce(&mut ModelPart, &mut [Box<dyn Interaction>]) -> Result<(Vec<IterationRecord>, Option<String>)>,
+{
+    let mut interactions = std::mem::take(&mut part.interactions);
+    let result = solve(part, &mut interactions);
+    let numbers = interactions.iter().flat_map(|i| i.summary(part));
+    let mut record = StepRecord {
+        step: part.info.step,
+        time: part.info.time,
+        delta_time: part.info.delta_time,
+        interactions: numbers.map(|(name, value)| (name.to_owned(), value)).collect(),
+        ..StepRecord::default()
+    };
+    part.interactions = interactions;
+    match result {
+        Ok((iterations, failure)) => {
+            record.iterations = iterations;
+            record.converged = failure.is_none();
+            record.failure = failure;
+        }
+        Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => {
+            record.failure = Some(Error::Input(problems).to_string());
+        }
+        Err(error) => return Err(error),
+    }
+    Ok(record)
+}
