@@ -1,5 +1,6 @@
 //! Roles of facets whose sides a deck leaves open: each facet that meets others becomes a slave, those masters.
 
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, VecDeque};
 
 use zelus_core::model::ModelPart;
@@ -10,7 +11,8 @@ use crate::interface::{Interface, Roles};
 
 /// Gives every facet of an open interface its role for this configuration.
 ///
-/// Facets are visited along shared nodes from the first one on. One without a role that faces others becomes a slave, and
+/// Facets are visited along shared nodes, in an order given by where they are (the reference program's is that of their
+/// numbers). One without a role that faces others becomes a slave, and
 /// those of them that share no node with it nor with another slave become masters. A facet some of whose nodes are masters
 /// is a master; one that meets nothing stays open.
 pub fn assign_roles(part: &ModelPart, interface: &mut Interface, settings: &SearchSettings) {
@@ -29,7 +31,7 @@ pub fn assign_roles(part: &ModelPart, interface: &mut Interface, settings: &Sear
         }
     }
     let mut side: BTreeMap<u32, Roles> = BTreeMap::new();
-    for facet in walk(interface) {
+    for facet in walk(part, interface) {
         let nodes = interface.facets[facet as usize].nodes.clone();
         if interface.facets[facet as usize].role != Roles::Open
             || nodes.iter().any(|n| side.get(n) == Some(&Roles::Master))
@@ -67,25 +69,57 @@ pub fn assign_roles(part: &ModelPart, interface: &mut Interface, settings: &Sear
     }
 }
 
-/// Facets in the order in which they are reached over shared nodes, from the first one on.
-fn walk(interface: &Interface) -> Vec<u32> {
+/// Facets in the order in which they are reached over shared nodes, from that with the largest coordinates on.
+///
+/// The order comes from initial coordinates alone, so that numbering a mesh otherwise changes no role.
+fn walk(part: &ModelPart, interface: &Interface) -> Vec<u32> {
     let mut of_node: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for (at, facet) in interface.facets.iter().enumerate() {
-        facet.nodes.iter().for_each(|&n| of_node.entry(n).or_default().push(at as u32));
+    let in_space = order_in_space(part, interface);
+    for &facet in &in_space {
+        interface.facets[facet as usize].nodes.iter().for_each(|&n| of_node.entry(n).or_default().push(facet));
     }
-    let mut seen = vec![false; interface.facets.len()];
-    let mut order = Vec::with_capacity(seen.len());
-    for start in 0..seen.len() as u32 {
+    let mut place = vec![0u32; in_space.len()];
+    in_space.iter().enumerate().for_each(|(at, &facet)| place[facet as usize] = at as u32);
+    let mut seen = vec![false; in_space.len()];
+    let mut order = Vec::with_capacity(in_space.len());
+    let mut next: Vec<u32> = Vec::new();
+    for start in in_space {
         let mut queue = VecDeque::from([start]);
         while let Some(facet) = queue.pop_front() {
             if std::mem::replace(&mut seen[facet as usize], true) {
                 continue;
             }
             order.push(facet);
-            for node in &interface.facets[facet as usize].nodes {
-                queue.extend(of_node[node].iter().filter(|&&f| !seen[f as usize]));
-            }
+            next.clear();
+            next.extend(interface.facets[facet as usize].nodes.iter().flat_map(|node| &of_node[node]));
+            next.retain(|&f| !seen[f as usize]);
+            next.sort_unstable_by_key(|&f| place[f as usize]);
+            next.dedup();
+            queue.extend(&next);
         }
     }
+    order
+}
+
+/// Facets sorted by their nodes' initial coordinates, the largest first, those on the same points by their normals.
+fn order_in_space(part: &ModelPart, interface: &Interface) -> Vec<u32> {
+    let descending = |a: &[f64; 3], b: &[f64; 3]| {
+        a.iter().zip(b).map(|(a, b)| b.total_cmp(a)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+    };
+    let keys: Vec<(Vec<[f64; 3]>, [f64; 3])> = interface
+        .facets
+        .iter()
+        .map(|facet| {
+            let mut points: Vec<[f64; 3]> = facet.nodes.iter().map(|&n| part.nodes.initial[n as usize]).collect();
+            points.sort_unstable_by(descending);
+            (points, Place::of(part, facet).normal)
+        })
+        .collect();
+    let mut order: Vec<u32> = (0..keys.len() as u32).collect();
+    order.sort_by(|&a, &b| {
+        let (a, b) = (&keys[a as usize], &keys[b as usize]);
+        let points = a.0.iter().zip(&b.0).map(|(a, b)| descending(a, b)).find(|o| o.is_ne());
+        points.unwrap_or_else(|| a.0.len().cmp(&b.0.len()).then_with(|| descending(&a.1, &b.1)))
+    });
     order
 }

@@ -1,0 +1,175 @@
+//! Numbering a mesh otherwise changes no result: every case again with all its numbers reversed.
+
+mod support;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use support::{read_json, root, said, scratch_copy, zelus};
+
+/// Difference allowed, relative to the largest value of the quantity.
+///
+/// Decks stop at relative residuals of 1e-9 and below; sums in another order differ by round-off.
+const TOLERANCE: f64 = 1e-9;
+
+/// Values below are zero but for round-off; the cases are of size one.
+const ZERO: f64 = 1e-18;
+
+type Ids = BTreeMap<u64, u64>;
+
+/// New numbers for the nodes, elements and conditions of a mesh file, and its text with them, in reversed order.
+fn reversed(text: &str) -> (Ids, String) {
+    let lines: Vec<Vec<&str>> = text
+        .lines()
+        .map(|line| line.split("//").next().expect("a first part").split_whitespace().collect())
+        .filter(|words: &Vec<&str>| !words.is_empty())
+        .collect();
+    let mut ids: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
+    for (block, words) in in_blocks(&lines) {
+        if matches!(block, "Nodes" | "Elements" | "Conditions") {
+            ids.entry(block).or_default().push(words[0].parse().expect("an id"));
+        }
+    }
+    let number = |kind: &str| -> Ids {
+        let mut old = ids.get(kind).cloned().unwrap_or_default();
+        old.sort_unstable();
+        old.iter().copied().zip(old.iter().rev().copied()).collect()
+    };
+    let (nodes, elements, conditions) = (number("Nodes"), number("Elements"), number("Conditions"));
+    let renumber = |ids: &Ids, word: &str| ids[&word.parse().expect("an id")].to_string();
+    let mut out: Vec<String> = Vec::new();
+    let mut pending: Vec<String> = Vec::new();
+    let mut blocks: Vec<&str> = Vec::new();
+    for words in &lines {
+        match words[0] {
+            "Begin" => {
+                out.append(&mut pending);
+                blocks.push(words[1]);
+                out.push(words.join(" "));
+            }
+            "End" => {
+                if matches!(blocks.pop(), Some("Nodes" | "Elements" | "Conditions")) {
+                    pending.reverse();
+                }
+                out.append(&mut pending);
+                out.push(words.join(" "));
+            }
+            _ => {
+                let block = *blocks.last().expect("inside a block");
+                let new: Vec<String> = words
+                    .iter()
+                    .enumerate()
+                    .map(|(at, word)| match (block, at) {
+                        ("Nodes" | "NodalData", 0) | ("SubModelPartNodes", _) => renumber(&nodes, word),
+                        ("Elements" | "ElementalData", 0) | ("SubModelPartElements", _) => renumber(&elements, word),
+                        ("Conditions" | "ConditionalData", 0) | ("SubModelPartConditions", _) => {
+                            renumber(&conditions, word)
+                        }
+                        ("Elements" | "Conditions", 2..) => renumber(&nodes, word),
+                        ("Constraints", 3..) if words.len() == 5 => renumber(&nodes, word),
+                        _ => (*word).to_owned(),
+                    })
+                    .collect();
+                pending.push(new.join(" "));
+            }
+        }
+    }
+    (nodes, out.join("\n") + "\n")
+}
+
+/// The lines inside blocks, each with the name of its block.
+fn in_blocks<'a>(lines: &'a [Vec<&'a str>]) -> Vec<(&'a str, &'a [&'a str])> {
+    let mut blocks = Vec::new();
+    let mut found = Vec::new();
+    for words in lines {
+        match words[0] {
+            "Begin" => blocks.push(words[1]),
+            "End" => _ = blocks.pop(),
+            _ => found.push((*blocks.last().expect("inside a block"), words.as_slice())),
+        }
+    }
+    found
+}
+
+/// Nodal histories of all results files of a folder: (file, variable) → node → values over time.
+fn histories(folder: &Path) -> BTreeMap<(String, String), BTreeMap<u64, Vec<f64>>> {
+    let mut found: BTreeMap<(String, String), BTreeMap<u64, Vec<f64>>> = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path()) {
+        if entry.extension().is_none_or(|e| e != "json") {
+            continue;
+        }
+        let file = entry.file_name().expect("a name").to_string_lossy().into_owned();
+        let Ok(root) = read_json(&entry) else { continue };
+        for (key, values) in root.as_object().into_iter().flatten() {
+            let Some(id) = key.strip_prefix("NODE_").and_then(|id| id.parse().ok()) else { continue };
+            for (variable, history) in values.as_object().into_iter().flatten() {
+                let history = history.as_array().into_iter().flatten().filter_map(|v| v.as_f64()).collect();
+                found.entry((file.clone(), variable.clone())).or_default().insert(id, history);
+            }
+        }
+    }
+    found
+}
+
+fn run(folder: &Path) -> Result<(), String> {
+    let output = zelus(folder, &["run", "ProjectParameters.json"]);
+    if output.status.success() { Ok(()) } else { Err(format!("exit {:?}\n{}", output.status.code(), said(&output))) }
+}
+
+/// What differs between a deck and the same deck numbered otherwise.
+fn difference(folder: &Path) -> Result<(), String> {
+    let (one, other) = (scratch_copy(folder), scratch_copy(folder));
+    let mesh = std::fs::read_dir(folder)
+        .expect("a folder")
+        .map(|e| e.expect("an entry").file_name())
+        .find(|name| name.to_string_lossy().ends_with(".mdpa"))
+        .ok_or("no mesh")?;
+    let text = std::fs::read_to_string(folder.join(&mesh)).map_err(|e| e.to_string())?;
+    let (ids, text) = reversed(&text);
+    std::fs::write(other.path().join(&mesh), text).map_err(|e| e.to_string())?;
+    run(one.path())?;
+    run(other.path()).map_err(|said| format!("numbered otherwise: {said}"))?;
+    let (one, other) = (histories(one.path()), histories(other.path()));
+    if one.is_empty() {
+        return Err("nothing is compared".into());
+    }
+    let stem = |variable: &str| variable.trim_end_matches(['X', 'Y', 'Z']).to_owned();
+    let mut scale: BTreeMap<String, f64> = BTreeMap::new();
+    for ((_, variable), nodes) in &one {
+        let largest = scale.entry(stem(variable)).or_insert(0.0);
+        *largest = nodes.values().flatten().fold(*largest, |m, v| m.max(v.abs()));
+    }
+    for (key, nodes) in &one {
+        for (id, history) in nodes {
+            let again = other.get(key).and_then(|n| n.get(&ids[id])).ok_or(format!("{key:?}: node {id} is missing"))?;
+            for (step, (a, b)) in history.iter().zip(again).enumerate() {
+                let allowed = (TOLERANCE * scale[&stem(&key.1)]).max(ZERO);
+                if a.is_nan() || b.is_nan() || (a - b).abs() > allowed {
+                    return Err(format!("{key:?} at node {id}, step {step}: {a:e} and {b:e}, allowed {allowed:.1e}"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn decks_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path()) {
+        if entry.is_dir() {
+            decks_below(&entry, found);
+        } else if entry.file_name().is_some_and(|name| name == "case.json") {
+            found.push(folder.to_owned());
+        }
+    }
+}
+
+#[test]
+fn reversed_numbers_change_no_result() {
+    let mut decks = Vec::new();
+    decks_below(&root().join("tests/cases"), &mut decks);
+    decks.sort();
+    let problems: Vec<String> = decks
+        .iter()
+        .filter_map(|deck| difference(deck).err().map(|problem| format!("{}: {problem}", deck.display())))
+        .collect();
+    assert!(problems.is_empty(), "{} of {} decks:\n{}", problems.len(), decks.len(), problems.join("\n"));
+}
