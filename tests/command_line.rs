@@ -116,6 +116,27 @@ fn a_step_that_does_not_converge_ends_the_run_with_what_was_accepted_before_it()
     let results = Results::read(&scratch.path().join("slave.json")).expect("the step accepted before");
     assert!(results.step(Some(1.0)).is_ok(), "the step that converged is missing");
     assert!(results.step(Some(2.0)).is_err(), "a step that did not converge was written");
+    let text = said(&output);
+    for word in
+        ["step ", "in 1 iterations", "largest residual", "of node", "Try a shorter \"time_step\"", "results up to time"]
+    {
+        assert!(text.contains(word), "the message does not say {word:?}:\n{text}");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    for arguments in [&["list"][..], &["describe", "alm_contact_process"]] {
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_zelus"))
+            .args(arguments)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("the program ends");
+        assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}: {}", said(&output));
+    }
 }
 
 #[test]

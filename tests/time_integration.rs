@@ -27,17 +27,29 @@ fn last(results: &Results, quantity: &str) -> f64 {
     results.nodal(quantity, results.step(None).expect("a step"))[&2]
 }
 
-/// Errors of the displacement at `end_time` for steps 0.1, 0.05, 0.025, and the slopes between them.
-fn slopes(changes: &[(&str, &str, &str)], exact: f64, end_time: f64) -> ([f64; 3], [f64; 2]) {
-    let errors = [0.1, 0.05, 0.025].map(|dt| (last(&oscillate(changes, dt, end_time), "DISPLACEMENT_X") - exact).abs());
+/// The exact end of a motion: displacement, and velocity where the scheme gives it at the same time.
+type End = (f64, Option<f64>);
+
+/// Errors at `end_time` for steps 0.05, 0.025, 0.0125, and the slopes between them.
+fn slopes(changes: &[(&str, &str, &str)], exact: End, end_time: f64) -> ([f64; 3], [f64; 2]) {
+    let errors = [0.05, 0.025, 0.0125].map(|dt| {
+        let results = oscillate(changes, dt, end_time);
+        let velocity = exact.1.map_or(0.0, |v| last(&results, "VELOCITY_X") - v);
+        (last(&results, "DISPLACEMENT_X") - exact.0).hypot(velocity)
+    });
     (errors, [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()])
 }
 
-fn assert_order(name: &str, changes: &[(&str, &str, &str)], exact: f64, end_time: f64, order: f64) {
+fn assert_order(name: &str, changes: &[(&str, &str, &str)], exact: End, end_time: f64, order: f64) {
     let (errors, slopes) = slopes(changes, exact, end_time);
     let said = format!("{name}: errors {}, slopes {slopes:.3?}", errors.map(|e| format!("{e:.3e}")).join(" "));
     println!("{said}");
     assert!(slopes.iter().all(|s| (s - order).abs() < 0.12), "{said}");
+}
+
+/// u = sin t at t = 2.
+fn free_end() -> End {
+    (2.0_f64.sin(), Some(2.0_f64.cos()))
 }
 
 const DECK: &str = "ProjectParameters.json";
@@ -48,9 +60,141 @@ const EXPLICIT: [(&str, &str, &str); 3] = [
     (MATERIAL, "\"DENSITY\": 3.0", "\"DENSITY\": 2.0"),
 ];
 
+/// The deck with another implicit scheme.
+fn scheme(text: &'static str) -> Vec<(&'static str, &'static str, &'static str)> {
+    vec![(DECK, "\"scheme_type\": \"newmark\"", text)]
+}
+
+const NEWMARK: &str = "\"scheme_type\": \"newmark\"";
+const BOSSAK: &str = "\"scheme_type\": \"bossak\", \"damp_factor_m\": -0.3";
+const ALPHA: &str = "\"scheme_type\": \"generalized_alpha\", \"rho_inf\": 0.8";
+const EULER: &str = "\"scheme_type\": \"backward_euler\"";
+const BDF2: &str = "\"scheme_type\": \"bdf2\"";
+
+#[test]
+fn implicit_schemes_are_of_their_order() {
+    for (name, text, order) in [
+        ("newmark", NEWMARK, 2.0),
+        ("bossak", BOSSAK, 2.0),
+        ("generalized_alpha", ALPHA, 2.0),
+        ("backward_euler", EULER, 1.0),
+        ("bdf2", BDF2, 2.0),
+    ] {
+        assert_order(name, &scheme(text), free_end(), 2.0, order);
+    }
+}
+
+/// u = t⁶ under f = 30 t⁴ + t⁶ begins so smoothly that the made-up past is exact to the order of every scheme.
+#[test]
+fn forced_motion_shows_the_order_of_all_backward_differences() {
+    let load = "0.5*(30.0*t^4 + t^6)";
+    for (text, order) in [
+        (NEWMARK, 2.0),
+        (ALPHA, 2.0),
+        ("\"scheme_type\": \"bdf1\"", 1.0),
+        (BDF2, 2.0),
+        ("\"scheme_type\": \"bdf3\"", 3.0),
+        ("\"scheme_type\": \"bdf4\"", 4.0),
+        ("\"scheme_type\": \"bdf5\"", 5.0),
+    ] {
+        let mut changes = scheme(text);
+        changes.push((DECK, "0.0*t", load));
+        changes.push(("mesh.mdpa", "2 0 1.0\n3 0 1.0", "2 0 0.0\n3 0 0.0"));
+        let slopes = slopes(&changes, (1.0, Some(6.0)), 1.0);
+        println!("{text}: errors {:?}, slopes {:?}", slopes.0, slopes.1);
+        assert!((slopes.1[1] - order).abs() < 0.25, "{text}: {slopes:?}");
+    }
+}
+
+/// One step of generalised-α (Bossak and Newmark with `f` = 0) for ü + u = 0, from (u, v, a).
+fn step_alpha([u, v, a]: [f64; 3], dt: f64, m: f64, f: f64) -> [f64; 3] {
+    let (gamma, beta) = (0.5 - m + f, 0.25 * (1.0 - m + f).powi(2));
+    let guess = u + dt * v + dt * dt * (0.5 - beta) * a;
+    let next = -(m * a + (1.0 - f) * guess + f * u) / (1.0 - m + (1.0 - f) * beta * dt * dt);
+    [guess + dt * dt * beta * next, v + dt * ((1.0 - gamma) * a + gamma * next), next]
+}
+
+/// Sixteen periods of free vibration: each scheme gives its own discrete motion, and the energy that belongs to it.
+#[test]
+fn free_vibration_follows_the_discrete_motion_of_each_scheme() {
+    let (dt, end) = (0.1, 100.0);
+    let rho: f64 = 0.8;
+    for (name, text, m, f) in [
+        ("newmark", NEWMARK, 0.0, 0.0),
+        ("bossak", BOSSAK, -0.3, 0.0),
+        ("generalized_alpha", ALPHA, (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)),
+    ] {
+        let results = oscillate(&scheme(text), dt, end);
+        let mut state = [0.0, 1.0, 0.0];
+        for step in 0..results.len() {
+            state = step_alpha(state, dt, m, f);
+            for (quantity, exact) in ["DISPLACEMENT_X", "VELOCITY_X", "ACCELERATION_X"].into_iter().zip(state) {
+                let found = results.nodal(quantity, step)[&2];
+                assert!((found - exact).abs() < 1e-9, "{name}, step {step}: {quantity} {found} instead of {exact}");
+            }
+        }
+        let energy = state[0].powi(2) + state[1].powi(2);
+        println!("{name}: energy after {} steps of {dt}: {:.6} of the first", results.len(), energy);
+        assert!(if name == "newmark" { (energy - 1.0).abs() < 1e-9 } else { energy < 1.0 }, "{name}: {energy}");
+    }
+    for (name, text) in [("backward_euler", EULER), ("bdf2", BDF2)] {
+        let results = oscillate(&scheme(text), dt, end);
+        let energy = last(&results, "DISPLACEMENT_X").powi(2) + last(&results, "VELOCITY_X").powi(2);
+        // |z|² of y' = i y a step: Euler's 1/(1 + Δt²); for two differences, the root of (3/2 − iΔt) z² − 2z + 1/2.
+        let exact = if name == "bdf2" { bdf2_modulus(dt) } else { 1.0 / (1.0 + dt * dt) };
+        let exact = exact.powi(results.len() as i32);
+        println!("{name}: energy after {} steps of {dt}: {energy:.6} of the first", results.len());
+        assert!((energy / exact - 1.0).abs() < 0.02, "{name}: {energy} instead of {exact}");
+    }
+}
+
+/// |z|² of the principal root z = (2 + √(1 + 2iΔt))/(3 − 2iΔt).
+fn bdf2_modulus(dt: f64) -> f64 {
+    let size = (1.0 + 4.0 * dt * dt).sqrt();
+    let (re, im) = (2.0 + (0.5 * (size + 1.0)).sqrt(), (0.5 * (size - 1.0)).sqrt());
+    (re * re + im * im) / (9.0 + 4.0 * dt * dt)
+}
+
+/// ü + c u̇ + u = 0 with c = α + β: u = e^{−ct/2} sin(ωt)/ω, ω² = 1 − c²/4; the first acceleration is −c.
+#[test]
+fn rayleigh_damping_comes_from_the_solver_or_from_the_properties() {
+    let c: f64 = 0.3;
+    let omega = (1.0 - 0.25 * c * c).sqrt();
+    let (sin, cos) = (2.0 * omega).sin_cos();
+    let exact = ((-c).exp() * sin / omega, Some((-c).exp() * (cos - 0.5 * c * sin / omega)));
+    let begin = (
+        "mesh.mdpa",
+        "Begin SubModelPart Body",
+        "Begin NodalData ACCELERATION_X\n2 0 -0.3\n3 0 -0.3\nEnd NodalData\n\nBegin SubModelPart Body",
+    );
+    let solver =
+        [(DECK, "\"rayleigh_alpha\": 0.0, \"rayleigh_beta\": 0.0", "\"rayleigh_alpha\": 0.2, \"rayleigh_beta\": 0.1")];
+    let properties = [
+        (DECK, "\"rayleigh_alpha\": 0.0, \"rayleigh_beta\": 0.0", "\"rayleigh_alpha\": 9.0, \"rayleigh_beta\": 9.0"),
+        (MATERIAL, "\"DENSITY\": 3.0", "\"DENSITY\": 3.0, \"RAYLEIGH_ALPHA\": 0.2, \"RAYLEIGH_BETA\": 0.1"),
+    ];
+    for (name, text) in [("newmark", NEWMARK), ("bossak", BOSSAK), ("generalized_alpha", ALPHA), ("bdf2", BDF2)] {
+        let by_solver: Vec<_> = scheme(text).into_iter().chain(solver).chain([begin]).collect();
+        assert_order(&format!("{name}, damped"), &by_solver, exact, 2.0, 2.0);
+        let by_properties: Vec<_> = scheme(text).into_iter().chain(properties).chain([begin]).collect();
+        let ends = [by_solver, by_properties].map(|changes| oscillate(&changes, 0.1, 2.0));
+        for quantity in ["DISPLACEMENT_X", "VELOCITY_X", "REACTION_X"] {
+            let [a, b] = [0, 1].map(|i| last(&ends[i], quantity));
+            assert!((a - b).abs() < 1e-12, "{name}: {quantity} {a} by the solver, {b} by the properties");
+        }
+    }
+}
+
+#[test]
+fn a_lumped_mass_comes_from_the_properties() {
+    let lumped = (MATERIAL, "\"DENSITY\": 3.0", "\"DENSITY\": 2.0, \"COMPUTE_LUMPED_MASS_MATRIX\": true");
+    let changes: Vec<_> = scheme(NEWMARK).into_iter().chain([lumped]).collect();
+    assert_order("newmark, lumped", &changes, free_end(), 2.0, 2.0);
+}
+
 #[test]
 fn central_differences_are_of_second_order() {
-    assert_order("central_differences", &EXPLICIT, 2.0_f64.sin(), 2.0, 2.0);
+    assert_order("central_differences", &EXPLICIT, (2.0_f64.sin(), None), 2.0, 2.0);
 }
 
 /// sin(ω̄ Δt / 2) = ω Δt / 2: the frequency of the discrete motion, without any growth.
@@ -108,4 +252,43 @@ fn explicit_steps_hold_prescribed_motion_unless_told() {
     // With the wall at t/4, w = u − t/4 swings from rest position with velocity 3/4.
     let exact = 0.25 + 0.75 * 1.0_f64.sin();
     assert!((last(&followed, "DISPLACEMENT_X") - exact).abs() < 1e-3, "{} {exact}", last(&followed, "DISPLACEMENT_X"));
+}
+
+/// Kinetic and strain energy of the bouncing block, a bar of ten elements of width 0.1 with E = 100 and ρ = 1.
+fn block_energy(results: &Results, step: usize) -> f64 {
+    let (u, v) = (results.nodal("DISPLACEMENT_Y", step), results.nodal("VELOCITY_Y", step));
+    let nodes: Vec<u64> = u.keys().copied().collect();
+    let (width, height) = (0.1, 0.1);
+    let mut energy = 0.0;
+    for pair in nodes.chunks(2).collect::<Vec<_>>().windows(2) {
+        let mean =
+            |field: &std::collections::BTreeMap<u64, f64>, at: usize| 0.5 * (field[&pair[at][0]] + field[&pair[at][1]]);
+        let (v0, v1) = (mean(&v, 0), mean(&v, 1));
+        energy += width * height * (v0 * v0 + v0 * v1 + v1 * v1) / 6.0;
+        energy += 0.5 * width * 100.0 / height * (mean(&u, 1) - mean(&u, 0)).powi(2);
+    }
+    energy
+}
+
+/// No force does work but that of the penalty, which is elastic: what energy is lost or won, time integration makes.
+#[test]
+fn a_block_bounces_with_an_energy_error_that_falls_with_the_step() {
+    let mut errors = Vec::new();
+    for (text, time_step) in [("1.0e-3", 0.001), ("2.5e-4", 0.00025)] {
+        let scratch = scratch_copy(&root().join("tests/decks/bouncing_block"));
+        change(scratch.path(), DECK, "\"time_step\": 0.001", &format!("\"time_step\": {text}"));
+        let output = zelus(scratch.path(), &["run", DECK]);
+        assert!(output.status.success(), "{}", said(&output));
+        let results = Results::read(&scratch.path().join("results.json")).expect("results");
+        let energies: Vec<f64> = (0..results.len()).map(|step| block_energy(&results, step)).collect();
+        let end = results.len() - 1;
+        let speed = results.nodal("VELOCITY_Y", end).values().sum::<f64>();
+        assert!(speed > 0.0, "the block does not come back");
+        let least = energies.iter().fold(f64::INFINITY, |least, e| least.min(*e));
+        assert!(least < 0.98 * energies[0], "the block did not touch the plane: {least} of {}", energies[0]);
+        assert!((energies[0] - 0.05).abs() < 1e-9, "{}", energies[0]);
+        errors.push((energies[end] / 0.05 - 1.0).abs());
+        println!("steps of {time_step}: energy off by {:.3e} after the bounce", errors[errors.len() - 1]);
+    }
+    assert!(errors[0] < 2e-2 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }

@@ -5,6 +5,8 @@ use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_core::model::{VariableKind, variables};
 use zelus_core::registry::{self, Entry, Kind};
 
+use super::say::say;
+
 /// Prints the names of one kind, or of all.
 pub(super) fn list(kind: Option<&str>) -> Result<()> {
     let kinds: Vec<Kind> = match kind {
@@ -17,17 +19,17 @@ pub(super) fn list(kind: Option<&str>) -> Result<()> {
         if entries.is_empty() {
             continue;
         }
-        println!("{} ({})", kind.word(), entries.len());
+        say(&format!("{} ({})", kind.word(), entries.len()));
         for entry in entries {
             let aliases =
                 if entry.aliases.is_empty() { String::new() } else { format!(" (also {})", entry.aliases.join(", ")) };
-            println!("  {}{aliases}: {}", entry.name, entry.about);
+            say(&format!("  {}{aliases}: {}", entry.name, entry.about));
         }
     }
     if kind.is_none_or(|word| word.starts_with("variable")) {
-        println!("variable ({})", variables().len());
+        say(&format!("variable ({})", variables().len()));
         for (name, entry) in variables() {
-            println!("  {name} [{}]: {}", kind_word(entry.kind), entry.about);
+            say(&format!("  {name} [{}]: {}", kind_word(entry.kind), entry.about));
         }
     }
     Ok(())
@@ -47,26 +49,26 @@ fn find_kind(word: &str) -> Result<Kind> {
 pub(super) fn describe(name: &str) -> Result<()> {
     let found: Vec<&Entry> = Kind::ALL.into_iter().filter_map(|kind| registry::find(kind, name)).collect();
     for entry in &found {
-        println!("{} {}", entry.kind.word(), entry.name);
-        println!("  {}", entry.about);
+        say(&format!("{} {}", entry.kind.word(), entry.name));
+        say(&format!("  {}", entry.about));
         if !entry.aliases.is_empty() {
-            println!("  also called {}", entry.aliases.join(", "));
+            say(&format!("  also called {}", entry.aliases.join(", ")));
         }
         if let Some(cell) = entry.cell {
-            println!("  {} nodes, shape {cell:?}, in {} dimensions", entry.nodes(), entry.space);
+            say(&format!("  {} nodes, shape {cell:?}, in {} dimensions", entry.nodes(), entry.space));
         }
         if !entry.source.is_empty() {
-            println!("  source: {}", entry.source);
+            say(&format!("  source: {}", entry.source));
         }
-        println!("  code: {}:{}", entry.file, entry.line);
+        say(&format!("  code: {}:{}", entry.file, entry.line));
         if !entry.defaults.is_empty() {
-            println!("  settings with their defaults:");
-            entry.defaults.lines().for_each(|line| println!("    {line}"));
+            say("  settings with their defaults:");
+            entry.defaults.lines().for_each(|line| say(&format!("    {line}")));
         }
     }
     let variable = variables().get(name);
     if let Some(entry) = variable {
-        println!("variable {} [{}]\n  {}", entry.name, kind_word(entry.kind), entry.about);
+        say(&format!("variable {} [{}]\n  {}", entry.name, kind_word(entry.kind), entry.about));
     }
     if !found.is_empty() || variable.is_some() {
         return Ok(());

@@ -1,6 +1,7 @@
 //! The program: `zelus run`, `check`, `list`, `describe`.
 
 mod catalogue;
+mod say;
 mod terminal;
 
 use std::io::Write;
@@ -11,6 +12,7 @@ use clap::{Parser, Subcommand};
 use zelus_core::analysis::{RunOptions, RunReport};
 use zelus_core::{Error, Result};
 
+use say::say;
 use terminal::Terminal;
 
 /// Multiphysics finite elements: runs Kratos contact decks unmodified.
@@ -64,7 +66,7 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let _ = std::io::stdout().flush();
-            eprintln!("{}", explain(&error));
+            let _ = writeln!(std::io::stderr(), "{}", explain(&error));
             ExitCode::from(error.exit_code())
         }
     }
@@ -86,14 +88,14 @@ fn execute(command: Command) -> Result<()> {
             let mut terminal = Terminal::new();
             let (result, report) = zelus_core::analysis::check(&file, &RunOptions::default(), &mut terminal);
             result?;
-            println!(
+            say(&format!(
                 "{}: no errors; {} nodes, {} elements, {} conditions, {} unknowns",
                 file.display(),
                 report.sizes.nodes,
                 report.sizes.elements,
                 report.sizes.conditions,
                 report.sizes.unknowns
-            );
+            ));
             Ok(())
         }
         Command::List { kind } => catalogue::list(kind.as_deref()),

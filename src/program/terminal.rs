@@ -8,6 +8,8 @@ use zelus_core::analysis::RunReport;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::strategies::{IterationRecord, Monitor, StepRecord};
 
+use super::say::say;
+
 /// Prints plain lines, and on a terminal a spinner with the step under way.
 pub(super) struct Terminal {
     spinner: Option<ProgressBar>,
@@ -29,8 +31,8 @@ impl Terminal {
 
     fn line(&self, text: &str) {
         match &self.spinner {
-            Some(bar) => bar.suspend(|| println!("{text}")),
-            None => println!("{text}"),
+            Some(bar) => bar.suspend(|| say(text)),
+            None => say(text),
         }
     }
 
@@ -40,19 +42,19 @@ impl Terminal {
             bar.finish_and_clear();
         }
         for output in &report.outputs {
-            println!("results: {}", output.display());
+            say(&format!("results: {}", output.display()));
         }
         if done {
             let converged: Vec<&StepRecord> = report.steps.iter().filter(|s| s.converged).collect();
             let iterations: usize = converged.iter().map(|s| s.iterations.len()).sum();
-            println!(
+            say(&format!(
                 "{} steps converged in {iterations} iterations, {:.2} s, {} unknowns, {} thread{}",
                 converged.len(),
                 self.begun.elapsed().as_secs_f64(),
                 report.sizes.unknowns,
                 report.threads,
                 if report.threads == 1 { "" } else { "s" }
-            );
+            ));
         }
     }
 }

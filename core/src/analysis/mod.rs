@@ -3,6 +3,7 @@
 //! [`run`] reads `ProjectParameters.json` and runs its stage, or, in the form with an orchestrator, its stages one after
 //! another on one model. [`check`] does everything that can be done without solving.
 
+mod cutting;
 mod linear_solvers;
 mod orchestrator;
 mod report;
@@ -10,6 +11,7 @@ mod solver;
 mod stage;
 mod time_stepping;
 
+pub use cutting::Cutting;
 pub use orchestrator::{RunOptions, check, run};
 pub use report::{RunReport, Sizes};
 pub use solver::{ExtensionDefinition, NodalVariable, SolverDefinition};

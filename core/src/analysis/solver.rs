@@ -1,14 +1,15 @@
 //! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
 
+use super::cutting::Cutting;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::BlockRequest;
 use crate::model::{EntityTable, ModelPart};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registry::{self, Build, Entry, Kind};
 use crate::strategies::{
-    CentralDifferences, ConvergenceCriterion, CriterionFactory, CriterionRequest, ExplicitSchemeFactory,
-    ExplicitSettings, ExplicitStrategy, NewtonRaphson, NewtonSettings, Scheme, SchemeFactory, SchemeRequest,
-    SolutionStrategy,
+    ArcLength, ArcLengthSettings, CentralDifferences, ConvergenceCriterion, CriterionFactory, CriterionRequest,
+    ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy, LineSearch, NewtonRaphson, NewtonSettings, Scheme,
+    SchemeFactory, SchemeRequest, SolutionStrategy,
 };
 
 /// A variable with history on the nodes: name and number of components.
@@ -38,6 +39,10 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub marks: fn(&Settings) -> Result<Vec<&'static str>>,
+    /// How steps that fail are cut, where the nested object says so.
+    ///
+    /// An error names a setting that does not fit.
+    pub cutting: fn(&Settings) -> Result<Option<Cutting>>,
 }
 
 /// A time scheme of one of the two methods.
@@ -57,6 +62,7 @@ pub struct SolverSettings {
     definition: &'static SolverDefinition,
     variables: Vec<NodalVariable>,
     marks: Vec<&'static str>,
+    cutting: Option<Cutting>,
 }
 
 impl SolverSettings {
@@ -91,6 +97,7 @@ impl SolverSettings {
         let settings = Settings::validate(&own, &defaults, &mut problems);
         let mut variables = definition.variables.to_vec();
         let mut marks = Vec::new();
+        let mut cutting = None;
         let mut merged = settings.as_ref().map(|s| s.node().clone());
         for (extension, mut member) in extensions {
             let defaults = Defaults::parse(extension.name, extension.defaults)?;
@@ -103,6 +110,7 @@ impl SolverSettings {
             if let Some(more) = problems.absorb((factory.marks)(&checked)) {
                 marks.extend(more);
             }
+            cutting = problems.absorb((factory.cutting)(&checked)).flatten().or(cutting);
             if let Some(Node { value: Value::Object(members), .. }) = &mut merged {
                 member.node = checked.node().clone();
                 members.insert(member);
@@ -112,7 +120,14 @@ impl SolverSettings {
             report.push(warning);
         }
         let node = merged.unwrap_or_else(|| user.clone());
-        Ok(Self { settings: Settings::unchecked(entry.name, node), user: user.clone(), definition, variables, marks })
+        Ok(Self {
+            settings: Settings::unchecked(entry.name, node),
+            user: user.clone(),
+            definition,
+            variables,
+            marks,
+            cutting,
+        })
     }
 
     /// Gives the nodes their variables with history, the buffer its length, and the part its marks.
@@ -130,6 +145,16 @@ impl SolverSettings {
             part.info.marks.insert(mark, true);
         }
         Ok(())
+    }
+
+    /// How steps that fail are cut.
+    ///
+    /// # Errors
+    /// A `step_cutting` that is neither true nor false.
+    pub fn cutting(&self) -> Result<Cutting> {
+        let allowed = self.settings.node().get("step_cutting").map_or(Ok(true), Node::bool)?;
+        let asked = self.cutting.unwrap_or_default();
+        Ok(Cutting { times: if allowed { asked.times } else { 0 }, ..asked })
     }
 
     /// Dimensions of the problem.
@@ -209,15 +234,51 @@ impl SolverSettings {
             let fact = "\"max_iteration\" is 0: no step could be solved";
             return Err(self.settings.error("max_iteration", "invalid-value", fact).remedy("write at least 1").into());
         }
+        let linear = analysis == "linear";
+        let (way, advanced) = self.way_of_solution()?;
+        let searched = way == "line_search" && !linear;
         let settings = NewtonSettings {
             max_iteration,
-            linear: analysis == "linear",
+            linear,
             compute_reactions: self.settings.get_bool("compute_reactions")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
+            line_search: if searched { Some(LineSearch::new(&advanced)?) } else { None },
         };
+        let arc = if way == "arc_length" && !linear { Some(ArcLengthSettings::new(&advanced)?) } else { None };
+        if arc.is_some() && (self.definition.scheme)(&self.settings)? != "static" {
+            let fact = "\"arc_length\" follows states of equilibrium, the solver is dynamic";
+            let place = "solving_strategy_settings.type";
+            return Err(self
+                .settings
+                .error(place, "arc-length", fact)
+                .remedy("use \"solver_type\": \"Static\"")
+                .into());
+        }
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
-        Ok((Box::new(NewtonRaphson::new(settings, scheme, criterion, solver, part)), says))
+        let newton = NewtonRaphson::new(settings, scheme, criterion, solver, part);
+        Ok(match arc {
+            Some(arc) => (Box::new(ArcLength::new(arc, newton)), says),
+            None => (Box::new(newton), says),
+        })
+    }
+
+    /// The registered strategy with its settings; checks the name of the builder too.
+    fn way_of_solution(&self) -> Result<(String, Node)> {
+        let mut found = Vec::new();
+        for (kind, key, usual) in [
+            (Kind::Strategy, "solving_strategy_settings", "newton_raphson"),
+            (Kind::BuilderAndSolver, "builder_and_solver_settings", "block"),
+        ] {
+            let path = format!("{key}.type");
+            let name = self.settings.node().get_path(&path).map_or(Ok(usual), Node::str)?;
+            let name = if name.is_empty() { usual } else { name };
+            let entry = registry::require(kind, name).map_err(|d| d.at(self.settings.key_place(&path)))?;
+            let empty = Node::from_json(&serde_json::json!({}), &self.settings.place())?;
+            let advanced = self.settings.node().get_path(&format!("{key}.advanced_settings")).cloned();
+            found.push((entry.name.to_owned(), advanced.unwrap_or(empty)));
+        }
+        Ok(found.swap_remove(0))
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::cutting::{Cutting, Lengths};
 use super::report::{RunReport, Sizes};
 use super::solver::{SolverSettings, check_dimensions, make_blocks};
 use super::time_stepping::TimeStepping;
@@ -16,9 +17,6 @@ use crate::processes::{Process, ProcessRequest};
 use crate::registry::{self, Build, Kind};
 use crate::strategies::{Monitor, SolutionStrategy, StepRecord};
 
-/// Halvings of a step where the solver has no `"step_cutting"` or it is true.
-const CUTS: u32 = 6;
-
 /// A stage that is ready to run.
 pub(super) struct Stage {
     name: String,
@@ -26,8 +24,9 @@ pub(super) struct Stage {
     start_time: f64,
     end_time: f64,
     stepping: TimeStepping,
-    /// Halvings of a step that does not converge before the run ends.
-    cuts: u32,
+    cutting: Cutting,
+    /// Length to begin the next step with, where the last one had to be shortened.
+    first_length: Option<f64>,
     strategy: Box<dyn SolutionStrategy>,
     processes: Vec<Box<dyn Process>>,
 }
@@ -82,8 +81,7 @@ impl Stage {
         });
         let Some(solver) = solver else { return Err(finish(problems)) };
         let stepping = problems.absorb(solver.settings.get("time_stepping").and_then(TimeStepping::from_node));
-        let cutting = solver.settings.node().get("step_cutting").map(Node::bool);
-        let mut cuts = if problems.absorb(cutting.unwrap_or(Ok(true))) == Some(false) { 0 } else { CUTS };
+        let cutting = problems.absorb(solver.cutting());
         problems.absorb(solver.domain_size());
         problems.absorb(solver.scheme().map(|_| ()));
         problems.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
@@ -124,9 +122,6 @@ impl Stage {
             return Err(finish(problems));
         }
         let (strategy, says) = solver.strategy(part, &mut problems)?;
-        if !strategy.can_retry() {
-            cuts = 0;
-        }
         monitor.note(&says);
         report.linear_solver = says;
         report.sizes = Sizes {
@@ -151,7 +146,8 @@ impl Stage {
             start_time,
             end_time,
             stepping: stepping.expect("checked above"),
-            cuts,
+            cutting: cutting.expect("checked above"),
+            first_length: None,
             strategy,
             processes,
         })
@@ -208,37 +204,39 @@ impl Stage {
         monitor: &mut dyn Monitor,
     ) -> Result<()> {
         let whole = target - model.root(&self.root)?.info.time;
-        let mut length = whole;
+        let mut lengths = Lengths::new(self.cutting, whole, self.first_length.take());
         loop {
             let from = model.root(&self.root)?.info.time;
-            let last = length >= (target - from) * (1.0 - 1e-12);
-            let to = if last { target } else { from + length };
+            let (to, last) = lengths.next(from, target);
             let part = model.root_mut(&self.root)?;
             let saved = self.strategy.can_retry().then(|| Saved::of(part));
             let record = self.attempt(to, model, report, monitor)?;
             if record.converged {
                 self.accept(model, report, monitor)?;
+                lengths.grow();
                 if last {
+                    self.first_length = lengths.carry();
                     return Ok(());
                 }
-                length = (2.0 * length).min(target - to);
                 continue;
             }
             let failure = record.failure.unwrap_or_default();
-            let Some(saved) = saved.filter(|_| length > whole / f64::from(1 << self.cuts)) else {
-                let tried = match self.cuts {
-                    0 => "the solver does not cut steps".to_owned(),
-                    cuts => format!("{cuts} halvings of the step did not help"),
+            let can_cut = saved.is_some() && self.cutting.times > 0;
+            let Some(saved) = saved.filter(|_| lengths.cut(to - from)) else {
+                let tried = match self.cutting {
+                    _ if !can_cut => "the solver does not cut steps".to_owned(),
+                    Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
                 };
                 return Err(Error::NotConverged(format!(
-                    "step {} to time {to}: {failure}\n    {tried}; results up to time {from} are written. Try a shorter \
-                     \"time_step\", more \"max_iteration\", or look at the nodes named",
-                    record.step
+                    "step {} to time {to}: {failure}\n    {tried}; results up to time {from} are written. Try {}, or \
+                     look at the nodes named",
+                    record.step,
+                    self.strategy.remedy()
                 )));
             };
-            monitor.note(&format!("step {} to time {to}: {failure}; retried with half the step", record.step));
+            let factor = self.cutting.factor;
+            monitor.note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
             saved.restore(model.root_mut(&self.root)?);
-            length = 0.5 * (to - from);
         }
     }
 

@@ -12,13 +12,13 @@ use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
-use crate::model::{ModelPart, ScalarVariable};
+use crate::entities::{EntityBlock, Interaction, LocalSystems, StepView, Tangent, Want};
+use crate::model::{ModelPart, Nodes, ScalarVariable};
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///
-/// Damping is Rayleigh's, C = alpha M + beta K.
-#[derive(Debug, Clone, PartialEq)]
+/// Damping is Rayleigh's, C = alpha M + beta K; RAYLEIGH_ALPHA and RAYLEIGH_BETA of an element's properties go before.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Inertia {
     /// Factor of M in the tangent, 1/time².
     pub mass_factor: f64,
@@ -32,6 +32,8 @@ pub struct Inertia {
     pub acceleration: Vec<f64>,
     /// Velocity that C acts on, a number an unknown.
     pub velocity: Vec<f64>,
+    /// Forces of the step before that still act, a number an unknown; empty for none.
+    pub carried: Vec<f64>,
 }
 
 /// Seconds spent assembling, by what was assembled.
@@ -68,7 +70,8 @@ pub struct Assembler {
     reduced_loads: Csr,
     stamps: Stamps,
     reduced_graph: u64,
-    tangent_key: Option<[f64; 2]>,
+    tangent_key: Option<[f64; 4]>,
+    damping: Option<([f64; 2], Vec<f64>)>,
     /// Seconds spent so far.
     pub seconds: AssemblySeconds,
 }
@@ -191,19 +194,95 @@ impl Assembler {
             }
         }
         if let Some(inertia) = inertia {
-            let mass = self.mass(part)?.to_vec();
-            let with_alpha: Vec<f64> =
-                inertia.acceleration.iter().zip(&inertia.velocity).map(|(a, v)| a + inertia.alpha * v).collect();
-            self.mul_subtract(&mass, &with_alpha, &mut rhs);
-            if inertia.beta != 0.0 {
-                let damped: Vec<f64> = inertia.velocity.iter().map(|v| inertia.beta * v).collect();
-                let stiffness = self.stiffness(part)?;
-                self.mul_subtract(&stiffness, &damped, &mut rhs);
-            }
+            let forces = self.inertia_forces(part, inertia)?;
+            rhs.iter_mut().zip(forces).for_each(|(r, force)| *r -= force);
         }
         self.coupling.add_residual(&blocks_of(interactions), &view, &mut rhs)?;
         self.seconds.residual += start.elapsed().as_secs_f64();
         Ok(rhs)
+    }
+
+    /// M a + C v less the forces carried over: what inertia and damping take up, over all unknowns.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn inertia_forces(&mut self, part: &ModelPart, inertia: &Inertia) -> Result<Vec<f64>> {
+        self.ensure_constant(part)?;
+        let mut out = vec![0.0; part.dofs.len()];
+        let single = !damped_by_properties(part);
+        let alpha = if single { inertia.alpha } else { 0.0 };
+        let minus: Vec<f64> =
+            inertia.acceleration.iter().zip(&inertia.velocity).map(|(a, v)| -(a + alpha * v)).collect();
+        self.mass(part)?;
+        self.mul_subtract(self.mass.as_ref().expect("just made"), &minus, &mut out);
+        let minus = |factor: f64| inertia.velocity.iter().map(|v| -factor * v).collect::<Vec<f64>>();
+        if !single {
+            let damping = self.damping(part, [inertia.alpha, inertia.beta])?;
+            self.mul_subtract(&damping, &minus(1.0), &mut out);
+        } else if inertia.beta != 0.0 {
+            self.mul_subtract(&self.stiffness(part)?, &minus(inertia.beta), &mut out);
+        }
+        out.iter_mut().zip(&inertia.carried).for_each(|(sum, force)| *sum -= force);
+        Ok(out)
+    }
+
+    /// The damping matrix on the bulk pattern, where properties have factors of their own.
+    fn damping(&mut self, part: &ModelPart, rayleigh: [f64; 2]) -> Result<Vec<f64>> {
+        if let Some((_, values)) = self.damping.as_ref().filter(|(key, _)| *key == rayleigh) {
+            return Ok(values.clone());
+        }
+        let view = part.view();
+        let nodes = undeformed(part);
+        let initial = StepView { nodes: &nodes, ..view };
+        let mut values = vec![0.0; self.pattern.zero.entries()];
+        let mut lasting = true;
+        let numbered = part.element_blocks.iter().zip(&self.element_numbers);
+        for (block, numbers) in numbered.chain(part.condition_blocks.iter().zip(&self.condition_numbers)) {
+            let element = block.entry().kind == crate::registry::Kind::Element;
+            let [alpha, beta] = if element { rayleigh_of(part, block.as_ref(), rayleigh) } else { [0.0, rayleigh[1]] };
+            if alpha != 0.0 {
+                let lumped = self.lumped;
+                let compute = |range, out: &mut LocalSystems| {
+                    block.mass(&initial, range, lumped, out).map(|_| out.lhs.iter_mut().for_each(|m| *m *= alpha))
+                };
+                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
+            }
+            let stiff = match block.tangent() {
+                Tangent::Zero => false,
+                Tangent::General => element,
+                Tangent::Constant | Tangent::Symmetric => true,
+            };
+            if beta != 0.0 && stiff {
+                let compute = |range, out: &mut LocalSystems| {
+                    let systems = block.local_systems(&view, range, Want::Both, out);
+                    systems.map(|()| out.lhs.iter_mut().for_each(|k| *k *= beta))
+                };
+                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
+                lasting &= block.tangent() == Tangent::Constant;
+            }
+        }
+        if lasting {
+            self.damping = Some((rayleigh, values.clone()));
+        }
+        Ok(values)
+    }
+
+    /// Forces of the conditions alone: the loads, over all unknowns.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn loads(&self, part: &ModelPart) -> Result<Vec<f64>> {
+        let view = part.view();
+        let mut out = vec![0.0; part.dofs.len()];
+        for (block, numbers) in part.condition_blocks.iter().zip(&self.condition_numbers) {
+            add_residual(block.as_ref(), numbers, &view, Want::Residual, &mut out)?;
+        }
+        Ok(out)
+    }
+
+    /// Multiplies the tangents of follower loads, until they are assembled again.
+    pub fn scale_load_tangents(&mut self, factor: f64) {
+        self.loads.matrix.values.iter_mut().for_each(|v| *v *= factor);
     }
 
     /// Brings the tangents up to date with the state.
@@ -222,16 +301,25 @@ impl Assembler {
         // Follower loads are not symmetric and have a matrix of their own.
         let variable = part.element_blocks.iter().any(|b| is_variable(b.as_ref()))
             || part.condition_blocks.iter().any(|b| b.tangent() == Tangent::Symmetric);
-        let key =
-            inertia.map_or([0.0; 2], |i| [i.mass_factor + i.alpha * i.damping_factor, 1.0 + i.beta * i.damping_factor]);
+        let key = inertia.map_or([0.0; 4], |i| [i.mass_factor, i.damping_factor, i.alpha, i.beta]);
+        let single = !damped_by_properties(part);
         let stale = variable || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
         if stale {
             let mut values = self.stiffness(part)?;
             if inertia.is_some() {
-                let [mass_factor, stiffness_factor] = key;
+                let [mass_factor, damping_factor, alpha, beta] = key;
+                let [mass_factor, stiffness_factor] = if single {
+                    [mass_factor + alpha * damping_factor, 1.0 + beta * damping_factor]
+                } else {
+                    [mass_factor, 1.0]
+                };
                 let mass = self.mass(part)?;
                 for (value, m) in values.iter_mut().zip(mass) {
                     *value = stiffness_factor * *value + mass_factor * m;
+                }
+                if !single {
+                    let damping = self.damping(part, [alpha, beta])?;
+                    values.iter_mut().zip(damping).for_each(|(value, c)| *value += damping_factor * c);
                 }
             }
             self.bulk.values = values;
@@ -349,13 +437,14 @@ impl Assembler {
         Ok(values)
     }
 
-    /// The mass matrix on the bulk pattern.
+    /// The mass matrix on the bulk pattern, that of the initial positions.
     ///
     /// # Errors
     /// An entity that cannot be computed.
     pub fn mass(&mut self, part: &ModelPart) -> Result<&[f64]> {
         if self.mass.is_none() {
-            let view = part.view();
+            let nodes = undeformed(part);
+            let view = StepView { nodes: &nodes, ..part.view() };
             let mut values = vec![0.0; self.pattern.zero.entries()];
             for (block, numbers) in part.element_blocks.iter().zip(&self.element_numbers) {
                 let lumped = self.lumped;
@@ -377,6 +466,27 @@ impl Assembler {
         self.mul_subtract(&values, &vec![-1.0; part.dofs.len()], &mut out);
         Ok(out)
     }
+}
+
+/// The nodes at their initial positions: mass does not change with the motion.
+fn undeformed(part: &ModelPart) -> Nodes {
+    let mut nodes = part.nodes.clone();
+    nodes.current.clone_from(&nodes.initial);
+    nodes
+}
+
+/// Whether the properties of an element give Rayleigh's factors, which then go before those of the solver.
+pub fn damped_by_properties(part: &ModelPart) -> bool {
+    let names = ["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"];
+    part.properties.values().any(|p| names.iter().any(|name| p.number(name).is_some()))
+}
+
+/// Rayleigh's factors of a block, whose entities share their properties.
+fn rayleigh_of(part: &ModelPart, block: &dyn EntityBlock, [alpha, beta]: [f64; 2]) -> [f64; 2] {
+    let first = block.members().first().map(|&member| part.elements.properties[member as usize]);
+    let properties = first.and_then(|id| part.properties.get(&id));
+    let own = |name: &str, default: f64| properties.and_then(|p| p.number(name)).unwrap_or(default);
+    [own("RAYLEIGH_ALPHA", alpha), own("RAYLEIGH_BETA", beta)]
 }
 
 fn is_variable(block: &dyn EntityBlock) -> bool {

@@ -13,6 +13,8 @@ use super::dof_table::DofTable;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::MasterSlaveConstraint;
 use crate::model::Nodes;
+use crate::register;
+use crate::registry::Build;
 
 /// What became of an unknown.
 #[derive(Debug, Clone, PartialEq)]
@@ -253,4 +255,14 @@ pub fn impose_constraints(nodes: &mut Nodes, constraints: &[MasterSlaveConstrain
             break;
         }
     }
+}
+
+register! { BuilderAndSolver "block",
+    aliases: &["block_lagrange"],
+    about: "fixities and constraints are eliminated; every builder gives the same answer",
+    build: Build::NameOnly,
+}
+register! { BuilderAndSolver "elimination",
+    about: "fixities and constraints are eliminated; every builder gives the same answer",
+    build: Build::NameOnly,
 }

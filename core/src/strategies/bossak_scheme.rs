@@ -3,13 +3,11 @@
 //! M ((1 − α_m) a_{n+1} + α_m a_n) + C v_{n+1} + f_int(u_{n+1}) = f_ext, with Newmark's relations between u, v and a;
 //! α_m in [−1/2, 0]. β = (1 − α_m)² β₀ and γ = 1/2 − α_m keep second order and damp high frequencies.
 
-use super::scheme::{Scheme, SchemeFactory, SchemeRequest};
+use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
 use crate::assembly::Inertia;
 use crate::diagnostics::Result;
-use crate::model::{
-    ModelPart,
-    variables::{ACCELERATION, DISPLACEMENT, VELOCITY},
-};
+use crate::model::ModelPart;
+use crate::model::variables::{ACCELERATION, VELOCITY};
 use crate::register;
 use crate::registry::Build;
 
@@ -39,8 +37,7 @@ impl BossakScheme {
             let fact = format!("\"newmark_beta\" is {beta}, an implicit scheme needs a positive one");
             return Err(settings.error("newmark_beta", "newmark-beta", fact).remedy("0.25 is the usual choice").into());
         }
-        let rayleigh = [settings.get_f64("rayleigh_alpha")?, settings.get_f64("rayleigh_beta")?];
-        Ok(Box::new(Self::new(alpha_m, beta, rayleigh)))
+        Ok(Box::new(Self::new(alpha_m, beta, request.rayleigh()?)))
     }
 }
 
@@ -51,49 +48,17 @@ impl Scheme for BossakScheme {
     }
 
     fn predict(&mut self, part: &mut ModelPart) -> Result<()> {
-        let dt = part.info.delta_time;
-        for dof in part.dofs.dofs() {
-            let at = 3 * dof.node as usize + dof.variable.offset();
-            if dof.variable.column == DISPLACEMENT.name() && !part.dofs.is_fixed(dof.variable, dof.node) {
-                let old = |variable| part.nodes.history.values(variable, 1)[at];
-                let guess = old(&DISPLACEMENT) + dt * old(&VELOCITY) + 0.5 * dt * dt * old(&ACCELERATION);
-                part.nodes.history.values_mut(&DISPLACEMENT, 0)[at] = guess;
-            }
-        }
+        predict_ballistic(part);
         Ok(())
     }
 
     fn update(&self, part: &mut ModelPart) {
-        let dt = part.info.delta_time;
-        let (beta, gamma) = (self.beta, self.gamma);
-        let history = &mut part.nodes.history;
-        let u = history.values(&DISPLACEMENT, 0).to_vec();
-        let old = [history.values(&DISPLACEMENT, 1), history.values(&VELOCITY, 1), history.values(&ACCELERATION, 1)]
-            .map(<[f64]>::to_vec);
-        let [u_old, v_old, a_old] = &old;
-        let a: Vec<f64> = (0..u.len())
-            .map(|i| (u[i] - u_old[i]) / (beta * dt * dt) - v_old[i] / (beta * dt) - (0.5 / beta - 1.0) * a_old[i])
-            .collect();
-        let velocity = history.values_mut(&VELOCITY, 0);
-        for i in 0..u.len() {
-            velocity[i] = v_old[i] + dt * ((1.0 - gamma) * a_old[i] + gamma * a[i]);
-        }
-        history.values_mut(&ACCELERATION, 0).copy_from_slice(&a);
+        update_newmark(part, self.beta, self.gamma);
     }
 
     fn inertia(&self, part: &ModelPart) -> Option<Inertia> {
         let dt = part.info.delta_time;
         let history = &part.nodes.history;
-        let gather = |values: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            part.dofs
-                .dofs()
-                .iter()
-                .map(|dof| {
-                    let displacement = dof.variable.column == DISPLACEMENT.name();
-                    if displacement { values(3 * dof.node as usize + dof.variable.offset()) } else { 0.0 }
-                })
-                .collect()
-        };
         let (a, a_old) = (history.values(&ACCELERATION, 0), history.values(&ACCELERATION, 1));
         let v = history.values(&VELOCITY, 0);
         Some(Inertia {
@@ -101,8 +66,9 @@ impl Scheme for BossakScheme {
             damping_factor: self.gamma / (self.beta * dt),
             alpha: self.rayleigh[0],
             beta: self.rayleigh[1],
-            acceleration: gather(&|i| (1.0 - self.alpha_m) * a[i] + self.alpha_m * a_old[i]),
-            velocity: gather(&|i| v[i]),
+            acceleration: gather(part, |i| (1.0 - self.alpha_m) * a[i] + self.alpha_m * a_old[i]),
+            velocity: gather(part, |i| v[i]),
+            carried: Vec::new(),
         })
     }
 }

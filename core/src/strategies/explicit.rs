@@ -8,9 +8,9 @@ use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::scheme::SchemeRequest;
+use super::scheme::{SchemeRequest, gather};
 use super::strategy::{SolutionStrategy, accept, recorded};
-use crate::assembly::{Assembler, Inertia, impose_constraints};
+use crate::assembly::{Assembler, Inertia, damped_by_properties, impose_constraints};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::Interaction;
 use crate::model::ModelPart;
@@ -196,25 +196,22 @@ impl ExplicitStrategy {
 
     /// Damping forces of the velocity stored with the last step.
     fn damping(&self, part: &ModelPart) -> Option<Inertia> {
-        let velocity = part.nodes.history.values(&VELOCITY, 0);
-        let of = |node: u32, offset: usize| velocity[3 * node as usize + offset];
+        if self.settings.rayleigh == [0.0; 2] && !damped_by_properties(part) {
+            return None;
+        }
         Some(Inertia {
-            mass_factor: 0.0,
-            damping_factor: 0.0,
             alpha: self.settings.rayleigh[0],
             beta: self.settings.rayleigh[1],
             acceleration: vec![0.0; part.dofs.len()],
-            velocity: part.dofs.dofs().iter().map(|dof| of(dof.node, dof.variable.offset())).collect(),
+            velocity: gather(part, |i| part.nodes.history.values(&VELOCITY, 0)[i]),
+            ..Inertia::default()
         })
-        .filter(|inertia| inertia.alpha != 0.0 || inertia.beta != 0.0)
     }
 
     /// What supports and constraints must carry: the residual less the inertia.
     fn unbalanced(&self, part: &ModelPart, residual: &[f64]) -> Vec<f64> {
-        let acceleration = part.nodes.history.values(&ACCELERATION, 0);
-        let of = |node: u32, offset: usize| acceleration[3 * node as usize + offset];
-        let forces = part.dofs.dofs().iter().zip(residual).zip(&self.mass);
-        forces.map(|((dof, r), m)| r - m * of(dof.node, dof.variable.offset())).collect()
+        let acceleration = gather(part, |i| part.nodes.history.values(&ACCELERATION, 0)[i]);
+        residual.iter().zip(acceleration).zip(&self.mass).map(|((r, a), m)| r - m * a).collect()
     }
 
     fn write_residual(&self, part: &mut ModelPart, residual: &[f64]) {
@@ -276,6 +273,10 @@ impl SolutionStrategy for ExplicitStrategy {
 
     fn can_retry(&self) -> bool {
         false
+    }
+
+    fn remedy(&self) -> &'static str {
+        "a shorter \"time_step\", or \"time_step_prediction_level\": 1, which chooses it"
     }
 
     fn announce_every(&self) -> usize {

@@ -4,12 +4,16 @@
 //! nothing; [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each iteration, see
 //! [`crate::entities::Interaction::after_update`].
 
+mod arc_length;
+mod bdf_scheme;
 mod bossak_scheme;
 mod central_differences;
 mod criterion;
 mod critical_step;
 mod displacement_criterion;
 mod explicit;
+mod generalized_alpha_scheme;
+mod line_search;
 mod linear_solve;
 mod newton;
 mod reactions;
@@ -18,6 +22,8 @@ mod residual_criterion;
 mod scheme;
 mod strategy;
 
+pub use arc_length::{ArcLength, ArcLengthSettings};
+pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
 pub use central_differences::CentralDifferences;
 pub use criterion::{
@@ -26,6 +32,8 @@ pub use criterion::{
 };
 pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy};
+pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
+pub use line_search::LineSearch;
 pub use newton::{NewtonRaphson, NewtonSettings};
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
 pub use residual_criterion::ResidualCriterion;

@@ -1,17 +1,20 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
-use zelus_linear_algebra::LinearSolver;
+use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 use super::criterion::{ConvergenceCriterion, Measures};
+use super::line_search::LineSearch;
 use super::linear_solve;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, impose_constraints};
-use crate::diagnostics::Result;
+use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, SetChange};
 use crate::model::ModelPart;
+use crate::register;
+use crate::registry::Build;
 
 /// How a step is iterated.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,15 +27,17 @@ pub struct NewtonSettings {
     pub compute_reactions: bool,
     /// Whether nodes follow DISPLACEMENT.
     pub move_mesh: bool,
+    /// How much of an increment is taken; all of it when `None`.
+    pub line_search: Option<LineSearch>,
 }
 
 /// Newton's iteration with its scheme, criterion, linear solver and system.
 pub struct NewtonRaphson {
-    settings: NewtonSettings,
+    pub(super) settings: NewtonSettings,
     scheme: Box<dyn Scheme>,
-    criterion: Box<dyn ConvergenceCriterion>,
-    solver: Box<dyn LinearSolver>,
-    assembler: Assembler,
+    pub(super) criterion: Box<dyn ConvergenceCriterion>,
+    pub(super) solver: Box<dyn LinearSolver>,
+    pub(super) assembler: Assembler,
     linear_seconds: [f64; 3],
 }
 
@@ -50,6 +55,12 @@ impl SolutionStrategy for NewtonRaphson {
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        if self.scheme.keeps_forces()
+            && let Some(inertia) = self.scheme.inertia(part)
+        {
+            let forces = self.assembler.inertia_forces(part, &inertia)?;
+            self.scheme.keep(forces);
+        }
         accept(part)
     }
 }
@@ -80,6 +91,10 @@ impl NewtonRaphson {
             interaction.begin_step(part)?;
         }
         self.assembler.begin_step(part, interactions)?;
+        if let Some(past) = self.scheme.past_inertia(part) {
+            let forces = self.assembler.inertia_forces(part, &past)?;
+            self.scheme.keep(forces);
+        }
         let mut prescribed = self.start(part)?;
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
@@ -109,28 +124,19 @@ impl NewtonRaphson {
             } else {
                 let (increment, report) =
                     linear_solve::solve(&mut self.assembler, self.solver.as_mut(), &rhs, &part.dofs, &part.nodes)?;
-                for (sum, seconds) in self.linear_seconds.iter_mut().zip([
-                    report.seconds_symbolic,
-                    report.seconds_numeric,
-                    report.seconds_solve,
-                ]) {
-                    *sum += seconds;
-                }
+                self.add_seconds(&report);
                 if let Some(why) = &report.fallback {
                     monitor.note(&format!("linear solver: {why}"));
                 }
                 (increment, report.relative_residual, report.engine.to_owned())
             };
             let mut increment = self.assembler.equations().expand(&reduced);
+            let searched = self.settings.line_search.filter(|_| prescribed.iter().all(|d| *d == 0.0));
             increment.iter_mut().zip(&prescribed).for_each(|(sum, d)| *sum += d);
             prescribed.fill(0.0);
-            part.dofs.scatter_add(&increment, &mut part.nodes);
-            if !part.constraints.is_empty() {
-                impose_constraints(&mut part.nodes, &part.constraints);
-            }
-            self.scheme.update(part);
-            if self.settings.move_mesh {
-                part.move_mesh();
+            match searched {
+                Some(search) => self.search(&search, part, interactions, &residual, &mut increment)?,
+                None => self.move_by(part, &increment),
             }
             inertia = self.scheme.inertia(part);
             if interactions.iter().any(|interaction| interaction.needs_reactions()) {
@@ -183,8 +189,11 @@ impl NewtonRaphson {
             };
             monitor.iteration(&record);
             records.push(record);
-            if residual.iter().chain(&values).any(|v| !v.is_finite()) {
-                return Ok((records, Some(format!("iteration {iteration} diverged: values are no longer finite"))));
+            if let Some(n) = (0..values.len()).find(|&n| !(residual[n].is_finite() && values[n].is_finite())) {
+                let dof = &part.dofs.dofs()[n];
+                let node = part.nodes.ids[dof.node as usize];
+                let what = format!("{} of node {node} or its residual is no longer finite", dof.variable);
+                return Ok((records, Some(format!("diverged in iteration {iteration}: {what}"))));
             }
             if self.settings.linear || (verdict.converged && change.count() == 0) {
                 if self.settings.compute_reactions {
@@ -200,9 +209,62 @@ impl NewtonRaphson {
         Ok((records, Some(failure)))
     }
 
+    /// Adds an increment to the unknowns; rates and positions follow.
+    pub(super) fn move_by(&self, part: &mut ModelPart, increment: &[f64]) {
+        part.dofs.scatter_add(increment, &mut part.nodes);
+        if !part.constraints.is_empty() {
+            impose_constraints(&mut part.nodes, &part.constraints);
+        }
+        self.scheme.update(part);
+        if self.settings.move_mesh {
+            part.move_mesh();
+        }
+    }
+
+    /// Moves by the part of `increment` that the line search finds, and shortens it to that.
+    fn search(
+        &mut self,
+        search: &LineSearch,
+        part: &mut ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        residual: &[f64],
+        increment: &mut [f64],
+    ) -> Result<()> {
+        let work = |residual: &[f64]| increment.iter().zip(residual).map(|(d, r)| d * r).sum::<f64>();
+        let begin = self.assembler.values(part);
+        let before = work(residual);
+        let go = |newton: &mut Self, part: &mut ModelPart, factor: f64| {
+            let now = newton.assembler.values(part);
+            let way = begin.iter().zip(&now).zip(increment.iter());
+            let way: Vec<f64> = way.map(|((begin, now), d)| begin + factor * d - now).collect();
+            newton.move_by(part, &way);
+        };
+        let mut last = 0.0;
+        let factor = search.search(before, |factor| {
+            go(self, part, factor);
+            last = factor;
+            let inertia = self.scheme.inertia(part);
+            match self.assembler.residual(part, interactions, inertia.as_ref()) {
+                Ok(residual) => Ok(Some(work(&residual)).filter(|w| w.is_finite())),
+                Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => Ok(None),
+                Err(error) => Err(error),
+            }
+        })?;
+        if factor != last {
+            go(self, part, factor);
+        }
+        increment.iter_mut().for_each(|d| *d *= factor);
+        Ok(())
+    }
+
+    pub(super) fn add_seconds(&mut self, report: &SolveReport) {
+        let phases = [report.seconds_symbolic, report.seconds_numeric, report.seconds_solve];
+        self.linear_seconds.iter_mut().zip(phases).for_each(|(sum, seconds)| *sum += seconds);
+    }
+
     /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
     /// left at their old values: the first solve takes them on through the tangent.
-    fn start(&mut self, part: &mut ModelPart) -> Result<Vec<f64>> {
+    pub(super) fn start(&mut self, part: &mut ModelPart) -> Result<Vec<f64>> {
         let targets = self.assembler.values(part);
         for (number, dof) in part.dofs.dofs().iter().enumerate() {
             if self.assembler.equations().is_fixed(number)
@@ -242,7 +304,7 @@ impl NewtonRaphson {
         lack
     }
 
-    fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {
+    pub(super) fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {
         let equations = self.assembler.equations();
         let residual = equations.balanced(residual);
         let worst = equations
@@ -273,4 +335,9 @@ impl NewtonRaphson {
 
 fn constraints_version(interactions: &[Box<dyn Interaction>]) -> u64 {
     interactions.iter().fold(0, |sum, interaction| sum.wrapping_mul(31).wrapping_add(interaction.constraints_version()))
+}
+
+register! { Strategy "newton_raphson",
+    about: "Newton's iteration with whole increments",
+    build: Build::NameOnly,
 }

@@ -3,6 +3,7 @@
 use crate::assembly::Inertia;
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
+use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
 use crate::parameters::Settings;
 use crate::register;
 use crate::registry::Build;
@@ -32,6 +33,59 @@ pub trait Scheme: Send {
     fn inertia(&self, _part: &ModelPart) -> Option<Inertia> {
         None
     }
+
+    /// Step start: what inertia and damping were at the end of the last step, when the scheme has still to be told.
+    ///
+    /// [`Scheme::keep`] is then called with the forces that come of it.
+    fn past_inertia(&self, _part: &ModelPart) -> Option<Inertia> {
+        None
+    }
+
+    /// Whether [`Scheme::keep`] is to be called with the forces of an accepted step.
+    fn keeps_forces(&self) -> bool {
+        false
+    }
+
+    /// The forces that inertia and damping took up at the end of an accepted step, a number an unknown.
+    fn keep(&mut self, _forces: Vec<f64>) {}
+}
+
+/// One number an unknown: `value` at the place of its component in a vector column, 0 for all but displacements.
+pub(super) fn gather(part: &ModelPart, value: impl Fn(usize) -> f64) -> Vec<f64> {
+    let displacement = |dof: &crate::assembly::Dof| dof.variable.column == DISPLACEMENT.name();
+    let dofs = part.dofs.dofs().iter();
+    dofs.map(|dof| if displacement(dof) { value(3 * dof.node as usize + dof.variable.offset()) } else { 0.0 }).collect()
+}
+
+/// Moves free displacements to u + Δt v + Δt²/2 a of the last step.
+pub(super) fn predict_ballistic(part: &mut ModelPart) {
+    let dt = part.info.delta_time;
+    for dof in part.dofs.dofs() {
+        let at = 3 * dof.node as usize + dof.variable.offset();
+        if dof.variable.column == DISPLACEMENT.name() && !part.dofs.is_fixed(dof.variable, dof.node) {
+            let old = |variable| part.nodes.history.values(variable, 1)[at];
+            let guess = old(&DISPLACEMENT) + dt * old(&VELOCITY) + 0.5 * dt * dt * old(&ACCELERATION);
+            part.nodes.history.values_mut(&DISPLACEMENT, 0)[at] = guess;
+        }
+    }
+}
+
+/// Newmark's relations: VELOCITY and ACCELERATION from DISPLACEMENT and the last step, at every node.
+pub(super) fn update_newmark(part: &mut ModelPart, beta: f64, gamma: f64) {
+    let dt = part.info.delta_time;
+    let history = &mut part.nodes.history;
+    let u = history.values(&DISPLACEMENT, 0).to_vec();
+    let old = [history.values(&DISPLACEMENT, 1), history.values(&VELOCITY, 1), history.values(&ACCELERATION, 1)]
+        .map(<[f64]>::to_vec);
+    let [u_old, v_old, a_old] = &old;
+    let a: Vec<f64> = (0..u.len())
+        .map(|i| (u[i] - u_old[i]) / (beta * dt * dt) - v_old[i] / (beta * dt) - (0.5 / beta - 1.0) * a_old[i])
+        .collect();
+    let velocity = history.values_mut(&VELOCITY, 0);
+    for i in 0..u.len() {
+        velocity[i] = v_old[i] + dt * ((1.0 - gamma) * a_old[i] + gamma * a[i]);
+    }
+    history.values_mut(&ACCELERATION, 0).copy_from_slice(&a);
 }
 
 /// No inertia: time only orders the loads.
@@ -44,6 +98,16 @@ impl Scheme for StaticScheme {}
 pub struct SchemeRequest<'a> {
     /// The solver settings, defaults filled in.
     pub settings: &'a Settings,
+}
+
+impl SchemeRequest<'_> {
+    /// Rayleigh's factors of mass (1/time) and stiffness (time).
+    ///
+    /// # Errors
+    /// Settings that are not numbers.
+    pub fn rayleigh(&self) -> Result<[f64; 2]> {
+        Ok([self.settings.get_f64("rayleigh_alpha")?, self.settings.get_f64("rayleigh_beta")?])
+    }
 }
 
 /// Makes a scheme; registered as `Build::Factory(&(make as SchemeFactory))`.

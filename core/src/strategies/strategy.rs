@@ -21,6 +21,11 @@ pub trait SolutionStrategy: Send {
         true
     }
 
+    /// What to try when steps fail.
+    fn remedy(&self) -> &'static str {
+        "a shorter \"time_step\", more \"max_iteration\", \"line_search\": true"
+    }
+
     /// Steps between two that are announced: more than 1 where steps are many and short.
     fn announce_every(&self) -> usize {
         1
@@ -89,7 +94,8 @@ where
             record.failure = failure;
         }
         Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => {
-            record.failure = Some(Error::Input(problems).to_string());
+            let iteration = part.info.nl_iteration;
+            record.failure = Some(format!("in iteration {iteration}, {}", Error::Input(problems)));
         }
         Err(error) => return Err(error),
     }

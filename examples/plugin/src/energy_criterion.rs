@@ -53,5 +53,9 @@ register! { ConvergenceCriterion "energy_criterion",
 register! { SolverExtension "energy_settings",
     about: "settings of energy_criterion",
     defaults: DEFAULTS,
-    build: Build::Factory(&ExtensionDefinition { variables: |_| Ok(Vec::new()), marks: |_| Ok(Vec::new()) }),
+    build: Build::Factory(&ExtensionDefinition {
+        variables: |_| Ok(Vec::new()),
+        marks: |_| Ok(Vec::new()),
+        cutting: |_| Ok(None),
+    }),
 }

@@ -1,6 +1,6 @@
 //! `contact_settings` of the solver: the family decides which variables the nodes carry.
 
-use zelus_core::analysis::ExtensionDefinition;
+use zelus_core::analysis::{Cutting, ExtensionDefinition};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
@@ -37,6 +37,18 @@ register! { SolverExtension "contact_settings",
                 }
             }
             Ok(marks)
+        },
+        cutting: |settings| {
+            if !settings.get_bool("adaptative_strategy")? {
+                return Ok(None);
+            }
+            let factor = settings.get_f64("split_factor")?;
+            if factor <= 1.0 {
+                let fact = format!("\"split_factor\" is {factor}, it must be greater than 1");
+                let problem = settings.error("split_factor", "split-factor", fact);
+                return Err(problem.remedy("a step that fails is divided by it, e.g. 10.0").into());
+            }
+            Ok(Some(Cutting { factor, times: settings.get_usize("max_number_splits")? as u32 }))
         },
     }),
 }

@@ -22,5 +22,6 @@ register! { SolverExtension "mpc_contact_settings",
             let update = settings.get_bool("update_each_nl_iteration")?;
             Ok(update.then_some(UPDATE_EACH_ITERATION).into_iter().collect())
         },
+        cutting: |_| Ok(None),
     }),
 }

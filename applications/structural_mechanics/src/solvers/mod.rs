@@ -22,12 +22,15 @@ const VARIABLES: [NodalVariable; 8] = [
 /// Names the spellings of older decks.
 fn adapt(defaults: Defaults) -> Defaults {
     const WHOLE: &str = "the whole root part is computed";
+    const BUILDER: &str = "every builder gives the same answer";
     defaults
         .require(&["model_part_name", "domain_size", "time_stepping", "model_import_settings"])
         .dropped("problem_domain_sub_model_part_list", WHOLE)
         .dropped("processes_sub_model_part_list", WHOLE)
         .dropped("use_computing_model_part", WHOLE)
         .dropped("computing_model_part_name", WHOLE)
+        .dropped("builder_and_solver_settings.use_block_builder", BUILDER)
+        .dropped("builder_and_solver_settings.use_lagrange_BS", BUILDER)
         .translated("block_builder", "builder_and_solver_settings", |value| match value {
             Value::Bool(true) => Some(typed("block")),
             Value::Bool(false) => Some(typed("elimination")),

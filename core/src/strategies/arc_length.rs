@@ -1,0 +1,278 @@
+//! Arc length: the load factor is an unknown, so that the path is followed through points where the load falls.
+//!
+//! R(u, λ) = λ q − f_int(u) = 0. Predictor: Δλ = ± r/‖δ_q‖, Δu = Δλ δ_q with K δ_q = q, in the direction of the last step.
+//! Corrections stay in the plane normal to the predictor p: K δ_R = R, dλ = −(p·δ_R)/(p·δ_q), du = δ_R + dλ δ_q. The first
+//! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
+
+use super::criterion::Measures;
+use super::linear_solve;
+use super::newton::NewtonRaphson;
+use super::reactions::write_reactions;
+use super::records::{IterationRecord, Monitor, StepRecord};
+use super::strategy::{SolutionStrategy, accept, recorded};
+use crate::assembly::Assembler;
+use crate::diagnostics::{Diagnostic, Result};
+use crate::entities::Interaction;
+use crate::model::ModelPart;
+use crate::parameters::{Defaults, Node, Settings};
+use crate::register;
+use crate::registry::Build;
+
+const DEFAULTS: &str = include_str!("../../../configs/strategies/arc_length.json");
+
+/// How the path is followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArcLengthSettings {
+    desired: usize,
+    most: f64,
+    least: f64,
+    /// Parts and variables of the loads that are scaled; empty for all loads of conditions.
+    loads: Vec<(String, String)>,
+}
+
+impl ArcLengthSettings {
+    /// From `advanced_settings` of the strategy.
+    ///
+    /// # Errors
+    /// Keys that are not known, lists of different lengths.
+    pub fn new(advanced: &Node) -> Result<Self> {
+        let (settings, _) = Settings::check(advanced, &Defaults::parse("arc_length", DEFAULTS)?)?;
+        let parts = settings.get_strings("loads_sub_model_part_list")?;
+        let variables = settings.get_strings("loads_variable_list")?;
+        if parts.len() != variables.len() {
+            let fact = format!("{} sub model parts but {} variables", parts.len(), variables.len());
+            let remedy = "give one variable for each part of \"loads_sub_model_part_list\"";
+            return Err(settings.error("loads_variable_list", "arc-length", fact).remedy(remedy).into());
+        }
+        Ok(Self {
+            desired: settings.get_usize("desired_iterations")?.max(1),
+            most: settings.get_f64("max_radius_factor")?,
+            least: settings.get_f64("min_radius_factor")?,
+            loads: parts.into_iter().zip(variables).collect(),
+        })
+    }
+}
+
+/// Newton's iteration with the load factor as a further unknown.
+pub struct ArcLength {
+    settings: ArcLengthSettings,
+    newton: NewtonRaphson,
+    /// Load factor of the last accepted step.
+    factor: f64,
+    /// First and present radius, once known.
+    radius: Option<[f64; 2]>,
+    /// Increment of the last accepted step.
+    last: Vec<f64>,
+    /// What acceptance of the present step keeps: factor, increment, iterations.
+    pending: Option<(f64, Vec<f64>, usize)>,
+}
+
+impl ArcLength {
+    /// Follows the path with the scheme, criterion and solver of `newton`.
+    pub fn new(settings: ArcLengthSettings, newton: NewtonRaphson) -> Self {
+        Self { settings, newton, factor: 0.0, radius: None, last: Vec::new(), pending: None }
+    }
+
+    /// Derivative of the residual by the load factor in the present state.
+    fn reference_load(&mut self, part: &mut ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {
+        if self.settings.loads.is_empty() {
+            return self.newton.assembler.loads(part);
+        }
+        let mut full = self.newton.assembler.residual(part, interactions, None)?;
+        let nodes = part.nodes.history.clone();
+        let conditions = part.conditions.data.clone();
+        for (name, variable) in &self.settings.loads {
+            let chosen = part.part(name)?;
+            let (at_nodes, at_conditions) = (chosen.nodes.clone(), chosen.conditions.clone());
+            for (fields, members) in [(&mut part.nodes.history, at_nodes), (&mut part.conditions.data, at_conditions)] {
+                if let Some(field) = fields.get_mut(variable) {
+                    let components = field.components;
+                    for at in members {
+                        let at = at as usize * components;
+                        field.levels[0][at..at + components].fill(0.0);
+                    }
+                }
+            }
+        }
+        let rest = self.newton.assembler.residual(part, interactions, None);
+        part.nodes.history = nodes;
+        part.conditions.data = conditions;
+        full.iter_mut().zip(rest?).for_each(|(all, rest)| *all -= rest);
+        Ok(full)
+    }
+
+    fn solve(&mut self, part: &ModelPart, rhs: &[f64]) -> Result<(Vec<f64>, f64, String)> {
+        let newton = &mut self.newton;
+        let rhs = newton.assembler.equations().reduce(rhs);
+        let (solution, report) =
+            linear_solve::solve(&mut newton.assembler, newton.solver.as_mut(), &rhs, &part.dofs, &part.nodes)?;
+        newton.add_seconds(&report);
+        Ok((newton.assembler.equations().expand(&solution), report.relative_residual, report.engine.to_owned()))
+    }
+
+    fn residual(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        factor: f64,
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
+        let load = self.reference_load(part, interactions)?;
+        let mut residual = self.newton.assembler.residual(part, interactions, None)?;
+        residual.iter_mut().zip(&load).for_each(|(r, q)| *r += (factor - 1.0) * q);
+        Ok((residual, load))
+    }
+
+    fn iterate(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Vec<IterationRecord>, Option<String>)> {
+        self.pending = None;
+        part.info.nl_iteration = 0;
+        for interaction in interactions.iter_mut() {
+            interaction.begin_step(part)?;
+        }
+        self.newton.assembler.begin_step(part, interactions)?;
+        if self.newton.start(part)?.iter().any(|d| *d != 0.0) {
+            let fact = "arc length scales loads, but a prescribed displacement changes";
+            return Err(Diagnostic::error("arc-length", fact)
+                .remedy("keep it constant, or use \"newton_raphson\"")
+                .into());
+        }
+        for interaction in interactions.iter_mut() {
+            interaction.after_prediction(part)?;
+        }
+        let mut factor = self.factor;
+        let mut predictor = Vec::new();
+        let mut step = vec![0.0; part.dofs.len()];
+        let mut references: Vec<Vec<f64>> = Vec::new();
+        let mut records = Vec::new();
+        let (mut residual, mut load) = self.residual(part, interactions, factor)?;
+        for iteration in 1..=self.newton.settings.max_iteration {
+            part.info.nl_iteration = iteration;
+            self.newton.assembler.tangents(part, interactions, None)?;
+            if self.settings.loads.is_empty() {
+                self.newton.assembler.scale_load_tangents(factor);
+            }
+            let (along, mut linear_residual, mut engine) = self.solve(part, &load)?;
+            let increment: Vec<f64> = if iteration == 1 {
+                let size = dot(&along, &along).sqrt();
+                if size == 0.0 {
+                    let fact = "no load acts that arc length could scale";
+                    let remedy =
+                        "check \"loads_sub_model_part_list\" and \"loads_variable_list\", and the loads' values";
+                    return Err(Diagnostic::error("arc-length", fact).remedy(remedy).into());
+                }
+                let [_, radius] = *self.radius.get_or_insert([size; 2]);
+                let forward = self.last.is_empty() || dot(&along, &self.last) >= 0.0;
+                let more = if forward { radius / size } else { -radius / size };
+                factor += more;
+                predictor = along.iter().map(|d| more * d).collect();
+                predictor.clone()
+            } else {
+                let (back, accuracy, name) = self.solve(part, &residual)?;
+                (linear_residual, engine) = (accuracy, name);
+                let more = -dot(&predictor, &back) / dot(&predictor, &along);
+                factor += more;
+                back.iter().zip(&along).map(|(b, d)| b + more * d).collect()
+            };
+            step.iter_mut().zip(&increment).for_each(|(sum, d)| *sum += d);
+            self.newton.move_by(part, &increment);
+            let mut change = crate::entities::SetChange::default();
+            for interaction in interactions.iter_mut() {
+                let more = interaction.after_update(part, iteration)?;
+                change.activated.extend(more.activated);
+                change.deactivated.extend(more.deactivated);
+                change.stick_slip.extend(more.stick_slip);
+            }
+            (residual, load) = self.residual(part, interactions, factor)?;
+            let assembler = &self.newton.assembler;
+            let balanced = assembler.equations().balanced(&residual);
+            if iteration == 1 {
+                let whole: Vec<f64> = load.iter().map(|q| factor * q).collect();
+                references = vec![assembler.equations().balanced(&whole).into_owned(), balanced.to_vec()];
+            }
+            let (values, round_off) = (assembler.values(part), assembler.round_off(part));
+            let verdict = self.newton.criterion.judge(&Measures {
+                iteration,
+                nodes: &part.nodes,
+                dofs: &part.dofs,
+                equations: assembler.equations(),
+                residual: &balanced,
+                references: &references,
+                increment: &increment,
+                values: &values,
+                round_off: &round_off,
+            });
+            let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
+            let record = IterationRecord {
+                iteration,
+                checks: verdict.checks,
+                active_set_changes: change.activated.len() + change.deactivated.len(),
+                stick_slip_changes: change.stick_slip.len(),
+                changed_nodes: changed.copied().take(12).collect(),
+                linear_residual,
+                engine,
+            };
+            monitor.iteration(&record);
+            records.push(record);
+            if residual.iter().chain(&values).any(|v| !v.is_finite()) {
+                break;
+            }
+            if verdict.converged && change.count() == 0 {
+                if self.newton.settings.compute_reactions {
+                    write_reactions(part, &residual);
+                }
+                self.pending = Some((factor, step, iteration));
+                return Ok((records, None));
+            }
+        }
+        if let Some([_, radius]) = &mut self.radius {
+            *radius *= 0.5;
+        }
+        let failure = self.newton.explain(part, &records, &residual);
+        Ok((records, Some(failure)))
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl SolutionStrategy for ArcLength {
+    fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
+        let mut record = recorded(part, |part, interactions| self.iterate(part, interactions, monitor))?;
+        if let Some((factor, ..)) = &self.pending {
+            record.interactions.push(("load factor".to_owned(), *factor));
+        }
+        Ok(record)
+    }
+
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        if let Some((factor, step, iterations)) = self.pending.take() {
+            (self.factor, self.last) = (factor, step);
+            part.info.values.insert("LOAD_FACTOR", factor);
+            if let Some([first, radius]) = &mut self.radius {
+                let grown = *radius * (self.settings.desired as f64 / iterations as f64).sqrt();
+                *radius = grown.clamp(self.settings.least * *first, self.settings.most * *first);
+            }
+        }
+        accept(part)
+    }
+
+    fn assembler(&self) -> &Assembler {
+        &self.newton.assembler
+    }
+
+    fn linear_seconds(&self) -> [f64; 3] {
+        self.newton.linear_seconds()
+    }
+}
+
+register! { Strategy "arc_length",
+    about: "follows the path of equilibrium by its length, through points where the load falls",
+    source: "Riks 1979; Ramm 1981",
+    defaults: DEFAULTS,
+    build: Build::NameOnly,
+}

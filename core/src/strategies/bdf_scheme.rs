@@ -1,0 +1,137 @@
+//! Backward differences of order 1 to 5 for velocity and acceleration.
+//!
+//! v_{n+1} = Σ c_k u_{n+1−k}, a_{n+1} = Σ c_k v_{n+1−k}, k = 0 … order: the derivative at t_{n+1} of the polynomial through
+//! the last values, for steps of any lengths. M a_{n+1} + C v_{n+1} + f_int(u_{n+1}) = f_ext. The first
+//! steps, which have no such past, are of the order that theirs allows. Orders 1 and 2 are stable for every step; 3 to 5 are
+//! not for motion without damping.
+
+use super::scheme::{Scheme, SchemeFactory, gather, predict_ballistic};
+use crate::assembly::Inertia;
+use crate::diagnostics::Result;
+use crate::model::ModelPart;
+use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
+use crate::register;
+use crate::registry::Build;
+
+/// Order, damping, and the times the present weights refer to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BdfScheme {
+    order: usize,
+    rayleigh: [f64; 2],
+    /// Ends of the last steps and the beginning of the first, ascending.
+    ends: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+/// Weights of the values at `times` in the derivative at `times[0]` of the polynomial through them.
+fn weights(times: &[f64]) -> Vec<f64> {
+    let t = times[0];
+    let others = || times[1..].iter();
+    let mut out = vec![others().map(|other| 1.0 / (t - other)).sum()];
+    for (k, own) in times.iter().enumerate().skip(1) {
+        let rest = || times.iter().enumerate().skip(1).filter(|(j, _)| *j != k).map(|(_, other)| *other);
+        let above: f64 = rest().map(|other| t - other).product();
+        let below: f64 = rest().map(|other| own - other).product();
+        out.push(above / (below * (own - t)));
+    }
+    out
+}
+
+impl BdfScheme {
+    /// The scheme of an order from 1 to 5.
+    pub fn new(order: usize, rayleigh: [f64; 2]) -> Self {
+        Self { order, rayleigh, ends: Vec::new(), weights: Vec::new() }
+    }
+}
+
+impl Scheme for BdfScheme {
+    fn prepare(&self, part: &mut ModelPart) {
+        part.nodes.history.add(&VELOCITY);
+        part.nodes.history.add(&ACCELERATION);
+        let levels = part.nodes.history.levels().max(self.order + 1);
+        part.nodes.history.set_levels(levels);
+    }
+
+    fn predict(&mut self, part: &mut ModelPart) -> Result<()> {
+        let (time, dt) = (part.info.time, part.info.delta_time);
+        let now = time - dt;
+        // An attempt that failed left an end after the present time.
+        self.ends.retain(|end| *end <= now + 1e-6 * dt);
+        if self.ends.is_empty() {
+            self.ends.push(now);
+        }
+        let past = self.ends.len().saturating_sub(self.order);
+        self.ends.drain(..past);
+        let times: Vec<f64> = std::iter::once(time).chain(self.ends.iter().rev().copied()).collect();
+        self.weights = weights(&times);
+        self.ends.push(time);
+        predict_ballistic(part);
+        Ok(())
+    }
+
+    fn update(&self, part: &mut ModelPart) {
+        let history = &mut part.nodes.history;
+        for (from, to) in [(&DISPLACEMENT, &VELOCITY), (&VELOCITY, &ACCELERATION)] {
+            let mut rate = vec![0.0; history.values(from, 0).len()];
+            for (level, weight) in self.weights.iter().enumerate() {
+                rate.iter_mut().zip(history.values(from, level)).for_each(|(sum, value)| *sum += weight * value);
+            }
+            history.values_mut(to, 0).copy_from_slice(&rate);
+        }
+    }
+
+    fn inertia(&self, part: &ModelPart) -> Option<Inertia> {
+        let present = |variable| gather(part, |i| part.nodes.history.values(variable, 0)[i]);
+        Some(Inertia {
+            mass_factor: self.weights[0].powi(2),
+            damping_factor: self.weights[0],
+            alpha: self.rayleigh[0],
+            beta: self.rayleigh[1],
+            acceleration: present(&ACCELERATION),
+            velocity: present(&VELOCITY),
+            carried: Vec::new(),
+        })
+    }
+}
+
+macro_rules! register_bdf {
+    ($name:literal, $aliases:expr, $order:literal, $about:literal) => {
+        register! { Scheme $name,
+            aliases: $aliases,
+            about: $about,
+            build: Build::Factory(&((|request| Ok(Box::new(BdfScheme::new($order, request.rayleigh()?)))) as SchemeFactory)),
+        }
+    };
+}
+
+register_bdf!("bdf1", &["backward_euler"], 1, "backward differences of first order: the implicit Euler scheme");
+register_bdf!("bdf2", &[], 2, "backward differences of second order, stable for every step");
+register_bdf!("bdf3", &[], 3, "backward differences of third order");
+register_bdf!("bdf4", &[], 4, "backward differences of fourth order");
+register_bdf!("bdf5", &[], 5, "backward differences of fifth order");
+
+#[cfg(test)]
+mod tests {
+    use super::weights;
+
+    #[test]
+    fn weights_differentiate_polynomials_of_their_degree() {
+        let times = [1.7, 1.3, 1.2, 0.8, 0.1, -0.2];
+        for order in 1..=5 {
+            let c = weights(&times[..=order]);
+            for degree in 0..=order as i32 {
+                let sum: f64 = c.iter().zip(times).map(|(c, t)| c * t.powi(degree)).sum();
+                let exact = f64::from(degree) * times[0].powi(degree - 1);
+                assert!((sum - exact).abs() < 1e-10, "order {order}, degree {degree}: {sum} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn equal_steps_give_the_usual_weights() {
+        let c = weights(&[0.3, 0.2, 0.1]);
+        for (c, usual) in c.iter().zip([15.0, -20.0, 5.0]) {
+            assert!((c - usual).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The generalised-α scheme: second order, with a chosen spectral radius ρ∞ at infinite frequency.
+//!
+//! M a_α + C v_α = (1 − α_f) F_{n+1} + α_f F_n with a_α = (1 − α_m) a_{n+1} + α_m a_n, v_α = (1 − α_f) v_{n+1} + α_f v_n
+//! and F all forces but those of inertia and damping, reactions included. α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), and
+//! Newmark's relations hold with γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4. The code divides by 1 − α_f, so that the
+//! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
+
+use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
+use crate::assembly::Inertia;
+use crate::diagnostics::Result;
+use crate::model::ModelPart;
+use crate::model::variables::{ACCELERATION, VELOCITY};
+use crate::register;
+use crate::registry::Build;
+
+/// Parameters of the scheme and the forces of the last accepted step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneralizedAlphaScheme {
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+    rayleigh: [f64; 2],
+    forces: Option<Vec<f64>>,
+}
+
+impl GeneralizedAlphaScheme {
+    /// The scheme with spectral radius `rho` in [0, 1] at infinite frequency.
+    pub fn new(rho: f64, rayleigh: [f64; 2]) -> Self {
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        let beta = 0.25 * (1.0 - alpha_m + alpha_f).powi(2);
+        Self { alpha_m, alpha_f, beta, gamma: 0.5 - alpha_m + alpha_f, rayleigh, forces: None }
+    }
+
+    fn from_settings(request: &SchemeRequest<'_>) -> Result<Box<dyn Scheme>> {
+        let rho = request.settings.get_f64("rho_inf")?;
+        if !(0.0..=1.0).contains(&rho) {
+            let fact = format!("\"rho_inf\" is {rho}, it must lie in [0, 1]");
+            let remedy = "1 keeps the energy, 0 removes the highest frequencies at once";
+            return Err(request.settings.error("rho_inf", "rho-inf", fact).remedy(remedy).into());
+        }
+        Ok(Box::new(Self::new(rho, request.rayleigh()?)))
+    }
+}
+
+impl Scheme for GeneralizedAlphaScheme {
+    fn prepare(&self, part: &mut ModelPart) {
+        part.nodes.history.add(&VELOCITY);
+        part.nodes.history.add(&ACCELERATION);
+    }
+
+    fn predict(&mut self, part: &mut ModelPart) -> Result<()> {
+        predict_ballistic(part);
+        Ok(())
+    }
+
+    fn update(&self, part: &mut ModelPart) {
+        update_newmark(part, self.beta, self.gamma);
+    }
+
+    fn inertia(&self, part: &ModelPart) -> Option<Inertia> {
+        let dt = part.info.delta_time;
+        let history = &part.nodes.history;
+        let (a, a_old) = (history.values(&ACCELERATION, 0), history.values(&ACCELERATION, 1));
+        let (v, v_old) = (history.values(&VELOCITY, 0), history.values(&VELOCITY, 1));
+        let (m, f) = (self.alpha_m, self.alpha_f);
+        let scale = 1.0 / (1.0 - f);
+        Some(Inertia {
+            mass_factor: scale * (1.0 - m) / (self.beta * dt * dt),
+            damping_factor: self.gamma / (self.beta * dt),
+            alpha: self.rayleigh[0],
+            beta: self.rayleigh[1],
+            acceleration: gather(part, |i| scale * ((1.0 - m) * a[i] + m * a_old[i])),
+            velocity: gather(part, |i| v[i] + scale * f * v_old[i]),
+            carried: self.forces.iter().flatten().map(|force| scale * f * force).collect(),
+        })
+    }
+
+    fn past_inertia(&self, part: &ModelPart) -> Option<Inertia> {
+        let old = |variable| gather(part, |i| part.nodes.history.values(variable, 1)[i]);
+        let [alpha, beta] = self.rayleigh;
+        self.forces.is_none().then(|| Inertia {
+            alpha,
+            beta,
+            acceleration: old(&ACCELERATION),
+            velocity: old(&VELOCITY),
+            ..Inertia::default()
+        })
+    }
+
+    fn keeps_forces(&self) -> bool {
+        true
+    }
+
+    fn keep(&mut self, forces: Vec<f64>) {
+        self.forces = Some(forces);
+    }
+}
+
+register! { Scheme "generalized_alpha",
+    aliases: &["generalized-alpha", "generalised_alpha"],
+    about: "generalised-α: second order, damps high frequencies by rho_inf, keeps low ones",
+    source: "Chung, Hulbert 1993",
+    build: Build::Factory(&(GeneralizedAlphaScheme::from_settings as SchemeFactory)),
+}
