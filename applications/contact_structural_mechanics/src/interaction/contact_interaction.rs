@@ -23,7 +23,9 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
-use crate::search::{Candidate, GapCheck, SearchSettings, assign_roles, candidates, touching_nodes, warn_of_reach};
+use crate::search::{
+    Candidate, GapCheck, SearchSettings, assign_roles, candidates, late_pairs, touching_nodes, warn_of_reach,
+};
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA,
@@ -91,6 +93,7 @@ pub struct ContactInteraction {
     saved: Vec<Pair>,
     acting: bool,
     warned: bool,
+    warned_of_late_pairs: bool,
     warned_of_friction: bool,
     /// Nodes that the direct check found on a master.
     touching: BTreeSet<u32>,
@@ -126,6 +129,7 @@ impl ContactInteraction {
             saved: Vec::new(),
             acting: true,
             warned: false,
+            warned_of_late_pairs: false,
             warned_of_friction: false,
             touching: BTreeSet::new(),
             at_origin: BTreeSet::new(),
@@ -177,15 +181,7 @@ impl ContactInteraction {
                     beyond.insert(key);
                 }
                 if let std::collections::btree_map::Entry::Vacant(place) = known.entry(key) {
-                    let slave_normal = self.normal(part, self.facet(key.interface, slave));
-                    let master_normal = self.normal(part, self.facet(key.interface, master));
-                    place.insert(Pair {
-                        key,
-                        slave_normal,
-                        master_normal,
-                        overlapping: true,
-                        previous: Previous::default(),
-                    });
+                    place.insert(self.pair(part, key));
                 }
             }
         }
@@ -249,8 +245,14 @@ impl ContactInteraction {
     }
 
     fn make_blocks(&mut self, pairs: Vec<Pair>) -> Result<()> {
-        let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
         self.blocks.clear();
+        self.blocks = self.blocks_of(pairs)?;
+        Ok(())
+    }
+
+    fn blocks_of(&self, pairs: Vec<Pair>) -> Result<Vec<Box<dyn ContactBlock>>> {
+        let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
+        let mut blocks = Vec::new();
         for ((slave, master), (pairs, nodes)) in groups {
             let name = condition_name(&self.condition_stem(), slave, master);
             let entry = registry::require(Kind::Condition, &name)?;
@@ -258,8 +260,45 @@ impl ContactInteraction {
             let block = (self.settings.family.block)(slave, master, request).ok_or_else(|| {
                 Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
             })?;
-            self.blocks.push(block);
+            blocks.push(block);
         }
+        Ok(blocks)
+    }
+
+    fn pair(&self, part: &ModelPart, key: PairKey) -> Pair {
+        Pair {
+            key,
+            slave_normal: self.normal(part, self.facet(key.interface, key.slave)),
+            master_normal: self.normal(part, self.facet(key.interface, key.master)),
+            overlapping: true,
+            previous: Previous::default(),
+        }
+    }
+
+    /// Says once that facets have come through each other that the step did not look at.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    fn warn_of_late_pairs(&mut self, part: &mut ModelPart) -> Result<()> {
+        if self.warned_of_late_pairs || !self.acting || !self.threshold.is_finite() {
+            return Ok(());
+        }
+        let known: BTreeSet<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
+        let near = |at: usize| candidates(part, &self.interfaces[at], &self.settings.search).into_iter();
+        let late: Vec<Pair> = (0..self.interfaces.len())
+            .flat_map(|at| near(at).map(move |c| PairKey { interface: at as u32, slave: c.slave, master: c.master }))
+            .filter(|key| !known.contains(key))
+            .map(|key| self.pair(part, key))
+            .collect();
+        let allowed = self.settings.active_check_factor * self.threshold;
+        let through = self
+            .blocks_of(late)?
+            .iter()
+            .flat_map(|block| block.integrate(&part.view()))
+            .filter(|i| i.overlapping && i.gap.iter().zip(&i.area).any(|(gap, area)| *gap < -allowed * area.abs()))
+            .count();
+        self.warned_of_late_pairs = through > 0;
+        part.messages.extend((through > 0).then(|| late_pairs(through, allowed)));
         Ok(())
     }
 
@@ -484,6 +523,7 @@ impl Interaction for ContactInteraction {
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.warn_of_late_pairs(part)?;
         let inactive: Vec<u32> =
             self.slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ACTIVE, n as usize)).collect();
         let pressure = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
