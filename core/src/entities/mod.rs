@@ -13,4 +13,4 @@ pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, Loc
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
 pub use interaction::{Interaction, SetChange};
 pub use kernel::{Gather, Kernel, KernelBlock};
-pub use view::StepView;
+pub use view::{NORMALS_OF_FIRST_ITERATION, StepView};

@@ -18,3 +18,16 @@ pub struct StepView<'a> {
     /// Time, counters, named values.
     pub info: &'a ProcessInfo,
 }
+
+/// Mark of a model in whose steps the first iteration decides the normals of contact.
+pub const NORMALS_OF_FIRST_ITERATION: &str = "NORMALS_OF_FIRST_ITERATION";
+
+impl StepView<'_> {
+    /// Whether the tangent is the reference program's, which leaves terms out, and not the exact one.
+    ///
+    /// Contact may keep, for a whole step, the normals there are after its first iteration. What that iteration's tangent
+    /// leaves out then decides a little of the answer, so there the same is left out. Every other tangent is exact.
+    pub fn decides_normals(&self) -> bool {
+        self.info.nl_iteration == 1 && self.info.is(NORMALS_OF_FIRST_ITERATION)
+    }
+}

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, SetChange};
+use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
 use zelus_core::parameters::Interval;
@@ -434,6 +434,9 @@ impl Interaction for ContactInteraction {
         }
         find_nodal_h(part);
         part.info.marks.insert(CONTACT, true);
+        if !self.updates_normals() {
+            part.info.marks.insert(NORMALS_OF_FIRST_ITERATION, true);
+        }
         self.settings.adaptation.dynamic_factor =
             part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name());
         if part.info.is(SIMPLIFIED_SEMI_SMOOTH_NEWTON) {

@@ -135,13 +135,9 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
         seeded
     }
 
-    /// With normals of the step, those after its first iteration count, so that iteration decides a little of the answer.
-    ///
-    /// Kratos leaves part of the operators' derivative out in the plane; constant operators in the first iteration come
-    /// nearest to its normals. From the second iteration on the tangent is exact.
+    /// Kratos leaves part of the operators' derivative out in the plane; constant operators come nearest to its normals.
     fn operator_tangent(&self, view: &StepView<'_>) -> OperatorTangent {
-        let lagging = self.parameters.normal_variation == NormalVariation::None;
-        if NS == 2 && lagging && view.info.nl_iteration == 1 { OperatorTangent::Frozen } else { OperatorTangent::Exact }
+        if NS == 2 && view.decides_normals() { OperatorTangent::Frozen } else { OperatorTangent::Exact }
     }
 
     fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {

@@ -46,12 +46,9 @@ pub(super) fn pressure<const NODES: usize>(entity: &Gather<'_, NODES>, view: &St
     out
 }
 
-/// Whether the tangent counts the stretch of the area that a load acts on: not in the first iteration of a step.
-///
-/// Contact normals of a step are those after its first iteration, which therefore is the reference program's: it leaves the
-/// stretch out. From the second iteration on the tangent is exact.
+/// Whether the tangent counts the stretch of the area that a load acts on; the reference program leaves it out.
 pub(super) fn counts_stretch(view: &StepView<'_>) -> bool {
-    view.info.nl_iteration != 1
+    !view.decides_normals()
 }
 
 /// THICKNESS of the condition's properties, 1 when not given.

@@ -301,8 +301,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         let mut d = [[0.0; S]; S];
         for g in 0..material.rule.len() {
             let mut point = self.point(material, g, entity, &u)?;
-            // Normals of contact follow the first iteration, which keeps the reference program's tangent.
-            point.state.small &= view.info.nl_iteration != 1;
+            point.state.small &= !view.decides_normals();
             if material.density > 0.0 {
                 self.body_forces(material, &material.rule.n()[g], point.weight, &acceleration, rhs);
             }
