@@ -28,25 +28,38 @@ pub(super) const VARIABLES: &[&str] = &[
     "VON_MISES_STRESS",
     "STRAIN_ENERGY",
     "INTEGRATION_WEIGHT",
+    "EQUIVALENT_PLASTIC_STRAIN",
+    "ACCUMULATED_PLASTIC_STRAIN",
+    "PLASTIC_STRAIN_VECTOR",
+    "UNIAXIAL_STRESS",
 ];
 
 /// A variable at all Gauss points of one element; `None` when unknown or when the element is turned inside out.
 pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const S: usize>(
     solid: &Solid<F, NODES, DIM, S>,
     entity: &Gather<'_, NODES>,
+    state: &[f64],
     view: &StepView<'_>,
     variable: &str,
 ) -> Option<Gauss> {
     let material = solid.material(entity);
     let u = solid.displacement(entity, view);
+    let mean = Solid::<F, NODES, DIM, S>::mean_gradients(material, entity);
     let table = material.rule;
     let mut out = Gauss::default();
     for g in 0..table.len() {
-        let state = solid.point(material, g, entity, &u).ok()?.state;
+        let state = Solid::<F, NODES, DIM, S>::point(material, g, entity, &u, &mean, state).ok()?.state;
         let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
-            _ => value(material.law.as_ref(), &state, F::MEASURE, variable, &mut out.values)?,
+            _ => value(
+                material.law.as_ref(),
+                &state,
+                F::MEASURE,
+                S == 4 && !F::MEAN_DILATATION,
+                variable,
+                &mut out.values,
+            )?,
         }
         out.weights.push(weight);
         out.shape.extend_from_slice(table.n_at(g));
@@ -57,22 +70,26 @@ pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const 
 
 fn value<const S: usize>(
     law: &dyn ConstitutiveLaw<S>,
-    state: &StrainState<S>,
+    state: &StrainState<'_, S>,
     measure: StressMeasure,
+    ring: bool,
     variable: &str,
     out: &mut Vec<f64>,
 ) -> Option<()> {
+    if law.internal(state, variable, out) {
+        return Some(());
+    }
     if let Some(stem) = variable.strip_suffix("_STRESS_VECTOR") {
-        vector(&stress(law, state, stem)?, out);
+        vector(&stress(law, state, stem)?, ring, out);
     } else if let Some(stem) = variable.strip_suffix("_STRESS_TENSOR") {
         tensor::<S>(&stress_tensor(&stress(law, state, stem)?), out);
     } else if let Some(stem) = variable.strip_suffix("_STRAIN_VECTOR") {
-        vector(&strain(law, state, stem)?, out);
+        vector(&strain(law, state, stem)?, ring, out);
     } else if let Some(stem) = variable.strip_suffix("_STRAIN_TENSOR") {
         tensor::<S>(&strain_tensor(&strain(law, state, stem)?), out);
     } else {
         match variable {
-            "STRAIN" => vector(&state.strain, out),
+            "STRAIN" => vector(&state.strain, ring, out),
             "DEFORMATION_GRADIENT" => tensor::<S>(&state.f, out),
             "STRAIN_ENERGY" => out.push(law.energy(state)),
             "VON_MISES_STRESS" => out.push(von_mises(&law.stress(state, measure, None))),
@@ -82,19 +99,19 @@ fn value<const S: usize>(
     Some(())
 }
 
-fn stress<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, stem: &str) -> Option<[f64; S]> {
+fn stress<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<'_, S>, stem: &str) -> Option<[f64; S]> {
     Some(match stem {
         "PK2" => law.stress(state, StressMeasure::Pk2, None),
         "CAUCHY" => law.stress(state, StressMeasure::Cauchy, None),
         "KIRCHHOFF" => {
-            let factor = if law.ignores_measure() { 1.0 } else { state.det_f };
+            let factor = if law.ignores_measure(state.small) { 1.0 } else { state.det_f };
             law.stress(state, StressMeasure::Cauchy, None).map(|s| factor * s)
         }
         _ => return None,
     })
 }
 
-fn strain<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, stem: &str) -> Option<[f64; S]> {
+fn strain<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<'_, S>, stem: &str) -> Option<[f64; S]> {
     match stem {
         "GREEN_LAGRANGE" => Some(state.strain),
         "ALMANSI" => Some(law.almansi(state)),
@@ -102,9 +119,9 @@ fn strain<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, 
     }
 }
 
-fn vector<const S: usize>(values: &[f64; S], out: &mut Vec<f64>) {
+fn vector<const S: usize>(values: &[f64; S], ring: bool, out: &mut Vec<f64>) {
     out.extend_from_slice(values);
-    if S == 4 {
+    if ring {
         out.extend_from_slice(&[0.0; 2]);
     }
 }
