@@ -135,9 +135,15 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
         seeded
     }
 
-    /// Kratos leaves part of the operators' derivative out in the plane; constant operators come nearest to its normals.
+    /// Where the first iteration decides the normals of the step, the reference program's derivative is followed.
+    ///
+    /// It leaves part of the operators' derivative out: in the plane constant operators come nearest to it.
     fn operator_tangent(&self, view: &StepView<'_>) -> OperatorTangent {
-        if NS == 2 && view.decides_normals() { OperatorTangent::Frozen } else { OperatorTangent::Exact }
+        match view.decides_normals() {
+            false => OperatorTangent::Exact,
+            true if NS == 2 => OperatorTangent::Frozen,
+            true => OperatorTangent::FlatMaster,
+        }
     }
 
     fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
@@ -288,7 +294,9 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
             .map(|at| {
                 let geometry = self.geometry(at, view);
                 let mut out = Integral::default();
-                if let Overlap::Cells(operators) = operators(&geometry, &self.parameters.segmentation) {
+                let found = operators(&geometry, &self.parameters.segmentation);
+                out.facing = found != Overlap::None;
+                if let Overlap::Cells(operators) = found {
                     out.overlapping = true;
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
                     let history = F::history(&self.pairs[at], &self.previous(at, view));

@@ -43,12 +43,12 @@ pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const 
     variable: &str,
 ) -> Option<Gauss> {
     let material = solid.material(entity);
-    let u = solid.displacement(entity, view);
+    let motion = solid.motion(entity, view);
     let mean = Solid::<F, NODES, DIM, S>::mean_gradients(material, entity);
     let table = material.rule;
     let mut out = Gauss::default();
     for g in 0..table.len() {
-        let state = Solid::<F, NODES, DIM, S>::point(material, g, entity, &u, &mean, state).ok()?.state;
+        let state = Solid::<F, NODES, DIM, S>::point(material, g, entity, &motion, &mean, state).ok()?.state;
         let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
