@@ -191,3 +191,39 @@ fn a_solver_key_that_contact_lets_pass_is_a_warning_with_a_name() {
         "{text}"
     );
 }
+
+#[test]
+fn partition_gives_every_element_one_rank_and_says_what_it_costs() {
+    let folder = case("contact_3d/hexahedra_nonmatching");
+    let deck = "ProjectParameters.json";
+    let output = zelus(folder.path(), &["partition", deck, "-n", "3", "--json", "cut.json", "--vtu", "cut.vtu"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    for word in ["neighbours", "ghosts", "mean", "imbalance", "faces cut", "far pairs"] {
+        assert!(text.contains(word), "{word} is not said:\n{text}");
+    }
+    let cut = read_json(&folder.path().join("cut.json")).expect("the partition");
+    let ranks: Vec<u64> = cut["elements"]["rank"].as_array().unwrap().iter().filter_map(|r| r.as_u64()).collect();
+    assert_eq!(ranks.len(), cut["elements"]["ids"].as_array().unwrap().len());
+    let counted: Vec<u64> = (0..3).map(|rank| cut["counts"]["ranks"][rank]["elements"].as_u64().unwrap()).collect();
+    for rank in 0..3 {
+        assert_eq!(ranks.iter().filter(|&&own| own == rank).count() as u64, counted[rank as usize]);
+        assert!(counted[rank as usize] > 0);
+    }
+    let owned: u64 = (0..3).map(|rank| cut["counts"]["ranks"][rank]["nodes"].as_u64().unwrap()).sum();
+    assert_eq!(owned, cut["nodes"]["ids"].as_array().unwrap().len() as u64);
+    assert!(std::fs::read(folder.path().join("cut.vtu")).expect("the picture").windows(4).any(|w| w == b"RANK"));
+    let again = zelus(folder.path(), &["partition", deck, "-n", "3", "--json", "again.json"]);
+    assert!(again.status.success(), "{}", said(&again));
+    assert_eq!(read_json(&folder.path().join("again.json")).expect("the partition"), cut);
+}
+
+#[test]
+fn more_ranks_than_elements_are_bad_input() {
+    let folder = case("contact_3d/hexahedra_nonmatching");
+    for ranks in ["100000", "0"] {
+        let output = zelus(folder.path(), &["partition", "ProjectParameters.json", "-n", ranks]);
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).contains("cannot be shared by"), "{}", said(&output));
+    }
+}

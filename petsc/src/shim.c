@@ -141,7 +141,9 @@ static PetscErrorCode create(zp_solver *s, MPI_Comm comm, int64_t rows, const in
 
 void zp_destroy(zp_solver *s)
 {
-  if (!s) return;
+  PetscBool ended = PETSC_FALSE;
+  /* after its end PETSc has given back what its objects use */
+  if (!s || PetscFinalized(&ended) || ended) return;
   KSPDestroy(&s->solver);
   MatDestroy(&s->matrix);
   VecDestroy(&s->rhs);

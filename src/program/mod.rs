@@ -1,6 +1,7 @@
-//! The program: `zelus run`, `check`, `list`, `describe`.
+//! The program: `zelus run`, `check`, `partition`, `list`, `describe`.
 
 mod catalogue;
+mod partition;
 mod say;
 mod terminal;
 
@@ -47,6 +48,8 @@ enum Command {
         /// The deck, e.g. ProjectParameters.json.
         file: PathBuf,
     },
+    /// Cut the mesh of a deck for several ranks and say what each has, whom it meets and what it sends.
+    Partition(partition::Arguments),
     /// List the registered names, of all kinds or of one.
     List {
         /// A kind, e.g. process or condition.
@@ -98,6 +101,7 @@ fn execute(command: Command) -> Result<()> {
             ));
             Ok(())
         }
+        Command::Partition(arguments) => partition::run(&arguments),
         Command::List { kind } => catalogue::list(kind.as_deref()),
         Command::Describe { name } => catalogue::describe(&name),
     }

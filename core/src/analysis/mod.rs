@@ -5,6 +5,7 @@
 
 mod cutting;
 mod linear_solvers;
+mod mesh;
 mod orchestrator;
 mod report;
 mod solver;
@@ -12,6 +13,7 @@ mod stage;
 mod time_stepping;
 
 pub use cutting::Cutting;
+pub use mesh::read_deck_mesh;
 pub use orchestrator::{RunOptions, check, run};
 pub use report::{RunReport, Sizes};
 pub use solver::{ExtensionDefinition, NodalVariable, SolverDefinition};

@@ -60,14 +60,15 @@ fn with_threads(
     (result, report)
 }
 
-fn open(path: &Path) -> Result<(Node, PathBuf)> {
+/// The parsed deck and its folder.
+pub(super) fn open(path: &Path) -> Result<(Node, PathBuf)> {
     let document = Document::read(path)?;
     let folder = path.parent().map(Path::to_owned).unwrap_or_default();
     Ok((document.root.clone(), folder))
 }
 
 /// Name and deck of each stage in order.
-fn stages(deck: &Node, report: &mut RunReport) -> Result<Vec<(String, Node)>> {
+pub(super) fn stages(deck: &Node, report: &mut RunReport) -> Result<Vec<(String, Node)>> {
     let name_of = |deck: &Node| deck.get_path("problem_data.problem_name").and_then(|n| n.as_str().map(str::to_owned));
     if deck.get("orchestrator").is_none() {
         let name = name_of(deck).unwrap_or_default();

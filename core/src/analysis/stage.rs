@@ -345,7 +345,11 @@ fn finish(mut problems: Report) -> Error {
     problems.finish().expect_err("it has errors")
 }
 
-fn root_name(settings: &Settings) -> Result<String> {
+/// Name of the root part that the settings name.
+///
+/// # Errors
+/// None, or one without letters.
+pub(super) fn root_name(settings: &Settings) -> Result<String> {
     let name = settings.get_str("model_part_name")?;
     if name.is_empty() {
         return Err(settings
@@ -391,7 +395,17 @@ fn check_top_level(key: &str, known: &[&str], deck: &Node, problems: &mut Report
     }
 }
 
-fn import(solver: &SolverSettings, root: &str, folder: &Path, model: &mut Model, warnings: &mut Report) -> Result<()> {
+/// Reads the mesh that the settings name into the model, unless an earlier stage has.
+///
+/// # Errors
+/// Settings that do not fit, a file that cannot be read.
+pub(super) fn import(
+    solver: &SolverSettings,
+    root: &str,
+    folder: &Path,
+    model: &mut Model,
+    warnings: &mut Report,
+) -> Result<()> {
     let settings = &solver.settings;
     let import = settings.sub("model_import_settings")?;
     let input_type = import.node().get("input_type").map(Node::str).transpose()?.unwrap_or("mdpa");

@@ -2,14 +2,17 @@
 //!
 //! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind
 //! facets that face each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Every
-//! rank can compute it for itself and gets the same. [`surfaces`] finds the facets' surfaces in a deck.
+//! rank can compute it for itself and gets the same. [`surfaces`] finds the facets' surfaces in a deck, and [`Counts`]
+//! says what a partition costs.
 
+mod counts;
 mod faces;
 mod facets;
 mod interfaces;
 #[cfg(test)]
 mod tests;
 
+pub use counts::{Counts, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
 pub use interfaces::{Surface, surfaces};
 
@@ -65,15 +68,22 @@ pub fn partition(part: &ModelPart, surfaces: &[Surface], ranks: usize) -> Result
             .into_iter()
             .map(|(slave, master)| (facets[slave as usize].element, facets[master as usize].element, PAIR_WEIGHT)),
     );
-    let mut weights: Vec<u32> = (0..count as u32).map(|element| part.elements.nodes(element).len() as u32).collect();
-    for facet in facets.iter().filter(|facet| facet.slave) {
-        weights[facet.element as usize] += FACET_WEIGHT * part.elements.nodes(facet.element).len() as u32;
-    }
-    let elements = partition_graph(&graph(weights, edges), ranks).map_err(|error| Error::System(error.to_string()))?;
+    let elements = partition_graph(&graph(weights(part, &facets), edges), ranks)
+        .map_err(|error| Error::System(error.to_string()))?;
     let cut = shared.iter().filter(|&&(a, b, _)| elements[a as usize] != elements[b as usize]).count();
     let nodes = node_owners(part, &elements, &elements_of_nodes, ranks);
     let conditions = condition_owners(part, &elements, &nodes, &elements_of_nodes);
     Ok(Partition { ranks, elements, conditions, nodes, facets, cut })
+}
+
+/// Weight of each element: its nodes, and more behind slave facets.
+fn weights(part: &ModelPart, facets: &[ContactFacet]) -> Vec<u32> {
+    let nodes = |element: u32| part.elements.nodes(element).len() as u32;
+    let mut weights: Vec<u32> = (0..part.elements.len() as u32).map(nodes).collect();
+    for facet in facets.iter().filter(|facet| facet.slave) {
+        weights[facet.element as usize] += FACET_WEIGHT * nodes(facet.element);
+    }
+    weights
 }
 
 /// Lists of lists in flat arrays: the elements at each node.

@@ -1,6 +1,6 @@
 use std::collections::HashMap;
 
-use super::{Partition, Surface, partition, surfaces};
+use super::{Counts, Partition, Repeats, Surface, Traffic, partition, surfaces};
 use crate::geometry::Shape;
 use crate::model::{ModelPart, Nodes, SubPart};
 use crate::parameters::Document;
@@ -137,4 +137,35 @@ fn more_ranks_than_elements_are_refused() {
     let error = partition(&two_blocks(1), &[], 3).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("2 elements cannot be shared by 3 ranks"), "{error}");
+}
+
+#[test]
+fn counts_of_a_halved_bar_are_those_of_its_section() {
+    let part = two_blocks(4);
+    let by_block: Vec<u32> = (0..128).map(|element| element / 64).collect();
+    let mut cut = partition(&part, &its_surfaces(&part), 2).unwrap();
+    // the blocks share no node, so one rank each leaves nothing but the pairs to talk about
+    cut.nodes = (0..250).map(|node| node / 125).collect();
+    (cut.elements, cut.cut) = (by_block, 0);
+    let counts = Counts::new(&part, &cut);
+    let [lower, upper] = counts.ranks[..] else { panic!("two ranks") };
+    assert_eq!((lower.nodes, lower.ghosts, lower.copies, lower.neighbours, lower.cut_faces), (125, 0, 0, 0, 0));
+    assert_eq!((lower.slave_facets, upper.slave_facets, upper.far_pairs, upper.far_ranks), (0, 16, 16, 1));
+    // 13³ pairs of neighbouring nodes a block: 3 n + 1 along each axis
+    assert_eq!(counts.entries, 2 * 13 * 13 * 13);
+    let repeats = Repeats { newton: 2, krylov: 3 };
+    let sums = 2 * (24 * 3 + 32) + 48;
+    assert_eq!(counts.traffic(0, repeats), Traffic { messages: 2 * 10 + 1, bytes: sums });
+    assert_eq!(counts.traffic(1, repeats).bytes, sums + 8 * 3 * 3 * 4 * 16 * 2);
+    assert_eq!(counts.traffic(1, repeats).messages, 2 * 10 + 1 + 4);
+
+    // lower block split along x = 1/2: a section of 25 nodes and 16 faces
+    cut.elements = (0..128).map(|element| if element < 64 { u32::from(element % 4 >= 2) } else { 1 }).collect();
+    cut.nodes = (0..250).map(|node| if node < 125 { u32::from(node % 5 > 2) } else { 1 }).collect();
+    let counts = Counts::new(&part, &cut);
+    let [left, right] = counts.ranks[..] else { panic!("two ranks") };
+    assert_eq!((left.nodes, left.ghosts, left.copies, left.neighbours, left.cut_faces), (75, 0, 25, 1, 16));
+    assert_eq!((right.nodes, right.ghosts, right.copies, right.neighbours, right.cut_faces), (175, 25, 0, 1, 16));
+    // rows of the section as the right half sees them: 13 · 13 pairs along it, 2 columns across
+    assert_eq!(right.ghost_entries, 13 * 13 * 2);
 }

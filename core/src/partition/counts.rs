@@ -1,0 +1,201 @@
+//! What a partition costs each rank, counted on the mesh.
+//!
+//! The counts suppose that every rank keeps its own nodes and one layer of ghosts, and that neighbours talk to each other
+//! only. With d unknowns a node, g ghosts, p copies that others have of own nodes, e entries of the node graph in rows of
+//! ghosts, f slave facets whose partner is elsewhere and has c corners, P neighbours, N ranks, I Newton iterations a step
+//! and K Krylov iterations a solve, a rank sends in a step
+//!
+//! | what | messages | bytes |
+//! |---|---|---|
+//! | values of own nodes to those who have copies | I P | 8 d p I |
+//! | residual of ghosts to their owners | I P | 8 d g I |
+//! | tangent rows of ghosts to their owners | I P | 8 d² e I |
+//! | Krylov: values to those who have copies | I K P | 8 d p I K |
+//! | Krylov: three sums over all ranks | 3 I K ⌈log₂ N⌉ | 24 I K ⌈log₂ N⌉ |
+//! | criteria: one sum of four over all ranks | I ⌈log₂ N⌉ | 32 I ⌈log₂ N⌉ |
+//! | search: boxes of ranks to all, once | ⌈log₂ N⌉ | 48 (N − 1) |
+//! | pairs: position and displacement of corners, force back | 2 I F | 8 · 3 d c f I |
+//!
+//! where F is the number of ranks that partners are on.
+
+use rustc_hash::FxHashMap;
+use serde::Serialize;
+
+use super::faces::{faces, outer_and_shared};
+use super::facets::facing_pairs;
+use super::{Partition, weights};
+use crate::model::ModelPart;
+
+/// What one rank has and whom it meets.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct RankCounts {
+    /// Elements it evaluates.
+    pub elements: usize,
+    /// Conditions it evaluates.
+    pub conditions: usize,
+    /// Nodes it owns.
+    pub nodes: usize,
+    /// Nodes of its elements that others own.
+    pub ghosts: usize,
+    /// Copies that other ranks have of its nodes.
+    pub copies: usize,
+    /// Ranks that own its ghosts or have copies of its nodes.
+    pub neighbours: usize,
+    /// Faces it shares with elements of other ranks.
+    pub cut_faces: usize,
+    /// Facets of surfaces that may touch.
+    pub facets: usize,
+    /// Those of them where pairs are evaluated.
+    pub slave_facets: usize,
+    /// Slave facets whose nearest facing facet is on another rank.
+    pub far_pairs: usize,
+    /// Ranks that those facing facets are on.
+    pub far_ranks: usize,
+    /// Entries of the node graph that its elements give in rows of ghosts.
+    pub ghost_entries: usize,
+    /// Weight of its elements, as the partition balances it.
+    pub load: usize,
+}
+
+/// How often a step repeats what ranks send each other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Repeats {
+    /// Newton iterations a step.
+    pub newton: usize,
+    /// Krylov iterations a solve.
+    pub krylov: usize,
+}
+
+impl Default for Repeats {
+    fn default() -> Self {
+        Self { newton: 5, krylov: 20 }
+    }
+}
+
+/// Messages and bytes that one rank sends in a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Traffic {
+    /// Messages.
+    pub messages: usize,
+    /// Bytes.
+    pub bytes: usize,
+}
+
+/// The counts of all ranks.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Counts {
+    /// By rank.
+    pub ranks: Vec<RankCounts>,
+    /// Largest load as a multiple of the mean.
+    pub imbalance: f64,
+    /// Faces between elements of different ranks.
+    pub cut: usize,
+    /// Entries of the node graph, each node with itself included.
+    pub entries: usize,
+    /// Unknowns a node: the dimensions of the elements' space.
+    pub unknowns_per_node: usize,
+    /// Corners of the facet with most.
+    pub facet_corners: usize,
+}
+
+impl Counts {
+    /// Counts what `partition` gives each rank of the mesh.
+    pub fn new(part: &ModelPart, partition: &Partition) -> Self {
+        let mut ranks = vec![RankCounts::default(); partition.ranks];
+        let at = |element: u32| partition.elements[element as usize] as usize;
+        for (element, weight) in weights(part, &partition.facets).into_iter().enumerate() {
+            let rank = &mut ranks[partition.elements[element] as usize];
+            rank.elements += 1;
+            rank.load += weight as usize;
+        }
+        partition.conditions.iter().for_each(|&rank| ranks[rank as usize].conditions += 1);
+        partition.nodes.iter().for_each(|&rank| ranks[rank as usize].nodes += 1);
+        let (_, shared) = outer_and_shared(&faces(part));
+        for (a, b, _) in shared {
+            if at(a) != at(b) {
+                ranks[at(a)].cut_faces += 1;
+                ranks[at(b)].cut_faces += 1;
+            }
+        }
+        for facet in &partition.facets {
+            let rank = &mut ranks[at(facet.element)];
+            rank.facets += 1;
+            rank.slave_facets += usize::from(facet.slave);
+        }
+        let mut partners: Vec<(usize, usize)> = Vec::new();
+        for (slave, master) in facing_pairs(&partition.facets) {
+            let [own, other] = [slave, master].map(|facet| at(partition.facets[facet as usize].element));
+            if own != other {
+                ranks[own].far_pairs += 1;
+                partners.push((own, other));
+            }
+        }
+        partners.sort_unstable();
+        partners.dedup();
+        partners.iter().for_each(|&(own, _)| ranks[own].far_ranks += 1);
+        let entries = meet(part, partition, &mut ranks);
+        let loads = ranks.iter().map(|rank| rank.load);
+        let mean = loads.clone().sum::<usize>() as f64 / partition.ranks as f64;
+        let imbalance = loads.max().unwrap_or(0) as f64 / mean.max(1.0);
+        let space = part.elements.kinds.iter().map(|kind| kind.space).max().unwrap_or(3);
+        let facet_corners = if space == 2 { 2 } else { 4 };
+        Self { ranks, imbalance, cut: partition.cut, entries, unknowns_per_node: space.max(1), facet_corners }
+    }
+
+    /// What a rank sends in a step, by the table at the head of this file.
+    pub fn traffic(&self, rank: usize, repeats: Repeats) -> Traffic {
+        let own = &self.ranks[rank];
+        let (newton, krylov, d) = (repeats.newton, repeats.krylov, self.unknowns_per_node);
+        let count = self.ranks.len();
+        let levels = count.next_power_of_two().trailing_zeros() as usize;
+        let neighbours = newton * own.neighbours * (3 + krylov);
+        let sums = newton * (3 * krylov + 1) * levels + levels;
+        let values = 8 * d * newton * (own.copies * (1 + krylov) + own.ghosts);
+        let tangent = 8 * d * d * own.ghost_entries * newton;
+        let all = newton * (24 * krylov + 32) * levels + 48 * (count - 1);
+        let pairs = 8 * 3 * d * self.facet_corners * own.far_pairs * newton;
+        Traffic { messages: neighbours + sums + 2 * newton * own.far_ranks, bytes: values + tangent + all + pairs }
+    }
+}
+
+/// Counts ghosts, copies, neighbours and ghost rows of every rank; gives the entries of the whole node graph.
+fn meet(part: &ModelPart, partition: &Partition, ranks: &mut [RankCounts]) -> usize {
+    let mut of_rank: Vec<Vec<u32>> = vec![Vec::new(); partition.ranks];
+    for (element, &rank) in partition.elements.iter().enumerate() {
+        of_rank[rank as usize].push(element as u32);
+    }
+    let mut meetings: FxHashMap<(u32, u32), ()> = FxHashMap::default();
+    let mut all: Vec<u64> = Vec::new();
+    let mut pairs: Vec<u64> = Vec::new();
+    for (rank, elements) in of_rank.iter().enumerate() {
+        pairs.clear();
+        for &element in elements {
+            let nodes = part.elements.nodes(element);
+            pairs.extend(nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| u64::from(a) << 32 | u64::from(b))));
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut last = u64::MAX;
+        for &pair in &pairs {
+            let node = pair >> 32;
+            let owner = partition.nodes[node as usize];
+            if owner as usize != rank {
+                ranks[rank].ghost_entries += 1;
+                if node != last {
+                    ranks[rank].ghosts += 1;
+                    ranks[owner as usize].copies += 1;
+                    meetings.insert((owner.min(rank as u32), owner.max(rank as u32)), ());
+                }
+            }
+            last = node;
+        }
+        all.extend_from_slice(&pairs);
+    }
+    for (a, b) in meetings.into_keys() {
+        ranks[a as usize].neighbours += 1;
+        ranks[b as usize].neighbours += 1;
+    }
+    all.sort_unstable();
+    all.dedup();
+    all.len()
+}
