@@ -3,20 +3,20 @@
 //! The counts suppose that every rank keeps its own nodes and one layer of ghosts, and that neighbours talk to each other
 //! only. With d unknowns a node, g ghosts, p copies that others have of own nodes, e entries of the node graph in rows of
 //! ghosts, f slave facets whose partner is elsewhere and has c corners, P neighbours, N ranks, I Newton iterations a step
-//! and K Krylov iterations a solve, a rank sends in a step
+//! and K Krylov iterations a solve with S products of the matrix each, a rank sends in a step
 //!
 //! | what | messages | bytes |
 //! |---|---|---|
 //! | values of own nodes to those who have copies | I P | 8 d p I |
 //! | residual of ghosts to their owners | I P | 8 d g I |
 //! | tangent rows of ghosts to their owners | I P | 8 d² e I |
-//! | Krylov: values to those who have copies | I K P | 8 d p I K |
+//! | Krylov: values to those who have copies | I K S P | 8 d p I K S |
 //! | Krylov: three sums over all ranks | 3 I K ⌈log₂ N⌉ | 24 I K ⌈log₂ N⌉ |
 //! | criteria: one sum of four over all ranks | I ⌈log₂ N⌉ | 32 I ⌈log₂ N⌉ |
 //! | search: boxes of ranks to all, once | ⌈log₂ N⌉ | 48 (N − 1) |
 //! | pairs: position and displacement of corners, force back | 2 I F | 8 · 3 d c f I |
 //!
-//! where F is the number of ranks that partners are on.
+//! where F is the number of ranks that partners are on. Coarse levels of multigrid are left out.
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
@@ -25,6 +25,9 @@ use super::faces::{faces, outer_and_shared};
 use super::facets::facing_pairs;
 use super::{Partition, weights};
 use crate::model::ModelPart;
+
+/// Products of the matrix in a Krylov iteration with multigrid: its own, a residual, and two smoothing steps on each way.
+pub const PRODUCTS: usize = 6;
 
 /// What one rank has and whom it meets.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -148,9 +151,10 @@ impl Counts {
         let (newton, krylov, d) = (repeats.newton, repeats.krylov, self.unknowns_per_node);
         let count = self.ranks.len();
         let levels = count.next_power_of_two().trailing_zeros() as usize;
-        let neighbours = newton * own.neighbours * (3 + krylov);
+        let products = krylov * PRODUCTS;
+        let neighbours = newton * own.neighbours * (3 + products);
         let sums = newton * (3 * krylov + 1) * levels + levels;
-        let values = 8 * d * newton * (own.copies * (1 + krylov) + own.ghosts);
+        let values = 8 * d * newton * (own.copies * (1 + products) + own.ghosts);
         let tangent = 8 * d * d * own.ghost_entries * newton;
         let all = newton * (24 * krylov + 32) * levels + 48 * (count - 1);
         let pairs = 8 * 3 * d * self.facet_corners * own.far_pairs * newton;

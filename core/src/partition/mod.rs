@@ -12,7 +12,7 @@ mod interfaces;
 #[cfg(test)]
 mod tests;
 
-pub use counts::{Counts, RankCounts, Repeats, Traffic};
+pub use counts::{Counts, PRODUCTS, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
 pub use interfaces::{Surface, surfaces};
 
@@ -23,7 +23,7 @@ use self::facets::{contact_facets, facing_pairs};
 use crate::diagnostics::{Diagnostic, Error, Result};
 use crate::model::ModelPart;
 
-/// A slave facet weighs as much as this many elements: its pairs' tangents come from dual numbers every iteration.
+/// A slave facet weighs as much as this many elements, as measured on a block of hexahedra pressed on another.
 pub const FACET_WEIGHT: u32 = 4;
 /// An edge between facets that face each other counts as this many shared nodes.
 const PAIR_WEIGHT: u32 = 16;
