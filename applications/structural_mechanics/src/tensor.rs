@@ -127,3 +127,65 @@ pub fn push_forward<const S: usize>(d: &[[f64; S]; S], f: &Tensor, det_f: f64) -
     }
     out
 }
+
+/// Sum of the diagonal.
+pub fn trace(a: &Tensor) -> f64 {
+    a[0][0] + a[1][1] + a[2][2]
+}
+
+/// The tensor without its mean diagonal.
+pub fn deviator(a: &Tensor) -> Tensor {
+    let mut out = *a;
+    let mean = trace(a) / 3.0;
+    (0..3).for_each(|i| out[i][i] -= mean);
+    out
+}
+
+/// √(a : a).
+pub fn norm(a: &Tensor) -> f64 {
+    a.as_flattened().iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// The lower triangle L of a = L Lᵀ; not finite when the symmetric tensor is not positive definite.
+pub fn cholesky(a: &Tensor) -> Tensor {
+    let mut l = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..=i {
+            let rest = a[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            l[i][j] = if i == j { rest.sqrt() } else { rest / l[j][j] };
+        }
+    }
+    l
+}
+
+/// Eigenvalues of a symmetric tensor and, as rows, its unit eigenvectors, by Jacobi's rotations.
+pub fn eigen(a: &Tensor) -> ([f64; 3], Tensor) {
+    let (mut a, mut vectors) = (*a, IDENTITY);
+    for _ in 0..32 {
+        let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
+        if off == 0.0 || off.is_nan() {
+            break;
+        }
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if a[p][q] == 0.0 {
+                continue;
+            }
+            let half = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+            let t = if half.is_infinite() { 0.0 } else { half.signum() / (half.abs() + half.hypot(1.0)) };
+            let c = 1.0 / t.hypot(1.0);
+            let s = t * c;
+            for k in 0..3 {
+                (a[k][p], a[k][q]) = (c * a[k][p] - s * a[k][q], s * a[k][p] + c * a[k][q]);
+            }
+            for k in 0..3 {
+                (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
+            }
+            for k in 0..3 {
+                (vectors[p][k], vectors[q][k]) =
+                    (c * vectors[p][k] - s * vectors[q][k], s * vectors[p][k] + c * vectors[q][k]);
+            }
+            (a[p][q], a[q][p]) = (0.0, 0.0);
+        }
+    }
+    ([a[0][0], a[1][1], a[2][2]], vectors)
+}

@@ -107,6 +107,11 @@ impl Single {
         self.part.move_mesh();
     }
 
+    /// Lets the history advance.
+    pub(crate) fn accept(&mut self) {
+        self.block.accept_step(&self.part.view()).map_err(|e| e.fact).unwrap();
+    }
+
     pub(crate) fn set_nodal(&mut self, variable: &Variable<Vec3>, values: &[Vec3]) {
         self.part.nodes.history.values_mut(variable, 0).copy_from_slice(values.as_flattened());
     }

@@ -10,6 +10,9 @@ pub trait Formulation: Send + Sync + 'static {
     /// Whether gradients and weights belong to the present configuration; otherwise to the initial one.
     const PRESENT: bool;
 
+    /// Whether the dilatation is its mean over the element (B-bar); small strain only.
+    const MEAN_DILATATION: bool = false;
+
     /// The stress that works on the strain: Cauchy on the present, Piola–Kirchhoff on the initial configuration.
     const MEASURE: StressMeasure = if Self::PRESENT { StressMeasure::Cauchy } else { StressMeasure::Pk2 };
 }

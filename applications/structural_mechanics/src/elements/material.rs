@@ -26,14 +26,14 @@ pub(super) struct Material<const S: usize> {
 }
 
 impl<const S: usize> Material<S> {
-    fn new(properties: &Properties, shape: Shape) -> Result<Self> {
+    fn new(properties: &Properties, shape: Shape, plane: bool) -> Result<Self> {
         let order = properties.number("INTEGRATION_ORDER").unwrap_or(shape.cell().default_order as f64);
         if !(1.0..=MAX_ORDER as f64).contains(&order) || order.fract() != 0.0 {
             let fact = format!("INTEGRATION_ORDER of properties {} is {order}", properties.id);
             let problem = Diagnostic::error("integration-order", fact).at(properties.place.clone());
             return Err(problem.remedy("give a whole number from 1 to 5").into());
         }
-        let thickness = properties.number("THICKNESS").filter(|_| S == 3).unwrap_or(1.0);
+        let thickness = properties.number("THICKNESS").filter(|_| plane).unwrap_or(1.0);
         let density = properties.number("DENSITY").unwrap_or(0.0);
         for (name, value, bad) in [
             ("THICKNESS", thickness, !(thickness > 0.0 && thickness.is_finite())),
@@ -47,7 +47,7 @@ impl<const S: usize> Material<S> {
         }
         Ok(Self {
             id: properties.id,
-            law: law_of::<S>(properties)?,
+            law: law_of::<S>(properties, plane)?,
             density,
             thickness,
             acceleration: properties.vector3("VOLUME_ACCELERATION").unwrap_or_default(),
@@ -56,11 +56,11 @@ impl<const S: usize> Material<S> {
         })
     }
 
-    /// The materials of all entities of a block, by ascending id of the properties.
+    /// The materials of all entities of a block, by ascending id of the properties; `plane` means a slab, not a ring.
     ///
     /// # Errors
     /// Every set of properties that an element cannot compute with.
-    pub(super) fn all(request: &BlockRequest<'_>, shape: Shape) -> Result<Vec<Self>> {
+    pub(super) fn all(request: &BlockRequest<'_>, shape: Shape, plane: bool) -> Result<Vec<Self>> {
         let mut ids: Vec<usize> = request.members.iter().map(|&m| request.table.properties[m as usize]).collect();
         ids.sort_unstable();
         ids.dedup();
@@ -68,7 +68,7 @@ impl<const S: usize> Material<S> {
         let mut materials = Vec::with_capacity(ids.len());
         for id in ids {
             let made = match request.part.properties.get(&id) {
-                Some(properties) => Self::new(properties, shape),
+                Some(properties) => Self::new(properties, shape, plane),
                 None => {
                     let fact = format!("{} uses properties {id}, which do not exist", request.entry.name);
                     Err(Diagnostic::error("missing-properties", fact)
@@ -80,6 +80,12 @@ impl<const S: usize> Material<S> {
         }
         report.finish()?;
         Ok(materials)
+    }
+
+    /// What the law remembers of Gauss point `g`, from what it remembers of all points of an element.
+    pub(super) fn remembered<'a>(&self, g: usize, state: &'a [f64]) -> &'a [f64] {
+        let size = self.law.history();
+        &state[g * size..(g + 1) * size]
     }
 
     /// The material of the properties with that id.

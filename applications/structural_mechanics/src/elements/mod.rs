@@ -1,4 +1,4 @@
-//! Solid elements: one kernel, three formulations.
+//! Solid elements: one kernel, four formulations.
 //!
 //! [`Solid`] does the integration; a [`Formulation`] says on which configuration and with which strain. A formulation's
 //! file registers its elements for every shape.
@@ -8,6 +8,7 @@ mod formulation;
 mod material;
 mod results;
 mod small_displacement;
+mod small_displacement_bbar;
 mod solid;
 #[cfg(test)]
 mod reference_tests;
@@ -18,6 +19,7 @@ mod updated_lagrangian;
 
 pub use formulation::Formulation;
 pub use small_displacement::SmallDisplacement;
+pub use small_displacement_bbar::SmallDisplacementBbar;
 pub use solid::Solid;
 pub use total_lagrangian::TotalLagrangian;
 pub use updated_lagrangian::UpdatedLagrangian;

@@ -28,21 +28,27 @@ pub(super) const VARIABLES: &[&str] = &[
     "VON_MISES_STRESS",
     "STRAIN_ENERGY",
     "INTEGRATION_WEIGHT",
+    "EQUIVALENT_PLASTIC_STRAIN",
+    "ACCUMULATED_PLASTIC_STRAIN",
+    "PLASTIC_STRAIN_VECTOR",
+    "UNIAXIAL_STRESS",
 ];
 
 /// A variable at all Gauss points of one element; `None` when unknown or when the element is turned inside out.
 pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const S: usize>(
     solid: &Solid<F, NODES, DIM, S>,
     entity: &Gather<'_, NODES>,
+    state: &[f64],
     view: &StepView<'_>,
     variable: &str,
 ) -> Option<Gauss> {
     let material = solid.material(entity);
     let u = solid.displacement(entity, view);
+    let mean = Solid::<F, NODES, DIM, S>::mean_gradients(material, entity);
     let table = material.rule;
     let mut out = Gauss::default();
     for g in 0..table.len() {
-        let state = solid.point(material, g, entity, &u).ok()?.state;
+        let state = Solid::<F, NODES, DIM, S>::point(material, g, entity, &u, &mean, state).ok()?.state;
         let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
@@ -57,11 +63,14 @@ pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const 
 
 fn value<const S: usize>(
     law: &dyn ConstitutiveLaw<S>,
-    state: &StrainState<S>,
+    state: &StrainState<'_, S>,
     measure: StressMeasure,
     variable: &str,
     out: &mut Vec<f64>,
 ) -> Option<()> {
+    if law.internal(state, variable, out) {
+        return Some(());
+    }
     if let Some(stem) = variable.strip_suffix("_STRESS_VECTOR") {
         vector(&stress(law, state, stem)?, out);
     } else if let Some(stem) = variable.strip_suffix("_STRESS_TENSOR") {
@@ -82,7 +91,7 @@ fn value<const S: usize>(
     Some(())
 }
 
-fn stress<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, stem: &str) -> Option<[f64; S]> {
+fn stress<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<'_, S>, stem: &str) -> Option<[f64; S]> {
     Some(match stem {
         "PK2" => law.stress(state, StressMeasure::Pk2, None),
         "CAUCHY" => law.stress(state, StressMeasure::Cauchy, None),
@@ -94,7 +103,7 @@ fn stress<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, 
     })
 }
 
-fn strain<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<S>, stem: &str) -> Option<[f64; S]> {
+fn strain<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<'_, S>, stem: &str) -> Option<[f64; S]> {
     match stem {
         "GREEN_LAGRANGE" => Some(state.strain),
         "ALMANSI" => Some(law.almansi(state)),

@@ -1,7 +1,9 @@
 //! The solid element: internal forces ∫ Bᵀ s dV, tangent ∫ (Bᵀ D B + ∇N·s·∇N 1) dV, body forces, mass.
 //!
 //! `dn` are gradients of the shape functions on the formulation's configuration, s the stress that works there. The
-//! rows of B follow the Voigt order of [`crate::tensor`]; total Lagrangian B holds F, the others do not.
+//! rows of B follow the Voigt order of [`crate::tensor`]; total Lagrangian B holds F, the others do not. With mean
+//! dilatation (B-bar, Hughes 1980) θ = div u gives way to its mean over the element, θ̄ = Σ (∫ ∂N_i dV / V) · u_i:
+//! ε̄ = ε + (θ̄ − θ)/3 1, in the plane with its component across. The element remembers what its law does at each point.
 
 use std::f64::consts::PI;
 use std::marker::PhantomData;
@@ -19,7 +21,7 @@ use crate::laws::StrainState;
 use crate::tensor::{IDENTITY, Tensor, determinant, pairs, product, strain_vector, stress_tensor, transposed};
 use crate::variables::VOLUME_ACCELERATION;
 
-/// Solid element with `NODES` nodes in `DIM` dimensions and `S` strains (3 plane, 4 axisymmetric, 6 solid).
+/// Solid element with `NODES` nodes in `DIM` dimensions and `S` strains (3 plane, 4 axisymmetric or plane B-bar, 6 solid).
 pub struct Solid<F, const NODES: usize, const DIM: usize, const S: usize> {
     pub(super) shape: Shape,
     pub(super) materials: Vec<Material<S>>,
@@ -28,15 +30,17 @@ pub struct Solid<F, const NODES: usize, const DIM: usize, const S: usize> {
 }
 
 /// One Gauss point of one element.
-pub(super) struct Point<const NODES: usize, const DIM: usize, const S: usize> {
+pub(super) struct Point<'a, const NODES: usize, const DIM: usize, const S: usize> {
     /// Gradients of the shape functions on the formulation's configuration.
     dn: [[f64; DIM]; NODES],
     /// Shape functions over the radius of that configuration; zero without axial symmetry.
     hoop: [f64; NODES],
+    /// Mean gradients less those of the point, over 3; zero without mean dilatation.
+    excess: [[f64; DIM]; NODES],
     /// Volume on the formulation's configuration that the point stands for.
     weight: f64,
-    /// Strain and deformation gradient.
-    pub(super) state: StrainState<S>,
+    /// Strain, deformation gradient and what the law remembers.
+    pub(super) state: StrainState<'a, S>,
 }
 
 /// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
@@ -99,7 +103,7 @@ pub(super) fn nodal_vectors<const NODES: usize>(
 }
 
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
-    const AXISYMMETRIC: bool = S == 4;
+    const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
 
     pub(super) fn material(&self, entity: &Gather<'_, NODES>) -> &Material<S> {
         Material::find(&self.materials, entity.properties.id)
@@ -125,14 +129,33 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         table.weight(g) * det * turn
     }
 
-    /// Kinematics at Gauss point `g` of the displacements `u`.
-    pub(super) fn point(
-        &self,
+    /// Mean over the element of the gradients of the shape functions; zero without mean dilatation.
+    pub(super) fn mean_gradients(material: &Material<S>, entity: &Gather<'_, NODES>) -> [[f64; DIM]; NODES] {
+        let mut sum = [[0.0; DIM]; NODES];
+        if F::MEAN_DILATATION {
+            let mut volume = 0.0;
+            for g in 0..material.rule.len() {
+                let (dn, det) = physical_gradients(&entity.initial, &material.rule.dn::<NODES, DIM>()[g]);
+                let weight = material.rule.weight(g) * det;
+                volume += weight;
+                for (sum, dn) in sum.iter_mut().zip(&dn) {
+                    sum.iter_mut().zip(dn).for_each(|(sum, d)| *sum += weight * d);
+                }
+            }
+            sum.as_flattened_mut().iter_mut().for_each(|d| *d /= volume);
+        }
+        sum
+    }
+
+    /// Kinematics at Gauss point `g` of the displacements `u`; `mean` are the mean gradients, `state` is the element's.
+    pub(super) fn point<'a>(
         material: &Material<S>,
         g: usize,
         entity: &Gather<'_, NODES>,
         u: &[[f64; 3]; NODES],
-    ) -> Result<Point<NODES, DIM, S>, String> {
+        mean: &[[f64; DIM]; NODES],
+        state: &'a [f64],
+    ) -> Result<Point<'a, NODES, DIM, S>, String> {
         let table = material.rule;
         let (n, local) = (&table.n::<NODES>()[g], &table.dn::<NODES, DIM>()[g]);
         let (mut dn, mut det) = physical_gradients(&entity.initial, local);
@@ -144,6 +167,20 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 h[a][b] = if F::FINITE { grad_u[a][b] } else { 0.5 * (grad_u[a][b] + grad_u[b][a]) };
                 f[a][b] += h[a][b];
             }
+        }
+        let mut excess = [[0.0; DIM]; NODES];
+        if F::MEAN_DILATATION {
+            let mut more = 0.0;
+            for (((excess, mean), dn), u) in excess.iter_mut().zip(mean).zip(&dn).zip(u) {
+                for a in 0..DIM {
+                    excess[a] = (mean[a] - dn[a]) / 3.0;
+                    more += excess[a] * u[a];
+                }
+            }
+            (0..3).for_each(|a| {
+                h[a][a] += more;
+                f[a][a] += more;
+            });
         }
         let mut hoop = [0.0; NODES];
         let mut turn = material.thickness;
@@ -174,13 +211,14 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         Ok(Point {
             dn,
             hoop,
+            excess,
             weight: table.weight(g) * det * turn,
-            state: StrainState { strain, f, det_f, small: !F::FINITE },
+            state: StrainState { strain, f, det_f, small: !F::FINITE, history: material.remembered(g, state) },
         })
     }
 
     /// Derivative of the strain with respect to the displacements, one row a Voigt component.
-    fn b_matrix<const SIZE: usize>(point: &Point<NODES, DIM, S>) -> [[f64; SIZE]; S] {
+    fn b_matrix<const SIZE: usize>(point: &Point<'_, NODES, DIM, S>) -> [[f64; SIZE]; S] {
         let total = F::FINITE && !F::PRESENT;
         let mut b = [[0.0; SIZE]; S];
         for (row, (p, q)) in b.iter_mut().zip(pairs::<S>()) {
@@ -198,6 +236,9 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                     row[i * DIM + p] = dn[q];
                     row[i * DIM + q] = dn[p];
                 }
+                if F::MEAN_DILATATION && p == q {
+                    (0..DIM).for_each(|a| row[i * DIM + a] += point.excess[i][a]);
+                }
             }
         }
         b
@@ -205,7 +246,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
 
     /// ∇N_i · s · ∇N_j on the diagonal of each block of nodes, times the weight; upper triangle.
     fn add_geometric<const SIZE: usize>(
-        point: &Point<NODES, DIM, S>,
+        point: &Point<'_, NODES, DIM, S>,
         stress: &[f64; S],
         lhs: &mut [[f64; SIZE]; SIZE],
     ) {
@@ -246,7 +287,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Kernel<NODES, SIZE>
     for Solid<F, NODES, DIM, S>
 {
-    type State = ();
+    type State = Box<[f64]>;
 
     fn unknowns() -> [LocalUnknown; SIZE] {
         std::array::from_fn(|row| LocalUnknown {
@@ -257,11 +298,11 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let shape = Shape::of(DIM, NODES).expect("solids are registered for known shapes only");
-        let materials = Material::all(request, shape)?;
+        let materials = Material::all(request, shape, DIM == 2 && !Self::AXISYMMETRIC)?;
         let constant = !F::FINITE && !Self::AXISYMMETRIC && materials.iter().all(|m| m.law.is_linear());
         let tangent = if constant {
             Tangent::Constant
-        } else if !F::FINITE && materials.iter().any(|m| !m.law.is_linear()) {
+        } else if materials.iter().any(|m| !m.law.is_symmetric(!F::FINITE)) {
             Tangent::General
         } else {
             Tangent::Symmetric
@@ -269,10 +310,11 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         Ok(Self { shape, materials, tangent, formulation: PhantomData })
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
-        let table = self.material(entity).rule;
+    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
+        let material = self.material(entity);
+        let table = material.rule;
         if (0..table.len()).all(|g| Self::initial_weight(table, g, entity) > 0.0) {
-            Ok(())
+            Ok(vec![0.0; table.len() * material.law.history()].into())
         } else if Self::AXISYMMETRIC {
             Err("inverted in the mesh, without area, or on the negative side of the axis x = 0".into())
         } else {
@@ -287,7 +329,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
     fn local_system(
         &self,
         entity: &Gather<'_, NODES>,
-        _state: &(),
+        state: &Box<[f64]>,
         view: &StepView<'_>,
         want: Want,
         lhs: &mut [f64],
@@ -299,8 +341,9 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         let whole = self.tangent == Tangent::General;
         let mut upper = [[0.0; SIZE]; SIZE];
         let mut d = [[0.0; S]; S];
+        let mean = Self::mean_gradients(material, entity);
         for g in 0..material.rule.len() {
-            let mut point = self.point(material, g, entity, &u)?;
+            let mut point = Self::point(material, g, entity, &u, &mean, state)?;
             // Normals of contact follow the first iteration, which keeps the reference program's tangent.
             point.state.small &= view.info.nl_iteration != 1;
             if material.density > 0.0 {
@@ -360,7 +403,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
     fn mass(
         &self,
         entity: &Gather<'_, NODES>,
-        _state: &(),
+        _state: &Box<[f64]>,
         _view: &StepView<'_>,
         lumped: bool,
         out: &mut [f64],
@@ -391,8 +434,27 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         true
     }
 
-    fn gauss(&self, entity: &Gather<'_, NODES>, _state: &(), view: &StepView<'_>, variable: &str) -> Option<Gauss> {
-        results::gauss(self, entity, view, variable)
+    fn accept(&self, entity: &Gather<'_, NODES>, state: &mut Box<[f64]>, view: &StepView<'_>) -> Result<(), String> {
+        if state.is_empty() {
+            return Ok(());
+        }
+        let material = self.material(entity);
+        let (u, mean) = (self.displacement(entity, view), Self::mean_gradients(material, entity));
+        let before = state.clone();
+        for (g, history) in state.chunks_exact_mut(material.law.history()).enumerate() {
+            material.law.advance(&Self::point(material, g, entity, &u, &mean, &before)?.state, history);
+        }
+        Ok(())
+    }
+
+    fn gauss(
+        &self,
+        entity: &Gather<'_, NODES>,
+        state: &Box<[f64]>,
+        view: &StepView<'_>,
+        variable: &str,
+    ) -> Option<Gauss> {
+        results::gauss(self, entity, state, view, variable)
     }
 
     fn gauss_variables() -> &'static [&'static str] {

@@ -302,3 +302,51 @@ fn tube_under_uniform_expansion() {
     let green = 0.5 * (1.1f64 * 1.1 - 1.0);
     assert!(near(strain.values[0], green, 1e-14) && near(strain.values[2], green, 1e-14));
 }
+
+/// The element remembers plastic strain once its step is accepted, and then has the same forces without flowing again.
+#[test]
+fn plastic_strain_stays_with_an_accepted_step() {
+    let x = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let material = [&MATERIAL[..], &[("YIELD_STRESS", 0.5), ("ISOTROPIC_HARDENING_MODULUS", 10.0)]].concat();
+    for (name, law) in [
+        ("SmallDisplacementElement2D4N", "SmallStrainJ2PlasticityPlaneStrain2DLaw"),
+        ("SmallDisplacementBbarElement2D4N", "SmallStrainJ2PlasticityPlaneStrain2DLaw"),
+        ("TotalLagrangianElement2D4N", "FiniteStrainIsotropicPlasticityPlaneStrainVonMisesVonMises"),
+    ] {
+        let mut single = Single::new(Kind::Element, name, Some(law), &material, &x);
+        let pulled = x.map(|p| [0.05 * p[0], 0.0, 0.0]);
+        single.displace(&pulled);
+        let (k, forces) = single.system();
+        assert_eq!(size(&single.gauss("EQUIVALENT_PLASTIC_STRAIN").values), 0.0);
+        single.accept();
+        let plastic = single.gauss("EQUIVALENT_PLASTIC_STRAIN").values;
+        assert!(plastic.iter().all(|p| near(*p, plastic[0], 1e-14) && *p > 0.02), "{name}: {plastic:?}");
+        let (elastic, again) = single.system();
+        assert!(forces.iter().zip(&again).all(|(a, b)| near(*a, *b, 1e-13)), "{name}");
+        assert!(elastic[0] > 1.2 * k[0], "{name}: unloading is elastic");
+        single.displace(&[[0.0; 3]; 4]);
+        assert!(size(&single.residual()) > 0.1, "{name}: what has flowed does not go back");
+    }
+}
+
+/// With mean dilatation, a field of pure change of shape at the centre brings no pressure anywhere.
+#[test]
+fn mean_dilatation_is_that_of_the_element() {
+    let mut random = Random(20);
+    for (name, shape, law) in [
+        ("SmallDisplacementBbarElement2D4N", Shape::Quad4, "LinearElasticPlaneStrain2DLaw"),
+        ("SmallDisplacementBbarElement3D8N", Shape::Hex8, "LinearElastic3DLaw"),
+    ] {
+        let space = shape.dim();
+        let x = random.cell(shape, 0.1, space);
+        let u: Vec<Vec3> = x.iter().map(|_| random.vector(0.1, space)).collect();
+        let mut single = element(name, law, &x);
+        single.displace(&u);
+        let strain = single.gauss("STRAIN");
+        let of_point = |e: &[f64]| e[0] + e[1] + e[2];
+        let first = of_point(&strain.values);
+        assert!(strain.values.chunks(strain.components).all(|e| near(of_point(e), first, 1e-13)), "{name}");
+        let plain = element(&name.replace("Bbar", ""), law, &x);
+        assert!(size(&plain.system().0) > 0.0);
+    }
+}

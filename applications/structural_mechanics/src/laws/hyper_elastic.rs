@@ -11,7 +11,7 @@ use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::elastic::Elasticity;
-use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
+use super::law::{ConstitutiveLaw, LawFactory, Matrix, PlaneStrainFactory, StrainState};
 use crate::tensor::{IDENTITY, Tensor, inverse, pairs, strain_tensor};
 
 /// Compressible neo-Hooke law.
@@ -24,7 +24,7 @@ pub struct HyperElastic {
 }
 
 /// C = 1 + 2E.
-fn right_cauchy_green<const S: usize>(state: &StrainState<S>) -> Tensor {
+fn right_cauchy_green<const S: usize>(state: &StrainState<'_, S>) -> Tensor {
     let mut c = strain_tensor(&state.strain);
     for i in 0..3 {
         for j in 0..3 {
@@ -35,7 +35,7 @@ fn right_cauchy_green<const S: usize>(state: &StrainState<S>) -> Tensor {
 }
 
 impl<const S: usize> ConstitutiveLaw<S> for HyperElastic {
-    fn pk2(&self, state: &StrainState<S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
+    fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
         let (pairs, k) = (pairs::<S>(), inverse(&right_cauchy_green(state)));
         let pressure = self.lambda * state.det_f.ln();
         let volume = if state.small { inverse(&state.f) } else { k };
@@ -50,7 +50,11 @@ impl<const S: usize> ConstitutiveLaw<S> for HyperElastic {
         pairs.map(|(i, j)| self.mu * (IDENTITY[i][j] - k[i][j]) + pressure * k[i][j])
     }
 
-    fn energy(&self, state: &StrainState<S>) -> f64 {
+    fn is_symmetric(&self, small: bool) -> bool {
+        !small
+    }
+
+    fn energy(&self, state: &StrainState<'_, S>) -> f64 {
         let (c, log) = (right_cauchy_green(state), state.det_f.ln());
         0.5 * self.lambda * log * log - self.mu * log + 0.5 * self.mu * (c[0][0] + c[1][1] + c[2][2] - 3.0)
     }
@@ -70,7 +74,7 @@ register! { ConstitutiveLaw "HyperElastic3DLaw",
 register! { ConstitutiveLaw "HyperElasticPlaneStrain2DLaw",
     about: "Compressible neo-Hooke material in plane strain; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "W = ½ λ ln²J − μ ln J + ½ μ (tr C − 3) with C_zz = 1",
-    build: Build::Factory(&LawFactory::<3>(neo_hooke::<3>)),
+    build: Build::Factory(&PlaneStrainFactory::new(neo_hooke::<3>, neo_hooke::<4>)),
 }
 
 register! { ConstitutiveLaw "HyperElasticAxisym2DLaw",

@@ -11,7 +11,7 @@ pub type Matrix<const S: usize> = [[f64; S]; S];
 
 /// Deformation of a material point as the element describes it.
 #[derive(Debug, Clone, Copy)]
-pub struct StrainState<const S: usize> {
+pub struct StrainState<'a, const S: usize> {
     /// Green–Lagrange strain, or the small strain of a small-displacement element (shear doubled).
     pub strain: [f64; S],
     /// Deformation gradient; 1 + strain in a small-displacement element.
@@ -20,6 +20,8 @@ pub struct StrainState<const S: usize> {
     pub det_f: f64,
     /// Whether `strain` is the small strain and `f` is 1 + strain.
     pub small: bool,
+    /// What the law remembers from the last accepted step: [`ConstitutiveLaw::history`] numbers.
+    pub history: &'a [f64],
 }
 
 /// Which stress an element integrates.
@@ -34,13 +36,31 @@ pub enum StressMeasure {
 /// Stress, tangent and energy of a material point with `S` Voigt components.
 pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     /// Second Piola–Kirchhoff stress; its derivative with respect to the strain too, when asked.
-    fn pk2(&self, state: &StrainState<S>, tangent: Option<&mut Matrix<S>>) -> [f64; S];
+    fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S];
 
     /// Stored energy per initial volume.
-    fn energy(&self, state: &StrainState<S>) -> f64;
+    fn energy(&self, state: &StrainState<'_, S>) -> f64;
 
     /// Whether the stress is a constant matrix times the strain.
     fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// Whether the tangent is symmetric, for the small strain of a small-displacement element or for Green–Lagrange's.
+    fn is_symmetric(&self, _small: bool) -> bool {
+        true
+    }
+
+    /// How many numbers the law remembers of a point; all 0 before the first step.
+    fn history(&self) -> usize {
+        0
+    }
+
+    /// What the law remembers after a step accepted in `state`, whose history is that before the step.
+    fn advance(&self, _state: &StrainState<'_, S>, _history: &mut [f64]) {}
+
+    /// Appends a variable that the law remembers, or derives from it; whether it knows the name.
+    fn internal(&self, _state: &StrainState<'_, S>, _variable: &str, _out: &mut Vec<f64>) -> bool {
         false
     }
 
@@ -50,12 +70,12 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     }
 
     /// Strain to report as Almansi's; the Green–Lagrange strain unless the law distinguishes them.
-    fn almansi(&self, state: &StrainState<S>) -> [f64; S] {
+    fn almansi(&self, state: &StrainState<'_, S>) -> [f64; S] {
         state.strain
     }
 
     /// Stress in the wanted measure with its tangent: dS/dE, or its push-forward for Cauchy stress.
-    fn stress(&self, state: &StrainState<S>, measure: StressMeasure, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
+    fn stress(&self, state: &StrainState<'_, S>, measure: StressMeasure, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
         if measure == StressMeasure::Pk2 || self.ignores_measure() {
             return self.pk2(state, tangent);
         }
@@ -71,14 +91,32 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     }
 }
 
-/// Makes a law with `S` Voigt components from the properties; what a registration holds.
-pub struct LawFactory<const S: usize>(pub fn(&Properties) -> Result<Box<dyn ConstitutiveLaw<S>>>);
+/// A function that makes a law with `S` Voigt components from the properties.
+pub type MakeLaw<const S: usize> = fn(&Properties) -> Result<Box<dyn ConstitutiveLaw<S>>>;
+
+/// Makes a law with `S` Voigt components; what a registration holds.
+pub struct LawFactory<const S: usize>(pub MakeLaw<S>);
+
+/// Makes a law of plane strain, with or without the strain across the plane; what a registration holds.
+pub struct PlaneStrainFactory {
+    plane: LawFactory<3>,
+    whole: LawFactory<4>,
+}
+
+impl PlaneStrainFactory {
+    /// The factory of a law on (xx, yy, xy), which on (xx, yy, zz, xy) is `whole`.
+    pub const fn new(plane: MakeLaw<3>, whole: MakeLaw<4>) -> Self {
+        Self { plane: LawFactory(plane), whole: LawFactory(whole) }
+    }
+}
 
 /// The law that the properties name, for an element with `S` Voigt components.
 ///
+/// `plane` asks for a law of plane strain also with 4 components; otherwise those are the ones of axial symmetry.
+///
 /// # Errors
 /// No law, an unknown one, one of another dimension, or missing material constants.
-pub fn law_of<const S: usize>(properties: &Properties) -> Result<Box<dyn ConstitutiveLaw<S>>> {
+pub fn law_of<const S: usize>(properties: &Properties, plane: bool) -> Result<Box<dyn ConstitutiveLaw<S>>> {
     let place = properties.place.clone();
     let Some(name) = &properties.law else {
         let fact = format!("properties {} are used by solid elements but have no constitutive law", properties.id);
@@ -86,19 +124,22 @@ pub fn law_of<const S: usize>(properties: &Properties) -> Result<Box<dyn Constit
         return Err(Diagnostic::error("missing-law", fact).at(place).remedy(remedy).into());
     };
     let entry = require(Kind::ConstitutiveLaw, name).map_err(|problem| problem.at(place.clone()))?;
-    match &entry.build {
-        Build::Factory(factory) if let Some(LawFactory(make)) = factory.downcast_ref::<LawFactory<S>>() => {
-            make(properties)
-        }
-        _ => {
-            let kind = match S {
-                3 => "planar",
-                4 => "axisymmetric",
-                _ => "three-dimensional",
-            };
-            let fact = format!("the law {} of properties {} does not fit {kind} elements", entry.name, properties.id);
-            let remedy = format!("use a law for {kind} elements ({S} strain components)");
-            Err(Diagnostic::error("law-does-not-fit", fact).at(place).remedy(remedy).into())
-        }
+    let Build::Factory(factory) = &entry.build else { unreachable!("laws register a factory") };
+    let factory: &(dyn std::any::Any + Send + Sync) = match factory.downcast_ref::<PlaneStrainFactory>() {
+        Some(both) if S == 3 => &both.plane,
+        Some(both) if plane => &both.whole,
+        None if plane && S == 4 => &(),
+        _ => *factory,
+    };
+    if let Some(LawFactory(make)) = factory.downcast_ref::<LawFactory<S>>() {
+        return make(properties);
     }
+    let (kind, wanted) = match S {
+        3 => ("planar", "a law for planar elements (3 strain components)"),
+        4 if plane => ("planar mean-dilatation", "a law of plane strain"),
+        4 => ("axisymmetric", "a law for axisymmetric elements (4 strain components)"),
+        _ => ("three-dimensional", "a law for three-dimensional elements (6 strain components)"),
+    };
+    let fact = format!("the law {} of properties {} does not fit {kind} elements", entry.name, properties.id);
+    Err(Diagnostic::error("law-does-not-fit", fact).at(place).remedy(format!("use {wanted}")).into())
 }

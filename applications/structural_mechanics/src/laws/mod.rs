@@ -1,18 +1,31 @@
-//! Constitutive laws: stress and tangent from strain.
+//! Constitutive laws: stress and tangent from strain, and from what the law remembers of the point.
 //!
 //! A law has the number of its Voigt components in its type (3 plane, 4 axisymmetric, 6 solid), so an element can only
-//! hold one that fits. Laws of this crate have no history.
+//! hold one that fits. What a law remembers lies with the element, which passes it in and lets it advance once a step is
+//! accepted.
 
 mod elastic;
+mod finite_strain_plasticity;
+mod hardening;
+mod hooke;
 mod hyper_elastic;
+mod j2;
 mod kirchhoff_saint_venant;
 mod law;
 mod linear_elastic;
 #[cfg(test)]
+mod plasticity_tests;
+mod small_strain_plasticity;
+#[cfg(test)]
 mod tests;
 
 pub use elastic::Elasticity;
+pub use finite_strain_plasticity::FiniteStrainPlasticity;
+pub use hardening::Hardening;
+pub use hooke::Hooke;
 pub use hyper_elastic::HyperElastic;
+pub use j2::J2;
 pub use kirchhoff_saint_venant::KirchhoffSaintVenant;
-pub use law::{ConstitutiveLaw, LawFactory, Matrix, StrainState, StressMeasure, law_of};
+pub use law::{ConstitutiveLaw, LawFactory, Matrix, PlaneStrainFactory, StrainState, StressMeasure, law_of};
 pub use linear_elastic::LinearElastic;
+pub use small_strain_plasticity::SmallStrainPlasticity;
