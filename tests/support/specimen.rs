@@ -45,6 +45,17 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
     shape.cell().points.iter().map(place).collect()
 }
 
+/// Properties of every specimen. Yielding begins far below the strains that are looked at: differences taken across its
+/// beginning are no derivatives.
+const USUAL: [(&str, f64); 6] = [
+    ("YOUNG_MODULUS", 100.0),
+    ("POISSON_RATIO", 0.3),
+    ("THICKNESS", 0.5),
+    ("DENSITY", 3.0),
+    ("YIELD_STRESS", 0.01),
+    ("ISOTROPIC_HARDENING_MODULUS", 10.0),
+];
+
 /// Which loads a specimen carries.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Loads {
@@ -73,7 +84,7 @@ impl Specimen {
         loads: Loads,
     ) -> Result<Self, String> {
         let mut values: BTreeMap<String, f64> = BTreeMap::new();
-        for (name, value) in [("YOUNG_MODULUS", 100.0), ("POISSON_RATIO", 0.3), ("THICKNESS", 0.5), ("DENSITY", 3.0)] {
+        for (name, value) in USUAL {
             values.insert(name.to_owned(), value);
         }
         loop {
@@ -191,7 +202,7 @@ impl Specimen {
 
 /// Whether strains are those of linear theory, by the name that says so.
 pub fn is_linear(entry: &Entry) -> bool {
-    entry.name.contains("SmallDisplacement")
+    ["SmallDisplacement", "TrussLinear", "LinearTruss"].iter().any(|word| entry.name.contains(word))
 }
 
 /// Whether the plane turns about the y axis.

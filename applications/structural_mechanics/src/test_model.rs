@@ -107,9 +107,30 @@ impl Single {
         self.part.move_mesh();
     }
 
+    /// Prepares the block again, after its data have changed.
+    pub(crate) fn initialize(&mut self) {
+        self.try_initialize().unwrap();
+    }
+
+    pub(crate) fn try_initialize(&mut self) -> Result<(), String> {
+        self.block.initialize(&self.part.view()).map_err(|problem| problem.to_string())
+    }
+
+    pub(crate) fn damping(&self) -> Vec<f64> {
+        let mut out = LocalSystems::default();
+        out.reset(1, self.block.unknowns().len(), Want::Both);
+        self.block.damping(&self.part.view(), 0..1, &mut out);
+        out.lhs
+    }
+
     /// Lets the history advance.
     pub(crate) fn accept(&mut self) {
         self.block.accept_step(&self.part.view()).map_err(|e| e.fact).unwrap();
+    }
+
+    /// Takes over the history of another model's entity.
+    pub(crate) fn inherit(&mut self, earlier: &Single) {
+        self.block.inherit(earlier.block());
     }
 
     pub(crate) fn set_nodal(&mut self, variable: &Variable<Vec3>, values: &[Vec3]) {

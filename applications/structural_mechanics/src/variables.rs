@@ -12,6 +12,15 @@ register_variable! {
         "Pressure on the side the normal points from: a line is pushed to its right, a surface against t1 × t2.";
     pub NEGATIVE_FACE_PRESSURE: f64 =
         "Pressure on the other side: a line is pushed to the left of its direction, a surface along t1 × t2.";
+    pub NODAL_MASS: f64 = "Mass at a node.";
+    pub NODAL_DISPLACEMENT_STIFFNESS: [f64; 3] = "Stiffness of a spring in each direction (force per length).";
+    pub NODAL_DAMPING_RATIO: [f64; 3] = "Viscosity of a damper in each direction (force per velocity).";
+    pub NODAL_INITIAL_DISPLACEMENT: [f64; 3] = "Displacement at which a spring to the ground is at rest (length).";
+    pub NODAL_ROTATIONAL_STIFFNESS: [f64; 3] = "Stiffness against rotations; refused, nodes have no rotations.";
+    pub NODAL_ROTATIONAL_DAMPING_RATIO: [f64; 3] = "Damping of rotations; refused, nodes have no rotations.";
+    pub NODAL_INERTIA: [f64; 3] = "Inertia against rotations; refused, nodes have no rotations.";
+    kind CROSS_AREA: Scalar = "Area of the cross-section of a truss (length squared).";
+    kind TRUSS_PRESTRESS_PK2: Scalar = "Second Piola–Kirchhoff stress of a truss without strain (force per area).";
     kind YOUNG_MODULUS: Scalar = "Young's modulus (force per area).";
     kind POISSON_RATIO: Scalar = "Poisson's ratio.";
     kind DENSITY: Scalar = "Mass per initial volume.";

@@ -288,7 +288,8 @@ fn find_solver(name: &str) -> Result<(&'static Entry, &'static SolverDefinition)
     Ok((entry, definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition")))
 }
 
-/// Makes the blocks of a part from its tables: one for each kind and properties.
+/// Makes the blocks of a part from its tables: one for each kind and properties. Elements take over what those of an
+/// earlier stage remember.
 ///
 /// # Errors
 /// Every block that cannot be made and every entity that cannot be computed with.
@@ -310,7 +311,10 @@ pub fn make_blocks(part: &mut ModelPart) -> Result<()> {
         }
     }
     report.finish()?;
-    let [elements, conditions] = both;
+    let [mut elements, conditions] = both;
+    for earlier in &part.element_blocks {
+        elements.iter_mut().for_each(|block| block.inherit(earlier.as_ref()));
+    }
     part.element_blocks = elements;
     part.condition_blocks = conditions;
     Ok(())

@@ -175,7 +175,6 @@ impl Stage {
         report.add_seconds("assemble: interactions", assembly.coupling);
         let part = model.root_mut(&self.root)?;
         part.interactions.clear();
-        part.element_blocks.clear();
         part.condition_blocks.clear();
         result.and(finals.finish().map(|_| ()))
     }

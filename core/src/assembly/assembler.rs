@@ -57,6 +57,7 @@ pub struct Assembler {
     condition_numbers: Vec<Vec<u32>>,
     constant: Option<Vec<f64>>,
     mass: Option<Vec<f64>>,
+    damping: Option<Vec<f64>>,
     lumped: bool,
     bulk: Csr,
     bulk_general: bool,
@@ -259,6 +260,13 @@ impl Assembler {
                 };
                 self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
                 lasting &= block.tangent() == Tangent::Constant;
+            }
+            if element && block.has_damping() {
+                let compute = |range, out: &mut LocalSystems| {
+                    block.damping(&view, range, out);
+                    Ok(())
+                };
+                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
             }
         }
         if lasting {
@@ -479,6 +487,7 @@ fn undeformed(part: &ModelPart) -> Nodes {
 pub fn damped_by_properties(part: &ModelPart) -> bool {
     let names = ["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"];
     part.properties.values().any(|p| names.iter().any(|name| p.number(name).is_some()))
+        || part.element_blocks.iter().any(|block| block.has_damping())
 }
 
 /// Rayleigh's factors of a block, whose entities share their properties.

@@ -1,5 +1,6 @@
 //! A block: all entities of one registered kind, with one computation behind one dispatch.
 
+use std::any::Any;
 use std::ops::Range;
 
 use super::view::StepView;
@@ -192,6 +193,14 @@ pub trait EntityBlock: Send + Sync {
         Ok(false)
     }
 
+    /// Whether the kind has a damping matrix of its own, beside Rayleigh's.
+    fn has_damping(&self) -> bool {
+        false
+    }
+
+    /// Writes the damping matrices of `range`, force per velocity, into `out.lhs`; they stay the same.
+    fn damping(&self, _view: &StepView<'_>, _range: Range<usize>, _out: &mut LocalSystems) {}
+
     /// The step is accepted: history advances, once.
     ///
     /// # Errors
@@ -199,6 +208,14 @@ pub trait EntityBlock: Send + Sync {
     fn accept_step(&mut self, _view: &StepView<'_>) -> Result<(), EntityError> {
         Ok(())
     }
+
+    /// Itself, for blocks of the next stage to look into; `None` when there is nothing to take over.
+    fn as_any(&self) -> Option<&dyn Any> {
+        None
+    }
+
+    /// Takes over what entities of an earlier stage's block remember, where it is of the same kind.
+    fn inherit(&mut self, _earlier: &dyn EntityBlock) {}
 
     /// A variable at the Gauss points of the `at`-th entity; `None` when the kind does not know it.
     fn gauss(&self, _view: &StepView<'_>, _variable: &str, _at: usize) -> Option<Gauss> {

@@ -1,5 +1,7 @@
 //! The mathematics of one entity, and the block that runs it over many.
 
+use std::any::Any;
+use std::collections::HashMap;
 use std::ops::Range;
 
 use super::block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
@@ -95,6 +97,14 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         false
     }
 
+    /// Whether entities have a damping matrix of their own.
+    fn has_damping(&self) -> bool {
+        false
+    }
+
+    /// Adds the constant damping matrix row by row, force per velocity.
+    fn damping(&self, _entity: &Gather<'_, NODES>, _state: &Self::State, _out: &mut [f64]) {}
+
     /// The state after an accepted step.
     ///
     /// # Errors
@@ -107,6 +117,9 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     ) -> Result<(), String> {
         Ok(())
     }
+
+    /// Takes over what the entity remembered in an earlier stage.
+    fn inherit(&self, _state: &mut Self::State, _earlier: &Self::State) {}
 
     /// A variable at the Gauss points.
     fn gauss(
@@ -266,6 +279,18 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
         Ok(any)
     }
 
+    fn has_damping(&self) -> bool {
+        self.kernel.has_damping()
+    }
+
+    fn damping(&self, view: &StepView<'_>, range: Range<usize>, out: &mut LocalSystems) {
+        for (slot, at) in range.enumerate() {
+            if self.is_active(at, view) {
+                self.kernel.damping(&self.gather(at, view), &self.states[at], out.entity(slot).0);
+            }
+        }
+    }
+
     fn accept_step(&mut self, view: &StepView<'_>) -> Result<(), EntityError> {
         if size_of::<K::State>() == 0 {
             return Ok(());
@@ -276,6 +301,20 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
         });
         self.states = states;
         result
+    }
+
+    fn as_any(&self) -> Option<&dyn Any> {
+        Some(self)
+    }
+
+    fn inherit(&mut self, earlier: &dyn EntityBlock) {
+        let Some(earlier) = earlier.as_any().and_then(|block| block.downcast_ref::<Self>()) else { return };
+        let places: HashMap<usize, usize> = earlier.ids.iter().enumerate().map(|(at, &id)| (id, at)).collect();
+        for (id, state) in self.ids.iter().zip(&mut self.states) {
+            if let Some(&at) = places.get(id) {
+                self.kernel.inherit(state, &earlier.states[at]);
+            }
+        }
     }
 
     fn gauss(&self, view: &StepView<'_>, variable: &str, at: usize) -> Option<Gauss> {

@@ -162,6 +162,24 @@ impl PartialEq for Entry {
 
 inventory::collect!(Entry);
 
+/// Names of the reference program that are known and not there, by how they begin.
+pub struct Absent {
+    /// What kind of thing.
+    pub kind: Kind,
+    /// Beginnings of the names.
+    pub stems: &'static [&'static str],
+    /// What to use instead.
+    pub remedy: &'static str,
+}
+
+inventory::collect!(Absent);
+
+/// What to use instead of a known name that is not there.
+fn instead_of(kind: Kind, name: &str) -> Option<&'static str> {
+    let known = |absent: &&Absent| absent.kind == kind && absent.stems.iter().any(|stem| name.starts_with(stem));
+    inventory::iter::<Absent>().find(known).map(|absent| absent.remedy)
+}
+
 type Index = BTreeMap<Kind, BTreeMap<&'static str, &'static Entry>>;
 
 static INDEX: LazyLock<Index> = LazyLock::new(|| {
@@ -199,7 +217,9 @@ pub fn find(kind: Kind, name: &str) -> Option<&'static Entry> {
 /// Input error `unknown-<kind>` with the nearest names; the caller adds the place.
 pub fn require(kind: Kind, name: &str) -> Result<&'static Entry, Diagnostic> {
     find(kind, name).ok_or_else(|| {
-        let remedy = did_you_mean(name, names(kind))
+        let instead = instead_of(kind, name).map(str::to_owned);
+        let remedy = instead
+            .or_else(|| did_you_mean(name, names(kind)))
             .unwrap_or_else(|| format!("`zelus list {}` shows what there is", kind.word()));
         let code = match kind {
             Kind::Element => "unknown-element",
@@ -234,6 +254,19 @@ pub fn duplicates() -> Vec<String> {
         }
     }
     out
+}
+
+/// Registers beginnings of names that are known and not there, with what to use instead.
+///
+/// ```ignore
+/// register_absent! { Element ["Shell", "Sprism"] => "use solid elements, three or more across the thickness" }
+/// ```
+#[macro_export]
+macro_rules! register_absent {
+    ($kind:ident [$($stem:literal),+ $(,)?] => $remedy:literal) => {
+        $crate::inventory::submit! { $crate::registry::Absent {
+            kind: $crate::registry::Kind::$kind, stems: &[$($stem),+], remedy: $remedy } }
+    };
 }
 
 /// Registers one object under its name: the last lines of its file.

@@ -7,27 +7,19 @@
 
 use std::f64::consts::PI;
 
-use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::{Shape, ShapeTable};
+use zelus_core::entities::{Gather, StepView};
+use zelus_core::geometry::ShapeTable;
 
-use super::load::{counts_stretch, displacements, interpolate, pressure, register_conditions, thickness, vector_load};
+use super::load::{
+    Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, thickness, vector_load,
+};
 use crate::variables::LINE_LOAD;
 
 /// Force per length and pressure on a line in the plane.
-pub struct LineLoad<const AXISYMMETRIC: bool> {
-    rule: &'static ShapeTable,
-}
+pub struct LineLoad<const AXISYMMETRIC: bool>;
 
 /// Force per length on a line in space.
-pub struct SpatialLineLoad {
-    rule: &'static ShapeTable,
-}
-
-fn rule(nodes: usize) -> &'static ShapeTable {
-    let shape = Shape::of(1, nodes).expect("line loads are registered for known shapes only");
-    ShapeTable::get(shape, shape.cell().default_order + 1)
-}
+pub struct SpatialLineLoad;
 
 /// Σ N_i,ξ x_i.
 fn tangent_vector<const NODES: usize>(dn: &[[f64; 1]; NODES], x: &[[f64; 3]; NODES]) -> [f64; 3] {
@@ -38,43 +30,22 @@ fn length(t: [f64; 3]) -> f64 {
     (t[0] * t[0] + t[1] * t[1] + t[2] * t[2]).sqrt()
 }
 
-impl<const AXISYMMETRIC: bool, const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for LineLoad<AXISYMMETRIC> {
-    type State = ();
+impl<const AXISYMMETRIC: bool, const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE>
+    for LineLoad<AXISYMMETRIC>
+{
+    const CELL: usize = 1;
+    const SPACE: usize = 2;
 
-    fn unknowns() -> [LocalUnknown; SIZE] {
-        displacements(2)
-    }
-
-    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
-        Ok(Self { rule: rule(NODES) })
-    }
-
-    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn tangent(&self) -> Tangent {
-        Tangent::General
-    }
-
-    fn local_system(
-        &self,
-        entity: &Gather<'_, NODES>,
-        _state: &(),
-        view: &StepView<'_>,
-        _want: Want,
-        lhs: &mut [f64],
-        rhs: &mut [f64; SIZE],
-    ) -> Result<(), String> {
+    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]) {
         let q = vector_load(entity, view, &LINE_LOAD);
         let p = pressure(entity, view);
         let pressed = p.iter().any(|p| *p != 0.0);
         let circle = if AXISYMMETRIC { 2.0 * PI / thickness(entity) } else { 1.0 };
-        for g in 0..self.rule.len() {
-            let (n, dn) = (&self.rule.n::<NODES>()[g], &self.rule.dn::<NODES, 1>()[g]);
+        for g in 0..rule.len() {
+            let (n, dn) = (&rule.n::<NODES>()[g], &rule.dn::<NODES, 1>()[g]);
             let t = tangent_vector(dn, &entity.current);
             let radius = interpolate(n, &entity.current)[0];
-            let weight = self.rule.weight(g) * circle * if AXISYMMETRIC { radius } else { 1.0 };
+            let weight = rule.weight(g) * circle * if AXISYMMETRIC { radius } else { 1.0 };
             let (load, size) = (interpolate(n, &q), length(t));
             let p = weight * n.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>();
             for (i, n) in n.iter().enumerate() {
@@ -113,43 +84,19 @@ impl<const AXISYMMETRIC: bool, const NODES: usize, const SIZE: usize> Kernel<NOD
                 }
             }
         }
-        Ok(())
     }
 }
 
-impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SpatialLineLoad {
-    type State = ();
+impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for SpatialLineLoad {
+    const CELL: usize = 1;
+    const SPACE: usize = 3;
 
-    fn unknowns() -> [LocalUnknown; SIZE] {
-        displacements(3)
-    }
-
-    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
-        Ok(Self { rule: rule(NODES) })
-    }
-
-    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn tangent(&self) -> Tangent {
-        Tangent::General
-    }
-
-    fn local_system(
-        &self,
-        entity: &Gather<'_, NODES>,
-        _state: &(),
-        view: &StepView<'_>,
-        _want: Want,
-        lhs: &mut [f64],
-        rhs: &mut [f64; SIZE],
-    ) -> Result<(), String> {
+    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]) {
         let q = vector_load(entity, view, &LINE_LOAD);
-        for g in 0..self.rule.len() {
-            let (n, dn) = (&self.rule.n::<NODES>()[g], &self.rule.dn::<NODES, 1>()[g]);
+        for g in 0..rule.len() {
+            let (n, dn) = (&rule.n::<NODES>()[g], &rule.dn::<NODES, 1>()[g]);
             let t = tangent_vector(dn, &entity.current);
-            let (weight, size) = (self.rule.weight(g), length(t));
+            let (weight, size) = (rule.weight(g), length(t));
             let load = interpolate(n, &q);
             for (i, n) in n.iter().enumerate() {
                 for a in 0..3 {
@@ -169,18 +116,17 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SpatialLineL
                 }
             }
         }
-        Ok(())
     }
 }
 
 register_conditions! { "LineLoadCondition", 1, "Force per length (LINE_LOAD) and pressure on a line",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ";
-"2D2N": LineLoad<false>, 2, 4;
-"2D3N": LineLoad<false>, 3, 6;
-"3D2N": SpatialLineLoad, 2, 6;
-"3D3N": SpatialLineLoad, 3, 9 }
+"2D2N": Distributed<LineLoad<false>>, 2, 4;
+"2D3N": Distributed<LineLoad<false>>, 3, 6;
+"3D2N": Distributed<SpatialLineLoad>, 2, 6;
+"3D3N": Distributed<SpatialLineLoad>, 3, 9 }
 
 register_conditions! { "AxisymLineLoadCondition", 1, "Force per area (LINE_LOAD) and pressure on a surface of revolution",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ";
-"2D2N": LineLoad<true>, 2, 4;
-"2D3N": LineLoad<true>, 3, 6 }
+"2D2N": Distributed<LineLoad<true>>, 2, 4;
+"2D3N": Distributed<LineLoad<true>>, 3, 6 }

@@ -1,10 +1,65 @@
-//! What load conditions share: values from the condition and its nodes, rows, thickness.
+//! What load conditions share: the kernel of distributed loads, values from the condition and its nodes, rows, thickness.
 
-use zelus_core::entities::{Gather, LocalUnknown, StepView};
+use std::marker::PhantomData;
+
+use zelus_core::diagnostics::Result;
+use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::model::Variable;
 use zelus_core::model::variables::DISPLACEMENT;
 
 use crate::variables::{NEGATIVE_FACE_PRESSURE, POSITIVE_FACE_PRESSURE, PRESSURE};
+
+/// A load spread over a line or a surface: what is integrated, at all Gauss points of one condition.
+pub trait DistributedLoad<const NODES: usize, const SIZE: usize>: 'static {
+    /// Dimension of the cell: 1 a line, 2 a surface.
+    const CELL: usize;
+    /// Displacements a node.
+    const SPACE: usize;
+
+    /// Adds the forces, and minus their derivative when `lhs` is not empty.
+    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]);
+}
+
+/// The kernel of a distributed load, with a Gauss rule one order above the shape's.
+pub struct Distributed<L> {
+    rule: &'static ShapeTable,
+    load: PhantomData<fn() -> L>,
+}
+
+impl<L: DistributedLoad<NODES, SIZE>, const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for Distributed<L> {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; SIZE] {
+        displacements(L::SPACE)
+    }
+
+    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
+        let shape = Shape::of(L::CELL, NODES).expect("loads are registered for known shapes only");
+        Ok(Self { rule: ShapeTable::get(shape, shape.cell().default_order + 1), load: PhantomData })
+    }
+
+    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::General
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        _state: &(),
+        view: &StepView<'_>,
+        _want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String> {
+        L::add(self.rule, entity, view, lhs, rhs);
+        Ok(())
+    }
+}
 
 /// Displacements of all nodes in `dim` directions, node by node.
 pub(super) fn displacements<const SIZE: usize>(dim: usize) -> [LocalUnknown; SIZE] {
@@ -46,12 +101,12 @@ pub(super) fn pressure<const NODES: usize>(entity: &Gather<'_, NODES>, view: &St
     out
 }
 
-/// Whether the tangent counts the stretch of the area that a load acts on: not in the first iteration of a step.
+/// Whether the tangent counts the stretch of the area that a load acts on: from the second iteration of a step on.
 ///
 /// Contact normals of a step are those after its first iteration, which therefore is the reference program's: it leaves the
-/// stretch out. From the second iteration on the tangent is exact.
+/// stretch out. A linear analysis, which has no iterations, leaves it out too: its loads act on the initial geometry.
 pub(super) fn counts_stretch(view: &StepView<'_>) -> bool {
-    view.info.nl_iteration != 1
+    view.info.nl_iteration > 1
 }
 
 /// THICKNESS of the condition's properties, 1 when not given.

@@ -4,55 +4,30 @@
 //! K_ij = ∫ N_i (p (N_j,ξ [t_2]× − N_j,η [t_1]×) − q ⊗ (N_j,ξ t_2 × n̂ + N_j,η n̂ × t_1)) dξ dη with [a]× v = a × v and
 //! n̂ = n/|n|: the second part is the stretch of the area on which q acts.
 
-use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::{Shape, ShapeTable};
+use zelus_core::entities::{Gather, StepView};
+use zelus_core::geometry::ShapeTable;
 use zelus_core::vector3::{cross, norm, scale};
 
-use super::load::{counts_stretch, displacements, interpolate, pressure, register_conditions, vector_load};
+use super::load::{
+    Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, vector_load,
+};
 use crate::variables::SURFACE_LOAD;
 
 /// Force per area and pressure on a surface in space.
-pub struct SurfaceLoad {
-    rule: &'static ShapeTable,
-}
+pub struct SurfaceLoad;
 
-impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SurfaceLoad {
-    type State = ();
+impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for SurfaceLoad {
+    const CELL: usize = 2;
+    const SPACE: usize = 3;
 
-    fn unknowns() -> [LocalUnknown; SIZE] {
-        displacements(3)
-    }
-
-    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
-        let shape = Shape::of(2, NODES).expect("surface loads are registered for known shapes only");
-        Ok(Self { rule: ShapeTable::get(shape, shape.cell().default_order + 1) })
-    }
-
-    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn tangent(&self) -> Tangent {
-        Tangent::General
-    }
-
-    fn local_system(
-        &self,
-        entity: &Gather<'_, NODES>,
-        _state: &(),
-        view: &StepView<'_>,
-        _want: Want,
-        lhs: &mut [f64],
-        rhs: &mut [f64; SIZE],
-    ) -> Result<(), String> {
+    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]) {
         let q = vector_load(entity, view, &SURFACE_LOAD);
         let p = pressure(entity, view);
         let pressed = p.iter().any(|p| *p != 0.0);
-        for g in 0..self.rule.len() {
-            let (n, dn) = (&self.rule.n::<NODES>()[g], &self.rule.dn::<NODES, 2>()[g]);
+        for g in 0..rule.len() {
+            let (n, dn) = (&rule.n::<NODES>()[g], &rule.dn::<NODES, 2>()[g]);
             let [t1, t2] = [0, 1].map(|k| interpolate(&dn.map(|d| d[k]), &entity.current));
-            let (normal, weight) = (cross(t1, t2), self.rule.weight(g));
+            let (normal, weight) = (cross(t1, t2), rule.weight(g));
             let (load, area) = (interpolate(n, &q), norm(normal));
             let p = weight * n.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>();
             for (i, n) in n.iter().enumerate() {
@@ -91,14 +66,13 @@ impl<const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for SurfaceLoad 
                 }
             }
         }
-        Ok(())
     }
 }
 
 register_conditions! { "SurfaceLoadCondition", 2, "Force per area (SURFACE_LOAD) and pressure on a surface",
 "f_i = ∫ N_i (q |n| + p n) dξ dη, n = t_1 × t_2";
-"3D3N": SurfaceLoad, 3, 9;
-"3D4N": SurfaceLoad, 4, 12;
-"3D6N": SurfaceLoad, 6, 18;
-"3D8N": SurfaceLoad, 8, 24;
-"3D9N": SurfaceLoad, 9, 27 }
+"3D3N": Distributed<SurfaceLoad>, 3, 9;
+"3D4N": Distributed<SurfaceLoad>, 4, 12;
+"3D6N": Distributed<SurfaceLoad>, 6, 18;
+"3D8N": Distributed<SurfaceLoad>, 8, 24;
+"3D9N": Distributed<SurfaceLoad>, 9, 27 }

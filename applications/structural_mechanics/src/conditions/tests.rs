@@ -47,6 +47,25 @@ fn follower_tangents_match_differences() {
 }
 
 #[test]
+fn the_stretch_of_loaded_areas_enters_from_the_second_iteration_on() {
+    let mut random = Random(24);
+    let cases = LINES.iter().chain(&RINGS).map(|c| (c, 1, 2)).chain(SURFACES.iter().map(|c| (c, 2, 3)));
+    for ((name, nodes), dim, space) in cases {
+        let x = random.cell(Shape::of(dim, *nodes).unwrap(), 0.1, space);
+        let u: Vec<Vec3> = x.iter().map(|_| random.vector(0.2, space)).collect();
+        let mut single = condition(name, &x);
+        set_vector(&mut single, if dim == 1 { &LINE_LOAD } else { &SURFACE_LOAD }, [1.0, -2.0, 0.5]);
+        single.displace(&u);
+        assert_eq!(size(&single.system().0), 0.0, "{name}: without iterations the load stays where it was");
+        single.part.info.nl_iteration = 2;
+        let (k, _) = single.system();
+        let differences = single.difference_tangent(&u, space, true);
+        let error = k.iter().zip(&differences).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(error < 1e-9 * size(&k) && size(&k) > 0.1, "{name}: {error:e}");
+    }
+}
+
+#[test]
 fn pressure_pushes_as_documented() {
     let mut line = condition("LineLoadCondition2D2N", &[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
     set(&mut line, &NEGATIVE_FACE_PRESSURE, 3.0);

@@ -1,27 +1,37 @@
-//! Solid elements: one kernel, four formulations.
+//! Elements: solids (one kernel, four formulations), trusses, springs and masses.
 //!
 //! [`Solid`] does the integration; a [`Formulation`] says on which configuration and with which strain. A formulation's
 //! file registers its elements for every shape.
 
+mod absent;
 mod axisymmetric;
 mod formulation;
 mod material;
+mod nodal_concentrated;
+#[cfg(test)]
+mod nodal_tests;
+mod nodal_values;
 mod results;
 mod small_displacement;
 mod small_displacement_bbar;
 mod solid;
+mod spring_damper;
 #[cfg(test)]
 mod reference_tests;
 #[cfg(test)]
 mod tests;
 mod total_lagrangian;
+mod truss;
 mod updated_lagrangian;
 
 pub use formulation::Formulation;
+pub use nodal_concentrated::NodalConcentrated;
 pub use small_displacement::SmallDisplacement;
 pub use small_displacement_bbar::SmallDisplacementBbar;
 pub use solid::Solid;
+pub use spring_damper::SpringDamper;
 pub use total_lagrangian::TotalLagrangian;
+pub use truss::Truss;
 pub use updated_lagrangian::UpdatedLagrangian;
 
 /// Registers a formulation for shapes: `kind!("Name", Formulation, S, "about", "source"; DIM: "2D3N" 3, …)`.

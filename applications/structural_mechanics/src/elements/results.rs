@@ -52,7 +52,14 @@ pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const 
         let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
-            _ => value(material.law.as_ref(), &state, F::MEASURE, variable, &mut out.values)?,
+            _ => value(
+                material.law.as_ref(),
+                &state,
+                F::MEASURE,
+                S == 4 && !F::MEAN_DILATATION,
+                variable,
+                &mut out.values,
+            )?,
         }
         out.weights.push(weight);
         out.shape.extend_from_slice(table.n_at(g));
@@ -65,6 +72,7 @@ fn value<const S: usize>(
     law: &dyn ConstitutiveLaw<S>,
     state: &StrainState<'_, S>,
     measure: StressMeasure,
+    ring: bool,
     variable: &str,
     out: &mut Vec<f64>,
 ) -> Option<()> {
@@ -72,16 +80,16 @@ fn value<const S: usize>(
         return Some(());
     }
     if let Some(stem) = variable.strip_suffix("_STRESS_VECTOR") {
-        vector(&stress(law, state, stem)?, out);
+        vector(&stress(law, state, stem)?, ring, out);
     } else if let Some(stem) = variable.strip_suffix("_STRESS_TENSOR") {
         tensor::<S>(&stress_tensor(&stress(law, state, stem)?), out);
     } else if let Some(stem) = variable.strip_suffix("_STRAIN_VECTOR") {
-        vector(&strain(law, state, stem)?, out);
+        vector(&strain(law, state, stem)?, ring, out);
     } else if let Some(stem) = variable.strip_suffix("_STRAIN_TENSOR") {
         tensor::<S>(&strain_tensor(&strain(law, state, stem)?), out);
     } else {
         match variable {
-            "STRAIN" => vector(&state.strain, out),
+            "STRAIN" => vector(&state.strain, ring, out),
             "DEFORMATION_GRADIENT" => tensor::<S>(&state.f, out),
             "STRAIN_ENERGY" => out.push(law.energy(state)),
             "VON_MISES_STRESS" => out.push(von_mises(&law.stress(state, measure, None))),
@@ -111,9 +119,9 @@ fn strain<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<'_, 
     }
 }
 
-fn vector<const S: usize>(values: &[f64; S], out: &mut Vec<f64>) {
+fn vector<const S: usize>(values: &[f64; S], ring: bool, out: &mut Vec<f64>) {
     out.extend_from_slice(values);
-    if S == 4 {
+    if ring {
         out.extend_from_slice(&[0.0; 2]);
     }
 }

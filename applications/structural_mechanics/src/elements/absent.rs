@@ -1,0 +1,29 @@
+//! Elements and laws of the reference program that are known and not there, and what to use instead.
+
+use zelus_core::register_absent;
+
+register_absent! { Element ["Shell", "IsotropicShell", "Sprism", "SolidShell", "CSDSG3", "MITC"] =>
+"shells are not there: mesh the thickness with SmallDisplacementElement or TotalLagrangianElement 3D8N, 3D20N or 3D27N" }
+
+register_absent! { Element ["CrBeam", "CrLinearBeam", "LinearTimoshenko", "Timoshenko", "NonLinearTimoshenko", "FiberBeamColumn"] =>
+"beams are not there, nodes have no rotations: mesh the beam with solids, e.g. SmallDisplacementElement3D20N" }
+
+register_absent! { Element ["Membrane", "PreStressMembrane", "PrestressMembrane"] =>
+"membranes are not there: use thin solids, or in the plane SmallDisplacementElement with a law of plane stress" }
+
+register_absent! { Element ["Cable", "SlidingCable", "RingElement"] =>
+"cables are not there: TrussElement3D2N carries tension and compression" }
+
+register_absent! { Element ["Bushing"] => "use SpringDamperElement3D2N for its displacements" }
+
+register_absent! { Element ["SmallDisplacementMixedStrain", "SmallDisplacementMixedVolumetric", "TotalLagrangianMixedVolumetric", "TotalLagrangianQ1P0"] =>
+"against volumetric locking use SmallDisplacementBbarElement2D4N or 3D8N, or elements of second order" }
+
+register_absent! { ConstitutiveLaw ["SmallStrainKinematicPlasticity", "FiniteStrainKinematicPlasticity", "PlasticityIsotropicKinematic"] =>
+"kinematic hardening is not there: isotropic hardening is, SmallStrainJ2Plasticity3DLaw" }
+
+register_absent! { ConstitutiveLaw ["SmallStrainIsotropicPlasticity", "FiniteStrainIsotropicPlasticity"] =>
+"of yield surfaces and potentials only VonMisesVonMises is there, in space and plane strain" }
+
+register_absent! { ConstitutiveLaw ["SmallStrainIsotropicDamage", "SmallStrainDplusDminus", "DamageDPlusDMinus", "SmallStrainHighCycleFatigue", "AssociativePlasticDamage", "SmallStrainPlasticDamage"] =>
+"damage and fatigue are not there: elastic laws and von Mises plasticity are" }

@@ -1,0 +1,185 @@
+//! Bars that carry force along their axis only.
+//!
+//! With l_0, l the initial and present length, A CROSS_AREA, S_0 TRUSS_PRESTRESS_PK2 and x_21 = x_2 − x_1:
+//! E_gl = (l² − l_0²)/2l_0², f = A l_0 S x_21/l_0², S = E E_gl + S_0 on the first node, the opposite on the second.
+//! The linear bar has ε = (u_2 − u_1)·t/l_0 along its initial direction t. Mass: A l_0 DENSITY, half a node when lumped.
+
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::Shape;
+use zelus_core::model::variables::DISPLACEMENT;
+use zelus_core::register;
+use zelus_core::registry::Build;
+use zelus_core::vector3::{dot, norm, sub};
+
+use super::solid::nodal_vectors;
+use crate::variables::VOLUME_ACCELERATION;
+
+/// A bar in `DIM` dimensions; `LINEAR` for small displacements.
+pub struct Truss<const DIM: usize, const LINEAR: bool> {
+    young: f64,
+    area: f64,
+    density: f64,
+    prestress: f64,
+    lumped: bool,
+    acceleration: [f64; 3],
+}
+
+impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
+    /// Unit direction and initial length.
+    fn axis(entity: &Gather<'_, 2>) -> ([f64; 3], f64) {
+        let along = sub(entity.initial[1], entity.initial[0]);
+        let length = norm(along);
+        (along.map(|x| x / length), length)
+    }
+}
+
+impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> for Truss<DIM, LINEAR> {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; SIZE] {
+        std::array::from_fn(|row| LocalUnknown {
+            node: (row / DIM) as u8,
+            variable: DISPLACEMENT.component((row % DIM) as u8),
+        })
+    }
+
+    fn new(request: &BlockRequest<'_>) -> Result<Self> {
+        let id = request.table.properties[request.members[0] as usize];
+        let Some(properties) = request.part.properties.get(&id) else {
+            let fact = format!("{} uses properties {id}, which do not exist", request.entry.name);
+            let remedy = "define them in the mesh file or the materials file";
+            return Err(Diagnostic::error("missing-properties", fact).remedy(remedy).into());
+        };
+        if properties.law.as_deref() != Some("TrussConstitutiveLaw") {
+            let law = properties.law.as_deref().unwrap_or("none");
+            let fact = format!("the law of properties {id}, {law}, does not fit trusses");
+            let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
+            return Err(problem.remedy("use TrussConstitutiveLaw").into());
+        }
+        let number = |name: &str| properties.number(name).unwrap_or(0.0);
+        let (young, area) = (properties.require("YOUNG_MODULUS")?, properties.require("CROSS_AREA")?);
+        for (name, value) in [("YOUNG_MODULUS", young), ("CROSS_AREA", area)] {
+            if !(value > 0.0 && value.is_finite()) {
+                let fact = format!("{name} of properties {id} is {value}");
+                let problem = Diagnostic::error("material-out-of-range", fact).at(properties.place.clone());
+                return Err(problem.remedy("give a positive number").into());
+            }
+        }
+        Ok(Self {
+            young,
+            area,
+            density: number("DENSITY"),
+            prestress: number("TRUSS_PRESTRESS_PK2"),
+            lumped: number("COMPUTE_LUMPED_MASS_MATRIX") != 0.0,
+            acceleration: properties.vector3("VOLUME_ACCELERATION").unwrap_or_default(),
+        })
+    }
+
+    fn state(&self, entity: &Gather<'_, 2>, _view: &StepView<'_>) -> Result<(), String> {
+        let (_, length) = Self::axis(entity);
+        if length > 0.0 { Ok(()) } else { Err("both ends are at the same place".into()) }
+    }
+
+    fn tangent(&self) -> Tangent {
+        if LINEAR { Tangent::Constant } else { Tangent::Symmetric }
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, 2>,
+        _state: &(),
+        view: &StepView<'_>,
+        want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String> {
+        let (direction, length) = Self::axis(entity);
+        let gravity = nodal_vectors(entity, view, &VOLUME_ACCELERATION);
+        for a in 0..DIM {
+            let of = [0, 1].map(|i: usize| self.acceleration[a] + gravity[i][a]);
+            let sixth = self.density * self.area * length / 6.0;
+            rhs[a] += sixth * (2.0 * of[0] + of[1]);
+            rhs[DIM + a] += sixth * (of[0] + 2.0 * of[1]);
+        }
+        // stress without the part that the linear bar has as an external force, and the derivative of strain along x_2
+        let (stress, along) = if LINEAR {
+            let [first, second] = nodal_vectors(entity, view, &DISPLACEMENT);
+            let strain = if want == Want::External { 0.0 } else { dot(sub(second, first), direction) / length };
+            (self.young * strain + self.prestress, direction.map(|t| t / length))
+        } else {
+            let now = sub(entity.current[1], entity.current[0]);
+            let strain = 0.5 * (dot(now, now) / (length * length) - 1.0);
+            (self.young * strain + self.prestress, now.map(|x| x / (length * length)))
+        };
+        let volume = self.area * length;
+        for a in 0..DIM {
+            rhs[a] += volume * stress * along[a];
+            rhs[DIM + a] -= volume * stress * along[a];
+        }
+        if lhs.is_empty() {
+            return Ok(());
+        }
+        for a in 0..DIM {
+            for b in 0..DIM {
+                let geometric = if !LINEAR && a == b { stress / (length * length) } else { 0.0 };
+                let k = volume * (self.young * along[a] * along[b] + geometric);
+                for (i, j, sign) in [(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)] {
+                    lhs[(i * DIM + a) * SIZE + j * DIM + b] += sign * k;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn has_external(&self, view: &StepView<'_>) -> bool {
+        let gravity = self.acceleration != [0.0; 3]
+            || view.nodes.history.values(&VOLUME_ACCELERATION, 0).iter().any(|v| *v != 0.0);
+        self.prestress != 0.0 || (self.density > 0.0 && gravity)
+    }
+
+    fn mass(&self, entity: &Gather<'_, 2>, _state: &(), _view: &StepView<'_>, lumped: bool, out: &mut [f64]) -> bool {
+        let whole = self.density * self.area * Self::axis(entity).1;
+        let [same, other] = if lumped || self.lumped { [0.5, 0.0] } else { [1.0 / 3.0, 1.0 / 6.0] };
+        for a in 0..DIM {
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                out[(i * DIM + a) * SIZE + j * DIM + a] += whole * if i == j { same } else { other };
+            }
+        }
+        true
+    }
+}
+
+/// The law of trusses: read by the element, which takes YOUNG_MODULUS from the same properties.
+struct Uniaxial;
+
+register! { ConstitutiveLaw "TrussConstitutiveLaw",
+    about: "Hooke's law along a bar, for trusses; needs YOUNG_MODULUS",
+    source: "S = E E_gl",
+    build: Build::Factory(&Uniaxial),
+}
+
+register! { Element "TrussElement3D2N",
+    about: "Bar under finite displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
+    source: "f = A S x_21/l_0, S = E (l² − l_0²)/2l_0² + S_0",
+    cell: Shape::of(1, 2),
+    space: 3,
+    build: Build::Block(KernelBlock::<Truss<3, false>, 2, 6>::boxed),
+}
+
+register! { Element "TrussLinearElement3D2N",
+    aliases: &["LinearTrussElement3D2N"],
+    about: "Bar under small displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
+    source: "f = A (E (u_2 − u_1)·t/l_0 + S_0) t",
+    cell: Shape::of(1, 2),
+    space: 3,
+    build: Build::Block(KernelBlock::<Truss<3, true>, 2, 6>::boxed),
+}
+
+register! { Element "LinearTrussElement2D2N",
+    about: "Bar of the plane under small displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
+    source: "f = A (E (u_2 − u_1)·t/l_0 + S_0) t",
+    cell: Shape::of(1, 2),
+    space: 2,
+    build: Build::Block(KernelBlock::<Truss<2, true>, 2, 4>::boxed),
+}

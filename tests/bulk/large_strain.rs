@@ -1,0 +1,125 @@
+//! Neo-Hookean blocks in uniaxial and equibiaxial tension and simple shear, and pressure that follows.
+//!
+//! W = ½ λ ln²J − μ ln J + ½ μ (tr C − 3): principal Cauchy stress (μ (λ_i² − 1) + λ ln J)/J.
+
+use serde_json::{Value, json};
+use zelus_core::geometry::Shape;
+
+use super::deck::{Deck, assert_close};
+use super::grid::Grid;
+
+const YOUNG: f64 = 100.0;
+const NU: f64 = 0.3;
+const FREE: Value = Value::Null;
+
+fn lame() -> (f64, f64) {
+    (YOUNG * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), 0.5 * YOUNG / (1.0 + NU))
+}
+
+/// The stretch across that leaves no stress there when `of_volume` gives J from it, by bisection.
+fn across(of_volume: impl Fn(f64) -> f64) -> f64 {
+    let (lambda, mu) = lame();
+    let (mut low, mut high) = (0.1, 3.0);
+    for _ in 0..200 {
+        let middle: f64 = 0.5 * (low + high);
+        if mu * (middle * middle - 1.0) + lambda * of_volume(middle).ln() > 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+fn law() -> Value {
+    json!({"YOUNG_MODULUS": YOUNG, "POISSON_RATIO": NU})
+}
+
+/// The state is uniform, so only the tolerance of the iteration is left: 1e-8.
+#[test]
+fn neo_hookean_tension_along_one_and_two_axes() {
+    let (lambda, mu) = lame();
+    let stretch: f64 = 1.8;
+    for element in ["TotalLagrangianElement", "UpdatedLagrangianElement"] {
+        for shape in [Shape::Hex8, Shape::Tet10] {
+            for axes in [1, 2] {
+                let grid = Grid::new(shape, &[2, 1, 1], |p| p);
+                let mut deck = Deck::new(&grid, element, "HyperElastic3DLaw", law());
+                let pulled = || json!(format!("{}*t", stretch - 1.0));
+                deck.steps(0.25, 1.0).gauss("CAUCHY_STRESS_VECTOR");
+                for axis in 0..3 {
+                    let only = |value: Value| std::array::from_fn(|a| if a == axis { value.clone() } else { FREE });
+                    deck.fix(|p| p[axis] == 0.0, only(json!(0.0)));
+                    if axis < axes {
+                        deck.fix(|p| p[axis] == 1.0, only(pulled()));
+                    }
+                }
+                let ran = deck.run();
+                let free = if axes == 1 { across(|l| stretch * l * l) } else { across(|l| stretch * stretch * l) };
+                let volume = if axes == 1 { stretch * free * free } else { stretch * stretch * free };
+                let expected = (mu * (stretch * stretch - 1.0) + lambda * volume.ln()) / volume;
+                let corner = grid.nodes_where(|p| p == [1.0, 1.0, 1.0])[0];
+                let u = ran.last("DISPLACEMENT", corner);
+                assert_close(1.0 + u[2], free, 1e-8, &format!("{element} {shape:?} across, {axes} axes"));
+                for (_, stress) in ran.gauss("CAUCHY_STRESS_VECTOR", ran.times().len() - 1) {
+                    assert_close(stress[0], expected, 1e-8, &format!("{element} {shape:?} stress, {axes} axes"));
+                    assert!(stress[2].abs() < 1e-7 && stress[3].abs() < 1e-7);
+                }
+            }
+        }
+    }
+}
+
+/// F = 1 + γ e_x ⊗ e_y keeps the volume: σ_xy = μ γ, σ_xx = μ γ², the others 0.
+#[test]
+fn neo_hookean_simple_shear() {
+    let (_, mu) = lame();
+    let gamma = 0.9;
+    for (element, law_name, shape) in [
+        ("TotalLagrangianElement", "HyperElasticPlaneStrain2DLaw", Shape::Quad4),
+        ("UpdatedLagrangianElement", "HyperElastic3DLaw", Shape::Prism6),
+    ] {
+        let grid = Grid::new(shape, &[2, 2, 2][..shape.dim()], |p| p);
+        let mut deck = Deck::new(&grid, element, law_name, law());
+        let edge = |p: [f64; 3]| p[..shape.dim()].iter().any(|x| *x == 0.0 || *x == 1.0);
+        deck.steps(0.25, 1.0).gauss("CAUCHY_STRESS_VECTOR");
+        deck.fix(edge, [json!(format!("{gamma}*t*Y")), json!(0.0), json!(0.0)]);
+        let ran = deck.run();
+        for (_, stress) in ran.gauss("CAUCHY_STRESS_VECTOR", 3) {
+            let shear = if shape.dim() == 2 { stress[2] } else { stress[3] };
+            assert_close(shear, mu * gamma, 1e-8, "shear");
+            assert_close(stress[0], mu * gamma * gamma, 1e-8, "tension along the shear");
+            assert!(stress[1].abs() < 1e-7);
+        }
+    }
+}
+
+/// A neo-Hookean cube under pressure on all free sides, which follows them: σ = −p exactly, and Newton's method converges
+/// in few iterations only if the tangent holds the turn of the pressure. 1e-8 as above.
+#[test]
+fn pressure_that_follows_squeezes_a_cube() {
+    let (lambda, mu) = lame();
+    let pressure = 30.0;
+    let grid = Grid::new(Shape::Hex8, &[2, 2, 2], |p| p);
+    let mut deck = Deck::new(&grid, "TotalLagrangianElement", "HyperElastic3DLaw", law());
+    for axis in 0..3 {
+        deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
+        deck.scalar_load(|p| p[axis] == 1.0, "SurfaceLoadCondition", "POSITIVE_FACE_PRESSURE", json!(pressure));
+    }
+    let ran = deck.run();
+    // μ (l² − 1) + 3 λ ln l = −p l³ by bisection
+    let excess = |l: f64| mu * (l * l - 1.0) + 3.0 * lambda * l.ln() + pressure * l.powi(3);
+    let (mut low, mut high) = (0.3, 1.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) > 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let corner = grid.nodes_where(|p| p == [1.0, 1.0, 1.0])[0];
+    assert_close(1.0 + ran.last("DISPLACEMENT", corner)[0], 0.5 * (low + high), 1e-8, "edge");
+    let iterations = ran.report.steps[0].iterations.len();
+    assert!(iterations <= 8, "{iterations} iterations: the tangent is not that of the load");
+}

@@ -1,0 +1,12 @@
+//! Bodies against closed forms and published values: elasticity, convergence, large strains, plasticity, springs.
+//!
+//! Each test builds its mesh, writes a deck as a user would, runs it and compares. Every reference is ANALYTIC unless the
+//! test says otherwise; the tolerance stands with its reason.
+
+mod convergence;
+mod deck;
+mod elastic;
+mod grid;
+mod large_strain;
+mod plastic;
+mod springs;
