@@ -94,7 +94,8 @@ fn agrees_with_the_reference_program() {
 
 /// EXTERNAL: forces, tangent and Cauchy stress of the same cells with plastic laws and mean dilatation. The J2 laws agree to
 /// round-off; the generic ones stop their return at 1e-4 of the yield stress, and have a tangent by perturbation.
-/// Not compared: exponential hardening, whose yield stress Kratos takes from the beginning of the step.
+/// Not compared: exponential hardening, whose yield stress Kratos takes from the beginning of the step, and the generic law
+/// of plane strain, whose von Mises stress there leaves out the stress across the plane.
 #[rustfmt::skip]
 const PLASTIC: &[(&str, &str, &[(&str, f64)], f64, [f64; 3])] = &[
     ("SmallDisplacementElement3D8N", "SmallStrainJ2Plasticity3DLaw", HARDENING, 1e-12, [3.896602914809094, 8.649056616293866, 19.211663937022077]),
@@ -103,7 +104,6 @@ const PLASTIC: &[(&str, &str, &[(&str, f64)], f64, [f64; 3])] = &[
     ("SmallDisplacementBbarElement3D8N", "SmallStrainJ2Plasticity3DLaw", HARDENING, 1e-12, [0.2600973784661441, -3.3152832110571797, 19.94980587660486]),
     ("SmallDisplacementBbarElement3D8N", "LinearElastic3DLaw", &[], 1e-12, [0.2555211161638269, 12.187259386133908, 17.492294819138813]),
     ("SmallDisplacementElement3D8N", "SmallStrainIsotropicPlasticity3DVonMisesVonMises", PERFECT, 1e-5, [3.8969995242086277, 7.30550292433568, 19.42464822866913]),
-    ("SmallDisplacementElement2D4N", "SmallStrainIsotropicPlasticityPlaneStrainVonMisesVonMises", PERFECT, 1e-5, [-0.22391328406246375, -2.6330021125561363, -0.028332024509644206]),
     ("TotalLagrangianElement3D8N", "FiniteStrainIsotropicPlasticity3DVonMisesVonMises", PERFECT, 1e-2, [3.8490870737468397, 8.890364198478395, 18.897892188258645]),
 ];
 const HARDENING: &[(&str, f64)] = &[("YIELD_STRESS", 1.0), ("ISOTROPIC_HARDENING_MODULUS", 10.0)];

@@ -104,7 +104,7 @@ fn stress<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<'_, 
         "PK2" => law.stress(state, StressMeasure::Pk2, None),
         "CAUCHY" => law.stress(state, StressMeasure::Cauchy, None),
         "KIRCHHOFF" => {
-            let factor = if law.ignores_measure() { 1.0 } else { state.det_f };
+            let factor = if law.ignores_measure(state.small) { 1.0 } else { state.det_f };
             law.stress(state, StressMeasure::Cauchy, None).map(|s| factor * s)
         }
         _ => return None,

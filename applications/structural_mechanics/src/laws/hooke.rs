@@ -33,7 +33,7 @@ impl<const S: usize, const PUSHED: bool> ConstitutiveLaw<S> for Hooke<S, PUSHED>
         true
     }
 
-    fn ignores_measure(&self) -> bool {
+    fn ignores_measure(&self, _small: bool) -> bool {
         !PUSHED
     }
 

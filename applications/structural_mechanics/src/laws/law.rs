@@ -64,8 +64,8 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         false
     }
 
-    /// Whether the same numbers serve as every stress measure, as if deformations were small.
-    fn ignores_measure(&self) -> bool {
+    /// Whether the same numbers serve as every stress measure, as if deformations were small; `small` as in the state.
+    fn ignores_measure(&self, _small: bool) -> bool {
         false
     }
 
@@ -76,7 +76,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
 
     /// Stress in the wanted measure with its tangent: dS/dE, or its push-forward for Cauchy stress.
     fn stress(&self, state: &StrainState<'_, S>, measure: StressMeasure, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
-        if measure == StressMeasure::Pk2 || self.ignores_measure() {
+        if measure == StressMeasure::Pk2 || self.ignores_measure(state.small) {
             return self.pk2(state, tangent);
         }
         let pk2 = match tangent {

@@ -92,6 +92,10 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
         0.5 * self.0.bulk * dilation * dilation + (turn.kept * size).powi(2) / (4.0 * self.0.mu)
     }
 
+    fn ignores_measure(&self, small: bool) -> bool {
+        small
+    }
+
     fn history(&self) -> usize {
         7
     }
