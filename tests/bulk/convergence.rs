@@ -67,33 +67,37 @@ fn error(shape: Shape, cells: usize) -> f64 {
 }
 
 /// Slopes between two meshes; 0.15 below the theoretical one is allowed, the meshes being coarse.
-fn check(shapes: &[Shape], cells: [usize; 2], order: f64) {
-    for &shape in shapes {
-        let [coarse, fine] = cells.map(|cells| error(shape, cells));
-        let slope = (coarse / fine).ln() / (cells[1] as f64 / cells[0] as f64).ln();
-        println!("{shape:?}: {coarse:.3e} {fine:.3e} slope {slope:.3}");
-        assert!(slope > order - 0.15, "{shape:?}: the error falls with the power {slope:.3}, not {order}");
-    }
+fn check(shape: Shape, cells: [usize; 2], order: f64) {
+    let [coarse, fine] = cells.map(|cells| error(shape, cells));
+    let slope = (coarse / fine).ln() / (cells[1] as f64 / cells[0] as f64).ln();
+    println!("{shape:?} {cells:?}: {coarse:.3e} {fine:.3e} slope {slope:.3}");
+    assert!(slope > order - 0.15, "{shape:?}: the error falls with the power {slope:.3}, not {order}");
 }
 
 #[test]
 fn first_order_in_the_plane() {
-    check(&[Shape::Tri3, Shape::Quad4], [16, 32], 2.0);
+    check(Shape::Tri3, [32, 64], 2.0);
+    check(Shape::Quad4, [16, 32], 2.0);
 }
 
 #[test]
 fn second_order_in_the_plane() {
-    check(&[Shape::Tri6, Shape::Quad8, Shape::Quad9], [8, 16], 3.0);
+    check(Shape::Tri6, [8, 16], 3.0);
+    check(Shape::Quad8, [8, 16], 3.0);
+    check(Shape::Quad9, [8, 16], 3.0);
 }
 
 #[test]
 fn first_order_in_space() {
-    check(&[Shape::Prism6, Shape::Hex8], [6, 12], 2.0);
-    check(&[Shape::Tet4], [12, 20], 2.0);
+    check(Shape::Tet4, [14, 24], 2.0);
+    check(Shape::Prism6, [12, 20], 2.0);
+    check(Shape::Hex8, [8, 16], 2.0);
 }
 
 #[test]
 fn second_order_in_space() {
-    check(&[Shape::Prism15, Shape::Hex20, Shape::Hex27], [3, 6], 3.0);
-    check(&[Shape::Tet10], [5, 9], 3.0);
+    check(Shape::Tet10, [6, 10], 3.0);
+    check(Shape::Prism15, [5, 9], 3.0);
+    check(Shape::Hex20, [4, 7], 3.0);
+    check(Shape::Hex27, [4, 7], 3.0);
 }

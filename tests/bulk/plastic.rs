@@ -81,7 +81,7 @@ fn a_bar_is_loaded_unloaded_and_loaded_the_other_way() {
             let mut deck = Deck::new(&grid, element, law, variables);
             deck.steps(1.0, 4.0).gauss("CAUCHY_STRESS_VECTOR").gauss("ACCUMULATED_PLASTIC_STRAIN");
             // strains 0.01, 0.008, -0.004, 0.012
-            let path = "0.01 if t<1.5 else (0.008 if t<2.5 else (-0.004 if t<3.5 else 0.012))";
+            let path = "0.01-0.002*(t-1)-0.005*(t-1)*(t-2)+0.038/6*(t-1)*(t-2)*(t-3)";
             for axis in 0..3 {
                 deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
             }
@@ -135,36 +135,30 @@ fn a_bar_pulled_to_twice_its_length() {
     }
 }
 
-/// A step that fails and is cut starts from the plastic strains it had: the same answer as with the short steps asked for.
+/// A step to three times the length fails and is cut. Had its attempts left plastic strains behind, the end would not be that
+/// of the closed form, which knows one pull only: 1e-6, what the looser iteration leaves.
 #[test]
 fn a_cut_step_restores_the_plastic_strains() {
-    let grid = Grid::new(Shape::Quad4, &[4, 4], ring(1.0, 2.0));
-    let run = |step: f64, most: usize| {
-        let variables = json!({"YOUNG_MODULUS": 1000.0, "POISSON_RATIO": 0.3, "YIELD_STRESS": 1.0, "THICKNESS": 1.0,
-            "ISOTROPIC_HARDENING_MODULUS": 5.0});
-        let mut deck = Deck::new(&grid, "SmallDisplacementBbarElement", SMALL, variables);
-        deck.steps(step, 2.0).set("max_iteration", json!(most)).gauss("EQUIVALENT_PLASTIC_STRAIN");
-        deck.set("residual_relative_tolerance", json!(1e-6)).set("residual_absolute_tolerance", json!(1e-8));
-        let radial = |axis: &str| json!(format!("0.01*sin(2*t)*{axis}/sqrt(X**2+Y**2)"));
-        deck.fix(|p| p[1] == 0.0, [FREE, json!(0.0), FREE])
-            .fix(|p| p[1] == 1.0, [json!(0.0), FREE, FREE])
-            .fix(|p| p[0] == 0.0, [radial("X"), radial("Y"), FREE]);
-        deck.run()
-    };
-    let whole = run(1.0, 20);
-    let failing = whole.report.steps.iter().map(|s| s.iterations.len()).max().expect("steps") - 1;
-    let (cut, short) = (run(1.0, failing), run(0.5, 20));
-    assert!(cut.report.steps.iter().any(|s| !s.converged), "no step was cut");
-    let strains = |ran: &super::deck::Ran| {
-        ran.gauss("EQUIVALENT_PLASTIC_STRAIN", ran.times().len() - 1).into_iter().map(|(_, p)| p[0]).collect::<Vec<_>>()
-    };
-    println!("times {:?} and {:?}", cut.times(), short.times());
-    let (times, of_cut) = (cut.times(), strains(&cut));
-    // the short run at the times the cut one took
-    let reference = if times.len() == short.times().len() { strains(&short) } else { Vec::new() };
-    if !reference.is_empty() {
-        assert!(of_cut.iter().zip(&reference).all(|(a, b)| (a - b).abs() < 1e-9), "{of_cut:?} {reference:?}");
+    let (young, hardening, yield_stress) = (200.0, 20.0, 0.4);
+    let variables = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": 0.3, "YIELD_STRESS": yield_stress,
+        "ISOTROPIC_HARDENING_MODULUS": hardening});
+    let grid = Grid::new(Shape::Hex8, &[2, 1, 1], |p| p);
+    let law = "FiniteStrainIsotropicPlasticity3DVonMisesVonMises";
+    let mut deck = Deck::new(&grid, "TotalLagrangianElement", law, variables);
+    deck.steps(1.0, 1.0).set("max_iteration", json!(4)).gauss("UNIAXIAL_STRESS").gauss("EQUIVALENT_PLASTIC_STRAIN");
+    deck.set("residual_relative_tolerance", json!(1e-6)).set("residual_absolute_tolerance", json!(1e-8));
+    for axis in 0..3 {
+        deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
     }
-    let of_whole = strains(&whole);
-    assert!(of_cut.iter().zip(&of_whole).all(|(a, b)| (a - b).abs() < 2e-3), "{of_cut:?} {of_whole:?}");
+    deck.fix(|p| p[0] == 1.0, [json!("2.0*t"), FREE, FREE]);
+    let ran = deck.run();
+    assert!(ran.report.steps.iter().any(|step| !step.converged), "no step was cut");
+    let last = ran.times().len() - 1;
+    let alpha = (young * 3.0_f64.ln() - yield_stress) / (young + hardening);
+    for (_, found) in ran.gauss("EQUIVALENT_PLASTIC_STRAIN", last) {
+        assert_close(found[0], alpha, 1e-6, "equivalent plastic strain");
+    }
+    for (_, found) in ran.gauss("UNIAXIAL_STRESS", last) {
+        assert_close(found[0], yield_stress + hardening * alpha, 1e-6, "stress");
+    }
 }
