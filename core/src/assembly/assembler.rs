@@ -57,7 +57,6 @@ pub struct Assembler {
     condition_numbers: Vec<Vec<u32>>,
     constant: Option<Vec<f64>>,
     mass: Option<Vec<f64>>,
-    damping: Option<Vec<f64>>,
     lumped: bool,
     bulk: Csr,
     bulk_general: bool,
