@@ -230,6 +230,12 @@ pub const BAD_DECKS: &[BadDeck] = &[
         "SmallDisplacementElement3D4N",
         &["SmallDisplacementElement3D4N"],
     ),
+    mesh(
+        "a shell",
+        "SmallDisplacementElement2D4N",
+        "ShellThinElement3D4N",
+        &["ShellThinElement3D4N", "shells are not there"],
+    ),
     mesh("element of too many nodes", "SmallDisplacementElement2D4N", "SmallDisplacementElement2D8N", &["mesh.mdpa"]),
     // contact parts
     deck("contact part without nodes", "[\"Interface\"]", "[\"Nothing\"]", &["Nothing"]),
@@ -249,6 +255,24 @@ pub const BAD_DECKS: &[BadDeck] = &[
         "LinearElasticPlaneStrain2DLaw",
         "LinearElastic3DLaw",
         &["LinearElastic3DLaw"],
+    ),
+    materials(
+        "kinematic hardening",
+        "LinearElasticPlaneStrain2DLaw",
+        "ConstitutiveLawsApplication.SmallStrainKinematicPlasticityPlaneStrainVonMisesVonMises",
+        &["isotropic hardening is, SmallStrainJ2Plasticity3DLaw"],
+    ),
+    materials(
+        "plasticity without a yield stress",
+        "LinearElasticPlaneStrain2DLaw",
+        "SmallStrainJ2PlasticityPlaneStrain2DLaw",
+        &["YIELD_STRESS"],
+    ),
+    materials(
+        "a curve that softens",
+        "LinearElasticPlaneStrain2DLaw\"},\n        \"Variables\": {\"YOUNG_MODULUS\": 2.0e9,",
+        "SmallStrainIsotropicPlasticityPlaneStrainVonMisesVonMises\"},\n        \"Variables\": {\"YOUNG_MODULUS\": 2.0e9, \"YIELD_STRESS\": 1e6, \"FRACTURE_ENERGY\": 1e5, \"HARDENING_CURVE\": 1,",
+        &["HARDENING_CURVE 1 softens"],
     ),
     materials("no Young's modulus", "\"YOUNG_MODULUS\": 2.0e9, ", "", &["YOUNG_MODULUS"]),
     materials("negative Young's modulus", "\"YOUNG_MODULUS\": 2.0e9", "\"YOUNG_MODULUS\": -2.0e9", &["YOUNG_MODULUS"]),

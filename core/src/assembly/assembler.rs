@@ -234,7 +234,7 @@ impl Assembler {
         Ok(out)
     }
 
-    /// The damping matrix on the bulk pattern, where properties have factors of their own.
+    /// The damping matrix on the bulk pattern, where properties have factors of their own or elements are dampers.
     fn damping(&mut self, part: &ModelPart, rayleigh: [f64; 2]) -> Result<Vec<f64>> {
         if let Some((_, values)) = self.damping.as_ref().filter(|(key, _)| *key == rayleigh) {
             return Ok(values.clone());
@@ -498,7 +498,8 @@ fn undeformed(part: &ModelPart) -> Nodes {
     nodes
 }
 
-/// Whether the properties of an element give Rayleigh's factors, which then go before those of the solver.
+/// Whether the properties of an element give Rayleigh's factors, which then go before those of the solver, or some elements
+/// are dampers.
 pub fn damped_by_properties(part: &ModelPart) -> bool {
     let names = ["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"];
     part.properties.values().any(|p| names.iter().any(|name| p.number(name).is_some()))
