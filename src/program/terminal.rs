@@ -92,9 +92,13 @@ impl Monitor for Terminal {
         let short = |value: f64| if value.fract() == 0.0 { format!("{value}") } else { format!("{value:.3e}") };
         let numbers: Vec<String> =
             record.interactions.iter().map(|(name, value)| format!("{name} {}", short(*value))).collect();
-        let state = if record.converged { "converged" } else { "not converged" };
+        let state = match (record.converged, record.iterations.len()) {
+            (true, 0) => "done".to_owned(),
+            (true, count) => format!("converged in {count} iterations"),
+            (false, count) => format!("not converged in {count} iterations"),
+        };
         let extra = if numbers.is_empty() { String::new() } else { format!("; {}", numbers.join(", ")) };
-        self.line(&format!("  {state} in {} iterations{extra}", record.iterations.len()));
+        self.line(&format!("  {state}{extra}"));
     }
 
     fn note(&mut self, text: &str) {

@@ -182,16 +182,16 @@ impl SolverSettings {
         let entry = registry::require(Kind::Scheme, &name).map_err(|d| d.at(self.settings.key_place("scheme_type")))?;
         let Build::Factory(factory) = entry.build else { unreachable!("schemes register a factory") };
         let request = SchemeRequest { settings: &self.settings };
-        let scheme = match factory.downcast_ref::<ExplicitSchemeFactory>() {
-            Some(make) => TimeScheme::Explicit(make(&request)?),
-            None => TimeScheme::Implicit(factory.downcast_ref::<SchemeFactory>().expect("a SchemeFactory")(&request)?),
-        };
-        if matches!(scheme, TimeScheme::Explicit(_)) != self.definition.explicit {
+        let explicit = factory.downcast_ref::<ExplicitSchemeFactory>();
+        if explicit.is_some() != self.definition.explicit {
             let fact = format!("\"scheme_type\" {name:?} does not fit the \"time_integration_method\"");
             let remedy = "\"central_differences\" is explicit, all others are implicit";
             return Err(self.settings.error("scheme_type", "scheme-method", fact).remedy(remedy).into());
         }
-        Ok(scheme)
+        Ok(match explicit {
+            Some(make) => TimeScheme::Explicit(make(&request)?),
+            None => TimeScheme::Implicit(factory.downcast_ref::<SchemeFactory>().expect("a SchemeFactory")(&request)?),
+        })
     }
 
     /// The convergence criterion.

@@ -7,6 +7,6 @@ mod equations;
 mod group_matrix;
 mod local;
 
-pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties};
+pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties, strongest_damping};
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};

@@ -10,7 +10,7 @@ use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::{SchemeRequest, gather};
 use super::strategy::{SolutionStrategy, accept, recorded};
-use crate::assembly::{Assembler, Inertia, damped_by_properties, impose_constraints};
+use crate::assembly::{Assembler, Inertia, damped_by_properties, impose_constraints, strongest_damping};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::Interaction;
 use crate::model::ModelPart;
@@ -122,7 +122,8 @@ impl ExplicitStrategy {
         let result = prepared.and_then(|()| self.assembler.tangents(part, &interactions, None));
         part.interactions = interactions;
         result?;
-        Ok(critical_step(&self.assembler, &self.reduced_mass(), self.settings.rayleigh))
+        let rayleigh = strongest_damping(part, self.settings.rayleigh);
+        Ok(critical_step(&self.assembler, &self.reduced_mass(), rayleigh))
     }
 
     /// Mass of each equation; what slaves carry is lumped on their masters.
