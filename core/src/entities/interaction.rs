@@ -89,6 +89,14 @@ pub trait Interaction: Send + Sync {
     /// `residual` holds the equations that are solved. For those who watch; nothing may change.
     fn observe(&mut self, _part: &ModelPart, _iteration: usize, _residual: &[f64]) {}
 
+    /// The nodes it looks at, ascending, when the first iterate of a step decides on its answer.
+    ///
+    /// Statics then begin a step as the reference program does: prescribed displacements are in the field before the first
+    /// solve, these nodes follow them at once and the rest of the mesh after the solve.
+    fn led_nodes(&self) -> Option<Vec<u32>> {
+        None
+    }
+
     /// Keeps what a retried step must restore.
     fn save(&mut self);
 

@@ -58,6 +58,12 @@ impl Nodes {
         self.index.get(&id).copied()
     }
 
+    /// Moves one node to its initial position plus DISPLACEMENT.
+    pub fn follow(&mut self, node: usize) {
+        let u = self.history.values(&super::variables::DISPLACEMENT, 0);
+        self.current[node] = std::array::from_fn(|c| self.initial[node][c] + u[3 * node + c]);
+    }
+
     /// Moves every node to its initial position plus `displacement` (three numbers a node).
     pub fn move_to(&mut self, displacement: &[f64]) {
         for ((current, initial), u) in self.current.iter_mut().zip(&self.initial).zip(displacement.chunks_exact(3)) {

@@ -38,6 +38,8 @@ pub struct NewtonRaphson {
     pub(super) criterion: Box<dyn ConvergenceCriterion>,
     pub(super) solver: Box<dyn LinearSolver>,
     pub(super) assembler: Assembler,
+    /// Whether the last step did not converge.
+    failed: bool,
     linear_seconds: [f64; 3],
 }
 
@@ -51,7 +53,9 @@ impl SolutionStrategy for NewtonRaphson {
     }
 
     fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
-        recorded(part, |part, interactions| self.iterate(part, interactions, monitor))
+        let record = recorded(part, |part, interactions| self.iterate(part, interactions, monitor));
+        self.failed = !record.as_ref().is_ok_and(|record| record.converged);
+        record
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
@@ -77,7 +81,7 @@ impl NewtonRaphson {
         let interactions = std::mem::take(&mut part.interactions);
         let assembler = Assembler::new(part, &interactions, scheme.lumped_mass());
         part.interactions = interactions;
-        Self { settings, scheme, criterion, solver, assembler, linear_seconds: [0.0; 3] }
+        Self { settings, scheme, criterion, solver, assembler, failed: false, linear_seconds: [0.0; 3] }
     }
 
     fn iterate(
@@ -95,7 +99,7 @@ impl NewtonRaphson {
             let forces = self.assembler.inertia_forces(part, &past)?;
             self.scheme.keep(forces);
         }
-        let mut prescribed = self.start(part)?;
+        let mut prescribed = self.start(part, interactions)?;
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
         }
@@ -264,8 +268,17 @@ impl NewtonRaphson {
 
     /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
     /// left at their old values: the first solve takes them on through the tangent.
-    pub(super) fn start(&mut self, part: &mut ModelPart) -> Result<Vec<f64>> {
+    ///
+    /// Where the first iterate decides on the answer they stay at their new values instead, ahead of the mesh; not so after
+    /// a failed attempt, since elements may turn inside out that way.
+    pub(super) fn start(&mut self, part: &mut ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {
         let targets = self.assembler.values(part);
+        let led = interactions.iter().find_map(|interaction| interaction.led_nodes());
+        let free = !self.failed && self.settings.move_mesh && !part.constraints.iter().any(|c| c.active);
+        if let Some(led) = led.filter(|_| free && self.scheme.is_static()) {
+            led.iter().for_each(|&node| part.nodes.follow(node as usize));
+            return Ok(vec![0.0; targets.len()]);
+        }
         for (number, dof) in part.dofs.dofs().iter().enumerate() {
             if self.assembler.equations().is_fixed(number)
                 && let Some(field) = part.nodes.history.get_mut(dof.variable.column)

@@ -18,6 +18,11 @@ pub trait Scheme: Send {
         false
     }
 
+    /// Whether nothing but the unknowns themselves follows from a step.
+    fn is_static(&self) -> bool {
+        false
+    }
+
     /// Step start: first guess of the unknowns that are free.
     ///
     /// # Errors
@@ -92,7 +97,11 @@ pub(super) fn update_newmark(part: &mut ModelPart, beta: f64, gamma: f64) {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StaticScheme;
 
-impl Scheme for StaticScheme {}
+impl Scheme for StaticScheme {
+    fn is_static(&self) -> bool {
+        true
+    }
+}
 
 /// What a scheme is made from.
 pub struct SchemeRequest<'a> {

@@ -2,7 +2,9 @@
 
 use super::pair::{Kinematics, PairResidual, SlaveNode};
 use super::{Formulation, Multipliers};
-use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, dimension, operators};
+use crate::mortar::{
+    Operators, Overlap, PairGeometry, SegmentationSettings, dimension, operators, operators_on_flat_master,
+};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::constant;
 
@@ -39,6 +41,8 @@ pub fn residual<F: Formulation, const NS: usize, const NM: usize>(
 pub enum OperatorTangent {
     /// Their exact derivative.
     Exact,
+    /// The derivative of the reference program, see [`operators_on_flat_master`].
+    FlatMaster,
     /// Nothing: D and M count as constant.
     Frozen,
 }
@@ -66,6 +70,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     rhs.fill(0.0);
     let found = match knows {
         OperatorTangent::Exact => operators(geometry, settings).cells(),
+        OperatorTangent::FlatMaster => operators_on_flat_master(geometry, settings).cells(),
         OperatorTangent::Frozen => operators(&geometry.values(), settings).cells().map(|plain| plain.as_constants()),
     };
     let Some(dual) = found else { return Overlap::None };

@@ -187,15 +187,13 @@ impl ContactInteraction {
         }
         let before: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
         self.make_blocks(known.into_values().collect())?;
-        let overlapping: Vec<bool> =
-            self.blocks.iter().flat_map(|block| block.integrate(&part.view())).map(|i| i.overlapping).collect();
-        let (kept, lost): (Vec<Pair>, Vec<Pair>) = self
-            .pairs()
-            .into_iter()
-            .zip(overlapping)
-            .filter_map(|(pair, overlapping)| overlapping.then_some(pair))
-            .partition(|pair| !beyond.contains(&pair.key));
-        warn_of_reach(part, lost.len(), &mut self.warned);
+        let integrals: Vec<_> = self.blocks.iter().flat_map(|block| block.integrate(&part.view())).collect();
+        let found: Vec<(Pair, _)> = self.pairs().into_iter().zip(integrals).collect();
+        let lost = found.iter().filter(|(pair, i)| i.overlapping && beyond.contains(&pair.key)).count();
+        warn_of_reach(part, lost, &mut self.warned);
+        // Slivers too: within the step they may grow to overlaps.
+        let kept = found.into_iter().filter(|(pair, i)| i.facing && !beyond.contains(&pair.key));
+        let kept = kept.map(|(pair, _)| pair).collect();
         self.make_blocks(kept)?;
         let after: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
         if before != after {
@@ -546,6 +544,14 @@ impl Interaction for ContactInteraction {
 
     fn graph_version(&self) -> u64 {
         self.graph
+    }
+
+    /// Without updates, normals are those after the first iteration.
+    fn led_nodes(&self) -> Option<Vec<u32>> {
+        let mut nodes: Vec<u32> = self.interfaces.iter().flat_map(|i| i.nodes.iter().copied()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        (self.acting && !self.updates_normals()).then_some(nodes)
     }
 
     fn idle_diagonal(&self) -> f64 {

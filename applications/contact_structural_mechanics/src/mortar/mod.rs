@@ -21,6 +21,7 @@
 //! overlap has, where iterations end) are made on values; derivatives then come from one corrected evaluation at the
 //! solution, so that dual numbers cost a small multiple of the plain kernel and are exact.
 
+mod flat_master;
 pub mod gap;
 pub mod geometry;
 pub mod operators;
@@ -33,7 +34,7 @@ pub mod slip;
 
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{PairGeometry, dimension};
-pub use operators::{Operators, Overlap, operators};
+pub use operators::{Operators, Overlap, operators, operators_on_flat_master};
 pub use settings::{IntegrationOrder, SegmentationSettings};
 pub use slip::{incremental_slip, is_objective, objective_slip, tangent, tangential};
 

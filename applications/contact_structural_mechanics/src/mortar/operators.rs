@@ -6,10 +6,11 @@
 //! Where Me cannot be inverted, Φ = N¹ and D = Me is full. With the usual three points a triangle this is so for every
 //! quadrilateral slave whose overlap is a single triangle: three points cannot tell four functions apart.
 
+use super::flat_master::FlatMaster;
 use super::geometry::PairGeometry;
 use super::quadrature;
 use super::segmentation_2d;
-use super::segmentation_3d::Polygon;
+use super::segmentation_3d::{Polygon, Vertex};
 use super::settings::SegmentationSettings;
 use super::shape;
 use zelus_core::scalar::Real;
@@ -37,7 +38,9 @@ pub struct Operators<T, const NS: usize, const NM: usize> {
 pub enum Overlap<O> {
     /// They do, on one or more cells.
     Cells(O),
-    /// They do not, or on a negligible part: the pair contributes nothing.
+    /// They do, on a negligible part: the pair contributes nothing, yet may when the bodies move on.
+    Sliver,
+    /// They do not: the pair contributes nothing.
     None,
 }
 
@@ -46,7 +49,7 @@ impl<O> Overlap<O> {
     pub fn cells(self) -> Option<O> {
         match self {
             Self::Cells(operators) => Some(operators),
-            Self::None => None,
+            Self::Sliver | Self::None => None,
         }
     }
 }
@@ -59,7 +62,23 @@ pub fn operators<T: Real, const NS: usize, const NM: usize>(
     pair: &PairGeometry<T, NS, NM>,
     settings: &SegmentationSettings,
 ) -> Overlap<Operators<T, NS, NM>> {
-    let mut sums = Sums::new(pair);
+    integrated(Sums::new(pair, None), settings)
+}
+
+/// D and M with the derivative of the reference program in space: points move on the master as if it lay in the slave's
+/// plane. Values are those of [`operators`].
+pub fn operators_on_flat_master<T: Real, const NS: usize, const NM: usize>(
+    pair: &PairGeometry<T, NS, NM>,
+    settings: &SegmentationSettings,
+) -> Overlap<Operators<T, NS, NM>> {
+    integrated(Sums::new(pair, Some(FlatMaster::new(pair))), settings)
+}
+
+fn integrated<T: Real, const NS: usize, const NM: usize>(
+    mut sums: Sums<'_, T, NS, NM>,
+    settings: &SegmentationSettings,
+) -> Overlap<Operators<T, NS, NM>> {
+    let pair = sums.pair;
     let whole = shape::measure(&pair.slave.map(value));
     let covered = if NS == 2 {
         let revolution = settings.revolution();
@@ -68,7 +87,11 @@ pub fn operators<T: Real, const NS: usize, const NM: usize>(
     } else {
         Polygon::new(pair, settings).map_or(0.0, |polygon| sums.integrate_polygon(&polygon, settings, whole))
     };
-    if covered > LEAST_OVERLAP * whole { Overlap::Cells(sums.finish()) } else { Overlap::None }
+    match covered {
+        covered if covered > LEAST_OVERLAP * whole => Overlap::Cells(sums.finish()),
+        covered if covered > 0.0 => Overlap::Sliver,
+        _ => Overlap::None,
+    }
 }
 
 impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
@@ -124,13 +147,14 @@ impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
 /// Integrals gathered over the cells: Me (upper triangle) and ∫ N¹⊗N².
 struct Sums<'a, T, const NS: usize, const NM: usize> {
     pair: &'a PairGeometry<T, NS, NM>,
+    flat: Option<FlatMaster<T, NS>>,
     me: [[T; NS]; NS],
     mixed: [[T; NM]; NS],
 }
 
 impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
-    fn new(pair: &'a PairGeometry<T, NS, NM>) -> Self {
-        Self { pair, me: [[T::zero(); NS]; NS], mixed: [[T::zero(); NM]; NS] }
+    fn new(pair: &'a PairGeometry<T, NS, NM>, flat: Option<FlatMaster<T, NS>>) -> Self {
+        Self { pair, flat, me: [[T::zero(); NS]; NS], mixed: [[T::zero(); NM]; NS] }
     }
 
     /// Integrates over a segment of the slave line and returns its length.
@@ -145,7 +169,7 @@ impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
             if let Some(per_radius) = revolution {
                 weight *= x[0] * per_radius;
             }
-            self.add_point(&shape, x, weight);
+            self.add_point(&shape, x, weight, T::zero());
         }
         det_j.value()
     }
@@ -158,7 +182,9 @@ impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
         let vertices = polygon.vertices();
         let mut local = [polygon.local(vertices[0]), [T::zero(); 2], polygon.local(vertices[1])];
         let mut x = [place(local[0]), [T::zero(); 3], place(local[2])];
+        let mut lifts = [self.lift(polygon, vertices[0]), T::zero(), self.lift(polygon, vertices[1])];
         for &vertex in &vertices[2..] {
+            (lifts[1], lifts[2]) = (lifts[2], self.lift(polygon, vertex));
             let xi = polygon.local(vertex);
             (local[1], local[2]) = (local[2], xi);
             (x[1], x[2]) = (x[2], shape::interpolate(&shape::values::<T, NS>(xi), &self.pair.slave));
@@ -178,21 +204,29 @@ impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
                     slave_shape = shape::values::<T, NS>(xi);
                     x = shape::interpolate(&slave_shape, &self.pair.slave);
                 }
-                self.add_point(&slave_shape, x, area * *weight);
+                let lift = (0..3).fold(T::zero(), |sum, n| sum + lifts[n] * barycentric[n]);
+                self.add_point(&slave_shape, x, area * *weight, lift);
             }
         }
         covered
     }
 
-    /// Adds a point of the slave with its shape functions and weight × det J.
+    fn lift(&self, polygon: &Polygon<T, NS, NM>, vertex: Vertex) -> T {
+        self.flat.as_ref().map_or(T::zero(), |flat| polygon.weigh(vertex, &flat.lift))
+    }
+
+    /// Adds a point of the slave with its shape functions, weight × det J and what [`FlatMaster`] lifts it by.
     #[inline]
-    fn add_point(&mut self, slave_shape: &[T; NS], x: [T; 3], weight: T) {
+    fn add_point(&mut self, slave_shape: &[T; NS], x: [T; 3], weight: T, lift: T) {
         let pair = self.pair;
         let normal = shape::interpolate(slave_shape, &pair.nodal_normals);
         let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
         let mut projected = x;
         (0..3).for_each(|c| projected[c].add_product(normal[c], distance));
-        let xi = shape::closest_point(&pair.master, projected, shape::centre::<NM>());
+        let xi = match &self.flat {
+            None => shape::closest_point(&pair.master, projected, shape::centre::<NM>()),
+            Some(flat) => flat.local(&pair.master, projected, x, lift),
+        };
         let master_shape = shape::values::<T, NM>(xi);
         for j in 0..NS {
             let weighted = slave_shape[j] * weight;

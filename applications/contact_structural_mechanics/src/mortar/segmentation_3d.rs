@@ -63,20 +63,37 @@ impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
         &self.vertices[..self.len]
     }
 
+    /// Where on the slave's edge it crosses the master's, from 0 to 1.
+    #[inline]
+    fn crossing(&self, slave: usize, master: usize) -> T {
+        let (a, b) = (self.slave[slave], self.slave[(slave + 1) % NS]);
+        let (c, d) = (self.master[master], self.master[(master + 1) % NM]);
+        let (along, across) = (minus(b, a), minus(d, c));
+        let denominator = cross2(along, across);
+        let t = cross2(minus(c, a), across) / denominator;
+        let grazing = denominator.value().abs() < GRAZING * length(along.map(T::value)) * length(across.map(T::value));
+        if grazing { T::constant(t.value()) } else { t }
+    }
+
+    /// Mean of numbers at the slave nodes that a vertex lies on or between; zero at nodes of the master.
+    pub(super) fn weigh(&self, vertex: Vertex, numbers: &[T; NS]) -> T {
+        match vertex {
+            Vertex::Slave(n) => numbers[n],
+            Vertex::Crossing { slave, master } => {
+                let t = self.crossing(slave, master).value();
+                numbers[slave] * (1.0 - t) + numbers[(slave + 1) % NS] * t
+            }
+            Vertex::Master(_) => T::zero(),
+        }
+    }
+
     /// Local coordinates of a vertex on the flattened slave.
     #[inline]
     pub(super) fn local(&self, vertex: Vertex) -> [T; 2] {
         match vertex {
             Vertex::Slave(n) => shape::corner::<NS>(n).map(T::constant),
             Vertex::Crossing { slave, master } => {
-                let (a, b) = (self.slave[slave], self.slave[(slave + 1) % NS]);
-                let (c, d) = (self.master[master], self.master[(master + 1) % NM]);
-                let (along, across) = (minus(b, a), minus(d, c));
-                let denominator = cross2(along, across);
-                let mut t = cross2(minus(c, a), across) / denominator;
-                if denominator.value().abs() < GRAZING * length(along.map(T::value)) * length(across.map(T::value)) {
-                    t = T::constant(t.value());
-                }
+                let t = self.crossing(slave, master);
                 let (start, end) = (shape::corner::<NS>(slave), shape::corner::<NS>((slave + 1) % NS));
                 std::array::from_fn(|c| t * (end[c] - start[c]) + start[c])
             }

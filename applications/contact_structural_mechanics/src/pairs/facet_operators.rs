@@ -86,7 +86,7 @@ fn of_shapes<const NS: usize, const NM: usize>(
     };
     let found = match operators(&geometry, settings) {
         Overlap::Cells(found) => found,
-        Overlap::None => return None,
+        Overlap::Sliver | Overlap::None => return None,
     };
     let mut out = FacetOperators::default();
     for j in 0..NS {

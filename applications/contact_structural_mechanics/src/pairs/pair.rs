@@ -50,8 +50,10 @@ pub struct Pair {
 /// What a pair adds to its slave nodes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Integral {
-    /// Whether the facets overlap.
+    /// Whether the facets overlap by more than a sliver.
     pub overlapping: bool,
+    /// Whether they overlap at all.
+    pub facing: bool,
     /// D_jj (area).
     pub area: [f64; 4],
     /// Weighted gap, negative in penetration.

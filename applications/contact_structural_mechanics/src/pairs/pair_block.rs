@@ -137,11 +137,15 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
 
     /// With normals of the step, those after its first iteration count, so that iteration decides a little of the answer.
     ///
-    /// Kratos leaves part of the operators' derivative out in the plane; constant operators in the first iteration come
-    /// nearest to its normals. From the second iteration on the tangent is exact.
+    /// Kratos leaves part of the operators' derivative out. In the plane constant operators in the first iteration come
+    /// nearest to its normals; in space its derivative is followed. From the second iteration on the tangent is exact.
     fn operator_tangent(&self, view: &StepView<'_>) -> OperatorTangent {
         let lagging = self.parameters.normal_variation == NormalVariation::None;
-        if NS == 2 && lagging && view.info.nl_iteration == 1 { OperatorTangent::Frozen } else { OperatorTangent::Exact }
+        match lagging && view.info.nl_iteration == 1 {
+            false => OperatorTangent::Exact,
+            true if NS == 2 => OperatorTangent::Frozen,
+            true => OperatorTangent::FlatMaster,
+        }
     }
 
     fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
@@ -292,7 +296,9 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
             .map(|at| {
                 let geometry = self.geometry(at, view);
                 let mut out = Integral::default();
-                if let Overlap::Cells(operators) = operators(&geometry, &self.parameters.segmentation) {
+                let found = operators(&geometry, &self.parameters.segmentation);
+                out.facing = found != Overlap::None;
+                if let Overlap::Cells(operators) = found {
                     out.overlapping = true;
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
                     let history = F::history(&self.pairs[at], &self.previous(at, view));

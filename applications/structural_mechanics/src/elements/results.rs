@@ -38,11 +38,11 @@ pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const 
     variable: &str,
 ) -> Option<Gauss> {
     let material = solid.material(entity);
-    let u = solid.displacement(entity, view);
+    let motion = solid.motion(entity, view);
     let table = material.rule;
     let mut out = Gauss::default();
     for g in 0..table.len() {
-        let state = solid.point(material, g, entity, &u).ok()?.state;
+        let state = solid.point(material, g, entity, &motion).ok()?.state;
         let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),

@@ -39,6 +39,17 @@ pub(super) struct Point<const NODES: usize, const DIM: usize, const S: usize> {
     pub(super) state: StrainState<S>,
 }
 
+/// The motion of an element's nodes as a formulation reads it.
+pub(super) struct Motion<const NODES: usize> {
+    /// Displacements that strain the element (length).
+    u: [[f64; 3]; NODES],
+    /// Where DISPLACEMENT is ahead of the mesh: present displacements less those of the step, and those at its start.
+    ///
+    /// The deformation of the step is then the one from the first to `u`, as in the reference program, whose updated
+    /// Lagrangian elements take the start of the step from present positions and DISPLACEMENT.
+    ahead: Option<[[[f64; 3]; NODES]; 2]>,
+}
+
 /// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
 fn gradient<const NODES: usize, const DIM: usize>(
     x: &[[f64; 3]; NODES],
@@ -105,17 +116,23 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         Material::find(&self.materials, entity.properties.id)
     }
 
-    /// DISPLACEMENT of the nodes where the formulation reads it.
-    pub(super) fn displacement(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> [[f64; 3]; NODES] {
-        if F::FINITE {
-            let mut u = entity.current;
-            for (u, x) in u.iter_mut().zip(&entity.initial) {
-                *u = [u[0] - x[0], u[1] - x[1], u[2] - x[2]];
-            }
-            u
-        } else {
-            nodal_vectors(entity, view, &DISPLACEMENT)
+    /// What the formulation reads of the motion of the nodes.
+    pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
+        let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
+        if !F::FINITE {
+            return Motion { u: displacement, ahead: None };
         }
+        let (x, initial) = (&entity.current, &entity.initial);
+        let nodes = |of: &dyn Fn(usize, usize) -> f64| std::array::from_fn(|i| std::array::from_fn(|c| of(i, c)));
+        let trails = (0..NODES).any(|i| (0..3).any(|c| x[i][c] != initial[i][c] + displacement[i][c]));
+        let ahead = (F::PRESENT && trails).then(|| {
+            let old: [[f64; 3]; NODES] = match view.nodes.history.values(&DISPLACEMENT, 1) {
+                [] => [[0.0; 3]; NODES],
+                column => entity.vectors(column),
+            };
+            [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
+        });
+        Motion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead }
     }
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
@@ -125,18 +142,33 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         table.weight(g) * det * turn
     }
 
-    /// Kinematics at Gauss point `g` of the displacements `u`.
+    /// Kinematics at Gauss point `g`.
     pub(super) fn point(
         &self,
         material: &Material<S>,
         g: usize,
         entity: &Gather<'_, NODES>,
-        u: &[[f64; 3]; NODES],
+        motion: &Motion<NODES>,
     ) -> Result<Point<NODES, DIM, S>, String> {
         let table = material.rule;
         let (n, local) = (&table.n::<NODES>()[g], &table.dn::<NODES, DIM>()[g]);
         let (mut dn, mut det) = physical_gradients(&entity.initial, local);
-        let grad_u = gradient(u, &dn);
+        let u = &motion.u;
+        let mut grad_u = gradient(u, &dn);
+        if let Some([reference, old]) = &motion.ahead {
+            let f = |u| {
+                let mut f = padded(&gradient(u, &dn));
+                (0..DIM).for_each(|a| f[a][a] += 1.0);
+                f
+            };
+            let since = product(&f(u), &crate::tensor::inverse(&f(reference)));
+            let total = product(&since, &f(old));
+            for a in 0..DIM {
+                for b in 0..DIM {
+                    grad_u[a][b] = total[a][b] - IDENTITY[a][b];
+                }
+            }
+        }
         let mut f = IDENTITY;
         let mut h = [[0.0; 3]; 3];
         for a in 0..DIM {
@@ -294,13 +326,13 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
         let material = self.material(entity);
-        let u = self.displacement(entity, view);
+        let motion = self.motion(entity, view);
         let acceleration = nodal_vectors(entity, view, &VOLUME_ACCELERATION);
         let whole = self.tangent == Tangent::General;
         let mut upper = [[0.0; SIZE]; SIZE];
         let mut d = [[0.0; S]; S];
         for g in 0..material.rule.len() {
-            let mut point = self.point(material, g, entity, &u)?;
+            let mut point = self.point(material, g, entity, &motion)?;
             // Normals of contact follow the first iteration, which keeps the reference program's tangent.
             point.state.small &= view.info.nl_iteration != 1;
             if material.density > 0.0 {
