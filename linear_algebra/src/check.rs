@@ -73,7 +73,7 @@ impl Refined {
 /// Share of `|A| |x|` that rounding may leave in a residual.
 const ROUNDING: f64 = 1e-14;
 /// Residual at which further refinement gains nothing.
-const GOOD_ENOUGH: f64 = 1e-11;
+const GOOD_ENOUGH: f64 = 1e-10;
 
 /// `x = A⁻¹ rhs` by `inverse` (in place), improved while the true residual drops by at least a factor of two.
 pub(crate) fn refine(

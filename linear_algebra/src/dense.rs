@@ -202,7 +202,7 @@ pub(crate) fn forward(panel: MatRef<'_, f64>, triangle: Triangle, local: &mut [f
 }
 
 /// `target -= matrix x`.
-fn subtract_from_vector(target: &mut [f64], matrix: MatRef<'_, f64>, x: MatRef<'_, f64>) {
+pub(crate) fn subtract_from_vector(target: &mut [f64], matrix: MatRef<'_, f64>, x: MatRef<'_, f64>) {
     let rows = target.len();
     let tiles = row_tiles(view_mut(target, rows, 1), VECTOR_TILE);
     for_each(rows * matrix.ncols() > PARALLEL_WORK / 8, tiles, |(at, tile)| {

@@ -1,14 +1,29 @@
-//! The dense system of the interface: the bulk's Schur complement plus the coupling.
+//! The dense system of the interface: the bulk's Schur complement plus the coupling, `S + C`.
+//!
+//! While no multiplier joins or leaves and `C` changes little, the factors of an earlier `S + C` stay in use: they
+//! precondition GMRES on the new one, a few products with `S` instead of a factorisation.
+
+use std::cell::Cell;
 
 use rayon::prelude::*;
 
 use crate::csr::Csr;
+use crate::dense::{subtract_from_vector, view};
 use crate::dense_lu::{self, Pivots};
 use crate::equilibrate;
+use crate::krylov::gmres;
 use crate::multifrontal::Scaling;
 
 /// Pivots of the equilibrated matrix below this are replaced and reported.
 const PIVOT_LIMIT: f64 = 1e-14;
+/// Equations below which a new factorisation costs no more than iterations with an old one.
+const WORTH_KEEPING: usize = 600;
+/// Iterations after which an old factorisation is given up; as many cost half of a new one.
+const ITERATIONS: usize = 8;
+/// Residual of the scaled equations that iteration aims at.
+const AIM: f64 = 1e-13;
+/// Residual of the scaled equations above which an old factorisation is given up.
+const ACCEPTED: f64 = 1e-10;
 
 /// A factorised dense matrix `diag(row)⁻¹ L U diag(column)⁻¹`.
 pub(crate) struct DenseFactor {
@@ -51,92 +66,151 @@ struct Lone {
     others: Vec<(u32, f64)>,
 }
 
-/// The factorised interface system; lone equations (inactive multipliers) are kept out of the dense block.
-pub(crate) struct Interface {
+/// What the coupling says about the equations of an interface.
+struct Parts {
     lone: Vec<Lone>,
     /// Local index of each equation of the dense block.
     kept: Vec<u32>,
+    /// Entries of the coupling in the dense block.
+    entries: Vec<(usize, usize, f64)>,
+}
+
+impl Parts {
+    fn new(coupling: &Csr, in_bulk: impl Fn(usize) -> bool) -> Self {
+        let n = coupling.rows;
+        let nonzero = |at: usize| {
+            let (columns, values) = coupling.row(at);
+            columns.iter().zip(values).map(|(&j, &value)| (j as usize, value)).filter(|(_, value)| *value != 0.0)
+        };
+        let mut lone_of: Vec<Option<Lone>> = (0..n)
+            .map(|at| {
+                let mut entries = nonzero(at);
+                match (entries.next(), entries.next()) {
+                    (Some((j, diagonal)), None) if j == at && !in_bulk(at) => {
+                        Some(Lone { at: at as u32, diagonal, others: Vec::new() })
+                    }
+                    _ => None,
+                }
+            })
+            .collect();
+        let kept: Vec<u32> = (0..n as u32).filter(|&at| lone_of[at as usize].is_none()).collect();
+        let mut dense_index = vec![usize::MAX; n];
+        for (index, &at) in kept.iter().enumerate() {
+            dense_index[at as usize] = index;
+        }
+        let mut entries = Vec::new();
+        for at in 0..n {
+            for (column, value) in nonzero(at) {
+                match &mut lone_of[column] {
+                    Some(lone) if column != at => lone.others.push((at as u32, value)),
+                    Some(_) => {}
+                    None => entries.push((dense_index[at], dense_index[column], value)),
+                }
+            }
+        }
+        Self { lone: lone_of.into_iter().flatten().collect(), kept, entries }
+    }
+}
+
+/// The factorised interface system; lone equations (inactive multipliers) are kept out of the dense block.
+pub(crate) struct Interface {
+    parts: Parts,
     factor: DenseFactor,
+    /// The coupling of now, when the factors are those of an earlier one.
+    newer: Option<Csr>,
+    /// Whether iteration with the factors of an earlier coupling failed.
+    lost: Cell<bool>,
 }
 
 impl Interface {
-    /// Factorises `schur` (column-major, order of `equations`) plus the entries of `coupling` among `equations`.
+    /// Factorises `schur` (column-major) plus the `coupling` of the same equations.
     ///
-    /// `local` gives the index in `equations` of each equation of the whole system, `in_bulk` whether the bulk knows
-    /// the equation; `reuse` gives its memory.
+    /// `in_bulk` tells whether the bulk knows an equation. `earlier` belongs to the same `schur`: its factors stay in
+    /// use where they may, else it gives its memory.
     pub(crate) fn new(
         schur: &[f64],
-        equations: &[u32],
-        coupling: Option<&Csr>,
-        local: impl Fn(u32) -> usize,
-        in_bulk: impl Fn(u32) -> bool,
-        reuse: Option<Interface>,
+        coupling: Csr,
+        in_bulk: impl Fn(usize) -> bool,
+        earlier: Option<Interface>,
     ) -> Self {
-        let n = equations.len();
-        let mut lone_of: Vec<Option<Lone>> = (0..n).map(|_| None).collect();
-        if let Some(coupling) = coupling {
-            for (at, &i) in equations.iter().enumerate() {
-                let (columns, values) = coupling.row(i as usize);
-                let mut entries = columns.iter().zip(values).filter(|(_, value)| **value != 0.0);
-                if let (Some((&j, &diagonal)), None) = (entries.next(), entries.next())
-                    && j == i
-                    && !in_bulk(i)
-                {
-                    lone_of[at] = Some(Lone { at: at as u32, diagonal, others: Vec::new() });
-                }
+        let n = coupling.rows;
+        let parts = Parts::new(&coupling, in_bulk);
+        let mut values = Vec::new();
+        if let Some(earlier) = earlier {
+            if n >= WORTH_KEEPING && earlier.parts.kept == parts.kept && !earlier.is_suspicious() && !earlier.lost.get()
+            {
+                return Self { newer: Some(coupling), ..earlier };
             }
+            values = earlier.factor.into_values();
         }
-        let kept: Vec<u32> = (0..n as u32).filter(|&at| lone_of[at as usize].is_none()).collect();
-        let mut dense_index = vec![u32::MAX; n];
-        for (index, &at) in kept.iter().enumerate() {
-            dense_index[at as usize] = index as u32;
+        let scaling = scaling(schur, n, &parts);
+        let m = parts.kept.len();
+        if values.len() != m * m {
+            values = vec![0.0; m * m];
         }
-        let mut entries = Vec::new();
-        if let Some(coupling) = coupling {
-            for (at, &i) in equations.iter().enumerate() {
-                let (columns, values) = coupling.row(i as usize);
-                for (&j, &value) in columns.iter().zip(values).filter(|(_, value)| **value != 0.0) {
-                    let column = local(j);
-                    match &mut lone_of[column] {
-                        Some(lone) if column != at => lone.others.push((at as u32, value)),
-                        Some(_) => {}
-                        None => entries.push((dense_index[at] as usize, dense_index[column] as usize, value)),
-                    }
-                }
-            }
-        }
-        let scaling = scaling(schur, n, &kept, &entries);
-        let m = kept.len();
-        let mut values = reuse.map_or_else(Vec::new, |old| old.factor.into_values());
-        values.resize(m * m, 0.0);
-        values.par_chunks_mut(m.max(1)).zip(&kept).zip(&scaling.column).with_min_len(16).for_each(
+        values.par_chunks_mut(m.max(1)).zip(&parts.kept).zip(&scaling.column).with_min_len(16).for_each(
             |((target, &column), column_scale)| {
                 let source = &schur[n * column as usize..n * (column as usize + 1)];
-                for ((value, &row), row_scale) in target.iter_mut().zip(&kept).zip(&scaling.row) {
+                for ((value, &row), row_scale) in target.iter_mut().zip(&parts.kept).zip(&scaling.row) {
                     *value = source[row as usize] * row_scale * column_scale;
                 }
             },
         );
-        for &(i, j, value) in &entries {
+        for &(i, j, value) in &parts.entries {
             values[i + m * j] += value * scaling.row[i] * scaling.column[j];
         }
-        Self { lone: lone_of.into_iter().flatten().collect(), kept, factor: DenseFactor::new(values, scaling) }
+        Self { parts, factor: DenseFactor::new(values, scaling), newer: None, lost: Cell::new(false) }
     }
 
-    /// Replaces `x`, in the order of the interface, by the solution.
-    pub(crate) fn solve(&self, x: &mut [f64]) {
-        for lone in &self.lone {
+    /// Replaces `x`, in the order of the interface, by the solution; `schur` is that of [`Interface::new`].
+    pub(crate) fn solve(&self, schur: &[f64], x: &mut [f64]) {
+        let Some(coupling) = &self.newer else { return self.solve_factorised(x) };
+        let n = x.len();
+        let mut scale = vec![0.0; n];
+        self.parts.lone.iter().for_each(|lone| scale[lone.at as usize] = 1.0 / lone.diagonal.abs());
+        self.parts.kept.iter().zip(&self.factor.scaling.row).for_each(|(&at, row)| scale[at as usize] = *row);
+        let rhs: Vec<f64> = x.iter().zip(&scale).map(|(x, scale)| x * scale).collect();
+        let multiply = |x: &[f64], y: &mut [f64]| {
+            y.fill(0.0);
+            coupling.mul_vec_subtract(x, y);
+            subtract_from_vector(y, view(schur, n, n), view(x, n, 1));
+            y.iter_mut().zip(&scale).for_each(|(y, scale)| *y *= -scale);
+        };
+        let precondition = |x: &mut [f64]| {
+            x.iter_mut().zip(&scale).for_each(|(x, scale)| *x /= scale);
+            self.solve_factorised(x);
+        };
+        x.fill(0.0);
+        let progress = gmres(multiply, precondition, &rhs, x, ITERATIONS, ITERATIONS, AIM);
+        if progress.relative_residual > ACCEPTED || progress.relative_residual.is_nan() {
+            self.lost.set(true);
+        }
+    }
+
+    /// Leaves no more than memory to the next interface, as when the bulk changed.
+    pub(crate) fn forget(&mut self) {
+        self.lost.set(true);
+    }
+
+    /// Whether the factors of an earlier coupling turned out to be of no use for the one of now.
+    pub(crate) fn is_lost(&self) -> bool {
+        self.lost.get()
+    }
+
+    fn solve_factorised(&self, x: &mut [f64]) {
+        let Parts { lone, kept, .. } = &self.parts;
+        for lone in lone {
             x[lone.at as usize] /= lone.diagonal;
         }
-        for lone in &self.lone {
+        for lone in lone {
             let value = x[lone.at as usize];
             for &(at, entry) in &lone.others {
                 x[at as usize] -= entry * value;
             }
         }
-        let mut dense: Vec<f64> = self.kept.iter().map(|&at| x[at as usize]).collect();
+        let mut dense: Vec<f64> = kept.iter().map(|&at| x[at as usize]).collect();
         self.factor.solve(&mut dense);
-        for (&at, value) in self.kept.iter().zip(dense) {
+        for (&at, value) in kept.iter().zip(dense) {
             x[at as usize] = value;
         }
     }
@@ -147,14 +221,14 @@ impl Interface {
     }
 }
 
-/// Scale factors of the equations `kept` of a Schur complement plus sparse `entries`.
+/// Scale factors of the dense block of a Schur complement and a coupling.
 ///
 /// The diagonal stands for the whole Schur complement, since no entry of a positive definite matrix exceeds the
 /// geometric mean of its diagonal entries; that spares passes over the dense matrix.
-fn scaling(schur: &[f64], n: usize, kept: &[u32], entries: &[(usize, usize, f64)]) -> Scaling {
-    let diagonal = kept.iter().enumerate().map(|(at, &i)| (at, at, schur[i as usize * (n + 1)]));
-    let sample: Vec<(usize, usize, f64)> = diagonal.chain(entries.iter().copied()).collect();
-    equilibrate::factors(&Csr::from_triplets(kept.len(), &sample))
+fn scaling(schur: &[f64], n: usize, parts: &Parts) -> Scaling {
+    let diagonal = parts.kept.iter().enumerate().map(|(at, &i)| (at, at, schur[i as usize * (n + 1)]));
+    let sample: Vec<(usize, usize, f64)> = diagonal.chain(parts.entries.iter().copied()).collect();
+    equilibrate::factors(&Csr::from_triplets(parts.kept.len(), &sample))
 }
 
 #[cfg(test)]
@@ -165,12 +239,78 @@ mod tests {
     fn lone_equations_are_solved_apart() {
         let schur = [4.0, 1.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 0.0];
         let coupling = Csr::from_triplets(3, &[(0, 2, 5.0), (2, 2, -2.0)]);
-        let interface = Interface::new(&schur, &[0, 1, 2], Some(&coupling), |j| j as usize, |j| j < 2, None);
-        assert_eq!((interface.lone.len(), interface.kept.len()), (1, 2));
+        let interface = Interface::new(&schur, coupling, |at| at < 2, None);
+        assert_eq!((interface.parts.lone.len(), interface.parts.kept.len()), (1, 2));
         let mut x = [4.0 + 2.0 - 15.0, 1.0 + 6.0, 6.0];
-        interface.solve(&mut x);
+        interface.solve(&schur, &mut x);
         for (x, exact) in x.iter().zip([1.0, 2.0, -3.0]) {
             assert!((x - exact).abs() < 1e-14);
         }
+    }
+
+    /// A dense Schur complement `2 I + 1 1ᵀ / n`, whose last `multipliers` equations are unknown to it.
+    fn schur(n: usize, multipliers: usize) -> Vec<f64> {
+        let mut values = vec![0.0; n * n];
+        for j in 0..n - multipliers {
+            values[n * j..n * (j + 1) - multipliers].fill(1.0 / n as f64);
+            values[j * (n + 1)] += 2.0;
+        }
+        values
+    }
+
+    /// Multipliers at the end, each of which ties one equation, and one that is inactive.
+    fn ties(n: usize, multipliers: usize, strength: f64) -> Csr {
+        let first = n - multipliers;
+        let mut triplets = vec![(n - 1, n - 1, -1e-3), (3, n - 1, 0.5)];
+        for k in 0..multipliers - 1 {
+            triplets.extend([
+                (first + k, 2 * k, strength),
+                (2 * k, first + k, 1.0),
+                (2 * k, 2 * k + 1, 1.0 - strength),
+            ]);
+        }
+        Csr::from_triplets(n, &triplets)
+    }
+
+    fn error(interface: &Interface, schur: &[f64], coupling: &Csr) -> f64 {
+        let n = coupling.rows;
+        let exact: Vec<f64> = (0..n).map(|i| (i % 7) as f64 - 3.0).collect();
+        let mut x = vec![0.0; n];
+        coupling.mul_vec_subtract(&exact, &mut x);
+        subtract_from_vector(&mut x, view(schur, n, n), view(&exact, n, 1));
+        x.iter_mut().for_each(|x| *x = -*x);
+        interface.solve(schur, &mut x);
+        x.iter().zip(&exact).map(|(x, exact)| (x - exact).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_small_change_of_the_coupling_keeps_the_factors_and_a_large_one_loses_them() {
+        let (n, multipliers) = (WORTH_KEEPING + 50, 50);
+        let schur = schur(n, multipliers);
+        let in_bulk = |at: usize| at < n - multipliers;
+        let mut interface = Interface::new(&schur, ties(n, multipliers, 1.0), in_bulk, None);
+        assert!(interface.newer.is_none() && error(&interface, &schur, &ties(n, multipliers, 1.0)) < 1e-11);
+        let near = ties(n, multipliers, 1.01);
+        interface = Interface::new(&schur, near.clone(), in_bulk, Some(interface));
+        assert!(interface.newer.is_some());
+        assert!(error(&interface, &schur, &near) < 1e-11 && !interface.is_lost());
+        let mut far = ties(n, multipliers, 1.0);
+        far.values.iter_mut().enumerate().for_each(|(i, value)| *value *= 1.0 + (i % 13) as f64);
+        interface = Interface::new(&schur, far.clone(), in_bulk, Some(interface));
+        error(&interface, &schur, &far);
+        assert!(interface.is_lost());
+        interface = Interface::new(&schur, far.clone(), in_bulk, Some(interface));
+        assert!(interface.newer.is_none() && error(&interface, &schur, &far) < 1e-11);
+    }
+
+    #[test]
+    fn a_multiplier_that_becomes_active_asks_for_new_factors() {
+        let (n, multipliers) = (WORTH_KEEPING + 50, 50);
+        let schur = schur(n, multipliers);
+        let in_bulk = |at: usize| at < n - multipliers;
+        let before = Interface::new(&schur, ties(n, multipliers, 1.0), in_bulk, None);
+        let active = ties(n, multipliers, 1.0).plus(&Csr::from_triplets(n, &[(n - 1, 200, 1.0)]));
+        let after = Interface::new(&schur, active.clone(), in_bulk, Some(before));
+        assert!(after.newer.is_none() && error(&after, &schur, &active) < 1e-11);
     }
 }

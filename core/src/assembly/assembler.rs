@@ -82,6 +82,8 @@ struct Stamps {
     bulk_values: u64,
     coupling_graph: u64,
     coupling_values: u64,
+    /// Counts the calls of [`Assembler::tangents`].
+    tangents: u64,
 }
 
 impl Assembler {
@@ -296,6 +298,7 @@ impl Assembler {
         inertia: Option<&Inertia>,
     ) -> Result<()> {
         self.ensure_constant(part)?;
+        self.stamps.tangents += 1;
         let start = Instant::now();
         let view = part.view();
         // Follower loads are not symmetric and have a matrix of their own.
@@ -362,6 +365,13 @@ impl Assembler {
         }
         self.equations.reduce_matrix(&self.loads.matrix, &mut self.reduced_loads, false);
         Some(&self.reduced_loads)
+    }
+
+    /// Stamps of graph and values of the bulk with the load tangents merged into it.
+    ///
+    /// No bulk without them has the same, and the values count as new after each call of [`Assembler::tangents`].
+    pub fn merged_stamps(&self) -> [u64; 2] {
+        [u64::MAX - self.stamps.bulk_graph, u64::MAX - self.stamps.tangents]
     }
 
     /// Subtracts (all tangents) · `increment` from `rhs`, both over all unknowns.

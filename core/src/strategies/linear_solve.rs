@@ -55,11 +55,12 @@ pub(super) fn solve(
         return Ok((increment, report));
     }
     let merged: Csr = system.bulk.plus(&loads);
+    let [bulk_graph, bulk_values] = assembler.merged_stamps();
     let whole = System {
         bulk: &merged,
         bulk_symmetry: zelus_linear_algebra::Symmetry::General,
-        bulk_graph: u64::MAX - system.bulk_graph,
-        bulk_values: u64::MAX - system.coupling_values,
+        bulk_graph,
+        bulk_values,
         ..system
     };
     increment.fill(0.0);

@@ -136,7 +136,7 @@ impl DirectSolver {
             Some((old_way, path, old_stamps)) if old_way == way => (Some(path), Some(old_stamps)),
             _ => (None, None),
         };
-        if old_stamps == Some(stamps) {
+        if old_stamps == Some(stamps) && !old.as_ref().is_some_and(Path::is_lost) {
             return Ok(old);
         }
         let same_bulk_graph = old_stamps.is_some_and(|old| old.bulk_graph == stamps.bulk_graph);
@@ -172,7 +172,7 @@ impl DirectSolver {
             }
             Way::InterfaceCholesky | Way::InterfaceLu => {
                 let (kept, _) = self.kept.as_ref().expect("decided in `interface`");
-                let (mut sparse, old_interface) = match old {
+                let (mut sparse, mut old_interface) = match old {
                     Some(Path::Interface(sparse, interface)) if same_bulk_graph && covers(&sparse, kept) => {
                         (sparse, Some(interface))
                     }
@@ -180,20 +180,21 @@ impl DirectSolver {
                 };
                 self.seconds_symbolic += start.elapsed().as_secs_f64();
                 let start = Instant::now();
-                if !(same_bulk && sparse.factor.is_some())
-                    && sparse.factorise(system.bulk, way == Way::InterfaceCholesky).is_err()
-                {
-                    self.seconds_numeric += start.elapsed().as_secs_f64();
-                    return Ok(None);
+                if !(same_bulk && sparse.factor.is_some()) {
+                    old_interface.iter_mut().for_each(Interface::forget);
+                    if sparse.factorise(system.bulk, way == Way::InterfaceCholesky).is_err() {
+                        self.seconds_numeric += start.elapsed().as_secs_f64();
+                        return Ok(None);
+                    }
                 }
                 let symbolic = &sparse.symbolic;
                 let interior = symbolic.interior;
+                let equations = &symbolic.equation[interior..];
+                let local = |equation: u32| symbolic.position[equation as usize] as usize - interior;
                 let interface = Interface::new(
                     &sparse.factor.as_ref().expect("factorised").root,
-                    &symbolic.equation[interior..],
-                    system.active_coupling(),
-                    |equation| symbolic.position[equation as usize] as usize - interior,
-                    |equation| system.bulk.row(equation as usize).1.iter().any(|&value| value != 0.0),
+                    path::local_coupling(system, equations, local),
+                    |at| system.bulk.row(equations[at] as usize).1.iter().any(|&value| value != 0.0),
                     old_interface,
                 );
                 self.seconds_numeric += start.elapsed().as_secs_f64();
@@ -232,7 +233,10 @@ impl DirectSolver {
         rhs: &[f64],
         x: &mut [f64],
     ) -> Result<Option<Refined>, SolveError> {
-        let known = self.current.as_ref().is_some_and(|(old, _, stamps)| *old == way && *stamps == Stamps::of(system));
+        let known = self
+            .current
+            .as_ref()
+            .is_some_and(|(old, path, stamps)| *old == way && *stamps == Stamps::of(system) && !path.is_lost());
         let Some(path) = self.prepare(way, system)? else { return Ok(None) };
         if !known && path.suspicious() > 0 && !is_regular(system, &path) {
             let (vector, ratio) = null_vector(system, &path);
@@ -245,6 +249,10 @@ impl DirectSolver {
             return Ok(None);
         }
         let mut refined = check::refine(system, rhs, x, self.settings.refinements, |r| path.apply(r));
+        if path.is_lost() {
+            self.current = Some((way, path, Stamps::of(system)));
+            return self.attempt(way, system, rhs, x);
+        }
         if !refined.reaches(WANTED) && !check::is_rounding(system, rhs, x) {
             refined = krylov(system, &path, rhs, x, refined);
         }

@@ -70,10 +70,16 @@ impl Path {
             Self::Dense(factor) => factor.solve(x),
             Self::Whole(sparse) => sparse.factor.as_ref().expect("factorised").solve(x, |_| {}),
             Self::Interface(sparse, interface) => {
-                sparse.factor.as_ref().expect("factorised").solve(x, |kept| interface.solve(kept));
+                let factor = sparse.factor.as_ref().expect("factorised");
+                factor.solve(x, |kept| interface.solve(&factor.root, kept));
             }
             Self::SparseLu(factor) => factor.solve_in_place(x),
         }
+    }
+
+    /// Whether factors kept from an earlier coupling turned out to be of no use.
+    pub(crate) fn is_lost(&self) -> bool {
+        matches!(self, Self::Interface(_, interface) if interface.is_lost())
     }
 
     /// Number of pivots that hint at a singular matrix.
@@ -117,4 +123,16 @@ pub(crate) fn interface_equations(system: &System<'_>) -> Vec<bool> {
         }
     }
     kept
+}
+
+/// The coupling among the `equations` of an interface; `local` gives the place of each among them.
+pub(crate) fn local_coupling(system: &System<'_>, equations: &[u32], local: impl Fn(u32) -> usize) -> Csr {
+    let mut triplets = Vec::new();
+    if let Some(coupling) = system.active_coupling() {
+        for (at, &i) in equations.iter().enumerate() {
+            let (columns, values) = coupling.row(i as usize);
+            triplets.extend(columns.iter().zip(values).map(|(&j, &value)| (at, local(j), value)));
+        }
+    }
+    Csr::from_triplets(equations.len(), &triplets)
 }

@@ -25,7 +25,7 @@ impl Elimination<'_> {
     /// Updates of the consecutive subtrees `tops`, whose blocks start with front `begin`.
     pub(super) fn subtrees(
         &self,
-        blocks: &mut [Block],
+        blocks: &mut [Block<'_>],
         begin: usize,
         tops: &[usize],
     ) -> Result<Vec<Vec<f64>>, NotPositiveDefinite> {
@@ -46,34 +46,33 @@ impl Elimination<'_> {
     }
 
     /// Eliminates a subtree and gives its update of the rows of its top, in a buffer that may be longer.
-    fn eliminate(&self, blocks: &mut [Block], top: usize) -> Result<Vec<f64>, NotPositiveDefinite> {
+    fn eliminate(&self, blocks: &mut [Block<'_>], top: usize) -> Result<Vec<f64>, NotPositiveDefinite> {
         let front = &self.symbolic.fronts[top];
         let (own, inner) = blocks.split_last_mut().expect("a subtree has a top");
         let updates = self.subtrees(inner, front.first, &front.children)?;
         let (pivots, order, rows) = (front.pivots(), front.order(), front.rows.len());
-        clear(&mut own.panel, order * pivots);
-        if self.kind != Kind::Cholesky {
-            clear(&mut own.right, pivots * rows);
-        }
-        self.scatter_entries(top, &mut own.panel, &mut own.right);
+        let Block { panel, right, pivots: exchanges } = own;
+        panel.fill(0.0);
+        right.fill(0.0);
+        self.scatter_entries(top, panel, right);
         let symmetric = self.kind == Kind::Cholesky;
         for (&child, update) in front.children.iter().zip(&updates) {
             let child = &self.symbolic.fronts[child];
-            extend_panel(child, update, symmetric, &mut own.panel, order, pivots);
+            extend_panel(child, update, symmetric, panel, order, pivots);
             if !symmetric {
-                extend_right(child, update, &mut own.right, pivots);
+                extend_right(child, update, right, pivots);
             }
         }
         let mut update = self.pool.take(rows * rows);
         match self.kind {
             Kind::Cholesky => {
-                dense::cholesky_panel(&mut own.panel, order, pivots).map_err(|_| NotPositiveDefinite)?;
-                dense::symmetric_update(&mut update, &own.panel, order, pivots);
+                dense::cholesky_panel(panel, order, pivots).map_err(|_| NotPositiveDefinite)?;
+                dense::symmetric_update(&mut update, panel, order, pivots);
             }
             Kind::Lu { limit } => {
-                own.pivots = factorise_front(&mut own.panel, &mut own.right, order, pivots, limit);
-                let below = view(&own.panel, order, pivots).subrows(pivots, rows);
-                dense::general_update(view_mut(&mut update, rows, rows), below, view(&own.right, pivots, rows));
+                **exchanges = factorise_front(panel, right, order, pivots, limit);
+                let below = view(panel, order, pivots).subrows(pivots, rows);
+                dense::general_update(view_mut(&mut update, rows, rows), below, view(right, pivots, rows));
             }
         }
         for (&child, child_update) in front.children.iter().zip(&updates) {
@@ -83,10 +82,11 @@ impl Elimination<'_> {
         Ok(update)
     }
 
-    /// The Schur complement on the equations kept last, full.
-    pub(super) fn root(&self, root: usize, tops: &[usize], updates: &[Vec<f64>]) -> Vec<f64> {
+    /// The Schur complement on the equations kept last, full; `values` is memory to use again.
+    pub(super) fn root(&self, root: usize, tops: &[usize], updates: &[Vec<f64>], mut values: Vec<f64>) -> Vec<f64> {
         let order = self.symbolic.fronts[root].order();
-        let mut values = vec![0.0; order * order];
+        values.clear();
+        values.resize(order * order, 0.0);
         self.scatter_entries(root, &mut values, &mut []);
         let symmetric = self.kind == Kind::Cholesky;
         for (&top, update) in tops.iter().zip(updates) {
@@ -107,14 +107,6 @@ impl Elimination<'_> {
                 Some(at) => right[at] += value,
             }
         }
-    }
-}
-
-fn clear(values: &mut Vec<f64>, len: usize) {
-    if values.len() == len {
-        values.fill(0.0);
-    } else {
-        *values = vec![0.0; len];
     }
 }
 

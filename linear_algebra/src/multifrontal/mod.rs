@@ -48,14 +48,63 @@ impl Scaling {
     }
 }
 
-/// The numbers of one front: the pivot columns, and for LU also the pivot rows.
+/// The numbers of all fronts one after the other, in memory that serves again.
 #[derive(Debug, Default)]
-struct Block {
-    /// Pivot columns, `order × pivots`.
-    panel: Vec<f64>,
-    /// Pivot rows right of the pivots, `pivots × rows`; empty for Cholesky.
-    right: Vec<f64>,
-    pivots: Pivots,
+struct Store {
+    /// Pivot columns of each front, `order × pivots`.
+    panels: Vec<f64>,
+    /// Pivot rows right of the pivots of each front, `pivots × rows`; empty for Cholesky.
+    rights: Vec<f64>,
+    pivots: Vec<Pivots>,
+    /// Where the panel and the right part of each front start, and where the last ones end.
+    starts: Vec<[usize; 2]>,
+}
+
+/// The numbers of one front.
+struct Block<'a> {
+    panel: &'a mut [f64],
+    right: &'a mut [f64],
+    pivots: &'a mut Pivots,
+}
+
+impl Store {
+    /// Makes room, whose numbers are of any value.
+    fn reserve(&mut self, symbolic: &Symbolic, kind: Kind) {
+        self.starts = vec![[0, 0]];
+        let [mut panel, mut right] = [0, 0];
+        for front in &symbolic.fronts[..symbolic.eliminated_fronts()] {
+            panel += front.order() * front.pivots();
+            right += if kind == Kind::Cholesky { 0 } else { front.pivots() * front.rows.len() };
+            self.starts.push([panel, right]);
+        }
+        for (values, len) in [(&mut self.panels, panel), (&mut self.rights, right)] {
+            if values.len() != len {
+                *values = Vec::new();
+                *values = vec![0.0; len];
+            }
+        }
+        self.pivots.resize_with(self.starts.len() - 1, Pivots::default);
+    }
+
+    fn blocks(&mut self) -> Vec<Block<'_>> {
+        let (mut panels, mut rights) = (&mut self.panels[..], &mut self.rights[..]);
+        let mut blocks = Vec::with_capacity(self.pivots.len());
+        for (pivots, starts) in self.pivots.iter_mut().zip(self.starts.windows(2)) {
+            let (panel, after) = panels.split_at_mut(starts[1][0] - starts[0][0]);
+            let (right, after_right) = rights.split_at_mut(starts[1][1] - starts[0][1]);
+            (panels, rights) = (after, after_right);
+            blocks.push(Block { panel, right, pivots });
+        }
+        blocks
+    }
+
+    fn panel(&self, front: usize) -> &[f64] {
+        &self.panels[self.starts[front][0]..self.starts[front + 1][0]]
+    }
+
+    fn right(&self, front: usize) -> &[f64] {
+        &self.rights[self.starts[front][1]..self.starts[front + 1][1]]
+    }
 }
 
 /// A factorised matrix; the equations kept last form the dense Schur complement `root`.
@@ -63,7 +112,8 @@ struct Block {
 pub(crate) struct Factor {
     symbolic: Arc<Symbolic>,
     kind: Kind,
-    blocks: Vec<Block>,
+    store: Store,
+    pool: Pool,
     scaling: Option<Scaling>,
     /// Schur complement on the equations kept last, column-major and full; not scaled.
     pub(crate) root: Vec<f64>,
@@ -91,19 +141,18 @@ impl Factor {
         scaling: Option<Scaling>,
         reuse: Option<Factor>,
     ) -> Result<Self, NotPositiveDefinite> {
-        let eliminated = symbolic.eliminated_fronts();
-        let mut blocks = reuse.map_or_else(Vec::new, |old| old.blocks);
-        blocks.resize_with(eliminated, Block::default);
+        let (mut store, pool, memory) = reuse.map_or_else(Default::default, |old| (old.store, old.pool, old.root));
+        store.reserve(symbolic, kind);
         let scaled = scaling.as_ref().map(|scaling| scaling.apply(matrix));
         let values = scaled.as_deref().unwrap_or(&matrix.values);
-        let work = Elimination { symbolic, scatter, values, kind, pool: Pool::default() };
+        let work = Elimination { symbolic, scatter, values, kind, pool };
         let (tops, root) = symbolic.tops();
-        let updates = work.subtrees(&mut blocks, 0, &tops)?;
+        let updates = work.subtrees(&mut store.blocks(), 0, &tops)?;
+        let root = root.map_or_else(Vec::new, |root| work.root(root, &tops, &updates, memory));
+        let pool = work.pool;
+        updates.into_iter().for_each(|update| pool.give(update));
         let mut factor =
-            Self { symbolic: symbolic.clone(), kind, blocks, scaling: None, root: Vec::new(), suspicious: Vec::new() };
-        if let Some(root) = root {
-            factor.root = work.root(root, &tops, &updates);
-        }
+            Self { symbolic: symbolic.clone(), kind, store, pool, scaling: None, root, suspicious: Vec::new() };
         factor.suspicious = factor.find_suspicious(matrix);
         factor.scaling = scaling;
         factor.unscale_root();
@@ -122,15 +171,17 @@ impl Factor {
 
     fn find_suspicious(&self, matrix: &Csr) -> Vec<usize> {
         let mut found = Vec::new();
-        for (front, block) in self.symbolic.fronts.iter().zip(&self.blocks) {
+        for (at, pivots) in self.store.pivots.iter().enumerate() {
+            let front = &self.symbolic.fronts[at];
             let start = front.columns.start;
             match self.kind {
                 Kind::Lu { .. } => {
-                    found.extend(block.pivots.replaced.iter().map(|&k| self.symbolic.equation[start + k as usize]));
+                    found.extend(pivots.replaced.iter().map(|&k| self.symbolic.equation[start + k as usize]));
                 }
                 Kind::Cholesky => {
+                    let panel = self.store.panel(at);
                     for k in 0..front.pivots() {
-                        let pivot = block.panel[k + front.order() * k];
+                        let pivot = panel[k + front.order() * k];
                         let i = self.symbolic.equation[start + k];
                         if pivot * pivot <= LOST_PIVOT * matrix.get(i as usize, i as usize) {
                             found.push(i);

@@ -86,12 +86,11 @@ impl Factor {
         for (&child, update) in front.children.iter().zip(&updates) {
             add_runs(&fronts[child].runs, update, &mut local);
         }
-        let block = &self.blocks[top];
-        let panel = view(&block.panel, front.order(), front.pivots());
+        let panel = view(self.store.panel(top), front.order(), front.pivots());
         let triangle = match self.kind {
             Kind::Cholesky => Triangle::Lower,
             Kind::Lu { .. } => {
-                block.pivots.permute(&mut local);
+                self.store.pivots[top].permute(&mut local);
                 Triangle::UnitLower
             }
         };
@@ -115,13 +114,16 @@ impl Factor {
         let mut local = Vec::with_capacity(front.order());
         local.extend_from_slice(own);
         local.extend_from_slice(&known);
-        let block = &self.blocks[top];
-        let panel = view(&block.panel, front.order(), front.pivots());
+        let panel = view(self.store.panel(top), front.order(), front.pivots());
         match self.kind {
             Kind::Cholesky => dense::backward_transposed(panel, &mut local),
             Kind::Lu { .. } => {
                 let square = panel.subrows(0, front.pivots());
-                dense::backward_upper(square, view(&block.right, front.pivots(), front.rows.len()), &mut local);
+                dense::backward_upper(
+                    square,
+                    view(self.store.right(top), front.pivots(), front.rows.len()),
+                    &mut local,
+                );
             }
         }
         own.copy_from_slice(&local[..front.pivots()]);
