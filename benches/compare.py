@@ -4,7 +4,9 @@
     compare.py [--zelus PROGRAM] [--threads 2] [--rounds 3] [--ours DECK] DECK...
 
 A DECK is a ProjectParameters.json or its folder. Both programs run on a scratch copy, by turns, and the time is that
-of the whole process; the table gives the shortest of the rounds. Comparisons with stored results, and output in a
+of the whole process; the table gives the shortest of the rounds, of the time on the clock and of the time processors
+were busy with it. The latter means something on a machine that does other work as well; take it with one thread, since
+waiting threads of the reference count as busy. Comparisons with stored results, and output in a
 format that one program does not know, are left out. `--ours` names a deck that zelus runs in place of the one DECK
 (say, one that differs in the linear solver). A run that fails shows as such and ends in exit code 1.
 
@@ -15,6 +17,7 @@ plain structural-mechanics analysis is run. Without KRATOS_PYTHON only zelus is 
 import argparse
 import json
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -59,18 +62,24 @@ def without_checks(folder, name):
         json.dump(deck, file, indent=1)
 
 
+def busy():
+    """Processor seconds of the processes that have ended."""
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return ended.ru_utime + ended.ru_stime
+
+
 def seconds(command, source, name, threads):
-    """Wall-clock seconds of a run on a scratch copy of the deck; None when it fails."""
+    """Seconds on the clock and of processors of a run on a scratch copy of the deck; None when it fails."""
     with tempfile.TemporaryDirectory() as scratch:
         folder = os.path.join(scratch, "deck")
         shutil.copytree(source, folder)
         without_checks(folder, name)
         limits = {"OMP_NUM_THREADS": str(threads), "RAYON_NUM_THREADS": str(threads), "RUST_BACKTRACE": "0"}
         environment = {**os.environ, **limits}
-        begin = time.perf_counter()
+        begin, busy_before = time.perf_counter(), busy()
         done = subprocess.run(command + [name], cwd=folder, env=environment, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, errors="replace")
-        spent = time.perf_counter() - begin
+        spent = time.perf_counter() - begin, busy() - busy_before
     if done.returncode != 0:
         print("\n".join(done.stdout.splitlines()[-8:]), file=sys.stderr)
         return None
@@ -99,7 +108,8 @@ def main():
         print("KRATOS_PYTHON is not set: the reference program is skipped", file=sys.stderr)
 
     print(f"Whole process, {options.threads} threads, shortest of {options.rounds} alternating rounds.\n")
-    print("| deck | zelus, s | reference, s | ratio |\n|---|---:|---:|---:|")
+    print("| deck | zelus, s | reference, s | ratio | zelus, processor s | reference, processor s | ratio |")
+    print("|---|---:|---:|---:|---:|---:|---:|")
     failed = False
     for path in options.decks:
         theirs = deck_of(path)
@@ -109,16 +119,20 @@ def main():
             rounds["zelus"].append(seconds([zelus, "run", "--threads", str(options.threads)], *ours, options.threads))
             if reference:
                 rounds["reference"].append(seconds(reference, *theirs, options.threads))
-        shortest = {who: None if None in spent else min(spent, default=None) for who, spent in rounds.items()}
         failed |= any(None in spent for spent in rounds.values())
 
-        def word(who):
-            return "failed" if None in rounds[who] else "skipped" if not rounds[who] else f"{shortest[who]:.3g}"
+        def columns(which):
+            """Both times and their ratio, of the clock (0) or of processors (1)."""
+            times = [None if None in spent or not spent else min(s[which] for s in spent) for spent in rounds.values()]
+            words = [
+                f"{best:.3g}" if best is not None else "failed" if None in spent else "skipped"
+                for best, spent in zip(times, rounds.values())
+            ]
+            ratio = "–" if None in times or not times[0] else f"{times[1] / times[0]:.1f}"
+            return f"{words[0]} | {words[1]} | {ratio}"
 
-        both = shortest["zelus"] and shortest["reference"]
-        ratio = f"{shortest['reference'] / shortest['zelus']:.1f}" if both else "–"
         name = os.path.relpath(theirs[0], os.path.dirname(os.path.dirname(theirs[0])))
-        print(f"| {name} | {word('zelus')} | {word('reference')} | {ratio} |", flush=True)
+        print(f"| {name} | {columns(0)} | {columns(1)} |", flush=True)
     sys.exit(1 if failed else 0)
 
 

@@ -118,7 +118,13 @@ impl Assembler {
         Self {
             element_numbers: numbers(&part.element_blocks),
             condition_numbers: numbers(&part.condition_blocks),
-            bulk: pattern.zero.clone(),
+            // Cloned zeros are written to memory, new ones are not.
+            bulk: Csr {
+                rows: pattern.zero.rows,
+                row_starts: pattern.zero.row_starts.clone(),
+                columns: pattern.zero.columns.clone(),
+                values: vec![0.0; pattern.zero.entries()],
+            },
             loads: GroupMatrix::new(&part.dofs, &loads, &[]),
             pattern,
             lumped: lumped_mass,

@@ -52,7 +52,10 @@ impl Elimination<'_> {
         let updates = self.subtrees(inner, front.first, &front.children)?;
         let (pivots, order, rows) = (front.pivots(), front.order(), front.rows.len());
         let Block { panel, right, pivots: exchanges } = own;
-        panel.fill(0.0);
+        // Above the diagonal a Cholesky factor is neither written nor read.
+        for (k, column) in panel.chunks_mut(order).enumerate() {
+            column[if self.kind == Kind::Cholesky { k } else { 0 }..].fill(0.0);
+        }
         right.fill(0.0);
         self.scatter_entries(top, panel, right);
         let symmetric = self.kind == Kind::Cholesky;

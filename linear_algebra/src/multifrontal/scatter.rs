@@ -24,11 +24,11 @@ pub(crate) struct Scatter {
 impl Scatter {
     /// Finds the place of each entry of `pattern`; of a symmetric matrix only the lower triangle is kept.
     pub(crate) fn new(symbolic: &Symbolic, pattern: &Csr, symmetric: bool) -> Self {
-        let transposed = Transposed::new(pattern);
+        let transposed = (!symmetric).then(|| Transposed::new(pattern));
         let (entries, lower) = (0..symbolic.fronts.len())
             .into_par_iter()
             .with_min_len(16)
-            .map(|front| entries_of(symbolic, pattern, &transposed, front, symmetric))
+            .map(|front| entries_of(symbolic, pattern, transposed.as_ref(), front))
             .unzip();
         Self { entries, lower }
     }
@@ -75,9 +75,8 @@ impl Transposed {
 fn entries_of(
     symbolic: &Symbolic,
     pattern: &Csr,
-    transposed: &Transposed,
+    transposed: Option<&Transposed>,
     front: usize,
-    symmetric: bool,
 ) -> (Vec<Entry>, usize) {
     let front = &symbolic.fronts[front];
     let (begin, end, pivots, order) = (front.columns.start, front.columns.end, front.pivots(), front.order());
@@ -90,16 +89,24 @@ fn entries_of(
     };
     let mut entries = Vec::new();
     for p in front.columns.clone() {
-        let j = symbolic.equation[p];
-        for &(i, source) in transposed.column(j as usize) {
+        let j = symbolic.equation[p] as usize;
+        let mut add = |i: u32, source: u32| {
             let q = symbolic.position[i as usize] as usize;
             if q >= p {
                 entries.push(Entry { source, target: (local(q) + (p - begin) * order) as u32 });
             }
+        };
+        match transposed {
+            Some(transposed) => transposed.column(j).iter().for_each(|&(i, source)| add(i, source)),
+            // A column of a symmetric matrix is its row.
+            None => {
+                let start = pattern.row_starts[j] as u32;
+                pattern.row(j).0.iter().zip(start..).for_each(|(&i, source)| add(i, source));
+            }
         }
     }
     let lower = entries.len();
-    if !symmetric {
+    if transposed.is_some() {
         for p in front.columns.clone() {
             let i = symbolic.equation[p];
             let start = pattern.row_starts[i as usize];
