@@ -297,6 +297,7 @@ fn unusable_input_is_refused() {
 fn the_bits_do_not_depend_on_the_threads() {
     let (bulk, layout) = clamped_box(13);
     let sample = contact(10, 0.1, |at| at % 5 != 0);
+    let next = contact(10, 0.101, |at| at % 5 != 0);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
@@ -313,9 +314,12 @@ fn the_bits_do_not_depend_on_the_threads() {
                     coupling_symmetric: false,
                     ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
                 };
-                let mut x = vec![0.0; system.equations()];
-                direct(limit).solve(&system, &right_hand_side(x.len()), &mut x).expect("regular");
-                answers.push(x);
+                let mut solver = direct(limit);
+                for system in [system, System { coupling: Some(&next.coupling), coupling_values: 1, ..system }] {
+                    let mut x = vec![0.0; system.equations()];
+                    solver.solve(&system, &right_hand_side(x.len()), &mut x).expect("regular");
+                    answers.push(x);
+                }
             }
             answers
         })
