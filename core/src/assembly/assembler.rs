@@ -514,14 +514,6 @@ pub fn strongest_damping(part: &ModelPart, [alpha, beta]: [f64; 2]) -> [f64; 2] 
     })
 }
 
-/// The largest of Rayleigh's factors, those of the solver and of all properties.
-pub fn strongest_damping(part: &ModelPart, [alpha, beta]: [f64; 2]) -> [f64; 2] {
-    part.properties.values().fold([alpha, beta], |[alpha, beta], properties| {
-        let own = |name: &str, other: f64| properties.number(name).map_or(other, |own| own.max(other));
-        [own("RAYLEIGH_ALPHA", alpha), own("RAYLEIGH_BETA", beta)]
-    })
-}
-
 /// Rayleigh's factors of a block, whose entities share their properties.
 fn rayleigh_of(part: &ModelPart, block: &dyn EntityBlock, [alpha, beta]: [f64; 2]) -> [f64; 2] {
     let first = block.members().first().map(|&member| part.elements.properties[member as usize]);
