@@ -54,17 +54,6 @@ pub(super) struct Motion<const NODES: usize> {
     ahead: Option<[[[f64; 3]; NODES]; 2]>,
 }
 
-/// The motion of an element's nodes as a formulation reads it.
-pub(super) struct Motion<const NODES: usize> {
-    /// Displacements that strain the element (length).
-    u: [[f64; 3]; NODES],
-    /// Where DISPLACEMENT is ahead of the mesh: present displacements less those of the step, and those at its start.
-    ///
-    /// The deformation of the step is then the one from the first to `u`, as in the reference program, whose updated
-    /// Lagrangian elements take the start of the step from present positions and DISPLACEMENT.
-    ahead: Option<[[[f64; 3]; NODES]; 2]>,
-}
-
 /// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
 fn gradient<const NODES: usize, const DIM: usize>(
     x: &[[f64; 3]; NODES],
