@@ -4,6 +4,7 @@
 //! deck to the numbers on disk. What is found by name is in [`registry`]; what computes is in [`entities`].
 
 pub mod diagnostics;
+pub mod communication;
 pub mod parameters;
 pub mod scalar;
 pub mod vector3;

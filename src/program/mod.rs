@@ -11,6 +11,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use zelus_core::analysis::{RunOptions, RunReport};
+use zelus_core::communication::{self, world};
+use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
 use say::say;
@@ -65,10 +67,20 @@ enum Command {
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    let processes = match communication::start() {
+        Ok(processes) => processes,
+        Err(error) => {
+            eprintln!("{}", explain(&error));
+            return ExitCode::from(error.exit_code());
+        }
+    };
     match execute(arguments.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let _ = std::io::stdout().flush();
+            if processes.are_many() {
+                communication::end_after_failure(&explain(&error), error.exit_code());
+            }
             let _ = writeln!(std::io::stderr(), "{}", explain(&error));
             ExitCode::from(error.exit_code())
         }
@@ -81,16 +93,24 @@ fn execute(command: Command) -> Result<()> {
             if let Some(path) = &report {
                 check_writable(path)?;
             }
+            let options = RunOptions { threads };
+            if !world().is_root() {
+                return zelus_core::analysis::run(&file, &options, &mut Silent).0;
+            }
             let mut terminal = Terminal::new();
-            let (result, run) = zelus_core::analysis::run(&file, &RunOptions { threads }, &mut terminal);
+            let (result, run) = zelus_core::analysis::run(&file, &options, &mut terminal);
             terminal.finish(&run, result.is_ok());
             let written = report.map_or(Ok(()), |path| write_report(&path, &run));
             result.and(written)
         }
         Command::Check { file } => {
-            let mut terminal = Terminal::new();
-            let (result, report) = zelus_core::analysis::check(&file, &RunOptions::default(), &mut terminal);
+            let mut monitor: Box<dyn Monitor> =
+                if world().is_root() { Box::new(Terminal::new()) } else { Box::new(Silent) };
+            let (result, report) = zelus_core::analysis::check(&file, &RunOptions::default(), monitor.as_mut());
             result?;
+            if !world().is_root() {
+                return Ok(());
+            }
             say(&format!(
                 "{}: no errors; {} nodes, {} elements, {} conditions, {} unknowns",
                 file.display(),
@@ -133,5 +153,6 @@ fn check_writable(path: &Path) -> Result<()> {
 
 fn write_report(path: &Path, report: &RunReport) -> Result<()> {
     let text = serde_json::to_string_pretty(report).map_err(|e| Error::System(format!("report: {e}")))?;
-    zelus_core::io::replace_file(path, |file| file.write_all(text.as_bytes()))
+    zelus_core::io::replace_file(path, |file| file.write_all(text.as_bytes()))?;
+    communication::deferred()
 }

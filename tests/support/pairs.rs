@@ -208,7 +208,7 @@ impl Setting {
         part.move_mesh();
         let here = part.nodes.current.clone();
         part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));
-        block.keep_operators(&part.view());
+        block.keep_operators(&part.view(), &|_| true);
         part.nodes.current = here;
         for (row, value) in self.multiplier_rows(block.as_ref()).into_iter().zip(self.multiplier_values(block.as_ref()))
         {

@@ -27,6 +27,43 @@ pub(super) fn make(settings: &Settings) -> Result<(Box<dyn LinearSolver>, String
     Ok((solver, says))
 }
 
+/// Unknowns from which on PETSc solves where the deck does not say who shall: rank 0 is the faster one below.
+#[cfg(feature = "petsc")]
+const DISTRIBUTED: usize = 30_000;
+
+/// What PETSc solves with on several ranks, and a sentence saying so; `None` where rank 0 shall solve for all.
+///
+/// `petsc_engine` names an engine, or is `"automatic"` or `"none"`; `petsc_options` are words of PETSc's own command line.
+///
+/// # Errors
+/// An unknown engine.
+#[cfg(feature = "petsc")]
+pub(super) fn petsc(settings: &Settings, unknowns: usize) -> Result<Option<(zelus_petsc::PetscSettings, String)>> {
+    use zelus_petsc::{PetscEngine, PetscSettings};
+    let word = |key: &str| settings.node().get(key).map(|n| n.str()).transpose().map(|word| word.unwrap_or(""));
+    let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
+    let name = word("petsc_engine")?;
+    if name == "none" || (name.is_empty() && unknowns < DISTRIBUTED) {
+        return Ok(None);
+    }
+    let engine = PetscEngine::find(name);
+    if engine.is_none() && !matches!(name, "" | "automatic") {
+        let known: Vec<&str> = PetscEngine::ALL.into_iter().map(PetscEngine::name).collect();
+        let problem = settings.error("petsc_engine", "unknown-engine", format!("there is no engine {name:?} of PETSc"));
+        return Err(problem.remedy(format!("use {}, automatic or none", known.join(", "))).into());
+    }
+    let usual = PetscSettings::default();
+    let chosen = PetscSettings {
+        engine,
+        tolerance: number("tolerance").unwrap_or(usual.tolerance).min(usual.tolerance),
+        iterations: number("max_iteration").map_or(usual.iterations, |n| (n as usize).max(usual.iterations)),
+        options: word("petsc_options")?.to_owned(),
+        ..usual
+    };
+    let engine = engine.map_or("an engine chosen by size", PetscEngine::name);
+    Ok(Some((chosen, format!("linear solver: PETSc over all ranks, {engine}"))))
+}
+
 fn direct(_: &Settings) -> Engine {
     Engine::Direct(DirectSettings::default())
 }

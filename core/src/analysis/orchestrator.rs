@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::report::RunReport;
 use super::stage::Stage;
+use crate::communication::fair_threads;
 use crate::diagnostics::{Diagnostic, Error, Result, did_you_mean};
 use crate::model::Model;
 use crate::parameters::{Document, Node};
@@ -50,7 +51,7 @@ fn with_threads(
 ) -> (Result<()>, RunReport) {
     let start = Instant::now();
     let mut report = RunReport { version: env!("CARGO_PKG_VERSION").to_owned(), ..RunReport::default() };
-    let pool = match rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build() {
+    let pool = match rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or_else(fair_threads)).build() {
         Ok(pool) => pool,
         Err(error) => return (Err(Error::System(format!("cannot start threads: {error}"))), report),
     };

@@ -1,6 +1,7 @@
 //! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
 
 use super::cutting::Cutting;
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::BlockRequest;
 use crate::model::{EntityTable, ModelPart};
@@ -256,7 +257,16 @@ impl SolverSettings {
         }
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
-        let newton = NewtonRaphson::new(settings, scheme, criterion, solver, part);
+        #[cfg_attr(not(feature = "petsc"), expect(unused_mut, reason = "PETSc is set later"))]
+        let (mut newton, mut says) = (NewtonRaphson::new(settings, scheme, criterion, solver, part), says);
+        #[cfg(feature = "petsc")]
+        if part.partition.is_some()
+            && let Some((petsc, by_petsc)) =
+                super::linear_solvers::petsc(&self.settings.sub("linear_solver_settings")?, part.dofs.len())?
+        {
+            newton.solve_by_petsc(petsc);
+            says = by_petsc;
+        }
         Ok(match arc {
             Some(arc) => (Box::new(ArcLength::new(arc, newton)), says),
             None => (Box::new(newton), says),
@@ -288,16 +298,20 @@ fn find_solver(name: &str) -> Result<(&'static Entry, &'static SolverDefinition)
     Ok((entry, definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition")))
 }
 
-/// Makes the blocks of a part from its tables: one for each kind and properties. Elements take over what those of an
-/// earlier stage remember.
+/// Makes the blocks of a part from its tables: one for each kind and properties, with the entities of this rank. Elements
+/// take over what those of an earlier stage remember.
 ///
 /// # Errors
 /// Every block that cannot be made and every entity that cannot be computed with.
 pub fn make_blocks(part: &mut ModelPart) -> Result<()> {
     let mut report = Report::new();
     let mut both = [Vec::new(), Vec::new()];
-    for (blocks, table) in both.iter_mut().zip([&part.elements, &part.conditions]) {
-        for (entry, members) in groups(table) {
+    let owners = part.partition.as_ref();
+    let owners = [owners.map(|p| &p.elements), owners.map(|p| &p.conditions)];
+    let rank = world().rank() as u32;
+    for ((blocks, table), owners) in both.iter_mut().zip([&part.elements, &part.conditions]).zip(owners) {
+        let is_own = |at: usize| owners.is_none_or(|owners| owners[at] == rank);
+        for (entry, members) in groups(table, is_own) {
             let Build::Block(factory) = entry.build else { continue };
             let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
             if let Some(block) = report.absorb(factory(&request)) {
@@ -320,9 +334,9 @@ pub fn make_blocks(part: &mut ModelPart) -> Result<()> {
     Ok(())
 }
 
-fn groups(table: &EntityTable) -> Vec<(&'static Entry, Vec<u32>)> {
+fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static Entry, Vec<u32>)> {
     let mut groups: std::collections::BTreeMap<(&'static str, usize), Vec<u32>> = std::collections::BTreeMap::new();
-    for at in 0..table.len() {
+    for at in (0..table.len()).filter(|&at| is_own(at)) {
         groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);
     }
     groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()

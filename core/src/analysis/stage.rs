@@ -1,5 +1,6 @@
 //! One stage: a solver, its processes, and the loop over the steps.
 
+use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -8,11 +9,13 @@ use super::report::{RunReport, Sizes};
 use super::solver::{SolverSettings, check_dimensions, make_blocks};
 use super::time_stepping::TimeStepping;
 use crate::assembly::DofTable;
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::MasterSlaveConstraint;
 use crate::io;
 use crate::model::{Fields, Flags, Model, ModelPart, Nodes, ProcessInfo};
 use crate::parameters::{Node, Settings};
+use crate::partition::{Partition, partition, surfaces};
 use crate::processes::{Process, ProcessRequest};
 use crate::registry::{self, Build, Kind};
 use crate::strategies::{Monitor, SolutionStrategy, StepRecord};
@@ -108,7 +111,8 @@ impl Stage {
             return Err(finish(problems));
         }
         let part = model.root_mut(&root)?;
-        problems.absorb(make_blocks(part));
+        distribute(part, deck, monitor)?;
+        problems.absorb(world().agree(make_blocks(part)));
         if problems.has_errors() {
             return Err(finish(problems));
         }
@@ -160,9 +164,13 @@ impl Stage {
     pub(super) fn run(mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
         report.stages.push(self.name.clone());
         let result = self.all_steps(model, report, monitor);
+        if result.is_err() {
+            world().announce_failure();
+        }
         let mut finals = Report::new();
         for process in &mut self.processes {
-            finals.absorb(process.finalize(model));
+            let finalized = process.finalize(model);
+            finals.absorb(if result.is_ok() { world().agree(finalized) } else { finalized });
             report.outputs.extend(process.outputs());
         }
         let seconds = self.strategy.linear_seconds();
@@ -181,7 +189,7 @@ impl Stage {
 
     fn all_steps(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
         for process in &mut self.processes {
-            process.before_loop(model)?;
+            world().agree(process.before_loop(model))?;
         }
         model.root_mut(&self.root)?.info.time = self.start_time;
         let mut time = self.start_time;
@@ -254,7 +262,7 @@ impl Stage {
             monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
         }
         for process in &mut self.processes {
-            process.begin_step(model)?;
+            world().agree(process.begin_step(model))?;
         }
         let start = Instant::now();
         let record = self.strategy.solve_step(model.root_mut(&self.root)?, monitor)?;
@@ -271,7 +279,7 @@ impl Stage {
         self.strategy.accept_step(model.root_mut(&self.root)?)?;
         let start = Instant::now();
         for process in &mut self.processes {
-            process.end_step(model)?;
+            world().agree(process.end_step(model))?;
         }
         let mut writers = Vec::new();
         for (at, process) in self.processes.iter_mut().enumerate() {
@@ -281,10 +289,10 @@ impl Stage {
         }
         if !writers.is_empty() {
             for process in &mut self.processes {
-                process.before_output(model)?;
+                world().agree(process.before_output(model))?;
             }
             for at in writers {
-                self.processes[at].print_output(model)?;
+                world().agree(self.processes[at].print_output(model))?;
             }
         }
         report.add_seconds("output", start.elapsed().as_secs_f64());
@@ -335,6 +343,60 @@ impl Saved {
         part.info = self.info;
         part.interactions.iter_mut().for_each(|interaction| interaction.restore());
     }
+}
+
+/// Gives every rank its share of the mesh, where there are several ranks and enough to share.
+///
+/// # Errors
+/// Ranks that have read different meshes; a mesh that cannot be cut.
+fn distribute(part: &mut ModelPart, deck: &Node, monitor: &mut dyn Monitor) -> Result<()> {
+    let ranks = world().size();
+    // What elements remember of an earlier stage stays where it is.
+    let fits = |p: &Partition| p.elements.len() == part.elements.len() && p.nodes.len() == part.nodes.len();
+    if part.partition.as_ref().is_some_and(|p| fits(p) && p.conditions.len() == part.conditions.len()) {
+        return Ok(());
+    }
+    part.partition = None;
+    if ranks == 1 {
+        return Ok(());
+    }
+    if !world().is_same(fingerprint(part)) {
+        return Err(Error::System(
+            "the ranks have read different meshes\n    give all of them the same files, e.g. in a shared folder"
+                .to_owned(),
+        ));
+    }
+    if part.elements.len() < ranks || part.interactions.iter().any(|interaction| interaction.needs_all_elements()) {
+        monitor
+            .note(&format!("{} elements: too few to share, each of {ranks} ranks computes all", part.elements.len()));
+        return Ok(());
+    }
+    let shared = partition(part, &surfaces(deck, part), ranks)?;
+    let mut facets = vec![0_usize; ranks];
+    shared.facets.iter().filter(|f| f.slave).for_each(|f| facets[shared.elements[f.element as usize] as usize] += 1);
+    let mut note = format!("{ranks} ranks share {} elements, {} faces are cut", part.elements.len(), shared.cut);
+    if facets.iter().any(|&count| count > 0) {
+        let all: usize = facets.iter().sum();
+        let holders = facets.iter().filter(|&&count| count > 0).count();
+        note.push_str(&format!("; {all} slave facets on {holders} of them"));
+    }
+    monitor.note(&note);
+    part.partition = Some(shared);
+    Ok(())
+}
+
+/// A number that differs where meshes differ.
+fn fingerprint(part: &ModelPart) -> u64 {
+    let mut hasher = rustc_hash::FxHasher::default();
+    part.nodes.ids.hash(&mut hasher);
+    part.nodes.initial.iter().flatten().for_each(|x| x.to_bits().hash(&mut hasher));
+    for table in [&part.elements, &part.conditions] {
+        table.ids.hash(&mut hasher);
+        table.properties.hash(&mut hasher);
+        (0..table.len() as u32).for_each(|at| table.nodes(at).hash(&mut hasher));
+    }
+    part.constraints.len().hash(&mut hasher);
+    hasher.finish()
 }
 
 fn finish(mut problems: Report) -> Error {
@@ -518,6 +580,7 @@ fn warn_of_lonely_nodes(part: &ModelPart, problems: &mut Report) {
             (0..block.len()).for_each(|at| block.nodes(at).iter().for_each(|&n| used[n as usize] = true));
         }
     }
+    world().any_of(&mut used);
     let lonely: Vec<usize> = (0..used.len()).filter(|&n| !used[n]).map(|n| part.nodes.ids[n]).collect();
     if let Some(first) = lonely.first() {
         problems.push(

@@ -9,11 +9,13 @@ use std::time::Instant;
 use zelus_linear_algebra::{Csr, Symmetry, System};
 
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
+use super::distribution::Distribution;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
+use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, Interaction, LocalSystems, StepView, Tangent, Want};
-use crate::model::{ModelPart, Nodes, ScalarVariable};
+use crate::model::{ModelPart, Named, Nodes, ScalarVariable, named};
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///
@@ -72,6 +74,8 @@ pub struct Assembler {
     reduced_graph: u64,
     tangent_key: Option<[f64; 4]>,
     damping: Option<([f64; 2], Vec<f64>)>,
+    traits: Traits,
+    distribution: Option<Distribution>,
     /// Seconds spent so far.
     pub seconds: AssemblySeconds,
 }
@@ -84,6 +88,32 @@ struct Stamps {
     coupling_values: u64,
     /// Counts the calls of [`Assembler::tangents`].
     tangents: u64,
+}
+
+/// What the blocks of all ranks have.
+#[derive(Debug, Clone, Copy, Default)]
+struct Traits {
+    /// Elements whose tangent depends on the state.
+    variable_elements: bool,
+    /// Elements whose tangent is not symmetric.
+    general_elements: bool,
+    /// Anything in the bulk whose tangent depends on the state.
+    variable_bulk: bool,
+}
+
+impl Traits {
+    fn of(part: &ModelPart) -> Self {
+        let variable_elements = part.element_blocks.iter().any(|b| is_variable(b.as_ref()));
+        let mut flags = [
+            variable_elements,
+            part.element_blocks.iter().any(|b| b.tangent() == Tangent::General),
+            // Follower loads are not symmetric and have a matrix of their own.
+            variable_elements || part.condition_blocks.iter().any(|b| b.tangent() == Tangent::Symmetric),
+        ];
+        world().any_of(&mut flags);
+        let [variable_elements, general_elements, variable_bulk] = flags;
+        Self { variable_elements, general_elements, variable_bulk }
+    }
 }
 
 impl Assembler {
@@ -99,6 +129,9 @@ impl Assembler {
                 }
             }
         }
+        if part.partition.is_some() {
+            carriers = carriers_of_all(carriers, part.nodes.len());
+        }
         carriers.sort_by_key(|(variable, ..)| *variable);
         for interaction in interactions {
             carriers.extend(interaction.unknowns(part).into_iter().map(|(variable, nodes)| (variable, true, nodes)));
@@ -110,8 +143,13 @@ impl Assembler {
             blocks.iter().map(|block| block_numbers(block.as_ref(), &part.dofs)).collect()
         };
         let pattern_blocks = || part.element_blocks.iter().chain(&part.condition_blocks).map(AsRef::as_ref);
-        let pattern =
-            BulkPattern::new(&part.dofs, part.nodes.len(), pattern_blocks().filter(|b| b.tangent() != Tangent::Zero));
+        let distribution = part.partition.as_ref().map(|partition| Distribution::new(&part.dofs, partition));
+        let pattern = BulkPattern::new(
+            &part.dofs,
+            part.nodes.len(),
+            pattern_blocks().filter(|b| b.tangent() != Tangent::Zero),
+            |node| part.owns_node(node),
+        );
         let loads: Blocks<'_> = load_blocks(part);
         let interaction_unknowns: Vec<u32> =
             (0..part.dofs.len() as u32).filter(|&n| part.dofs.dofs()[n as usize].multiplier).collect();
@@ -125,10 +163,12 @@ impl Assembler {
                 columns: pattern.zero.columns.clone(),
                 values: vec![0.0; pattern.zero.entries()],
             },
-            loads: GroupMatrix::new(&part.dofs, &loads, &[]),
+            loads: GroupMatrix::new(&part.dofs, &loads, &[], |_| true),
             pattern,
             lumped: lumped_mass,
             interaction_unknowns,
+            traits: Traits::of(part),
+            distribution,
             ..Self::default()
         }
     }
@@ -154,7 +194,9 @@ impl Assembler {
         }
         let graph = interactions.iter().fold(1_u64, |sum, i| sum.wrapping_mul(31).wrapping_add(i.graph_version()));
         if self.coupling_graph != Some(graph) {
-            self.coupling = GroupMatrix::new(&part.dofs, &blocks_of(interactions), &self.interaction_unknowns);
+            let blocks = blocks_of(interactions);
+            let is_own = |nodes: &[u32]| part.evaluates_pair(nodes);
+            self.coupling = GroupMatrix::new(&part.dofs, &blocks, &self.interaction_unknowns, is_own);
             self.coupling_graph = Some(graph);
             self.stamps.coupling_graph += 1;
             self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, false);
@@ -182,6 +224,21 @@ impl Assembler {
         interactions: &[Box<dyn Interaction>],
         inertia: Option<&Inertia>,
     ) -> Result<Vec<f64>> {
+        let own = self.own_residual(part, interactions, inertia);
+        let start = Instant::now();
+        let mut rhs = world().agree(own)?;
+        self.add_up(&mut rhs);
+        self.seconds.residual += start.elapsed().as_secs_f64();
+        Ok(rhs)
+    }
+
+    /// What the entities of this rank give to the residual.
+    fn own_residual(
+        &mut self,
+        part: &ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        inertia: Option<&Inertia>,
+    ) -> Result<Vec<f64>> {
         self.ensure_constant(part)?;
         let start = Instant::now();
         let view = part.view();
@@ -202,7 +259,7 @@ impl Assembler {
             }
         }
         if let Some(inertia) = inertia {
-            let forces = self.inertia_forces(part, inertia)?;
+            let forces = self.own_inertia_forces(part, inertia)?;
             rhs.iter_mut().zip(forces).for_each(|(r, force)| *r -= force);
         }
         self.coupling.add_residual(&blocks_of(interactions), &view, &mut rhs)?;
@@ -215,6 +272,13 @@ impl Assembler {
     /// # Errors
     /// An entity that cannot be computed.
     pub fn inertia_forces(&mut self, part: &ModelPart, inertia: &Inertia) -> Result<Vec<f64>> {
+        let own = self.own_inertia_forces(part, inertia);
+        let mut out = world().agree(own)?;
+        self.add_up(&mut out);
+        Ok(out)
+    }
+
+    fn own_inertia_forces(&mut self, part: &ModelPart, inertia: &Inertia) -> Result<Vec<f64>> {
         self.ensure_constant(part)?;
         let mut out = vec![0.0; part.dofs.len()];
         let single = !damped_by_properties(part);
@@ -230,7 +294,9 @@ impl Assembler {
         } else if inertia.beta != 0.0 {
             self.mul_subtract(&self.stiffness(part)?, &minus(inertia.beta), &mut out);
         }
-        out.iter_mut().zip(&inertia.carried).for_each(|(sum, force)| *sum -= force);
+        let is_own = |number: usize| self.distribution.as_ref().is_none_or(|d| d.is_own(number));
+        let carried = out.iter_mut().zip(&inertia.carried).enumerate();
+        carried.filter(|(number, _)| is_own(*number)).for_each(|(_, (sum, force))| *sum -= force);
         Ok(out)
     }
 
@@ -287,6 +353,12 @@ impl Assembler {
     /// # Errors
     /// An entity that cannot be computed.
     pub fn loads(&self, part: &ModelPart) -> Result<Vec<f64>> {
+        let mut out = world().agree(self.own_loads(part))?;
+        self.add_up(&mut out);
+        Ok(out)
+    }
+
+    fn own_loads(&self, part: &ModelPart) -> Result<Vec<f64>> {
         let view = part.view();
         let mut out = vec![0.0; part.dofs.len()];
         for (block, numbers) in part.condition_blocks.iter().zip(&self.condition_numbers) {
@@ -310,16 +382,35 @@ impl Assembler {
         interactions: &[Box<dyn Interaction>],
         inertia: Option<&Inertia>,
     ) -> Result<()> {
+        let own = self.own_tangents(part, interactions, inertia);
+        world().agree(own)?;
+        let start = Instant::now();
+        let acting = interactions.iter().filter(|i| !i.blocks().is_empty());
+        let diagonal = acting.map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
+        let mut in_use = self.coupling.lonely_rows_in_use();
+        world().any_of(&mut in_use);
+        let distribution = self.distribution.as_ref();
+        self.coupling.hold_lonely(&in_use, diagonal, |n| distribution.is_none_or(|d| d.is_own(n)));
+        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
+        self.stamps.coupling_values += 1;
+        self.seconds.coupling += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn own_tangents(
+        &mut self,
+        part: &ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        inertia: Option<&Inertia>,
+    ) -> Result<()> {
         self.ensure_constant(part)?;
         self.stamps.tangents += 1;
         let start = Instant::now();
         let view = part.view();
-        // Follower loads are not symmetric and have a matrix of their own.
-        let variable = part.element_blocks.iter().any(|b| is_variable(b.as_ref()))
-            || part.condition_blocks.iter().any(|b| b.tangent() == Tangent::Symmetric);
         let key = inertia.map_or([0.0; 4], |i| [i.mass_factor, i.damping_factor, i.alpha, i.beta]);
         let single = !damped_by_properties(part);
-        let stale = variable || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
+        let stale =
+            self.traits.variable_bulk || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
         if stale {
             let mut values = self.stiffness(part)?;
             if inertia.is_some() {
@@ -339,21 +430,29 @@ impl Assembler {
                 }
             }
             self.bulk.values = values;
-            self.bulk_general = part.element_blocks.iter().any(|b| b.tangent() == Tangent::General);
+            self.bulk_general = self.traits.general_elements;
             self.reduce_bulk(self.reduced_graph == self.stamps.bulk_graph);
             self.reduced_graph = self.stamps.bulk_graph;
             self.tangent_key = Some(key);
         }
-        self.loads.assemble(&load_blocks(part), &view, 0.0)?;
+        self.loads.assemble(&load_blocks(part), &view)?;
         self.seconds.bulk += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let acting = interactions.iter().filter(|i| !i.blocks().is_empty());
-        let diagonal = acting.map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
-        self.coupling.assemble(&blocks_of(interactions), &view, diagonal)?;
-        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
-        self.stamps.coupling_values += 1;
+        self.coupling.assemble(&blocks_of(interactions), &view)?;
         self.seconds.coupling += start.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// On several ranks: replaces what this rank has by the sum over all; collective.
+    fn add_up(&self, values: &mut [f64]) {
+        if let Some(distribution) = &self.distribution {
+            distribution.sum(values);
+        }
+    }
+
+    /// Which rank owns which unknown; `None` when one process computes everything.
+    pub fn distribution(&self) -> Option<&Distribution> {
+        self.distribution.as_ref()
     }
 
     /// The equations to solve, without the follower loads.
@@ -389,9 +488,18 @@ impl Assembler {
 
     /// Subtracts (all tangents) · `increment` from `rhs`, both over all unknowns.
     pub fn subtract_product(&self, increment: &[f64], rhs: &mut [f64]) {
-        self.bulk.mul_vec_subtract(increment, rhs);
-        self.loads.matrix.mul_vec_subtract(increment, rhs);
-        self.coupling.matrix.mul_vec_subtract(increment, rhs);
+        let subtract = |rhs: &mut [f64]| {
+            self.bulk.mul_vec_subtract(increment, rhs);
+            self.loads.matrix.mul_vec_subtract(increment, rhs);
+            self.coupling.matrix.mul_vec_subtract(increment, rhs);
+        };
+        if self.distribution.is_none() {
+            return subtract(rhs);
+        }
+        let mut product = vec![0.0; rhs.len()];
+        subtract(&mut product);
+        self.add_up(&mut product);
+        rhs.iter_mut().zip(product).for_each(|(sum, value)| *sum += value);
     }
 
     /// How large the round-off of each entry of a residual is, from the sizes of the terms it is a sum of.
@@ -410,9 +518,10 @@ impl Assembler {
             })
             .collect();
         let mut out = vec![0.0; part.dofs.len()];
-        let variable = part.element_blocks.iter().any(|b| is_variable(b.as_ref()));
-        abs_product(&self.bulk, if variable { &position } else { &displacement }, &mut out);
+        let bulk = if self.traits.variable_elements { &position } else { &displacement };
+        abs_product(&self.bulk, bulk, &mut out);
         abs_product(&self.coupling.matrix, &position, &mut out);
+        self.add_up(&mut out);
         out.iter_mut().for_each(|v| *v *= f64::EPSILON);
         out
     }
@@ -484,9 +593,11 @@ impl Assembler {
     /// # Errors
     /// As [`Assembler::mass`].
     pub fn lumped_mass(&mut self, part: &ModelPart) -> Result<Vec<f64>> {
-        let values = self.mass(part)?.to_vec();
+        let own = self.mass(part).map(<[f64]>::to_vec);
+        let values = world().agree(own)?;
         let mut out = vec![0.0; part.dofs.len()];
         self.mul_subtract(&values, &vec![-1.0; part.dofs.len()], &mut out);
+        self.add_up(&mut out);
         Ok(out)
     }
 }
@@ -531,6 +642,33 @@ fn load_blocks(part: &ModelPart) -> Blocks<'_> {
         .iter()
         .map(AsRef::as_ref)
         .filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::General)
+        .collect()
+}
+
+/// The nodes that carry each unknown on any rank; collective.
+fn carriers_of_all(own: Vec<(ScalarVariable, bool, Vec<u32>)>, nodes: usize) -> Vec<(ScalarVariable, bool, Vec<u32>)> {
+    let names: Vec<String> = own.iter().map(|(variable, ..)| variable.to_string()).collect();
+    let mut all: Vec<String> = world()
+        .gather_bytes(names.join("\n").as_bytes())
+        .iter()
+        .flat_map(|text| String::from_utf8_lossy(text).lines().map(str::to_owned).collect::<Vec<_>>())
+        .collect();
+    all.sort_unstable();
+    all.dedup();
+    let scalar = |name: &String| match named(name).expect("unknowns are registered variables") {
+        Named::Component(scalar) => scalar,
+        Named::Whole(column, _) => ScalarVariable { column, component: None },
+    };
+    all.iter()
+        .map(scalar)
+        .map(|variable| {
+            let mut carries = vec![false; nodes];
+            let mine = own.iter().filter(|(known, ..)| *known == variable).flat_map(|(.., list)| list);
+            mine.for_each(|&node| carries[node as usize] = true);
+            world().any_of(&mut carries);
+            let list = (0..nodes as u32).filter(|&node| carries[node as usize]).collect();
+            (variable, false, list)
+        })
         .collect()
 }
 

@@ -29,7 +29,14 @@ pub struct BulkPattern {
 
 impl BulkPattern {
     /// The pattern of these blocks.
-    pub fn new<'a>(dofs: &DofTable, nodes: usize, blocks: impl Iterator<Item = &'a dyn EntityBlock>) -> Self {
+    ///
+    /// A node that no block touches has its own unknowns in its rows where `keeps` says so.
+    pub fn new<'a>(
+        dofs: &DofTable,
+        nodes: usize,
+        blocks: impl Iterator<Item = &'a dyn EntityBlock>,
+        keeps: impl Fn(usize) -> bool,
+    ) -> Self {
         let mut count = vec![0_u8; nodes];
         let mut first = vec![u32::MAX; nodes];
         for (number, dof) in dofs.dofs().iter().enumerate().filter(|(_, dof)| !dof.multiplier) {
@@ -37,7 +44,8 @@ impl BulkPattern {
             first[node] = first[node].min(number as u32);
             count[node] += 1;
         }
-        let mut lists: Vec<Vec<u32>> = (0..nodes as u32).map(|n| vec![n]).collect();
+        let mut lists: Vec<Vec<u32>> =
+            (0..nodes as u32).map(|n| if keeps(n as usize) { vec![n] } else { Vec::new() }).collect();
         for block in blocks {
             for at in 0..block.len() {
                 let members = block.nodes(at);

@@ -1,10 +1,12 @@
 //! The matrix of a few blocks that touch few unknowns: loads, contact pairs.
 
+use std::ops::Range;
+
 use zelus_linear_algebra::Csr;
 
 use super::bulk_matrix::block_numbers;
 use super::dof_table::DofTable;
-use super::local::{BATCH, entity_lhs, evaluate};
+use super::local::{BATCH, CHUNK, evaluate_runs};
 use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
 
 /// A matrix over all unknowns whose rows are empty except where its blocks act.
@@ -13,18 +15,23 @@ pub struct GroupMatrix {
     /// The matrix.
     pub matrix: Csr,
     numbers: Vec<Vec<u32>>,
+    /// Entities of each block that are evaluated here.
+    runs: Vec<Vec<Range<usize>>>,
     /// Unknowns that only the blocks of the group touch, if any does.
     lonely: Vec<u32>,
 }
 
 impl GroupMatrix {
     /// The pattern of these blocks; unknowns of `lonely` that nothing touches get a diagonal entry.
-    pub fn new(dofs: &DofTable, blocks: &[&dyn EntityBlock], lonely: &[u32]) -> Self {
+    ///
+    /// `is_own` says of the nodes of an entity whether it is evaluated here.
+    pub fn new(dofs: &DofTable, blocks: &[&dyn EntityBlock], lonely: &[u32], is_own: impl Fn(&[u32]) -> bool) -> Self {
         let numbers: Vec<Vec<u32>> = blocks.iter().map(|block| block_numbers(*block, dofs)).collect();
+        let runs: Vec<Vec<Range<usize>>> = blocks.iter().map(|block| own_runs(*block, &is_own)).collect();
         let mut adjacency = vec![Vec::new(); dofs.len()];
-        for (block, numbers) in blocks.iter().zip(&numbers) {
+        for ((block, numbers), runs) in blocks.iter().zip(&numbers).zip(&runs) {
             let size = block.unknowns().len();
-            for at in 0..block.len() {
+            for at in runs.iter().flat_map(Clone::clone) {
                 let rows = &numbers[at * size..(at + 1) * size];
                 for &row in rows {
                     adjacency[row as usize].extend_from_slice(rows);
@@ -32,7 +39,31 @@ impl GroupMatrix {
             }
         }
         lonely.iter().for_each(|&n| adjacency[n as usize].push(n));
-        Self { matrix: Csr::from_pattern(&adjacency), numbers, lonely: lonely.to_vec() }
+        Self { matrix: Csr::from_pattern(&adjacency), numbers, runs, lonely: lonely.to_vec() }
+    }
+
+    /// Evaluates the entities of `blocks` and hands each one's unknowns and local system (tangent, right-hand side) on,
+    /// in their order.
+    fn each(
+        &self,
+        blocks: &[&dyn EntityBlock],
+        view: &StepView<'_>,
+        want: Want,
+        mut add: impl FnMut(&dyn EntityBlock, usize, &[u32], &[f64], &[f64]),
+    ) -> Result<(), EntityError> {
+        for ((block, numbers), runs) in blocks.iter().zip(&self.numbers).zip(&self.runs) {
+            let size = block.unknowns().len();
+            let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
+            for batch in runs.chunks(BATCH / CHUNK) {
+                for (run, mut systems) in batch.iter().zip(evaluate_runs(batch, size, want, &compute)?) {
+                    for (slot, at) in run.clone().enumerate() {
+                        let (lhs, rhs) = systems.entity(slot);
+                        add(*block, at, &numbers[at * size..(at + 1) * size], lhs, rhs);
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Adds the right-hand sides of the blocks the group was made for.
@@ -45,46 +76,55 @@ impl GroupMatrix {
         view: &StepView<'_>,
         rhs: &mut [f64],
     ) -> Result<(), EntityError> {
-        for (block, numbers) in blocks.iter().zip(&self.numbers) {
-            super::bulk_matrix::add_residual(*block, numbers, view, Want::Residual, rhs)?;
-        }
-        Ok(())
+        self.each(blocks, view, Want::Residual, |_, _, numbers, _, local| {
+            numbers.iter().zip(local).for_each(|(&number, value)| rhs[number as usize] += value);
+        })
     }
 
-    /// Recomputes the matrix; rows of lonely unknowns that stay empty get `diagonal`.
+    /// Recomputes the matrix.
     ///
     /// # Errors
     /// The first entity that cannot be computed.
-    pub fn assemble(
-        &mut self,
-        blocks: &[&dyn EntityBlock],
-        view: &StepView<'_>,
-        diagonal: f64,
-    ) -> Result<(), EntityError> {
-        self.matrix.zero();
-        for (block, numbers) in blocks.iter().zip(&self.numbers) {
-            let size = block.unknowns().len();
-            let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, Want::Both, out);
-            for begin in (0..block.len()).step_by(BATCH) {
-                let range = begin..(begin + BATCH).min(block.len());
-                let chunks = evaluate(range.clone(), size, Want::Both, &compute)?;
-                for at in range.filter(|&at| block.is_active(at, view)) {
-                    let lhs = entity_lhs(&chunks, at - begin, size);
-                    let rows = &numbers[at * size..(at + 1) * size];
-                    for (i, &row) in rows.iter().enumerate() {
-                        for (j, &column) in rows.iter().enumerate() {
-                            self.matrix.add(row as usize, column as usize, lhs[i * size + j]);
-                        }
+    pub fn assemble(&mut self, blocks: &[&dyn EntityBlock], view: &StepView<'_>) -> Result<(), EntityError> {
+        let mut matrix = std::mem::take(&mut self.matrix);
+        matrix.zero();
+        let result = self.each(blocks, view, Want::Both, |block, at, rows, lhs, _| {
+            if block.is_active(at, view) {
+                for (i, &row) in rows.iter().enumerate() {
+                    for (j, &column) in rows.iter().enumerate() {
+                        matrix.add(row as usize, column as usize, lhs[i * rows.len() + j]);
                     }
                 }
             }
-        }
-        for &number in &self.lonely {
+        });
+        self.matrix = matrix;
+        result
+    }
+
+    /// Of each lonely unknown, whether its row has an entry that is not zero.
+    pub fn lonely_rows_in_use(&self) -> Vec<bool> {
+        self.lonely.iter().map(|&row| self.matrix.row(row as usize).1.iter().any(|v| *v != 0.0)).collect()
+    }
+
+    /// Gives rows of lonely unknowns that are not in use `diagonal`.
+    pub fn hold_lonely(&mut self, in_use: &[bool], diagonal: f64, is_own: impl Fn(usize) -> bool) {
+        for (&number, in_use) in self.lonely.iter().zip(in_use) {
             let row = number as usize;
-            if self.matrix.row(row).1.iter().all(|v| *v == 0.0) {
+            if !in_use && is_own(row) {
                 self.matrix.add(row, row, diagonal);
             }
         }
-        Ok(())
     }
+}
+
+/// The entities of a block that are evaluated here, in runs of at most [`CHUNK`].
+fn own_runs(block: &dyn EntityBlock, is_own: &impl Fn(&[u32]) -> bool) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for at in (0..block.len()).filter(|&at| is_own(block.nodes(at))) {
+        match runs.last_mut() {
+            Some(run) if run.end == at && run.len() < CHUNK => run.end += 1,
+            _ => runs.push(at..at + 1),
+        }
+    }
+    runs
 }

@@ -9,7 +9,7 @@ use crate::entities::{EntityError, LocalSystems, Want};
 /// Entities whose local systems are held at a time.
 pub(super) const BATCH: usize = 2048;
 /// Entities of one task; fixed, so that results do not depend on the number of threads.
-const CHUNK: usize = 64;
+pub(super) const CHUNK: usize = 64;
 
 type Compute<'a> = &'a (dyn Fn(Range<usize>, &mut LocalSystems) -> Result<(), EntityError> + Sync);
 
@@ -22,12 +22,21 @@ pub(super) fn evaluate(
 ) -> Result<Vec<LocalSystems>, EntityError> {
     let chunks: Vec<Range<usize>> =
         range.clone().step_by(CHUNK).map(|begin| begin..(begin + CHUNK).min(range.end)).collect();
-    chunks
-        .into_par_iter()
-        .map(|chunk| {
+    evaluate_runs(&chunks, size, want, compute)
+}
+
+/// Local systems of each of `runs`, which are no longer than [`CHUNK`].
+pub(super) fn evaluate_runs(
+    runs: &[Range<usize>],
+    size: usize,
+    want: Want,
+    compute: Compute<'_>,
+) -> Result<Vec<LocalSystems>, EntityError> {
+    runs.par_iter()
+        .map(|run| {
             let mut out = LocalSystems::default();
-            out.reset(chunk.len(), size, want);
-            compute(chunk, &mut out).map(|()| out)
+            out.reset(run.len(), size, want);
+            compute(run.clone(), &mut out).map(|()| out)
         })
         .collect()
 }

@@ -2,11 +2,13 @@
 
 mod assembler;
 mod bulk_matrix;
+mod distribution;
 mod dof_table;
 mod equations;
 mod group_matrix;
 mod local;
 
 pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties, strongest_damping};
+pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};

@@ -1,5 +1,6 @@
 //! Files that are whole or not there, written beside their name and renamed onto it, and files that grow.
 
+use crate::communication::{defer, world};
 use crate::diagnostics::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -7,11 +8,32 @@ use std::path::Path;
 
 /// Writes a file so that a reader sees the old content or the whole new one, never a part.
 ///
-/// Missing folders on the way are made.
+/// Missing folders on the way are made. Of several ranks only the first writes.
 ///
 /// # Errors
-/// [`Error::System`] when the disk refuses; the old content is then untouched.
+/// [`Error::System`] when the disk refuses; the old content is then untouched. With several ranks the error is kept until
+/// they next agree.
 pub fn replace_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    on_one_rank(|| replace(path, fill))
+}
+
+/// Does what only one rank may do.
+///
+/// # Errors
+/// As `act`; with several ranks the error is kept until they next agree.
+pub fn on_one_rank(act: impl FnOnce() -> Result<()>) -> Result<()> {
+    if !world().is_root() {
+        return Ok(());
+    }
+    let done = act();
+    if world().size() > 1 {
+        done.err().into_iter().for_each(defer);
+        return Ok(());
+    }
+    done
+}
+
+fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
     let failed = |what: &str, e: io::Error| Error::System(format!("{}: cannot {what}: {e}", path.display()));
     if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs::create_dir_all(folder).map_err(|e| failed("make its folder", e))?;
@@ -35,6 +57,10 @@ pub fn replace_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::
 /// # Errors
 /// [`Error::System`] when the disk refuses.
 pub fn append_to_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    on_one_rank(|| append(path, fill))
+}
+
+fn append(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
     let done = File::options().append(true).open(path).and_then(|file| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
         fill(&mut writer)?;

@@ -10,8 +10,10 @@ use super::sub_part::SubPart;
 use super::table::Table;
 use super::variable::ScalarVariable;
 use crate::assembly::DofTable;
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
 use crate::entities::{EntityBlock, Interaction, MasterSlaveConstraint, StepView};
+use crate::partition::Partition;
 
 /// A root model part; sub parts select from it by index.
 #[derive(Default)]
@@ -44,6 +46,8 @@ pub struct ModelPart {
     pub condition_blocks: Vec<Box<dyn EntityBlock>>,
     /// What acts between bodies, e.g. contact.
     pub interactions: Vec<Box<dyn Interaction>>,
+    /// Which rank computes what; `None` when this process computes everything.
+    pub partition: Option<Partition>,
     /// Warnings met while running; the stage passes them on after each step.
     pub messages: Vec<Diagnostic>,
 }
@@ -98,6 +102,18 @@ impl ModelPart {
             format!("the mesh has: {}", if full.is_empty() { "no sub parts".into() } else { full.join(", ") })
         });
         Diagnostic::error("unknown-model-part", format!("there is no model part {path:?}")).remedy(remedy).into()
+    }
+
+    /// Whether this rank evaluates an entity between bodies with these nodes: the owner of the last one does, which is one
+    /// of the slave's.
+    pub fn evaluates_pair(&self, nodes: &[u32]) -> bool {
+        let owner = |partition: &Partition| nodes.last().map_or(0, |&node| partition.nodes[node as usize]);
+        self.partition.as_ref().is_none_or(|partition| owner(partition) as usize == world().rank())
+    }
+
+    /// Whether this rank owns a node with its unknowns.
+    pub fn owns_node(&self, node: usize) -> bool {
+        self.partition.as_ref().is_none_or(|partition| partition.nodes[node] as usize == world().rank())
     }
 
     /// Fixes or frees an unknown of some nodes; unknowns not in the system are remembered all the same.

@@ -104,8 +104,14 @@ impl ArcLength {
     fn solve(&mut self, part: &ModelPart, rhs: &[f64]) -> Result<(Vec<f64>, f64, String)> {
         let newton = &mut self.newton;
         let rhs = newton.assembler.equations().reduce(rhs);
-        let (solution, report) =
-            linear_solve::solve(&mut newton.assembler, newton.solver.as_mut(), &rhs, &part.dofs, &part.nodes)?;
+        let (solution, report) = linear_solve::solve(
+            &mut newton.assembler,
+            newton.solver.as_mut(),
+            &mut newton.gathered,
+            &rhs,
+            &part.dofs,
+            &part.nodes,
+        )?;
         newton.add_seconds(&report);
         Ok((newton.assembler.equations().expand(&solution), report.relative_residual, report.engine.to_owned()))
     }

@@ -2,7 +2,9 @@
 
 use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, vector};
 
+use super::gathered::Gathered;
 use crate::assembly::{Assembler, DofTable};
+use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::Nodes;
 
@@ -11,25 +13,71 @@ const CORRECTIONS: usize = 12;
 /// Residual relative to the right-hand side at which corrections stop.
 const ACCURACY: f64 = 1e-10;
 
-/// Solves for the increment of the equations.
-///
-/// Follower loads make the tangent slightly unsymmetric. The factorised rest serves as the preconditioner of a stationary
-/// iteration; when their tangents are too large for it, they are merged into the matrix.
+/// Solves for the increment of the equations; on several ranks, rank 0 solves for all of them.
 ///
 /// # Errors
 /// [`Error::System`] naming nodes when the matrix is singular or the solver fails.
 pub(super) fn solve(
     assembler: &mut Assembler,
     solver: &mut dyn LinearSolver,
+    gathered: &mut Gathered,
     rhs: &[f64],
     dofs: &DofTable,
     nodes: &Nodes,
 ) -> Result<(Vec<f64>, SolveReport)> {
     let loads = assembler.load_tangents().cloned();
+    let unknowns = assembler.equations().unknowns();
     let system = assembler.system();
-    let explain = |error: SolveError| explain(&error, assembler, dofs, nodes);
+    if assembler.distribution().is_none() {
+        return solve_here(&system, loads.as_ref(), assembler.merged_stamps(), solver, rhs, unknowns, dofs, nodes);
+    }
+    #[cfg(feature = "petsc")]
+    if let Some(rows) = &mut gathered.petsc {
+        let solved = rows.solve(assembler, loads.as_ref(), dofs, nodes, rhs)?;
+        return solved.map_err(|error| explain(&error, None, unknowns, dofs, nodes));
+    }
+    gathered.update(&system, loads.as_ref());
+    let (whole, loads) = gathered.system(&system);
+    let solved = if world().is_root() {
+        solve_here(&whole, loads, assembler.merged_stamps(), solver, rhs, unknowns, dofs, nodes)
+    } else {
+        Ok((vec![0.0; rhs.len()], elsewhere()))
+    };
+    let (mut increment, report) = world().agree(solved)?;
+    world().broadcast(&mut increment);
+    Ok((increment, report))
+}
+
+/// What a rank knows of a solve that rank 0 did.
+fn elsewhere() -> SolveReport {
+    SolveReport {
+        engine: "rank 0",
+        relative_residual: 0.0,
+        iterations: 0,
+        fallback: None,
+        seconds_symbolic: 0.0,
+        seconds_numeric: 0.0,
+        seconds_solve: 0.0,
+    }
+}
+
+/// Solves for the increment of the equations of `system`.
+///
+/// Follower loads make the tangent slightly unsymmetric. The factorised rest serves as the preconditioner of a stationary
+/// iteration; when their tangents are too large for it, they are merged into the matrix, which then has `merged_stamps`.
+fn solve_here(
+    system: &System<'_>,
+    loads: Option<&Csr>,
+    merged_stamps: [u64; 2],
+    solver: &mut dyn LinearSolver,
+    rhs: &[f64],
+    unknowns: &[u32],
+    dofs: &DofTable,
+    nodes: &Nodes,
+) -> Result<(Vec<f64>, SolveReport)> {
+    let explain = |error: SolveError| explain(&error, Some(system), unknowns, dofs, nodes);
     let mut increment = vec![0.0; rhs.len()];
-    let mut report = solver.solve(&system, rhs, &mut increment).map_err(explain)?;
+    let mut report = solver.solve(system, rhs, &mut increment).map_err(explain)?;
     let Some(loads) = loads else { return Ok((increment, report)) };
     let scale = vector::norm(rhs);
     let mut residual = vec![0.0; rhs.len()];
@@ -48,31 +96,30 @@ pub(super) fn solve(
         }
         last = size;
         correction.fill(0.0);
-        solver.solve(&system, &residual, &mut correction).map_err(explain)?;
+        solver.solve(system, &residual, &mut correction).map_err(explain)?;
         vector::add_scaled(1.0, &correction, &mut increment);
     }
     if report.relative_residual <= 1e-6 {
         return Ok((increment, report));
     }
-    let merged: Csr = system.bulk.plus(&loads);
-    let [bulk_graph, bulk_values] = assembler.merged_stamps();
+    let merged: Csr = system.bulk.plus(loads);
+    let [bulk_graph, bulk_values] = merged_stamps;
     let whole = System {
         bulk: &merged,
         bulk_symmetry: zelus_linear_algebra::Symmetry::General,
         bulk_graph,
         bulk_values,
-        ..system
+        ..*system
     };
     increment.fill(0.0);
     let report = solver.solve(&whole, rhs, &mut increment).map_err(explain)?;
     Ok((increment, report))
 }
 
-fn explain(error: &SolveError, assembler: &Assembler, dofs: &DofTable, nodes: &Nodes) -> Error {
+fn explain(error: &SolveError, system: Option<&System<'_>>, unknowns: &[u32], dofs: &DofTable, nodes: &Nodes) -> Error {
     let SolveError::Singular { equations, rank_deficiency } = error else {
         return Error::System(format!("linear solve: {error}"));
     };
-    let unknowns = assembler.equations().unknowns();
     let names: Vec<String> = equations
         .iter()
         .take(6)
@@ -85,7 +132,8 @@ fn explain(error: &SolveError, assembler: &Assembler, dofs: &DofTable, nodes: &N
     let only_multipliers =
         equations.iter().all(|&e| unknowns.get(e).is_some_and(|&n| dofs.dofs()[n as usize].multiplier));
     let rank = match rank_deficiency {
-        _ if only_multipliers => zelus_linear_algebra::rank(&assembler.system())
+        _ if only_multipliers => system
+            .and_then(zelus_linear_algebra::rank)
             .map(|rank| format!(": its rank is {rank}, its size {}", unknowns.len())),
         free => free.map(|r| format!(", at least {r} free motions")),
     }

@@ -12,10 +12,13 @@ mod criterion;
 mod critical_step;
 mod displacement_criterion;
 mod explicit;
+mod gathered;
 mod generalized_alpha_scheme;
 mod line_search;
 mod linear_solve;
 mod newton;
+#[cfg(feature = "petsc")]
+mod owned_rows;
 mod reactions;
 mod records;
 mod residual_criterion;

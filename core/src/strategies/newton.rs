@@ -3,6 +3,7 @@
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 use super::criterion::{ConvergenceCriterion, Measures};
+use super::gathered::Gathered;
 use super::line_search::LineSearch;
 use super::linear_solve;
 use super::reactions::write_reactions;
@@ -10,6 +11,7 @@ use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, impose_constraints};
+use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, SetChange};
 use crate::model::ModelPart;
@@ -40,6 +42,7 @@ pub struct NewtonRaphson {
     pub(super) assembler: Assembler,
     /// Whether the last step did not converge.
     failed: bool,
+    pub(super) gathered: Gathered,
     linear_seconds: [f64; 3],
 }
 
@@ -81,7 +84,22 @@ impl NewtonRaphson {
         let interactions = std::mem::take(&mut part.interactions);
         let assembler = Assembler::new(part, &interactions, scheme.lumped_mass());
         part.interactions = interactions;
-        Self { settings, scheme, criterion, solver, assembler, failed: false, linear_seconds: [0.0; 3] }
+        Self {
+            settings,
+            scheme,
+            criterion,
+            solver,
+            assembler,
+            gathered: Gathered::default(),
+            failed: false,
+            linear_seconds: [0.0; 3],
+        }
+    }
+
+    /// Lets PETSc solve the equations of all ranks, each with its own rows, in place of rank 0.
+    #[cfg(feature = "petsc")]
+    pub fn solve_by_petsc(&mut self, settings: zelus_petsc::PetscSettings) {
+        self.gathered.petsc = Some(super::owned_rows::OwnedRows::new(settings));
     }
 
     fn iterate(
@@ -126,8 +144,14 @@ impl NewtonRaphson {
             let (reduced, linear_residual, engine) = if rhs.iter().all(|v| *v == 0.0) {
                 (vec![0.0; rhs.len()], 0.0, "none: nothing out of balance".to_owned())
             } else {
-                let (increment, report) =
-                    linear_solve::solve(&mut self.assembler, self.solver.as_mut(), &rhs, &part.dofs, &part.nodes)?;
+                let (increment, report) = linear_solve::solve(
+                    &mut self.assembler,
+                    self.solver.as_mut(),
+                    &mut self.gathered,
+                    &rhs,
+                    &part.dofs,
+                    &part.nodes,
+                )?;
                 self.add_seconds(&report);
                 if let Some(why) = &report.fallback {
                     monitor.note(&format!("linear solver: {why}"));
@@ -181,6 +205,11 @@ impl NewtonRaphson {
                 values: &values,
                 round_off: &round_off,
             });
+            let decided = (change.count() as u64) << 1 | u64::from(verdict.converged);
+            if !world().is_same(decided) {
+                let fact = format!("iteration {iteration}: the ranks have come to different decisions");
+                return Err(Error::System(format!("{fact}\n    run them on machines of one kind, or on fewer ranks")));
+            }
             let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
             let record = IterationRecord {
                 iteration,

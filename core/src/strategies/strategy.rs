@@ -2,6 +2,7 @@
 
 use super::records::{IterationRecord, Monitor, StepRecord};
 use crate::assembly::Assembler;
+use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::Interaction;
 use crate::model::ModelPart;
@@ -61,7 +62,7 @@ pub(super) fn accept(part: &mut ModelPart) -> Result<()> {
     let mut blocks = std::mem::take(&mut part.element_blocks);
     let result = blocks.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
     part.element_blocks = blocks;
-    result?;
+    world().agree(result.map_err(Error::from))?;
     let mut interactions = std::mem::take(&mut part.interactions);
     let result = interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part));
     part.interactions = interactions;

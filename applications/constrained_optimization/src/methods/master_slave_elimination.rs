@@ -47,6 +47,10 @@ fn force(part: &ModelPart, view: &StepView<'_>, node: u32) -> Result<f64> {
 }
 
 impl Interaction for EliminationInteraction {
+    fn needs_all_elements(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &str {
         NAME
     }

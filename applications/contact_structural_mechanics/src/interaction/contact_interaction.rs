@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use zelus_core::Result;
+use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
@@ -22,7 +23,9 @@ use crate::interface::{
     nodal_normals, positions, slave_nodes,
 };
 use crate::mortar::SegmentationSettings;
-use crate::pairs::{ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
+use crate::pairs::{
+    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes,
+};
 use crate::search::{
     Candidate, GapCheck, SearchSettings, assign_roles, candidates, late_pairs, touching_nodes, warn_of_reach,
 };
@@ -187,8 +190,8 @@ impl ContactInteraction {
         }
         let before: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
         self.make_blocks(known.into_values().collect())?;
-        let integrals: Vec<_> = self.blocks.iter().flat_map(|block| block.integrate(&part.view())).collect();
-        let found: Vec<(Pair, _)> = self.pairs().into_iter().zip(integrals).collect();
+        let found = self.pairs().into_iter().zip(self.integrals(part).1);
+        let found: Vec<(Pair, Meeting)> = found.collect();
         let lost = found.iter().filter(|(pair, i)| i.overlapping && beyond.contains(&pair.key)).count();
         warn_of_reach(part, lost, &mut self.warned);
         // Slivers too: within the step they may grow to overlaps.
@@ -289,28 +292,48 @@ impl ContactInteraction {
             .map(|key| self.pair(part, key))
             .collect();
         let allowed = self.settings.active_check_factor * self.threshold;
+        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
         let through = self
             .blocks_of(late)?
             .iter()
-            .flat_map(|block| block.integrate(&part.view()))
+            .flat_map(|block| block.integrate(&part.view(), &own))
             .filter(|i| i.overlapping && i.gap.iter().zip(&i.area).any(|(gap, area)| *gap < -allowed * area.abs()))
             .count();
+        let mut of_all = [through as f64];
+        if part.partition.is_some() {
+            world().sum(&mut of_all);
+        }
+        let through = of_all[0] as usize;
         self.warned_of_late_pairs = through > 0;
         part.messages.extend((through > 0).then(|| late_pairs(through, allowed)));
         Ok(())
     }
 
+    /// The integrals of the pairs of this rank, and of all pairs how they meet.
+    fn integrals(&self, part: &ModelPart) -> (Vec<Vec<Integral>>, Vec<Meeting>) {
+        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
+        let integrals: Vec<_> = self.blocks.iter().map(|block| block.integrate(&part.view(), &own)).collect();
+        let mut flags: Vec<bool> = integrals.iter().flatten().flat_map(|i| [i.overlapping, i.facing]).collect();
+        if part.partition.is_some() {
+            world().any_of(&mut flags);
+        }
+        let meetings = flags.chunks_exact(2).map(|pair| Meeting { overlapping: pair[0], facing: pair[1] }).collect();
+        (integrals, meetings)
+    }
+
     /// Recomputes overlaps, weighted gaps and areas in the present configuration.
     fn integrate(&mut self, part: &mut ModelPart) {
-        let integrals: Vec<_> = self.blocks.iter().map(|block| block.integrate(&part.view())).collect();
+        let (integrals, meetings) = self.integrals(part);
+        let mut meetings = meetings.into_iter();
         let count = part.nodes.len();
         let (mut gap, mut area) = (vec![0.0; count], vec![0.0; count]);
         let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
         let mut lonely = vec![true; count];
         for (block, integrals) in self.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
-                block.pairs_mut()[at].overlapping = integral.overlapping;
-                if !integral.overlapping {
+                let overlaps = meetings.next().is_some_and(|meeting| meeting.overlapping);
+                block.pairs_mut()[at].overlapping = overlaps;
+                if !overlaps {
                     continue;
                 }
                 for (local, &node) in block.slave_nodes(at).iter().enumerate() {
@@ -322,6 +345,11 @@ impl ContactInteraction {
                     (0..3).for_each(|c| mapped[node][c] += integral.mapped[local][c]);
                 }
             }
+        }
+        if part.partition.is_some() {
+            let columns = [(1, &mut gap[..]), (1, &mut area[..])];
+            let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
+            add_up_nodes(&self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         }
         for &node in &self.slaves {
             part.nodes.flags.set(ISOLATED, node as usize, lonely[node as usize]);
@@ -416,6 +444,31 @@ impl ContactInteraction {
     }
 }
 
+/// How the facets of a pair meet.
+#[derive(Debug, Clone, Copy)]
+struct Meeting {
+    overlapping: bool,
+    facing: bool,
+}
+
+/// Adds up over the ranks what each has at these nodes; each column comes with its number of numbers a node.
+fn add_up_nodes(nodes: &[u32], columns: &mut [(usize, &mut [f64])]) {
+    let place = |width: usize, node: u32| width * node as usize..width * (node as usize + 1);
+    let own = |(width, column): &(usize, &mut [f64])| -> Vec<f64> {
+        nodes.iter().flat_map(|&node| column[place(*width, node)].to_vec()).collect()
+    };
+    let mut values: Vec<f64> = columns.iter().flat_map(own).collect();
+    world().sum(&mut values);
+    let mut rest = &values[..];
+    for (width, column) in columns {
+        for &node in nodes {
+            let (sums, others) = rest.split_at(*width);
+            column[place(*width, node)].copy_from_slice(sums);
+            rest = others;
+        }
+    }
+}
+
 /// A distance beyond everything.
 const FAR: f64 = 1e24;
 
@@ -483,7 +536,7 @@ impl Interaction for ContactInteraction {
         friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, self.settings.friction.reset_frequency);
         self.refresh_pair_normals(part, self.updates_normals());
         for block in &mut self.blocks {
-            block.keep_operators(&part.view());
+            block.keep_operators(&part.view(), &|nodes| part.evaluates_pair(nodes));
         }
         Ok(())
     }

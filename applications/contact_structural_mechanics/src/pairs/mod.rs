@@ -13,5 +13,5 @@ pub use family::{
 };
 pub use grouping::{Groups, condition_name, group_by_shapes};
 pub use pair::{Integral, Pair, PairKey, Previous};
-pub use pair_block::{ContactBlock, PairBlock, PairFormulation};
+pub use pair_block::{ContactBlock, Own, PairBlock, PairFormulation};
 pub use tying_block::{TyingRequest, tying_block};

@@ -42,6 +42,9 @@ pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
     }
 }
 
+/// Whether this rank evaluates the pair with these nodes.
+pub type Own<'a> = &'a (dyn Fn(&[u32]) -> bool + Sync);
+
 /// A block of pairs as the interaction sees it.
 pub trait ContactBlock: EntityBlock {
     /// The pairs.
@@ -53,11 +56,11 @@ pub trait ContactBlock: EntityBlock {
     /// Node indices on the slave side of the `at`-th pair.
     fn slave_nodes(&self, at: usize) -> &[u32];
 
-    /// Gap, slip and area of every pair in the present configuration.
-    fn integrate(&self, view: &StepView<'_>) -> Vec<Integral>;
+    /// Gap, slip and area of every pair in the present configuration; those whose nodes are not `own` stay without overlap.
+    fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral>;
 
-    /// Step start: keeps the operators against which slip is measured.
-    fn keep_operators(&mut self, view: &StepView<'_>);
+    /// Step start: keeps the operators of the `own` pairs against which slip is measured.
+    fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>);
 
     /// The same block for the assembly.
     fn as_entities(&self) -> &dyn EntityBlock;
@@ -287,13 +290,16 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
         &self.nodes[at * (NM + NS) + NM..(at + 1) * (NM + NS)]
     }
 
-    fn integrate(&self, view: &StepView<'_>) -> Vec<Integral> {
+    fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral> {
         (0..self.pairs.len())
             .into_par_iter()
             .with_min_len(32)
             .map(|at| {
-                let geometry = self.geometry(at, view);
                 let mut out = Integral::default();
+                if !own(self.nodes(at)) {
+                    return out;
+                }
+                let geometry = self.geometry(at, view);
                 let found = operators(&geometry, &self.parameters.segmentation);
                 out.facing = found != Overlap::None;
                 if let Overlap::Cells(operators) = found {
@@ -317,8 +323,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
             .collect()
     }
 
-    fn keep_operators(&mut self, view: &StepView<'_>) {
-        let kept: Vec<Previous> = self.integrate(view).into_iter().map(|integral| integral.operators).collect();
+    fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>) {
+        let kept: Vec<Previous> = self.integrate(view, own).into_iter().map(|integral| integral.operators).collect();
         self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
     }
 

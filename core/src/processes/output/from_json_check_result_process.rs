@@ -14,7 +14,7 @@ use crate::model::{Model, ModelPart, SubPart, Table};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
+use crate::registry::{Build, Kind};
 
 /// Differences told in full; more are counted.
 const TOLD: usize = 10;
@@ -115,7 +115,7 @@ impl FromJsonCheck {
             }
         }
         for quantity in &self.gauss {
-            gauss::each(part, &part.element_blocks, &selection.elements, quantity, |row, gauss| {
+            gauss::each(part, Kind::Element, &selection.elements, quantity, |row, gauss| {
                 let element = selection.elements[row];
                 if !passes(&part.elements.flags, self.flag, element) {
                     return;

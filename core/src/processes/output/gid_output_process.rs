@@ -15,7 +15,7 @@ use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::{Defaults, Settings};
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
+use crate::registry::{Build, Kind};
 
 /// Where the settings of the files are in `Parameters`.
 const FILES: &str = "postprocess_parameters.result_file_configuration.";
@@ -130,7 +130,7 @@ impl GidOutput {
         columns.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, nodes)));
         columns.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, nodes)));
         let gauss = self.gauss.iter().flat_map(|quantity| {
-            gauss::as_they_are(part, &part.element_blocks, &selection.elements, &part.elements.ids, quantity)
+            gauss::as_they_are(part, Kind::Element, &selection.elements, &part.elements.ids, quantity)
         });
         let gauss = if self.elements { gauss.collect() } else { Vec::new() };
         (nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect(), columns, gauss)

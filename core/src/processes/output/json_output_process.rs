@@ -15,7 +15,7 @@ use crate::model::{Fields, Flags, Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
+use crate::registry::{Build, Kind};
 
 /// How often at most the file is rewritten while the run goes on; at its end it is in any case.
 const REWRITE: Duration = Duration::from_secs(10);
@@ -137,7 +137,7 @@ impl JsonOutput {
         let elements: Vec<u32> = self.elements.iter().map(|series| series.element).collect();
         for (at, quantity) in self.gauss.iter().enumerate() {
             let series = &mut self.elements;
-            gauss::each(part, &part.element_blocks, &elements, quantity, |row, values| {
+            gauss::each(part, Kind::Element, &elements, quantity, |row, values| {
                 if passes(&part.elements.flags, self.flag, elements[row]) {
                     let only_values =
                         Gauss { components: values.components, values: values.values.clone(), ..Gauss::default() };

@@ -131,7 +131,7 @@ impl Picture {
         out.extend(self.history.iter().map(|q| q.gather(&part.nodes.history, &mesh.nodes)));
         out.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, &mesh.nodes)));
         for quantity in &self.extrapolated {
-            out.push(gauss::at_nodes(part, &part.element_blocks, &selection.elements, &mesh.nodes, quantity));
+            out.push(gauss::at_nodes(part, Kind::Element, &selection.elements, &mesh.nodes, quantity));
         }
         out.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, &mesh.nodes)));
         out.extend(self.ids.then(|| Column::ids("KRATOS_NODE_ID", &mesh.data.point_ids)));
@@ -140,13 +140,13 @@ impl Picture {
 
     fn cell_data(&self, part: &ModelPart, mesh: &Mesh) -> Vec<Column> {
         let table = mesh.table(part);
-        let (quantities, flags, blocks, id) = match mesh.kind {
-            Kind::Element => (&self.element_values, &self.element_flags, &part.element_blocks, "KRATOS_ELEMENT_ID"),
-            _ => (&self.condition_values, &self.condition_flags, &part.condition_blocks, "KRATOS_CONDITION_ID"),
+        let (quantities, flags, id) = match mesh.kind {
+            Kind::Element => (&self.element_values, &self.element_flags, "KRATOS_ELEMENT_ID"),
+            _ => (&self.condition_values, &self.condition_flags, "KRATOS_CONDITION_ID"),
         };
         let mut out: Vec<Column> = quantities.iter().map(|q| q.gather(&table.data, &mesh.cells)).collect();
         out.extend(flags.iter().map(|flag| flag_column(&table.flags, flag, &mesh.cells)));
-        out.extend(self.gauss.iter().map(|quantity| gauss::means(part, blocks, &mesh.cells, quantity)));
+        out.extend(self.gauss.iter().map(|quantity| gauss::means(part, mesh.kind, &mesh.cells, quantity)));
         if self.ids {
             out.push(Column::ids("PROPERTIES_ID", &mesh.data.cells.properties));
             out.push(Column::ids(id, &mesh.data.cells.ids));

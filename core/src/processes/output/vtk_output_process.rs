@@ -7,6 +7,7 @@ use super::control::{OutputControl, Unit};
 use super::picture::Picture;
 use super::place::{PartPath, one_of};
 use crate::diagnostics::{Error, Result};
+use crate::io::on_one_rank;
 use crate::io::results::{VtkFormat, write_pvd, write_vtk, write_vtu};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
@@ -104,7 +105,7 @@ impl Process for VtkOutput {
     }
 
     fn before_loop(&mut self, _model: &mut Model) -> Result<()> {
-        if self.clears { self.clear() } else { Ok(()) }
+        if self.clears { on_one_rank(|| self.clear()) } else { Ok(()) }
     }
 
     fn is_output_step(&mut self, model: &Model) -> bool {

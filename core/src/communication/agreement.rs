@@ -1,0 +1,197 @@
+//! Errors that all ranks know of before any of them stops.
+//!
+//! Work that a rank does alone may fail there alone; [`agree`](dyn Communicator::agree) makes it fail everywhere. Errors
+//! of what every rank does alike need no agreement. Whatever is left ends all processes, see [`end_after_failure`].
+
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use super::{Communicator, world};
+use crate::diagnostics::{Diagnostic, Error, Place, Result, Severity};
+
+/// How long a failed rank waits to hear that rank 0 has failed too, before it speaks for itself.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// How long it then waits for rank 0 to close its files and end the run.
+const CLOSING: Duration = Duration::from_secs(600);
+
+static DEFERRED: Mutex<Option<Error>> = Mutex::new(None);
+
+/// Keeps an error of this rank for the next [`agree`](dyn Communicator::agree), so that it goes on up to there.
+pub fn defer(error: Error) {
+    DEFERRED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+}
+
+/// The error that was kept, if any; no later agreement knows of it.
+///
+/// # Errors
+/// What [`defer`] was given.
+pub fn deferred() -> Result<()> {
+    DEFERRED.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
+}
+
+impl dyn Communicator + '_ {
+    /// Whether this rank writes files and speaks to the user.
+    pub fn is_root(&self) -> bool {
+        self.rank() == 0
+    }
+
+    /// The result, or the error of any rank; collective.
+    ///
+    /// # Errors
+    /// Problems of the input of all ranks together, or else the error of the first rank that has one.
+    pub fn agree<T>(&self, result: Result<T>) -> Result<T> {
+        if self.size() == 1 {
+            return result;
+        }
+        let result = result.and_then(|value| deferred().map(|()| value));
+        if !self.any(result.is_err()) {
+            return result;
+        }
+        let own = result.as_ref().err().map(encode).unwrap_or_default();
+        let all = self.gather_bytes(&own);
+        let mut errors = all.iter().filter(|text| !text.is_empty()).map(|text| decode(text));
+        let Some(first) = errors.next() else { return result };
+        let mut problems = match first {
+            Error::Input(problems) => problems,
+            other => return Err(other),
+        };
+        for error in errors {
+            let Error::Input(more) = error else { continue };
+            problems.extend(more.into_iter().filter(|d| !problems.contains(d)).collect::<Vec<_>>());
+        }
+        Err(Error::Input(problems))
+    }
+
+    /// Whether any rank says so; collective.
+    pub fn any(&self, flag: bool) -> bool {
+        let mut flags = [flag];
+        self.any_of(&mut flags);
+        flags[0]
+    }
+
+    /// Sets each flag that is set on any rank; collective.
+    pub fn any_of(&self, flags: &mut [bool]) {
+        if self.size() > 1 && !flags.is_empty() {
+            let own: Vec<u8> = flags.iter().map(|&flag| u8::from(flag)).collect();
+            for of_rank in self.gather_equal_bytes(&own).chunks_exact(own.len()) {
+                flags.iter_mut().zip(of_rank).for_each(|(flag, other)| *flag |= *other != 0);
+            }
+        }
+    }
+
+    /// Adds up what the ranks have, in their order; collective.
+    pub fn sum(&self, values: &mut [f64]) {
+        if self.size() > 1 && !values.is_empty() {
+            let all = self.gather_counted(values, &vec![values.len(); self.size()]);
+            values.fill(0.0);
+            for of_rank in all.chunks_exact(values.len()) {
+                values.iter_mut().zip(of_rank).for_each(|(sum, value)| *sum += value);
+            }
+        }
+    }
+
+    /// Whether all ranks give the same number; collective.
+    pub fn is_same(&self, number: u64) -> bool {
+        let own = number.to_le_bytes();
+        self.size() == 1 || self.gather_equal_bytes(&own).chunks_exact(own.len()).all(|other| *other == own)
+    }
+}
+
+fn encode(error: &Error) -> Vec<u8> {
+    let value = match error {
+        Error::Input(problems) => Value::from(problems.iter().map(encode_problem).collect::<Vec<_>>()),
+        Error::NotConverged(text) => json!({ "not converged": text }),
+        Error::System(text) => json!({ "system": text }),
+    };
+    value.to_string().into_bytes()
+}
+
+fn encode_problem(problem: &Diagnostic) -> Value {
+    let place = problem.place.as_ref().map(|p| json!([p.file.to_string_lossy(), p.line, p.column]));
+    let is_error = problem.severity == Severity::Error;
+    json!([is_error, problem.code, place, problem.fact, problem.remedy])
+}
+
+fn decode(text: &[u8]) -> Error {
+    let value: Value = serde_json::from_slice(text).unwrap_or_default();
+    if let Value::Array(problems) = value {
+        return Error::Input(problems.iter().map(decode_problem).collect());
+    }
+    let text = |key: &str| value.get(key).and_then(Value::as_str).map(str::to_owned);
+    match text("not converged") {
+        Some(text) => Error::NotConverged(text),
+        None => Error::System(text("system").unwrap_or_else(|| "a rank failed and could not say why".to_owned())),
+    }
+}
+
+fn decode_problem(value: &Value) -> Diagnostic {
+    let text = |at: usize| value[at].as_str().map(str::to_owned);
+    let number = |at: usize| value[2][at].as_u64().unwrap_or(0) as u32;
+    let is_error = value[0].as_bool().unwrap_or(true);
+    Diagnostic {
+        severity: if is_error { Severity::Error } else { Severity::Warning },
+        code: known_code(text(1).unwrap_or_default()),
+        place: value[2][0].as_str().map(|file| Place::at(file, number(1), number(2))),
+        fact: text(3).unwrap_or_default(),
+        remedy: text(4),
+    }
+}
+
+/// A code that lasts as long as the program; there are few.
+fn known_code(code: String) -> &'static str {
+    static CODES: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
+    let mut codes = CODES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = codes.iter().find(|known| **known == code) {
+        return known;
+    }
+    codes.push(Box::leak(code.into_boxed_str()));
+    codes[codes.len() - 1]
+}
+
+/// The last act of a failed run on several processes: rank 0 says `message`, and all end with `code`.
+///
+/// Another rank speaks only when rank 0 does not know of the failure.
+pub fn end_after_failure(message: &str, code: u8) -> ! {
+    let world = world();
+    if world.is_root() {
+        world.announce_failure();
+        eprintln!("{message}");
+        world.abort(code);
+    }
+    let heard = |patience: Duration| {
+        let start = Instant::now();
+        while start.elapsed() < patience {
+            if world.failure_is_announced() {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        false
+    };
+    if heard(PATIENCE) {
+        std::thread::sleep(CLOSING);
+    }
+    eprintln!("rank {}: {message}", world.rank());
+    world.abort(code)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_survive_the_way_between_ranks() {
+        let problem = Diagnostic::error("entity", "inverted").at(Place::at("a.json", 3, 4)).remedy("mend it");
+        let warning = Diagnostic::warning("old", "x");
+        for error in [
+            Error::Input(vec![problem, warning]),
+            Error::NotConverged("step 3".into()),
+            Error::System("disk full".into()),
+        ] {
+            let back = decode(&encode(&error));
+            assert_eq!((back.to_string(), back.exit_code()), (error.to_string(), error.exit_code()));
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What processes can do together, and the process that is alone.
+
+/// The processes of a run, as one of them sees them.
+///
+/// `gather…`, `exchange…` and `broadcast` are collective: every rank calls them, in the same order.
+pub trait Communicator: Send + Sync {
+    /// Number of this process, from 0.
+    fn rank(&self) -> usize;
+
+    /// Number of processes.
+    fn size(&self) -> usize;
+
+    /// What every rank gives, by rank.
+    fn gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>>;
+
+    /// What every rank gives, by rank.
+    fn gather_numbers(&self, own: &[f64]) -> Vec<Vec<f64>>;
+
+    /// What every rank gives, one after another; each gives as many bytes.
+    fn gather_equal_bytes(&self, own: &[u8]) -> Vec<u8>;
+
+    /// What every rank gives, one after another; rank r gives `counts[r]` numbers.
+    fn gather_counted(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
+
+    /// As [`Communicator::gather_counted`], for rank 0 alone; the others get nothing.
+    fn gather_to_root(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
+
+    /// Sends `parts[r]` to rank r; gives what each rank sent here.
+    fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>>;
+
+    /// Sends `parts[r]` to rank r; gives what each rank sent here.
+    fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
+
+    /// The numbers of rank 0 for all; the length is the same everywhere.
+    fn broadcast(&self, numbers: &mut [f64]);
+
+    /// Tells the other ranks, from rank 0, that the run has failed; not collective.
+    fn announce_failure(&self);
+
+    /// Whether rank 0 has said that the run failed; not collective.
+    fn failure_is_announced(&self) -> bool;
+
+    /// Ends all processes at once with this exit code; not collective.
+    fn abort(&self, code: u8) -> !;
+}
+
+/// One process alone.
+#[derive(Debug, Clone, Copy)]
+pub struct Serial;
+
+impl Communicator for Serial {
+    fn rank(&self) -> usize {
+        0
+    }
+
+    fn size(&self) -> usize {
+        1
+    }
+
+    fn gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>> {
+        vec![own.to_vec()]
+    }
+
+    fn gather_numbers(&self, own: &[f64]) -> Vec<Vec<f64>> {
+        vec![own.to_vec()]
+    }
+
+    fn gather_equal_bytes(&self, own: &[u8]) -> Vec<u8> {
+        own.to_vec()
+    }
+
+    fn gather_counted(&self, own: &[f64], _counts: &[usize]) -> Vec<f64> {
+        own.to_vec()
+    }
+
+    fn gather_to_root(&self, own: &[f64], _counts: &[usize]) -> Vec<f64> {
+        own.to_vec()
+    }
+
+    fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        parts.to_vec()
+    }
+
+    fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>> {
+        parts.to_vec()
+    }
+
+    fn broadcast(&self, _numbers: &mut [f64]) {}
+
+    fn announce_failure(&self) {}
+
+    fn failure_is_announced(&self) -> bool {
+        true
+    }
+
+    fn abort(&self, code: u8) -> ! {
+        std::process::exit(i32::from(code))
+    }
+}

@@ -1,0 +1,190 @@
+//! The communicator of MPI, through the crate `mpi`; the only file that names it.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use mpi::Threading;
+use mpi::datatype::{Partition, PartitionMut};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator as _, CommunicatorCollectives, Destination, Equivalence, Root, Source};
+
+use super::Communicator;
+use crate::diagnostics::{Error, Result};
+
+pub(super) use mpi::environment::Universe;
+
+/// Tag of the message that the run has failed.
+const FAILED: i32 = 4711;
+/// How long a rank that waits for the others keeps its core busy.
+const BUSY: Duration = Duration::from_micros(50);
+/// The longest it then sleeps at a time.
+const NAP: Duration = Duration::from_millis(1);
+/// Numbers in one broadcast; MPI counts in 32 bits.
+const PIECE: usize = 1 << 28;
+
+/// All processes that mpirun has started.
+pub(super) struct MpiWorld {
+    rank: usize,
+    size: usize,
+    announced: AtomicBool,
+}
+
+/// Starts MPI; a panic on one rank ends all of them.
+pub(super) fn start() -> Result<(Universe, MpiWorld)> {
+    let (universe, threading) = mpi::initialize_with_threading(Threading::Serialized)
+        .ok_or_else(|| Error::System("MPI is in use already".to_owned()))?;
+    if !matches!(threading, Threading::Serialized | Threading::Multiple) {
+        return Err(Error::System(format!("this MPI library offers only {threading:?} threads, not serialised ones")));
+    }
+    let all = SimpleCommunicator::world();
+    let world = MpiWorld { rank: all.rank() as usize, size: all.size() as usize, announced: AtomicBool::new(false) };
+    let say = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        say(panic);
+        SimpleCommunicator::world().abort(101);
+    }));
+    Ok((universe, world))
+}
+
+fn counts(lengths: impl Iterator<Item = usize>) -> (Vec<i32>, Vec<i32>) {
+    let counts: Vec<i32> =
+        lengths.map(|length| i32::try_from(length).expect("a message of fewer than 2^31 entries")).collect();
+    let mut end = 0_i32;
+    let starts = counts
+        .iter()
+        .map(|count| {
+            let start = end;
+            end = end.checked_add(*count).expect("messages of fewer than 2^31 entries together");
+            start
+        })
+        .collect();
+    (counts, starts)
+}
+
+fn split<T: Clone>(all: &[T], counts: &[i32], starts: &[i32]) -> Vec<Vec<T>> {
+    counts.iter().zip(starts).map(|(&n, &start)| all[start as usize..(start + n) as usize].to_vec()).collect()
+}
+
+impl MpiWorld {
+    /// All processes, once all of them are here.
+    ///
+    /// MPI's own waits take a whole core each, which the ranks that are still at work may need.
+    fn together(&self) -> SimpleCommunicator {
+        let all = SimpleCommunicator::world();
+        let mut barrier = all.immediate_barrier();
+        let start = Instant::now();
+        while let Err(pending) = barrier.test() {
+            barrier = pending;
+            let waited = start.elapsed();
+            if waited > BUSY {
+                std::thread::sleep((waited / 8).min(NAP));
+            }
+        }
+        all
+    }
+
+    fn gather<T: Equivalence + Clone + Default>(&self, own: &[T]) -> Vec<Vec<T>> {
+        let all = self.together();
+        let mut lengths = vec![0_u64; self.size];
+        all.all_gather_into(&(own.len() as u64), &mut lengths[..]);
+        let (counts, starts) = counts(lengths.into_iter().map(|n| n as usize));
+        let total: i32 = counts.iter().sum();
+        let mut received = vec![T::default(); total as usize];
+        if total > 0 {
+            let mut target = PartitionMut::new(&mut received[..], &counts[..], &starts[..]);
+            all.all_gather_varcount_into(own, &mut target);
+        }
+        split(&received, &counts, &starts)
+    }
+
+    fn exchange<T: Equivalence + Clone + Default>(&self, parts: &[Vec<T>]) -> Vec<Vec<T>> {
+        let all = self.together();
+        let (to, to_starts) = counts(parts.iter().map(Vec::len));
+        let mut from = vec![0_i32; self.size];
+        all.all_to_all_into(&to[..], &mut from[..]);
+        let (from, from_starts) = counts(from.into_iter().map(|n| n as usize));
+        let sent = parts.concat();
+        let mut received = vec![T::default(); from.iter().sum::<i32>() as usize];
+        let source = Partition::new(&sent[..], &to[..], &to_starts[..]);
+        let mut target = PartitionMut::new(&mut received[..], &from[..], &from_starts[..]);
+        all.all_to_all_varcount_into(&source, &mut target);
+        split(&received, &from, &from_starts)
+    }
+}
+
+impl Communicator for MpiWorld {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>> {
+        self.gather(own)
+    }
+
+    fn gather_numbers(&self, own: &[f64]) -> Vec<Vec<f64>> {
+        self.gather(own)
+    }
+
+    fn gather_equal_bytes(&self, own: &[u8]) -> Vec<u8> {
+        let mut received = vec![0_u8; own.len() * self.size];
+        self.together().all_gather_into(own, &mut received[..]);
+        received
+    }
+
+    fn gather_counted(&self, own: &[f64], lengths: &[usize]) -> Vec<f64> {
+        let (counts, starts) = counts(lengths.iter().copied());
+        let mut received = vec![0.0; lengths.iter().sum()];
+        let mut target = PartitionMut::new(&mut received[..], &counts[..], &starts[..]);
+        self.together().all_gather_varcount_into(own, &mut target);
+        received
+    }
+
+    fn gather_to_root(&self, own: &[f64], lengths: &[usize]) -> Vec<f64> {
+        let all = self.together();
+        let root = all.process_at_rank(0);
+        if self.rank != 0 {
+            root.gather_varcount_into(own);
+            return Vec::new();
+        }
+        let (counts, starts) = counts(lengths.iter().copied());
+        let mut received = vec![0.0; lengths.iter().sum()];
+        let mut target = PartitionMut::new(&mut received[..], &counts[..], &starts[..]);
+        root.gather_varcount_into_root(own, &mut target);
+        received
+    }
+
+    fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        self.exchange(parts)
+    }
+
+    fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>> {
+        self.exchange(parts)
+    }
+
+    fn broadcast(&self, numbers: &mut [f64]) {
+        let all = self.together();
+        for piece in numbers.chunks_mut(PIECE) {
+            all.process_at_rank(0).broadcast_into(piece);
+        }
+    }
+
+    fn announce_failure(&self) {
+        if self.rank == 0 && !self.announced.swap(true, Ordering::Relaxed) {
+            let all = SimpleCommunicator::world();
+            // A message of one byte leaves at once, whether or not the other side waits for it.
+            (1..self.size).for_each(|rank| all.process_at_rank(rank as i32).send_with_tag(&1_u8, FAILED));
+        }
+    }
+
+    fn failure_is_announced(&self) -> bool {
+        SimpleCommunicator::world().process_at_rank(0).immediate_probe_with_tag(FAILED).is_some()
+    }
+
+    fn abort(&self, code: u8) -> ! {
+        SimpleCommunicator::world().abort(i32::from(code))
+    }
+}
