@@ -175,7 +175,7 @@ pub struct Absent {
 inventory::collect!(Absent);
 
 /// What to use instead of a known name that is not there.
-fn instead_of(kind: Kind, name: &str) -> Option<&'static str> {
+pub fn instead_of(kind: Kind, name: &str) -> Option<&'static str> {
     let known = |absent: &&Absent| absent.kind == kind && absent.stems.iter().any(|stem| name.starts_with(stem));
     inventory::iter::<Absent>().find(known).map(|absent| absent.remedy)
 }
