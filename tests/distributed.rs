@@ -226,6 +226,38 @@ fn a_file_that_cannot_be_written_ends_all_ranks() {
     fails(&output, 4, "error[system]");
 }
 
+#[test]
+fn a_full_disk_ends_all_ranks() {
+    if !Path::new("/dev/full").exists() {
+        return println!("skipped: there is no /dev/full to play a full disk");
+    }
+    let folder = case("contact_2d/nonmatching");
+    let Some(mut command) = mpirun(folder.path()) else { return };
+    let program = env!("CARGO_BIN_EXE_zelus");
+    // what rank 0 writes first goes to the name with its process id, which exec keeps
+    let full = format!("ln -s /dev/full .lower.json.$$.part; exec {program} run {DECK}");
+    command.args(["-n", "1", "sh", "-c", &full, ":", "-n", "2", program, "run", DECK]);
+    let start = Instant::now();
+    let output = command.output().expect("mpirun starts");
+    assert!(start.elapsed() < PROMPT, "{}", said(&output));
+    fails(&output, 4, "lower.json: cannot be written");
+    let parts = contents(folder.path()).into_keys().filter(|name| name.extension().is_some_and(|e| e == "part"));
+    assert_eq!(parts.count(), 0, "half-written files stay");
+}
+
+#[test]
+fn a_body_that_nothing_holds_is_said_once() {
+    for engine in ["", "mumps_lu", "none"] {
+        let folder = case("contact_2d/nonmatching");
+        change(folder.path(), DECK, "[true, false, false]", "[false, false, false]");
+        let settings = format!("\"Static\", \"linear_solver_settings\": {{\"petsc_engine\": \"{engine}\"}}");
+        change(folder.path(), DECK, "\"Static\"", &settings);
+        let Some(output) = distributed(folder.path(), 3, &["run", DECK]) else { return };
+        fails(&output, 4, "the system of equations is singular");
+        assert!(said(&output).contains("DISPLACEMENT_X of node"), "{}", said(&output));
+    }
+}
+
 /// Rank 0 runs the deck of one folder, rank 1 that of another.
 fn one_each(first: &Path, second: &Path) -> Option<Output> {
     let mut command = mpirun(first)?;
