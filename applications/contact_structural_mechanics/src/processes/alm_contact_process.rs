@@ -120,7 +120,7 @@ pub(super) fn interaction(
         settings,
         &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
     )?;
-    let oriented_boxes = check_search(settings)?;
+    check_search(settings)?;
     let normal_variation = match whole.normal_variation {
         NormalVariation::None if updated || (family.frictional() && !whole.not_normal_update_frictional) => {
             NormalVariation::Update
@@ -136,7 +136,6 @@ pub(super) fn interaction(
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
-            oriented_boxes,
             check: whole.search_parameters.check_gap,
         },
         active_check_factor: whole.search_parameters.active_check_factor,

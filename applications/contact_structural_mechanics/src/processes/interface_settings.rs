@@ -37,15 +37,15 @@ pub(super) fn check_positive(settings: &Settings, keys: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Checks `search_parameters`; whether the search named also looks at boxes along the facets.
+/// Checks `search_parameters`.
 ///
 /// # Errors
 /// A search that does not exist, a reach that is not positive.
-pub(super) fn check_search(settings: &Settings) -> Result<bool> {
+pub(super) fn check_search(settings: &Settings) -> Result<()> {
     check_positive(settings, &["search_parameters.search_factor"])?;
     let type_search = settings.get_str("search_parameters.type_search")?;
     if SEARCHES.contains(&type_search) {
-        return Ok(type_search.to_ascii_lowercase().ends_with("obb"));
+        return Ok(());
     }
     let fact = format!("there is no search \"{type_search}\"");
     let known = || format!("use one of {}", SEARCHES.join(", "));

@@ -47,7 +47,7 @@ struct MeshTyingProcess {
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings()?;
     let whole: Whole = settings.parse()?;
-    let oriented_boxes = check_search(&settings)?;
+    check_search(&settings)?;
     check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;
     let part = request.model.root_mut(&whole.model_part_name)?;
     let (mortar_type, tied) = tied(&settings, part.info.domain_size)?;
@@ -70,7 +70,6 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
-            oriented_boxes,
             check: GapCheck::CheckMapping,
         },
         database_step_update: whole.search_parameters.database_step_update.max(1),

@@ -66,7 +66,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings()?;
     let whole: Whole = settings.parse()?;
     let (kind, pure_slip) = contact_type(&settings)?;
-    let oriented_boxes = check_search(&settings)?;
+    check_search(&settings)?;
     check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
     let chosen = MpcSettings {
         parts: whole.contact_model_part,
@@ -78,7 +78,6 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
-            oriented_boxes,
             check: GapCheck::CheckMapping,
         },
         database_step_update: whole.search_parameters.database_step_update.max(1),

@@ -111,7 +111,6 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         search: SearchSettings {
             factor: settings.get_f64("search_parameters.search_factor")?,
             normal_orientation_threshold: FACING,
-            oriented_boxes: false,
             check: GapCheck::CheckMapping,
         },
         segmentation: SegmentationSettings {

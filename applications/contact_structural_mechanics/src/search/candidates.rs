@@ -4,10 +4,8 @@ use rayon::prelude::*;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, sub};
 
-use super::oriented_box::{MARGIN, OrientedBox};
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles, centre_normal, positions};
-use crate::variables::NODAL_H;
 
 /// How a search decides which slave nodes start the step in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
@@ -29,8 +27,6 @@ pub struct SearchSettings {
     pub factor: f64,
     /// Least difference of the unit normals: facets that face the same way are not a pair.
     pub normal_orientation_threshold: f64,
-    /// Whether the boxes along both facets must meet too.
-    pub oriented_boxes: bool,
     /// How contact starts.
     pub check: GapCheck,
 }
@@ -42,7 +38,7 @@ pub struct Candidate {
     pub slave: u32,
     /// Master facet of the interface.
     pub master: u32,
-    /// Whether the centres are within the reach of the search, and the boxes along the facets meet where those count.
+    /// Whether the centres are within the reach of the search.
     pub within_reach: bool,
 }
 
@@ -73,10 +69,6 @@ pub(super) fn among(
     let place = |f: u32| Place::of(part, &interface.facets[f as usize]);
     let places: Vec<Place> = masters.iter().map(|&m| place(m)).collect();
     let tree = Tree::new(places.iter().map(|p| p.bounds).collect());
-    let margin = settings.oriented_boxes.then(|| margin(part, interface));
-    let boxed = |facet: u32, margin: f64| {
-        OrientedBox::of(positions(&interface.facets[facet as usize], part, &mut [[0.0; 3]; 4]), margin)
-    };
     slaves
         .par_iter()
         .with_min_len(64)
@@ -84,7 +76,6 @@ pub(super) fn among(
             let own = place(slave);
             let reach = settings.factor * own.radius;
             let near = tree.meeting(&own.bounds.grown(reach));
-            let own_box = margin.map(|margin| boxed(slave, margin));
             let found: Vec<Candidate> = near
                 .into_iter()
                 .map(|m| (m, &places[m as usize]))
@@ -92,21 +83,13 @@ pub(super) fn among(
                 .map(|(m, other)| Candidate {
                     slave,
                     master: masters[m as usize],
-                    within_reach: norm(sub(own.centre, other.centre)) <= reach
-                        && own_box.zip(margin).is_none_or(|(own, size)| own.meets(&boxed(masters[m as usize], size))),
+                    within_reach: norm(sub(own.centre, other.centre)) <= reach,
                 })
                 .filter(|c| c.within_reach || own.bounds.grown(0.1 * own.radius).meets(&place(c.master).bounds))
                 .collect();
             found
         })
         .collect()
-}
-
-/// Margin of the boxes along facets: a part of the largest nodal size, 1 where there is none.
-fn margin(part: &ModelPart, interface: &Interface) -> f64 {
-    let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let largest = interface.nodes.iter().map(|&n| sizes[n as usize]).fold(0.0, f64::max);
-    MARGIN * if largest < f64::EPSILON { 1.0 } else { largest }
 }
 
 /// Where a facet is.

@@ -2,7 +2,6 @@
 
 mod candidates;
 mod direct_check;
-mod oriented_box;
 mod reach;
 mod self_contact;
 mod tree;

@@ -10,7 +10,7 @@ pub fn warn_of_reach(part: &mut ModelPart, lost: usize, warned: &mut bool) {
             format!("{lost} pairs of facets overlap but lie beyond the reach of the search; contact has gaps there");
         part.messages.push(
             Diagnostic::warning("search-reach", fact)
-                .remedy("raise \"search_parameters.search_factor\", set \"type_search\" to \"in_radius\", or let the finer side be the master"),
+                .remedy("raise \"search_parameters.search_factor\", or let the finer side be the master"),
         );
     }
 }
@@ -21,6 +21,5 @@ pub fn late_pairs(count: usize, depth: f64) -> Diagnostic {
         "{count} pairs of facets that were apart when the step began are deeper in each other than {depth:.1e} at its end; \
          contact is missing there in this step"
     );
-    Diagnostic::warning("late-contact", fact)
-        .remedy("shorten the step, or look farther: \"search_parameters.type_search\" \"in_radius\"")
+    Diagnostic::warning("late-contact", fact).remedy("shorten the step, or raise \"search_parameters.search_factor\"")
 }
