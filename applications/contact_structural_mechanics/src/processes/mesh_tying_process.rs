@@ -72,6 +72,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             oriented_boxes,
             check: GapCheck::CheckMapping,
+            dynamic: false,
         },
         database_step_update: whole.search_parameters.database_step_update.max(1),
         segmentation: segmentation(&settings)?,

@@ -113,6 +113,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
             normal_orientation_threshold: FACING,
             oriented_boxes: false,
             check: GapCheck::CheckMapping,
+            dynamic: false,
         },
         segmentation: SegmentationSettings {
             distance_threshold: settings.get_f64("distance_threshold")?,
