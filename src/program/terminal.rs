@@ -85,7 +85,8 @@ impl Monitor for Terminal {
             .map(|c| format!("{:>31.3e} {}", c.ratio, if c.converged { "✓" } else { " " }))
             .collect();
         let changes = record.active_set_changes + record.stick_slip_changes;
-        self.line(&format!("  {:>3} {}  {changes:>6}", record.iteration, cells.join("")));
+        let condition = record.condition_number.map(|c| format!("   condition number {c:.3e}")).unwrap_or_default();
+        self.line(&format!("  {:>3} {}  {changes:>6}{condition}", record.iteration, cells.join("")));
     }
 
     fn end_step(&mut self, record: &StepRecord) {

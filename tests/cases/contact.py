@@ -1,6 +1,8 @@
 """Contact cases with closed forms: stacks of blocks whose pressure is uniform, pressed, opened, sloped, in 2D and 3D.
 
 Confined stacks (rollers on all sides) keep their cross-section, so their closed form is exact for any displacement."""
+import json, os
+
 from deck import *
 from mesh import Box, Mesh
 
@@ -108,6 +110,19 @@ def stack(folder, requirement, lower=("2D4N", 3), upper=("2D4N", 3), slave="uppe
                parameters("mesh", contact_solver(dim, "mesh", time_step, **settings), constraints, loads,
                           [contact_process(pairs, mortar_kind, **more)], outputs, end_time),
                [material("Lower", 1, law, *LOWER), material("Upper", 2, law, *UPPER)], mesh, checks)
+
+
+def by_another_method(folder, process_name, family, **process_settings):
+    """Lets the contact of a written case be that of another process and family."""
+    path = os.path.join(HERE, folder, "ProjectParameters.json")
+    with open(path) as file:
+        project = json.load(file)
+    project["solver_settings"]["contact_settings"]["mortar_type"] = family
+    contact = project["processes"]["contact_process_list"][0]
+    contact["python_module"] = process_name
+    contact["Parameters"].update(process_settings)
+    with open(path, "w") as file:
+        file.write(pretty(project) + "\n")
 
 
 def three_blocks():
@@ -238,6 +253,13 @@ def write():
     stack(flat + "matching", "Matching quadrilaterals pass a constant-stress patch test.")
     stack(flat + "nonmatching", "Non-matching quadrilaterals pass a constant-stress patch test, the finer side as slave.", upper=("2D4N", 5))
     stack(flat + "nonmatching_coarse_slave", "The coarser side as slave passes the same patch test.", upper=("2D4N", 5), slave="lower")
+    # half an edge weighs the penalty: each update of the multipliers halves the penetration
+    stiffness = 1.0 / (1.0 / oedometer(*LOWER) + 1.0 / oedometer(*UPPER))
+    stack(flat + "uzawa", "Uzawa's iteration leaves no penetration although its kernel is a penalty.",
+          drive=("-0.001*t", {1.0: -0.001}), manual={"penalty": 6.0 * stiffness, "scale_factor": 1.0},
+          process_settings={"interval": [0.0, "End"]})
+    by_another_method(flat + "uzawa", "uzawa_contact_process", "UzawaContactFrictionless",
+                      uzawa_parameters={"multiplier_tolerance": 1e-9})
     stack(flat + "triangles", "Non-matching triangles pass a constant-stress patch test.", ("2D3N", 3), ("2D3N", 4))
     stack(flat + "triangles_on_quadrilaterals", "Triangles on quadrilaterals pass a constant-stress patch test.", upper=("2D3N", 4))
     stack(flat + "parts_of_nodes", "Contact parts that list nodes only get their conditions from the elements' faces.",

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::active_set::SlipRule;
+use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
@@ -187,7 +188,8 @@ impl Setting {
             tangent_factor: 0.3,
             operator_threshold: self.operator_threshold,
             normal_variation: NormalVariation::Update,
-            slip_rule: SlipRule::Coulomb { augmentation: 0.0, threshold: 0.02 },
+            friction_law: &COULOMB,
+            slip_rule: SlipRule::Bounded { augmentation: 0.0, threshold: 0.02 },
         };
         let pair = Pair {
             key: PairKey { interface: 0, slave: 0, master: 0 },

@@ -1,16 +1,15 @@
 //! The rules by which slave nodes enter and leave contact, stick and slide: pure functions of nodal numbers.
 //!
 //! The augmented normal pressure p̂ = k λ_n + ε WG decides: active if p̂ < 0. WG is the weighted gap of the node summed
-//! over its pairs. Tangentially q̂ = k P λ + c κ ε WS, with the weighted slip WS, is compared with the bound −μ p̂.
+//! over its pairs. Tangentially q̂ = k P λ + c κ ε WS, with the weighted slip WS, is compared with the bound that the
+//! law of friction sets under p̂.
 //! No tolerance is applied to p̂. A sliding node sticks again when its slip has turned against its traction and q̂, with the
 //! weight c of the deck or with c = 1, has fallen below the bound by a margin.
 
 use crate::formulations::NodeState;
+use crate::friction_law::Bound;
 use crate::mortar::tangential;
 use zelus_core::vector3::{add, dot, norm, scale};
-
-/// Friction coefficients below this count as none.
-const LEAST_FRICTION: f64 = f64::EPSILON;
 
 /// k λ_n + ε WG: the normal pressure, weighted, augmented by the gap; compression is negative.
 /// Without multipliers pass `multiplier` = 0.
@@ -43,8 +42,8 @@ pub fn frictionless(node: &SlaveNumbers) -> Decision {
 pub enum SlipRule {
     /// Contact always slides; stick does not occur.
     Pure,
-    /// Coulomb's bound on the augmented tangential pressure.
-    Coulomb {
+    /// The law's bound on the augmented tangential pressure.
+    Bounded {
         /// Weight of the slip in q̂ for nodes that slide already (`slip_augmentation_coefficient`).
         augmentation: f64,
         /// Relative margin below the bound at which a sliding node sticks again (`slip_threshold`).
@@ -69,8 +68,8 @@ pub struct SlaveNumbers {
     pub tangent: [f64; 3],
     /// Penalty ε.
     pub penalty: f64,
-    /// Friction coefficient μ.
-    pub friction: f64,
+    /// Limit of the tangential traction.
+    pub friction: Bound,
     /// Scale factor k.
     pub scale_factor: f64,
     /// Ratio κ of tangential to normal penalty.
@@ -101,6 +100,22 @@ pub struct Decision {
     pub multiplier: Option<[f64; 3]>,
 }
 
+impl Decision {
+    /// The decision that leaves a node in `state`, where it `was` in another.
+    pub(crate) fn stay(&mut self, state: NodeState, was: NodeState) {
+        self.state = state;
+        self.changed = state.is_active() != was.is_active();
+        self.slip_changed = !self.changed && state != was;
+        self.multiplier = None;
+    }
+
+    /// A decision for a state and nothing else.
+    #[cfg(test)]
+    pub(crate) fn plain(state: NodeState) -> Self {
+        Self { pressure: 0.0, traction: [0.0; 3], state, changed: false, slip_changed: false, multiplier: None }
+    }
+}
+
 /// Decides for a node of the frictional augmented Lagrangian.
 pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let pressure = node.pressure();
@@ -113,24 +128,25 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         let slip = scale(node.weighted_slip, coefficient * node.tangent_factor * node.penalty);
         add(scale(lambda_t, node.scale_factor), slip)
     };
-    let bound = -node.friction * pressure;
+    let bound = node.friction.at(pressure);
     let (q, over) = match rule {
         // Sliding is at the bound by its own equation, and right as long as the slip goes along the traction. Comparing
         // sizes alone makes nodes stick and slide in turn while pressures and normals still move between iterations.
-        SlipRule::Coulomb { augmentation, threshold } if sliding => {
+        SlipRule::Bounded { augmentation, threshold } if sliding => {
             let q = augmented(augmentation);
             let least = norm(q).min(norm(augmented(1.0)));
             (q, dot(node.tangent, node.weighted_slip) > 0.0 || least > (1.0 - threshold) * bound)
         }
         _ => {
             // A node that enters while it moves more along the surface than into it was not held: holding it at once would
-            // tear it off again.
-            let dragged = !node.state.is_active() && norm(node.weighted_slip) > node.weighted_gap.abs();
+            // tear it off again. Rough surfaces hold up to their own slope.
+            let least = node.friction.coefficient.max(1.0) * node.weighted_gap.abs();
+            let dragged = !node.state.is_active() && norm(node.weighted_slip) > least;
             let q = augmented(1.0);
             (q, dragged || norm(q) > bound)
         }
     };
-    let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || over;
+    let slips = rule == SlipRule::Pure || node.friction.is_smooth() || over;
 
     let entered = !node.state.is_active();
     let direction = if sliding && rule != SlipRule::Pure {
@@ -155,6 +171,18 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     }
 }
 
+/// Least slip against the traction, as a share of the bound in tractions, that counts.
+const LEAST_PUSH: f64 = 1e-6;
+
+/// Whether friction pushes a sliding node along its motion: its slip is against the traction that should oppose it.
+pub fn is_pushed(node: &SlaveNumbers, rule: SlipRule) -> bool {
+    let along = dot(node.tangent, node.weighted_slip) * node.tangent_factor * node.penalty;
+    rule != SlipRule::Pure
+        && node.state == NodeState::Slip
+        && !node.friction.is_smooth()
+        && along < -LEAST_PUSH * node.friction.at(node.pressure())
+}
+
 /// Decides for a node of the frictional penalty method: it sticks while |κ ε WS| ≤ −μ p̂.
 pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let pressure = node.pressure();
@@ -162,8 +190,8 @@ pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         return inactive(node, pressure);
     }
     let q = scale(node.weighted_slip, node.tangent_factor * node.penalty);
-    let (bound, length) = (-node.friction * pressure, norm(q));
-    let slips = rule == SlipRule::Pure || node.friction < LEAST_FRICTION || length > bound;
+    let (bound, length) = (node.friction.at(pressure), norm(q));
+    let slips = rule == SlipRule::Pure || node.friction.is_smooth() || length > bound;
     let entered = !node.state.is_active();
     Decision {
         pressure,
@@ -191,7 +219,7 @@ pub fn inactive(node: &SlaveNumbers, pressure: f64) -> Decision {
 mod tests {
     use super::*;
 
-    const COULOMB: SlipRule = SlipRule::Coulomb { augmentation: 0.0, threshold: 0.02 };
+    const COULOMB: SlipRule = SlipRule::Bounded { augmentation: 0.0, threshold: 0.02 };
 
     fn node(state: NodeState, multiplier: [f64; 3]) -> SlaveNumbers {
         SlaveNumbers {
@@ -202,7 +230,7 @@ mod tests {
             weighted_slip: [0.1, 0.0, 0.0],
             tangent: [1.0, 0.0, 0.0],
             penalty: 2.0,
-            friction: 0.3,
+            friction: Bound { coefficient: 0.3, threshold: 0.0 },
             scale_factor: 4.0,
             tangent_factor: 0.5,
         }
@@ -275,7 +303,7 @@ mod tests {
 
     #[test]
     fn no_friction_always_slides() {
-        let smooth = SlaveNumbers { friction: 0.0, ..node(NodeState::Inactive, [0.0; 3]) };
+        let smooth = SlaveNumbers { friction: Bound::default(), ..node(NodeState::Inactive, [0.0; 3]) };
         let decision = alm_frictional(&smooth, COULOMB);
         assert_eq!((decision.state, decision.traction), (NodeState::Slip, [0.0; 3]));
         assert_eq!(decision.multiplier, Some([0.0, 0.0, -0.25]));

@@ -17,8 +17,11 @@ register_variable! {
     pub INITIAL_PENALTY: f64 = "Penalty parameter of contact (force per length cubed).";
     pub DYNAMIC_FACTOR: f64 = "Factor of contact forces in the step in which a gap closes.";
     pub FRICTION_COEFFICIENT: f64 = "Coulomb's coefficient of friction.";
+    pub TRESCA_FRICTION_THRESHOLD: f64 = "Tresca's limit of the tangential traction (force per area).";
     pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding.";
     pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";
+    pub TURNING_BY_SLIP: f64 = "Tangential traction by weighted slip across the direction of sliding (force per length to the fifth).";
+    pub TURNING_BY_MULTIPLIER: f64 = "Turning of the direction of sliding by the tangential multiplier.";
     pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Scale factor times normal multiplier plus penalty times weighted gap; negative when active.";
     pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";
     kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";

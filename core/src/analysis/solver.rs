@@ -16,6 +16,9 @@ use crate::strategies::{
 /// A variable with history on the nodes: name and number of components.
 pub type NodalVariable = (&'static str, usize);
 
+/// Mark of the step data: steps are explicit.
+pub const EXPLICIT: &str = "EXPLICIT";
+
 /// What an application registers for a `solver_type`, as `Build::Factory(&SolverDefinition {…})`.
 pub struct SolverDefinition {
     /// Registered solver that these settings, as the user wrote them, ask for instead; `None` for this one.
@@ -44,6 +47,10 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub cutting: fn(&Settings) -> Result<Option<Cutting>>,
+    /// Numbers of the model part's step data that are set, for strategies and interactions to read.
+    ///
+    /// An error names a setting that does not fit.
+    pub values: fn(&Settings) -> Result<Vec<(&'static str, f64)>>,
 }
 
 /// A time scheme of one of the two methods.
@@ -64,6 +71,7 @@ pub struct SolverSettings {
     variables: Vec<NodalVariable>,
     marks: Vec<&'static str>,
     cutting: Option<Cutting>,
+    values: Vec<(&'static str, f64)>,
 }
 
 impl SolverSettings {
@@ -99,6 +107,7 @@ impl SolverSettings {
         let mut variables = definition.variables.to_vec();
         let mut marks = Vec::new();
         let mut cutting = None;
+        let mut values = Vec::new();
         let mut merged = settings.as_ref().map(|s| s.node().clone());
         for (extension, mut member) in extensions {
             let defaults = Defaults::parse(extension.name, extension.defaults)?;
@@ -112,6 +121,9 @@ impl SolverSettings {
                 marks.extend(more);
             }
             cutting = problems.absorb((factory.cutting)(&checked)).flatten().or(cutting);
+            if let Some(more) = problems.absorb((factory.values)(&checked)) {
+                values.extend(more);
+            }
             if let Some(Node { value: Value::Object(members), .. }) = &mut merged {
                 member.node = checked.node().clone();
                 members.insert(member);
@@ -128,6 +140,7 @@ impl SolverSettings {
             variables,
             marks,
             cutting,
+            values,
         })
     }
 
@@ -139,11 +152,15 @@ impl SolverSettings {
         part.info.domain_size = self.settings.get_usize("domain_size")?;
         let levels = self.settings.get_usize("buffer_size")?.max(2);
         part.nodes.history.set_levels(levels);
+        part.info.marks.insert(EXPLICIT, self.definition.explicit);
         for &(name, components) in &self.variables {
             part.nodes.history.add_named(name, components);
         }
         for mark in &self.marks {
             part.info.marks.insert(mark, true);
+        }
+        for &(name, value) in &self.values {
+            part.info.values.insert(name, value);
         }
         Ok(())
     }

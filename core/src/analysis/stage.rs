@@ -234,6 +234,9 @@ impl Stage {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),
                     Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
                 };
+                if record.singular {
+                    return Err(Error::System(format!("step {} to time {to}: {failure}\n    {tried}", record.step)));
+                }
                 return Err(Error::NotConverged(format!(
                     "step {} to time {to}: {failure}\n    {tried}; results up to time {from} are written. Try {}, or \
                      look at the nodes named",

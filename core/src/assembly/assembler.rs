@@ -10,6 +10,7 @@ use zelus_linear_algebra::{Csr, Symmetry, System};
 
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::distribution::Distribution;
+use super::dof_table::DofTable;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use crate::communication::world;
@@ -468,6 +469,15 @@ impl Assembler {
             coupling_values: self.stamps.coupling_values,
             coupling_symmetric: false,
         }
+    }
+
+    /// Adds `amount` to the diagonals of the multipliers' tangents, until these are computed anew.
+    pub fn relax_multipliers(&mut self, dofs: &DofTable, amount: f64) {
+        for (number, _) in dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.multiplier) {
+            self.coupling.matrix.add(number, number, amount);
+        }
+        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
+        self.stamps.coupling_values += 1;
     }
 
     /// Tangents of follower loads on the equations; `None` when there are none.

@@ -22,6 +22,17 @@ impl SetChange {
     }
 }
 
+/// What follows when the iteration has converged.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outer {
+    /// The step is solved.
+    Done,
+    /// Something was changed that the iteration must follow: an outer loop goes on.
+    Again,
+    /// The outer loop does not come to an end, and why.
+    Failed(String),
+}
+
 /// A participant in the Newton loop that owns blocks of its own and decides which of them act.
 ///
 /// Called by the strategy in the order of the methods below. The model part it receives holds no interactions while they
@@ -57,6 +68,14 @@ pub trait Interaction: Send + Sync {
     /// A geometry that cannot be computed with.
     fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange>;
 
+    /// The iteration has converged: an outer loop, as Uzawa's, changes what the iteration held constant.
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    fn after_convergence(&mut self, _part: &mut ModelPart) -> Result<Outer> {
+        Ok(Outer::Done)
+    }
+
     /// The step is accepted.
     ///
     /// # Errors
@@ -87,6 +106,12 @@ pub trait Interaction: Send + Sync {
     /// Diagonal and right-hand side for unknowns of [`Interaction::unknowns`] that no block touches now.
     fn idle_diagonal(&self) -> f64 {
         1.0
+    }
+
+    /// What may be added to the tangent's diagonal of its unknowns where constraints are redundant, as by supports at the edge
+    /// of an interface; `None` where that must end the run.
+    fn relaxation(&self) -> Option<f64> {
+        None
     }
 
     /// The balance of an iterate is known: of the starting one (iteration 0) and of each after a solve.

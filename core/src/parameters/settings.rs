@@ -17,7 +17,7 @@ impl Settings {
     ///
     /// `None` when an error was reported. Unknown keys are errors (`unknown-key`), or warnings with
     /// [`Defaults::lenient`] (`unknown-key-ignored`); other codes are `wrong-type`, `missing-key` and, as warnings,
-    /// `deprecated-key`.
+    /// `deprecated-key` and `key-without-effect`.
     pub fn validate(user: &Node, defaults: &Defaults, report: &mut Report) -> Option<Self> {
         let mut user = user.clone();
         if user.as_object().is_none() {
@@ -37,7 +37,11 @@ impl Settings {
             }
         }
         let node = merger.merge(&user, &defaults.node, &defaults.name);
-        (!merger.failed).then(|| Self { name: defaults.name.clone(), node })
+        if !merger.failed {
+            warn_without_effect(&user, defaults, report);
+            return Some(Self { name: defaults.name.clone(), node });
+        }
+        None
     }
 
     /// [`Settings::validate`] for one object alone, with its warnings.
@@ -146,6 +150,27 @@ impl Settings {
     /// An error at a key: `fact` should name value and key, the object's name is added.
     pub fn error(&self, path: &str, code: &'static str, fact: impl std::fmt::Display) -> Diagnostic {
         Diagnostic::error(code, format!("{fact} (in {})", self.name)).at(self.key_place(path))
+    }
+}
+
+/// Keys whose comment in the defaults begins with these words are read and change nothing.
+const WITHOUT_EFFECT: &str = "without effect";
+
+/// A key that changes nothing and is set to something else than its default deserves to be named.
+fn warn_without_effect(user: &Node, defaults: &Defaults, report: &mut Report) {
+    for entry in defaults.entries().iter().filter(|e| e.description.starts_with(WITHOUT_EFFECT)) {
+        let (Some(given), Some(default)) = (user.get_path(&entry.path), defaults.node.get_path(&entry.path)) else {
+            continue;
+        };
+        let same = match (given.as_f64(), default.as_f64()) {
+            (Some(given), Some(default)) => given == default,
+            _ => given.to_json() == default.to_json(),
+        };
+        if !same {
+            let why = entry.description[WITHOUT_EFFECT.len()..].trim_start_matches([':', ' ']);
+            let fact = format!("\"{}\" of {} is read and changes nothing", entry.path, defaults.name);
+            report.push(Diagnostic::warning("key-without-effect", fact).at(given.place()).remedy(why));
+        }
     }
 }
 

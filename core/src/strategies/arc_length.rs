@@ -220,6 +220,7 @@ impl ArcLength {
                 changed_nodes: changed.copied().take(12).collect(),
                 linear_residual,
                 engine,
+                condition_number: None,
             };
             monitor.iteration(&record);
             records.push(record);

@@ -5,7 +5,7 @@ use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, v
 use super::gathered::Gathered;
 use crate::assembly::{Assembler, DofTable};
 use crate::communication::world;
-use crate::diagnostics::{Error, Result};
+use crate::diagnostics::Error;
 use crate::model::Nodes;
 
 /// Corrections for the load tangents before they are merged into the bulk.
@@ -13,10 +13,33 @@ const CORRECTIONS: usize = 12;
 /// Residual relative to the right-hand side at which corrections stop.
 const ACCURACY: f64 = 1e-10;
 
+/// Why there is no increment.
+pub(super) enum Failed {
+    /// The matrix is singular, which another state of the interactions may mend.
+    Singular(String),
+    /// Anything else.
+    Other(Error),
+}
+
+impl From<Failed> for Error {
+    fn from(failed: Failed) -> Self {
+        match failed {
+            Failed::Singular(why) => Self::System(why),
+            Failed::Other(error) => error,
+        }
+    }
+}
+
+impl From<Error> for Failed {
+    fn from(error: Error) -> Self {
+        Self::Other(error)
+    }
+}
+
 /// Solves for the increment of the equations; on several ranks, rank 0 solves for all of them.
 ///
 /// # Errors
-/// [`Error::System`] naming nodes when the matrix is singular or the solver fails.
+/// A singular matrix or a solver that fails, naming nodes.
 pub(super) fn solve(
     assembler: &mut Assembler,
     solver: &mut dyn LinearSolver,
@@ -24,7 +47,7 @@ pub(super) fn solve(
     rhs: &[f64],
     dofs: &DofTable,
     nodes: &Nodes,
-) -> Result<(Vec<f64>, SolveReport)> {
+) -> Result<(Vec<f64>, SolveReport), Failed> {
     let loads = assembler.load_tangents().cloned();
     let unknowns = assembler.equations().unknowns();
     let system = assembler.system();
@@ -43,7 +66,7 @@ pub(super) fn solve(
     } else {
         Ok((vec![0.0; rhs.len()], elsewhere()))
     };
-    let (mut increment, report) = world().agree(solved)?;
+    let (mut increment, report) = world().agree(solved.map_err(Error::from))?;
     world().broadcast(&mut increment);
     Ok((increment, report))
 }
@@ -74,7 +97,7 @@ fn solve_here(
     unknowns: &[u32],
     dofs: &DofTable,
     nodes: &Nodes,
-) -> Result<(Vec<f64>, SolveReport)> {
+) -> Result<(Vec<f64>, SolveReport), Failed> {
     let explain = |error: SolveError| explain(&error, Some(system), unknowns, dofs, nodes);
     let mut increment = vec![0.0; rhs.len()];
     let mut report = solver.solve(system, rhs, &mut increment).map_err(explain)?;
@@ -116,9 +139,15 @@ fn solve_here(
     Ok((increment, report))
 }
 
-fn explain(error: &SolveError, system: Option<&System<'_>>, unknowns: &[u32], dofs: &DofTable, nodes: &Nodes) -> Error {
+fn explain(
+    error: &SolveError,
+    system: Option<&System<'_>>,
+    unknowns: &[u32],
+    dofs: &DofTable,
+    nodes: &Nodes,
+) -> Failed {
     let SolveError::Singular { equations, rank_deficiency } = error else {
-        return Error::System(format!("linear solve: {error}"));
+        return Failed::Other(Error::System(format!("linear solve: {error}")));
     };
     let names: Vec<String> = equations
         .iter()
@@ -144,5 +173,8 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, unknowns: &[u32], do
     } else {
         "some body can move freely: support it, or check that contact holds it from the first step"
     };
-    Error::System(format!("the system of equations is singular{rank}; suspicious: {}\n    {remedy}", names.join(", ")))
+    Failed::Singular(format!(
+        "the system of equations is singular{rank}; suspicious: {}\n    {remedy}",
+        names.join(", ")
+    ))
 }

@@ -37,7 +37,7 @@ pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
-pub use newton::{NewtonRaphson, NewtonSettings};
+pub use newton::{CONDITION_NUMBER, NewtonRaphson, NewtonSettings};
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
 pub use residual_criterion::ResidualCriterion;
 pub use scheme::{Scheme, SchemeFactory, SchemeRequest, StaticScheme};

@@ -12,11 +12,14 @@ use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, impose_constraints};
 use crate::communication::world;
-use crate::diagnostics::{Error, Result};
-use crate::entities::{Interaction, SetChange};
+use crate::diagnostics::{Diagnostic, Error, Result};
+use crate::entities::{Interaction, Outer, SetChange};
 use crate::model::ModelPart;
 use crate::register;
 use crate::registry::Build;
+
+/// Mark of the step data: the condition number of every system is computed.
+pub const CONDITION_NUMBER: &str = "CONDN_CONVERGENCE_CRITERION";
 
 /// How a step is iterated.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +47,9 @@ pub struct NewtonRaphson {
     failed: bool,
     pub(super) gathered: Gathered,
     linear_seconds: [f64; 3],
+    /// Whether the last step ended at a singular system.
+    singular: bool,
+    warned: bool,
 }
 
 impl SolutionStrategy for NewtonRaphson {
@@ -56,9 +62,10 @@ impl SolutionStrategy for NewtonRaphson {
     }
 
     fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
+        self.singular = false;
         let record = recorded(part, |part, interactions| self.iterate(part, interactions, monitor));
         self.failed = !record.as_ref().is_ok_and(|record| record.converged);
-        record
+        Ok(StepRecord { singular: self.singular, ..record? })
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
@@ -93,6 +100,8 @@ impl NewtonRaphson {
             gathered: Gathered::default(),
             failed: false,
             linear_seconds: [0.0; 3],
+            singular: false,
+            warned: false,
         }
     }
 
@@ -123,14 +132,21 @@ impl NewtonRaphson {
         }
         let mut inertia = self.scheme.inertia(part);
         let mut residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
+        let relaxation = interactions.iter().find_map(|interaction| interaction.relaxation());
+        let mut relaxed = None;
         let mut references: Vec<Vec<f64>> = Vec::new();
         let mut records = Vec::new();
-        let last = if self.settings.linear { 1 } else { self.settings.max_iteration };
-        for iteration in 1..=last {
+        let mut last = if self.settings.linear { 1 } else { self.settings.max_iteration };
+        let mut iteration = 0;
+        while iteration < last {
+            iteration += 1;
             if !self.settings.linear {
                 part.info.nl_iteration = iteration;
             }
             self.assembler.tangents(part, interactions, inertia.as_ref())?;
+            if let Some(amount) = relaxed {
+                self.assembler.relax_multipliers(&part.dofs, amount);
+            }
             if prescribed.iter().any(|d| *d != 0.0) {
                 self.assembler.subtract_product(&prescribed, &mut residual);
             }
@@ -144,20 +160,43 @@ impl NewtonRaphson {
             let (reduced, linear_residual, engine) = if rhs.iter().all(|v| *v == 0.0) {
                 (vec![0.0; rhs.len()], 0.0, "none: nothing out of balance".to_owned())
             } else {
-                let (increment, report) = linear_solve::solve(
+                let mut solved = linear_solve::solve(
                     &mut self.assembler,
                     self.solver.as_mut(),
                     &mut self.gathered,
                     &rhs,
                     &part.dofs,
                     &part.nodes,
-                )?;
+                );
+                if let (Err(linear_solve::Failed::Singular(why)), None, Some(amount)) = (&solved, relaxed, relaxation) {
+                    part.messages.extend(self.warn_of_redundancy(why));
+                    relaxed = Some(amount);
+                    self.assembler.relax_multipliers(&part.dofs, amount);
+                    solved = linear_solve::solve(
+                        &mut self.assembler,
+                        self.solver.as_mut(),
+                        &mut self.gathered,
+                        &rhs,
+                        &part.dofs,
+                        &part.nodes,
+                    );
+                }
+                let (increment, report) = match solved {
+                    Ok(solved) => solved,
+                    // Interactions may have let a body go that a shorter step holds.
+                    Err(linear_solve::Failed::Singular(why)) if !interactions.is_empty() => {
+                        self.singular = true;
+                        return Ok((records, Some(why)));
+                    }
+                    Err(failed) => return Err(failed.into()),
+                };
                 self.add_seconds(&report);
                 if let Some(why) = &report.fallback {
                     monitor.note(&format!("linear solver: {why}"));
                 }
                 (increment, report.relative_residual, report.engine.to_owned())
             };
+            let condition = if part.info.is(CONDITION_NUMBER) { self.condition_number(monitor) } else { None };
             let mut increment = self.assembler.equations().expand(&reduced);
             let searched = self.settings.line_search.filter(|_| prescribed.iter().all(|d| *d == 0.0));
             increment.iter_mut().zip(&prescribed).for_each(|(sum, d)| *sum += d);
@@ -219,6 +258,7 @@ impl NewtonRaphson {
                 changed_nodes: changed.copied().take(12).collect(),
                 linear_residual,
                 engine,
+                condition_number: condition,
             };
             monitor.iteration(&record);
             records.push(record);
@@ -228,7 +268,22 @@ impl NewtonRaphson {
                 let what = format!("{} of node {node} or its residual is no longer finite", dof.variable);
                 return Ok((records, Some(format!("diverged in iteration {iteration}: {what}"))));
             }
-            if self.settings.linear || (verdict.converged && change.count() == 0) {
+            let mut converged = self.settings.linear || (verdict.converged && change.count() == 0);
+            if converged && !self.settings.linear {
+                for interaction in interactions.iter_mut() {
+                    match interaction.after_convergence(part)? {
+                        Outer::Done => {}
+                        Outer::Again => converged = false,
+                        Outer::Failed(why) => return Ok((records, Some(why))),
+                    }
+                }
+                if !converged {
+                    last = iteration + self.settings.max_iteration;
+                    residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
+                    continue;
+                }
+            }
+            if converged {
                 if self.settings.compute_reactions {
                     write_reactions(part, &residual);
                 }
@@ -344,6 +399,28 @@ impl NewtonRaphson {
         let back: Vec<f64> = lack.iter().map(|d| -d).collect();
         part.dofs.scatter_add(&back, &mut part.nodes);
         lack
+    }
+
+    /// The warning, once a run, that constraints of interactions repeat what others ask for.
+    fn warn_of_redundancy(&mut self, why: &str) -> Option<Diagnostic> {
+        let first = why.lines().next().unwrap_or_default();
+        (!std::mem::replace(&mut self.warned, true)).then(|| {
+            Diagnostic::warning("redundant-constraints", format!("{first}; solved with relaxed constraints")).remedy(
+                "if supports hold both sides of an interface at its edge, leave those nodes out of it; the answer obeys all \
+                 constraints, their multipliers are one choice of many",
+            )
+        })
+    }
+
+    /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by power and inverse power iteration.
+    fn condition_number(&self, monitor: &mut dyn Monitor) -> Option<f64> {
+        match zelus_linear_algebra::condition_number(&self.assembler.system()) {
+            Ok(spectrum) => Some(spectrum.condition_number()),
+            Err(error) => {
+                monitor.note(&format!("condition number: {error}"));
+                None
+            }
+        }
     }
 
     pub(super) fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {

@@ -19,6 +19,9 @@ pub struct IterationRecord {
     pub linear_residual: f64,
     /// Engine of the linear solve.
     pub engine: String,
+    /// Condition number of the system, where it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub condition_number: Option<f64>,
 }
 
 /// One step, or one attempt at it.
@@ -36,6 +39,9 @@ pub struct StepRecord {
     pub iterations: Vec<IterationRecord>,
     /// Why it did not converge.
     pub failure: Option<String>,
+    /// Whether it failed because the system of equations was singular.
+    #[serde(skip)]
+    pub singular: bool,
     /// Numbers of the interactions by name, e.g. active nodes.
     pub interactions: Vec<(String, f64)>,
 }

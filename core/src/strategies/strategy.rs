@@ -35,8 +35,8 @@ pub trait SolutionStrategy: Send {
     /// Solves the step whose time, fixities and prescribed values are set; the record says whether it converged.
     ///
     /// # Errors
-    /// A singular system, a failed solver or search. An entity that cannot be computed (e.g. inverted) makes the step
-    /// not converged instead.
+    /// A singular system, a failed solver or search. An entity that cannot be computed (e.g. inverted), and with interactions
+    /// a singular system, make the step not converged instead.
     fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord>;
 
     /// The step is accepted: history advances, once.

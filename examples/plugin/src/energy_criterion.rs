@@ -57,5 +57,6 @@ register! { SolverExtension "energy_settings",
         variables: |_| Ok(Vec::new()),
         marks: |_| Ok(Vec::new()),
         cutting: |_| Ok(None),
+        values: |_| Ok(Vec::new()),
     }),
 }

@@ -10,8 +10,8 @@ use zelus_core::vector3::{dot, sub};
 
 use super::contact_criterion::{Form, Tolerance, measure_primary};
 use crate::formulations::NodeState;
+use crate::friction_law::smooth_nodes;
 use crate::mortar::tangential;
-use crate::variables::FRICTION_COEFFICIENT;
 
 /// The criterion of the families with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,10 +79,10 @@ fn split(measures: &Measures<'_>, vector: &[f64], whole: bool) -> Sizes {
         }
     }
     let normals = nodes.history.get(NORMAL.name());
-    let friction = nodes.values.values(&FRICTION_COEFFICIENT, 0);
+    let is_smooth = smooth_nodes(nodes);
     let mut sizes = Sizes::default();
     for (at, (values, count)) in entries.into_iter().enumerate().filter(|(_, (_, count))| *count > 0) {
-        let smooth = friction.get(at).is_none_or(|mu| *mu < f64::EPSILON);
+        let smooth = is_smooth(at);
         let part = match NodeState::of_flags(&nodes.flags, at) {
             NodeState::Stick if !smooth => 1,
             NodeState::Slip if !smooth => 2,

@@ -8,4 +8,6 @@ mod mesh_tying;
 mod mpc;
 mod penalty_frictional;
 mod penalty_frictionless;
+mod perturbed_lagrangian_frictionless;
 mod shapes;
+mod uzawa_frictionless;

@@ -1,18 +1,19 @@
-//! Coulomb friction by the augmented Lagrangian with a vector multiplier.
+//! Friction by the augmented Lagrangian with a vector multiplier.
 //!
 //! - inactive: p = 0, b_λ = −k²/ε (λ·n) n − k²/(κε) P λ;
-//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k²/ε (P λ − P q/k) with q = −μ (k λ·n + ε g̃) τ;
+//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k²/ε (P λ − P q/k) with q = b(k λ·n + ε g̃) τ, b the bound of the law of friction;
 //! - stick: p = f (k λ + ε g̃ n + κ ε s), b_λ = k g̃ n + k s.
 //!
+//! In space the direction τ of sliding turns with the trial traction, which the tangent knows.
 //! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
 //! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference.
 
-use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
+use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode, Turning};
 use crate::mortar::{Operators, incremental_slip, is_objective, objective_slip, tangential};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::dot;
 
-/// Augmented Lagrangian with Coulomb friction.
+/// Augmented Lagrangian with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AlmFrictional {
     /// Scale factor k of the multipliers: traction = k λ.
@@ -51,6 +52,20 @@ impl AlmFrictional {
     }
 }
 
+/// What the turning of the direction of sliding adds to the traction of a pair: nothing but a derivative, for the direction
+/// itself is that of the present state.
+fn turned<T: Real>(node: &SlaveNode, lambda_t: [T; 3], slip: [T; 3], bound: f64) -> [T; 3] {
+    let Turning { by_slip, by_multiplier } = node.turning;
+    if by_slip == 0.0 {
+        return [T::zero(); 3];
+    }
+    let change: [T; 3] = std::array::from_fn(|c| {
+        (slip[c] - slip[c].value()) * by_slip + (lambda_t[c] - lambda_t[c].value()) * (by_multiplier * bound)
+    });
+    let along = change[0] * node.tangent[0] + change[1] * node.tangent[1] + change[2] * node.tangent[2];
+    std::array::from_fn(|c| change[c] - along * node.tangent[c])
+}
+
 impl Formulation for AlmFrictional {
     const MULTIPLIERS: Multipliers = Multipliers::Vector;
     type History<const NS: usize, const NM: usize> = SlipHistory<NS, NM>;
@@ -77,8 +92,9 @@ impl Formulation for AlmFrictional {
                     continue;
                 }
                 NodeState::Slip => {
-                    let bound = (lambda_n * k + augmentation) * -node.friction;
-                    let q = tangential(node.tangent.map(|t| bound * t), n);
+                    let bound = node.friction.at(lambda_n * k + augmentation);
+                    let turning = turned(node, lambda_t, slip[j], bound.value());
+                    let q = tangential(std::array::from_fn(|c| bound * node.tangent[c] + turning[c]), n);
                     out.multipliers[j] =
                         std::array::from_fn(|c| n[c] * gap[j] * k - (lambda_t[c] * k - q[c]) * (k / penalty));
                     0.0

@@ -9,7 +9,7 @@
 //! node by node, each with its components.
 //!
 //! Notation in the files of the families: k scale factor, ε nodal penalty, f dynamic factor, n nodal normal,
-//! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, μ friction coefficient, τ unit tangent.
+//! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, b bound of the tangential traction, τ unit tangent.
 //! All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
 
 pub mod alm_frictional;
@@ -19,16 +19,20 @@ pub mod mesh_tying;
 pub mod pair;
 pub mod penalty_frictional;
 pub mod penalty_frictionless;
+pub mod perturbed_lagrangian_frictionless;
 pub mod system;
+pub mod uzawa_frictionless;
 
 pub use alm_frictional::{AlmFrictional, SlipHistory};
 pub use alm_frictionless::AlmFrictionless;
 pub use alm_frictionless_components::AlmFrictionlessComponents;
 pub use mesh_tying::MeshTying;
-pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode};
+pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
 pub use penalty_frictional::PenaltyFrictional;
 pub use penalty_frictionless::PenaltyFrictionless;
+pub use perturbed_lagrangian_frictionless::PerturbedLagrangianFrictionless;
 pub use system::{OperatorTangent, local_size, residual, tangent};
+pub use uzawa_frictionless::UzawaFrictionless;
 
 use zelus_core::scalar::Real;
 

@@ -1,5 +1,6 @@
 //! What a formulation sees of a pair, and what it returns.
 
+use crate::friction_law::Bound;
 use crate::mortar::{Operators, weighted_gap};
 use zelus_core::model::flags::{ACTIVE, Flags, SLIP};
 use zelus_core::scalar::Real;
@@ -43,10 +44,24 @@ pub struct SlaveNode {
     pub penalty: f64,
     /// Factor f on nodal forces, 1 unless the dynamic factor is in use.
     pub dynamic_factor: f64,
-    /// Friction coefficient μ ≥ 0.
-    pub friction: f64,
+    /// Limit of the tangential traction.
+    pub friction: Bound,
     /// Unit tangent τ: the direction of sliding.
     pub tangent: [f64; 3],
+    /// How that direction turns with the unknowns.
+    pub turning: Turning,
+}
+
+/// How the direction of sliding of a node turns with its trial traction q̂ = k P λ + κ ε WS, τ = q̂/|q̂|.
+///
+/// Zero where the direction is a sign, as in the plane. It enters the tangent only; without it a body that slides is free
+/// across its direction.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Turning {
+    /// κ ε B/|q̂| with the bounds B of all pairs of the node together: traction by weighted slip across τ.
+    pub by_slip: f64,
+    /// k/|q̂|: traction by multiplier across τ, in shares of the pair's bound.
+    pub by_multiplier: f64,
 }
 
 /// Operators, positions, normals and multipliers of a pair in one scalar.

@@ -1,6 +1,6 @@
-//! Coulomb friction by the penalty method.
+//! Friction by the penalty method.
 //!
-//! Normal part p = f ε g̃ n through D and M. Tangential part t = −μ ε g̃ τ (slip) or κ ε s (stick) through the *changes* of
+//! Normal part p = f ε g̃ n through D and M. Tangential part t = b(ε g̃) τ (slip, b the bound of the law) or κ ε s (stick) through the *changes* of
 //! the operators since the start of the step: b_slave −= f (D − D°)ᵀ P t, b_master += f (M − M°)ᵀ P t, with s objective.
 
 use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
@@ -8,7 +8,7 @@ use crate::mortar::{Operators, objective_slip, tangential};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
-/// Penalty method with Coulomb friction.
+/// Penalty method with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenaltyFrictional {
     /// Ratio κ of tangential to normal penalty.
@@ -35,7 +35,7 @@ impl Formulation for PenaltyFrictional {
             let pressure = gap[j] * node.penalty;
             let friction = match node.state {
                 NodeState::Inactive => continue,
-                NodeState::Slip => node.tangent.map(|t| pressure * (-node.friction * t)),
+                NodeState::Slip => node.tangent.map(|t| node.friction.at(pressure) * t),
                 NodeState::Stick => slip[j].map(|s| s * (self.tangent_factor * node.penalty)),
             };
             out.add_nodal_force(&pair.operators, j, scale(n, pressure * node.dynamic_factor));

@@ -1,6 +1,7 @@
 //! Tangents against central differences, balance of forces, and the algebra of single families.
 
 use super::*;
+use crate::friction_law::Bound;
 use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
 use crate::mortar::{Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential};
 use zelus_core::vector3::normalised;
@@ -16,11 +17,12 @@ fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, stat
         state: states[j % 3],
         penalty: 20.0 + 5.0 * noise.next(),
         dynamic_factor: 0.8 + 0.1 * noise.next(),
-        friction: 0.4,
+        friction: Bound { coefficient: 0.4, threshold: 0.0 },
         tangent: normalised(tangential(
             std::array::from_fn(|c| if c < dim { noise.next() } else { 0.0 }),
             pair_normals[j],
         )),
+        turning: Turning::default(),
     })
 }
 
@@ -145,8 +147,9 @@ fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec
             state: [NodeState::Inactive, NodeState::Stick, NodeState::Slip][line[30 + j] as usize],
             penalty: line[32 + j],
             dynamic_factor: line[34 + j],
-            friction: 0.4,
+            friction: Bound { coefficient: 0.4, threshold: 0.0 },
             tangent: vector(8 + j),
+            turning: Turning::default(),
         });
         let expected = &line[36..];
         let mut rhs = vec![0.0; expected.len()];
@@ -229,8 +232,9 @@ fn sign_of_the_contact_force() {
         state: NodeState::Slip,
         penalty: 50.0,
         dynamic_factor: 1.0,
-        friction: 0.0,
+        friction: Bound::default(),
         tangent: [1.0, 0.0, 0.0],
+        turning: Turning::default(),
     };
     let mut rhs = [0.0; 24];
     residual(&PenaltyFrictionless, &pair, &SegmentationSettings::default(), &[node; 4], &[[0.0; 3]; 4], &(), &mut rhs);

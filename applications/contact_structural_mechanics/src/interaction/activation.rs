@@ -8,13 +8,14 @@ use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::scale;
 
 use super::step_parameters::StepParameters;
-use crate::active_set::{self, SlaveNumbers, SlipRule};
+use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
 use crate::formulations::NodeState;
+use crate::friction_law::FrictionLaw;
 use crate::mortar::tangent;
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, FRICTION_COEFFICIENT, INITIAL_PENALTY,
-    NODAL_AREA, NODAL_H, NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
+    NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Gap, in mesh sizes, of the simple activation.
@@ -28,7 +29,7 @@ pub(super) fn clear_inactive_multipliers(part: &mut ModelPart, multiplier: Multi
     let history = &mut part.nodes.history;
     match multiplier {
         Multiplier::None => {}
-        Multiplier::Scalar(variable) => {
+        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
             let column = history.values_mut(variable, 0);
             inactive.iter().for_each(|&n| column[n as usize] = 0.0);
         }
@@ -55,7 +56,13 @@ pub(super) enum Start<'a> {
 /// A node in `at_origin`, which faces the very origin of the coordinates, starts inactive unless it is active already: Kratos
 /// takes it as unmapped. Normals of the step are those after its first iteration, so the first guess decides a little of
 /// the answer and is the same here.
-pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, at_origin: &BTreeSet<u32>, rule: SlipRule) {
+pub(super) fn start(
+    part: &mut ModelPart,
+    slaves: &[u32],
+    start: Start<'_>,
+    at_origin: &BTreeSet<u32>,
+    friction: (&FrictionLaw, SlipRule),
+) {
     let gaps: Vec<f64> = {
         let weighted = part.nodes.history.values(&WEIGHTED_GAP, 0);
         let areas = part.nodes.values.values(&NODAL_AREA, 0);
@@ -74,8 +81,8 @@ pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, at_o
         slaves.iter().zip(&gaps).map(|(n, gap)| near((n, gap)) && !unmapped(n)).collect()
     };
     let slides: Vec<bool> = {
-        let friction = part.nodes.values.values(&FRICTION_COEFFICIENT, 0);
-        let smooth = |n: u32| friction.get(n as usize).is_none_or(|mu| *mu < f64::EPSILON);
+        let (law, rule) = friction;
+        let smooth = |n: u32| law.bound_at(&part.nodes, n as usize).is_smooth();
         slaves.iter().map(|&n| rule == SlipRule::Pure || smooth(n)).collect()
     };
     for (at, &node) in slaves.iter().enumerate() {
@@ -94,13 +101,20 @@ pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, at_o
     }
 }
 
-/// The active set of the iteration, by the rules of [`active_set`].
+/// What the rules of [`active_set`] want of every slave node, and the states the nodes are in.
 ///
-/// A node that becomes active starts from its augmented pressure; one that becomes inactive keeps its multiplier, which the
-/// next solve drives to zero. Nodes that nothing overlaps are not in contact.
-pub(super) fn update(part: &mut ModelPart, slaves: &[u32], family: &Family, parameters: &StepParameters) -> SetChange {
-    let mut change = SetChange::default();
+/// Nodes that nothing overlaps are not in contact. When nothing changes at all, sliding nodes that friction pushes along
+/// their motion stick, each once a step: those in `released` did before.
+pub(super) fn decide(
+    part: &ModelPart,
+    slaves: &[u32],
+    family: &Family,
+    parameters: &StepParameters,
+    released: &mut BTreeSet<u32>,
+) -> (Vec<(u32, Decision)>, Vec<NodeState>) {
     let mut decisions = Vec::with_capacity(slaves.len());
+    let mut states = Vec::with_capacity(slaves.len());
+    let mut pushed = Vec::new();
     for &node in slaves {
         let at = node as usize;
         let numbers = numbers(part, at, family, parameters);
@@ -112,7 +126,36 @@ pub(super) fn update(part: &mut ModelPart, slaves: &[u32], family: &Family, para
         if part.nodes.flags.is(ISOLATED, at) {
             decision = active_set::inactive(&numbers, decision.pressure);
         }
+        let multipliers = family.frictional() && !family.penalty;
+        if multipliers && !released.contains(&node) && active_set::is_pushed(&numbers, parameters.slip_rule) {
+            pushed.push(decisions.len());
+        }
         decisions.push((node, decision));
+        states.push(numbers.state);
+    }
+    if decisions.iter().zip(&states).all(|((_, decision), was)| decision.state == *was) {
+        for at in pushed {
+            decisions[at].1.stay(NodeState::Stick, NodeState::Slip);
+            released.insert(decisions[at].0);
+        }
+    }
+    (decisions, states)
+}
+
+/// Makes the decisions of an iteration the active set.
+///
+/// A node that becomes active starts from its augmented pressure; one that becomes inactive keeps its multiplier, which the
+/// next solve drives to zero.
+pub(super) fn apply(
+    part: &mut ModelPart,
+    decisions: &[(u32, Decision)],
+    before: &[NodeState],
+    family: &Family,
+    parameters: &StepParameters,
+) -> SetChange {
+    let mut change = SetChange::default();
+    for ((node, decision), &was) in decisions.iter().zip(before) {
+        let at = *node as usize;
         let (id, active) = (part.nodes.ids[at], decision.state.is_active());
         match (decision.changed, active) {
             (true, true) => change.activated.push(id),
@@ -127,14 +170,20 @@ pub(super) fn update(part: &mut ModelPart, slaves: &[u32], family: &Family, para
             part.nodes.flags.undefine(SLIP, at);
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0)[3 * at..3 * at + 3].fill(0.0);
         }
-        let slides = decision.state == NodeState::Slip && numbers.state != NodeState::Slip;
+        if let Multiplier::Outer(variable) = family.multiplier
+            && !active
+        {
+            part.nodes.history.values_mut(variable, 0)[at] = 0.0;
+        }
+        let slides = decision.state == NodeState::Slip && was != NodeState::Slip;
         if slides && family.frictional() && decision.traction != [0.0; 3] {
-            let direction = tangent(decision.traction, numbers.normal, part.info.domain_size);
+            let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, at));
+            let direction = tangent(decision.traction, normal, part.info.domain_size);
             part.nodes.values.values_mut(&TANGENT_XI, 0)[3 * at..3 * at + 3].copy_from_slice(&direction);
         }
         if let Some(multiplier) = decision.multiplier {
             match family.multiplier {
-                Multiplier::None => {}
+                Multiplier::None | Multiplier::Outer(_) => {}
                 Multiplier::Scalar(variable) => {
                     part.nodes.history.values_mut(variable, 0)[at] = decision.pressure / parameters.scale_factor;
                 }
@@ -148,7 +197,7 @@ pub(super) fn update(part: &mut ModelPart, slaves: &[u32], family: &Family, para
     decisions.iter().for_each(|(n, decision)| pressures[*n as usize] = decision.pressure);
     if family.frictional() {
         let tractions = part.nodes.values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
-        for (n, decision) in &decisions {
+        for (n, decision) in decisions {
             tractions[3 * *n as usize..3 * *n as usize + 3].copy_from_slice(&decision.traction);
         }
     }
@@ -162,7 +211,7 @@ fn numbers(part: &ModelPart, at: usize, family: &Family, parameters: &StepParame
     let normal = vector_of(NORMAL.name());
     let multiplier = match family.multiplier {
         Multiplier::None => [0.0; 3],
-        Multiplier::Scalar(variable) => scale(normal, history.values(variable, 0)[at]),
+        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => scale(normal, history.values(variable, 0)[at]),
         Multiplier::Vector(variable) => vector_of(variable.name()),
     };
     SlaveNumbers {
@@ -178,7 +227,7 @@ fn numbers(part: &ModelPart, at: usize, family: &Family, parameters: &StepParame
             .get(3 * at..3 * at + 3)
             .map_or([0.0; 3], |t| [t[0], t[1], t[2]]),
         penalty: part.nodes.values.values(&INITIAL_PENALTY, 0)[at],
-        friction: part.nodes.values.values(&FRICTION_COEFFICIENT, 0).get(at).copied().unwrap_or(0.0),
+        friction: parameters.friction_law.bound_at(&part.nodes, at),
         scale_factor: parameters.scale_factor,
         tangent_factor: parameters.tangent_factor,
     }

@@ -20,22 +20,46 @@ pub struct AdaptationSettings {
     pub dynamic_factor: bool,
 }
 
+/// The gap at which explicit steps stiffen the penalty (`advance_explicit_parameters`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ExplicitGap {
+    /// The mean mesh size.
+    MeanMeshSize,
+    /// This length.
+    Given(f64),
+}
+
+impl ExplicitGap {
+    /// The gap itself (length).
+    pub(super) fn threshold(self, part: &ModelPart) -> f64 {
+        match self {
+            Self::Given(gap) => gap,
+            Self::MeanMeshSize => {
+                let sizes = part.nodes.values.values(&NODAL_H, 0);
+                sizes.iter().sum::<f64>() / sizes.len().max(1) as f64
+            }
+        }
+    }
+}
+
 impl AdaptationSettings {
     /// Whether anything is to be done.
     pub(super) fn acts(self) -> bool {
         self.adapt_penalty || self.dynamic_factor
     }
 
-    /// Weighted gaps of the slave nodes before the next integration, when they will be needed.
-    pub(super) fn gaps(self, part: &ModelPart, slaves: &[u32]) -> Vec<f64> {
-        let gaps = part.nodes.history.values(&WEIGHTED_GAP, 0);
+    /// Weighted gaps of the slave nodes before the next integration, when they will be needed: those of the last iterate,
+    /// in explicit steps those of the last step.
+    pub(super) fn gaps(self, part: &ModelPart, slaves: &[u32], explicit: bool) -> Vec<f64> {
+        let gaps = part.nodes.history.values(&WEIGHTED_GAP, usize::from(explicit));
         if self.acts() { slaves.iter().map(|&n| gaps[n as usize]).collect() } else { Vec::new() }
     }
 
     /// Adapts INITIAL_PENALTY and DYNAMIC_FACTOR of the active slave nodes.
     ///
-    /// `penalty` is the penalty of the run and `previous` the weighted gaps of the last iterate.
-    pub(super) fn adapt(self, part: &mut ModelPart, slaves: &[u32], penalty: f64, previous: &[f64]) {
+    /// `penalty` is the penalty of the run, `previous` the weighted gaps of the last iterate, and `max_gap` the gap at which
+    /// explicit steps stiffen the penalty, 0 in implicit ones, which have no bound on that growth.
+    pub(super) fn adapt(self, part: &mut ModelPart, slaves: &[u32], penalty: f64, previous: &[f64], max_gap: f64) {
         if !self.acts() {
             return;
         }
@@ -51,8 +75,7 @@ impl AdaptationSettings {
             let before = before / area;
             let mut adapted = values.values(&INITIAL_PENALTY, 0)[at];
             if self.dynamic_factor {
-                // The growth of the penalty with the gap belongs to explicit steps: implicit ones have no bound on it.
-                let (base, factor) = dynamic_factor(penalty, gap, before, self.max_gap_factor, 0.0);
+                let (base, factor) = dynamic_factor(penalty, gap, before, self.max_gap_factor, max_gap);
                 if !self.adapt_penalty {
                     adapted = base;
                 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use zelus_core::Result;
 use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, SetChange};
+use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, Outer, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
 use zelus_core::parameters::Interval;
@@ -14,9 +14,12 @@ use zelus_core::registry::{self, Kind};
 use zelus_core::vector3::norm;
 
 use super::activation::{self, Start};
-use super::adaptation::AdaptationSettings;
+use super::adaptation::{AdaptationSettings, ExplicitGap};
+use super::cycling::CycleGuard;
 use super::friction::{self, FrictionSettings};
+use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
+use super::uzawa::{Uzawa, UzawaSettings};
 use crate::active_set::SlipRule;
 use crate::interface::{
     AlmParameters, Facet, Interface, Roles, add_contact_part, alm_parameters, centre_normal, find_nodal_h, interfaces,
@@ -24,10 +27,11 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
-    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes,
+    ContactBlock, Family, Integral, Multiplier, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes,
 };
 use crate::search::{
-    Candidate, GapCheck, SearchSettings, assign_roles, candidates, late_pairs, touching_nodes, warn_of_reach,
+    Candidate, GapCheck, SearchSettings, assign_roles, candidates, late_pairs, predicted_positions, touching_nodes,
+    warn_of_reach,
 };
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
@@ -54,6 +58,8 @@ pub struct ContactSettings {
     pub active_check_factor: f64,
     /// Whether activation goes by 0.002 of the mesh size instead.
     pub simple_search: bool,
+    /// Whether the factors of the search grow with the ratio of the largest and the smallest mesh size.
+    pub adapt_search: bool,
     /// Steps between searches.
     pub database_step_update: usize,
     /// Penalty and scale factor given by hand.
@@ -74,6 +80,12 @@ pub struct ContactSettings {
     pub friction: FrictionSettings,
     /// What of the parameters is adapted in every iteration.
     pub adaptation: AdaptationSettings,
+    /// Whether augmented pressures of inactive nodes are zero after a step.
+    pub clear_inactive: bool,
+    /// How far Uzawa's outer loop goes, where the family has one.
+    pub uzawa: UzawaSettings,
+    /// How explicit steps adapt the penalty; `None` in implicit ones.
+    pub explicit: Option<ExplicitGap>,
     /// Multiple of the geometric tolerance.
     pub zero_tolerance_factor: f64,
     /// Gauss rule on the cells.
@@ -102,6 +114,16 @@ pub struct ContactInteraction {
     touching: BTreeSet<u32>,
     /// Slave nodes that face the origin of the coordinates, see [`activation::start`].
     at_origin: BTreeSet<u32>,
+    /// Weighted gaps averaged over the pairs of a node by area.
+    mean_gaps: Vec<f64>,
+    uzawa: Uzawa,
+    /// Gap at which explicit steps stiffen the penalty; 0 in implicit ones (length).
+    max_gap: f64,
+    /// Overlapping pairs of every node.
+    pair_counts: Vec<u32>,
+    cycles: CycleGuard,
+    /// Nodes that were pushed along their motion in this step and stick since.
+    released: BTreeSet<u32>,
 }
 
 impl ContactInteraction {
@@ -117,6 +139,7 @@ impl ContactInteraction {
             scale_factor: 1.0,
             tangent_factor: settings.tangent_factor,
             operator_threshold: settings.operator_threshold,
+            friction_law: settings.friction.law,
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
         });
@@ -136,7 +159,26 @@ impl ContactInteraction {
             warned_of_friction: false,
             touching: BTreeSet::new(),
             at_origin: BTreeSet::new(),
+            mean_gaps: Vec::new(),
+            uzawa: Uzawa::default(),
+            max_gap: 0.0,
+            pair_counts: Vec::new(),
+            cycles: CycleGuard::default(),
+            released: BTreeSet::new(),
         })
+    }
+
+    /// Meshes of very different sizes need a longer reach: both factors grow with the ratio of the sizes.
+    fn adapt_search(&mut self, part: &ModelPart) {
+        if !self.settings.adapt_search {
+            return;
+        }
+        let sizes = part.nodes.values.values(&NODAL_H, 0).iter().copied().filter(|h| *h > 0.0);
+        let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), h| (least.min(h), most.max(h)));
+        if most > 0.0 {
+            self.settings.search.factor *= most / least;
+            self.settings.active_check_factor *= most / least;
+        }
     }
 
     fn pairs(&self) -> Vec<Pair> {
@@ -158,6 +200,7 @@ impl ContactInteraction {
     /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
     fn search(&mut self, part: &mut ModelPart) -> Result<()> {
         self.assign_open_roles(part);
+        let still = predicted_positions(part, self.settings.search.dynamic);
         let role = |key: &PairKey, facet: u32| self.facet(key.interface, facet).role;
         let mut known: BTreeMap<PairKey, Pair> = self
             .pairs()
@@ -187,6 +230,9 @@ impl ContactInteraction {
                     place.insert(self.pair(part, key));
                 }
             }
+        }
+        if let Some(still) = still {
+            part.nodes.current = still;
         }
         let before: Vec<PairKey> = self.pairs().iter().map(|pair| pair.key).collect();
         self.make_blocks(known.into_values().collect())?;
@@ -326,9 +372,9 @@ impl ContactInteraction {
         let (integrals, meetings) = self.integrals(part);
         let mut meetings = meetings.into_iter();
         let count = part.nodes.len();
-        let (mut gap, mut area) = (vec![0.0; count], vec![0.0; count]);
+        let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-        let mut lonely = vec![true; count];
+        let mut pairs = vec![0_u32; count];
         for (block, integrals) in self.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
                 let overlaps = meetings.next().is_some_and(|meeting| meeting.overlapping);
@@ -338,8 +384,9 @@ impl ContactInteraction {
                 }
                 for (local, &node) in block.slave_nodes(at).iter().enumerate() {
                     let node = node as usize;
-                    lonely[node] = false;
+                    pairs[node] += 1;
                     gap[node] += integral.gap[local];
+                    mean[node] += integral.gap[local] * integral.area[local];
                     area[node] += integral.area[local];
                     (0..3).for_each(|c| slip[node][c] += integral.slip[local][c]);
                     (0..3).for_each(|c| mapped[node][c] += integral.mapped[local][c]);
@@ -347,13 +394,16 @@ impl ContactInteraction {
             }
         }
         if part.partition.is_some() {
-            let columns = [(1, &mut gap[..]), (1, &mut area[..])];
+            let columns = [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..])];
             let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
             add_up_nodes(&self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         }
         for &node in &self.slaves {
-            part.nodes.flags.set(ISOLATED, node as usize, lonely[node as usize]);
+            part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
         }
+        self.pair_counts = pairs;
+        mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
+        self.mean_gaps = mean;
         let at_origin = |&node: &u32| norm(mapped[node as usize]) <= f64::EPSILON * area[node as usize];
         self.at_origin = self.slaves.iter().copied().filter(at_origin).collect();
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
@@ -376,7 +426,8 @@ impl ContactInteraction {
 
     fn write_tangents(&self, part: &mut ModelPart) {
         if self.settings.family.frictional() {
-            friction::write_tangents(part, &self.slaves, self.settings.family, self.parameters.slip_rule);
+            let counts = &self.pair_counts;
+            sliding::write_tangents(part, &self.slaves, self.settings.family, &self.parameters, counts);
         }
     }
 
@@ -444,6 +495,9 @@ impl ContactInteraction {
     }
 }
 
+/// Share of the scale factor that makes redundant multipliers regular.
+const RELAXATION: f64 = 1e-8;
+
 /// How the facets of a pair meet.
 #[derive(Debug, Clone, Copy)]
 struct Meeting {
@@ -484,12 +538,13 @@ impl Interaction for ContactInteraction {
             part.nodes.history.add(&WEIGHTED_SLIP);
         }
         find_nodal_h(part);
-        part.info.marks.insert(CONTACT, true);
+        self.adapt_search(part);
+        part.info.marks.insert(CONTACT, self.settings.explicit.is_none());
         if !self.updates_normals() {
             part.info.marks.insert(NORMALS_OF_FIRST_ITERATION, true);
         }
-        self.settings.adaptation.dynamic_factor =
-            part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name());
+        self.settings.adaptation.dynamic_factor = self.settings.explicit.is_some()
+            || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
         if part.info.is(SIMPLIFIED_SEMI_SMOOTH_NEWTON) {
             let fact =
                 "\"simplified_semi_smooth_newton\" is not followed: the active set is updated in every iteration";
@@ -499,6 +554,7 @@ impl Interaction for ContactInteraction {
             );
         }
         self.set_parameters(part);
+        self.max_gap = self.settings.explicit.map_or(0.0, |explicit| explicit.threshold(part));
         self.slaves = slave_nodes(&self.interfaces);
         for node in self.carriers() {
             part.nodes.flags.set(ACTIVE, node as usize, false);
@@ -514,6 +570,9 @@ impl Interaction for ContactInteraction {
 
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.acting = self.settings.interval.contains(part.info.time);
+        self.cycles.begin_step();
+        self.uzawa = Uzawa::default();
+        self.released.clear();
         if !self.acting {
             self.switch_off(part);
             return Ok(());
@@ -532,8 +591,9 @@ impl Interaction for ContactInteraction {
             GapCheck::CheckMapping if self.settings.simple_search => Start::ShareOfMeshSize,
             GapCheck::CheckMapping => Start::Reach(self.settings.active_check_factor * self.threshold),
         };
-        activation::start(part, &self.slaves, start, &self.at_origin, self.parameters.slip_rule);
-        friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, self.settings.friction.reset_frequency);
+        let friction = (self.parameters.friction_law, self.parameters.slip_rule);
+        activation::start(part, &self.slaves, start, &self.at_origin, friction);
+        friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, &self.settings.friction);
         self.refresh_pair_normals(part, self.updates_normals());
         for block in &mut self.blocks {
             block.keep_operators(&part.view(), &|nodes| part.evaluates_pair(nodes));
@@ -560,10 +620,20 @@ impl Interaction for ContactInteraction {
             self.refresh_pair_normals(part, true);
         }
         let adaptation = self.settings.adaptation;
-        let gaps = adaptation.gaps(part, &self.slaves);
+        let gaps = adaptation.gaps(part, &self.slaves, self.settings.explicit.is_some());
         self.integrate(part);
-        let change = activation::update(part, &self.slaves, self.settings.family, &self.parameters);
-        adaptation.adapt(part, &self.slaves, part.info.value_or(INITIAL_PENALTY.name(), 1.0), &gaps);
+        let family = self.settings.family;
+        let (mut decisions, before) =
+            activation::decide(part, &self.slaves, family, &self.parameters, &mut self.released);
+        self.cycles.restrict(&mut decisions, &before, &part.nodes.initial);
+        part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
+        let change = activation::apply(part, &decisions, &before, family, &self.parameters);
+        let penalty = part.info.value_or(INITIAL_PENALTY.name(), 1.0);
+        adaptation.adapt(part, &self.slaves, penalty, &gaps, self.max_gap);
+        if self.settings.explicit.is_some() {
+            let touching = self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize));
+            part.info.marks.insert(CONTACT, touching);
+        }
         self.write_tangents(part);
         if part.info.is(ENSURE_CONTACT)
             && change.count() == 0
@@ -576,17 +646,31 @@ impl Interaction for ContactInteraction {
         Ok(change)
     }
 
+    fn after_convergence(&mut self, part: &mut ModelPart) -> Result<Outer> {
+        let Multiplier::Outer(variable) = self.settings.family.multiplier else { return Ok(Outer::Done) };
+        if !self.acting {
+            return Ok(Outer::Done);
+        }
+        let (scale_factor, settings) = (self.parameters.scale_factor, self.settings.uzawa);
+        Ok(self.uzawa.update(part, &self.slaves, variable, &self.mean_gaps, scale_factor, settings))
+    }
+
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.warn_of_late_pairs(part)?;
-        let inactive: Vec<u32> =
-            self.slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ACTIVE, n as usize)).collect();
+        let cleared = |n: u32| self.settings.clear_inactive && !part.nodes.flags.is(ACTIVE, n as usize);
+        let inactive: Vec<u32> = self.slaves.iter().copied().filter(|&n| cleared(n)).collect();
         let pressure = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
         inactive.iter().for_each(|&n| pressure[n as usize] = 0.0);
         if self.settings.family.frictional() {
             let traction = part.nodes.values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
             inactive.iter().for_each(|&n| traction[3 * n as usize..3 * n as usize + 3].fill(0.0));
             if !self.warned_of_friction {
-                let warning = friction::warn_of_pushing(part, &self.slaves, self.settings.family.multiplier);
+                let warning = friction::warn_of_pushing(
+                    part,
+                    &self.slaves,
+                    self.settings.family.multiplier,
+                    self.settings.friction.law,
+                );
                 self.warned_of_friction = warning.is_some();
                 part.messages.extend(warning);
             }
@@ -614,6 +698,10 @@ impl Interaction for ContactInteraction {
         self.parameters.scale_factor
     }
 
+    fn relaxation(&self) -> Option<f64> {
+        Some(RELAXATION * self.parameters.scale_factor)
+    }
+
     fn save(&mut self) {
         self.saved = self.pairs();
     }
@@ -633,6 +721,10 @@ impl Interaction for ContactInteraction {
         let areas = part.nodes.values.values(&NODAL_AREA, 0);
         let deepest = self.slaves.iter().map(|&n| n as usize).filter(|&n| areas.get(n).is_some_and(|a| *a > 0.0));
         let deepest = deepest.map(|n| gaps[n] / areas[n]).fold(0.0, f64::min);
-        vec![("pairs", pairs as f64), ("active nodes", active as f64), ("deepest penetration", -deepest)]
+        let mut out = vec![("pairs", pairs as f64), ("active nodes", active as f64), ("deepest penetration", -deepest)];
+        if matches!(self.settings.family.multiplier, Multiplier::Outer(_)) {
+            out.extend([("multiplier updates", self.uzawa.updates as f64), ("rate", self.uzawa.rate)]);
+        }
+        out
     }
 }

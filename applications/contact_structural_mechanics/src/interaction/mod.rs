@@ -3,17 +3,21 @@
 mod activation;
 mod adaptation;
 mod contact_interaction;
+mod cycling;
 mod friction;
 mod mpc_interaction;
 mod mpc_relation;
 mod nodal_forces;
+mod sliding;
 mod step_parameters;
 mod tying_interaction;
+mod uzawa;
 
-pub use adaptation::AdaptationSettings;
+pub use adaptation::{AdaptationSettings, ExplicitGap};
 pub use contact_interaction::{ContactInteraction, ContactSettings};
 pub use friction::FrictionSettings;
 pub use mpc_interaction::{MpcInteraction, MpcKind, MpcSettings};
 pub use mpc_relation::Weights;
 pub use step_parameters::{NormalVariation, StepParameters};
 pub use tying_interaction::{TyingInteraction, TyingSettings};
+pub use uzawa::UzawaSettings;

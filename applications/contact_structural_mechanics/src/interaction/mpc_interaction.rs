@@ -25,7 +25,7 @@ use crate::mortar::SegmentationSettings;
 use crate::pairs::{FacetPair, Friction, PairKey, condition_name, facet_operators, overlapping_pairs};
 use crate::search::{SearchSettings, warn_of_reach};
 use crate::solver::UPDATE_EACH_ITERATION;
-use crate::variables::{FRICTION_COEFFICIENT, NODAL_AREA, NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
+use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 
 /// Penetration, in mesh sizes, below which a free node stays free: round-off of positions.
 const PENETRATION: f64 = 1e-12;
@@ -243,7 +243,7 @@ impl MpcInteraction {
             if was != now {
                 part.nodes.flags.set(ACTIVE, at, now);
                 if now && self.settings.kind == MpcKind::Frictional {
-                    let smooth = part.nodes.values.values(&FRICTION_COEFFICIENT, 0)[at] < f64::EPSILON;
+                    let smooth = self.settings.friction.law.bound_at(&part.nodes, at).is_smooth();
                     part.nodes.flags.set(SLIP, at, smooth || self.slip_rule == SlipRule::Pure);
                 }
                 let list = if now { &mut change.activated } else { &mut change.deactivated };
@@ -268,7 +268,7 @@ impl MpcInteraction {
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             slips[at] = scale(moved, area);
             let held = reaction(part, node);
-            let bound = part.nodes.values.values(&FRICTION_COEFFICIENT, 0)[at] * (-dot(held, n)).max(0.0);
+            let bound = self.settings.friction.law.bound_at(&part.nodes, at).at(dot(held, n).min(0.0));
             let sliding = part.nodes.flags.is(SLIP, at);
             // A sliding node keeps the direction in which it began, a node that began to slide without one goes against
             // its motion.
@@ -363,8 +363,9 @@ impl Interaction for MpcInteraction {
             let nodes: Vec<u32> = self.nodes.keys().copied().collect();
             nodes.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, true));
         } else {
-            activation::start(part, &self.slaves, activation::Start::ShareOfMeshSize, &BTreeSet::new(), self.slip_rule);
-            friction::start_in_stick(part, &self.slaves, self.slip_rule, self.settings.friction.reset_frequency);
+            let friction = (self.settings.friction.law, self.slip_rule);
+            activation::start(part, &self.slaves, activation::Start::ShareOfMeshSize, &BTreeSet::new(), friction);
+            friction::start_in_stick(part, &self.slaves, self.slip_rule, &self.settings.friction);
         }
         self.write_constraints(part);
         Ok(())

@@ -1,6 +1,7 @@
 //! What every pair of a run shares.
 
 use crate::active_set::SlipRule;
+use crate::friction_law::FrictionLaw;
 use crate::mortar::SegmentationSettings;
 
 /// When normals follow the iteration, and whether the tangent knows it.
@@ -34,6 +35,8 @@ pub struct StepParameters {
     pub tangent_factor: f64,
     /// Change of the operators beyond which slip is measured objectively.
     pub operator_threshold: f64,
+    /// What limits tangential tractions.
+    pub friction_law: &'static FrictionLaw,
     /// How stick and slip are told apart.
     pub slip_rule: SlipRule,
     /// When normals follow the iteration.

@@ -19,6 +19,8 @@ pub enum Multiplier {
     None,
     /// One a slave node, along its normal.
     Scalar(&'static Variable<f64>),
+    /// One a slave node, along its normal: a number that an outer loop updates, no unknown.
+    Outer(&'static Variable<f64>),
     /// One a slave node and direction.
     Vector(&'static Variable<[f64; 3]>),
 }
@@ -27,7 +29,7 @@ impl Multiplier {
     /// The unknowns in `dimension` dimensions.
     pub fn unknowns(self, dimension: usize) -> Vec<ScalarVariable> {
         match self {
-            Self::None => Vec::new(),
+            Self::None | Self::Outer(_) => Vec::new(),
             Self::Scalar(variable) => vec![variable.scalar()],
             Self::Vector(variable) => (0..dimension as u8).map(|c| variable.component(c)).collect(),
         }

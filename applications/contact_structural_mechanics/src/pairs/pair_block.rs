@@ -12,10 +12,12 @@ use zelus_core::vector3::{cross, normalised, sub};
 
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode};
+use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::mortar::{Operators, Overlap, PairGeometry, dimension, operators, weighted_gap};
-use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI};
+use crate::variables::{
+    DYNAMIC_FACTOR, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+};
 
 /// A formulation as the blocks use it.
 pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
@@ -167,16 +169,21 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
     fn slave_states(&self, at: usize, view: &StepView<'_>) -> [SlaveNode; NS] {
         let penalty = view.nodes.values.values(&INITIAL_PENALTY, 0);
         let factor = view.nodes.values.values(&DYNAMIC_FACTOR, 0);
-        let friction = view.nodes.values.values(&FRICTION_COEFFICIENT, 0);
         let tangent = view.nodes.values.values(&TANGENT_XI, 0);
+        let by_slip = view.nodes.values.values(&TURNING_BY_SLIP, 0);
+        let by_multiplier = view.nodes.values.values(&TURNING_BY_MULTIPLIER, 0);
         self.slaves(at).map(|n| {
             let node = n as usize;
             SlaveNode {
                 state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
                 dynamic_factor: factor[node],
-                friction: friction.get(node).copied().unwrap_or(0.0),
+                friction: self.parameters.friction_law.bound_at(view.nodes, node),
                 tangent: if tangent.is_empty() { [0.0; 3] } else { vector(tangent, n) },
+                turning: Turning {
+                    by_slip: by_slip.get(node).copied().unwrap_or(0.0),
+                    by_multiplier: by_multiplier.get(node).copied().unwrap_or(0.0),
+                },
             }
         })
     }
@@ -185,7 +192,9 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
         let history = &view.nodes.history;
         self.slaves(at).map(|n| match F::multiplier() {
             Multiplier::None => [0.0; 3],
-            Multiplier::Scalar(variable) => [history.values(variable, 0)[n as usize], 0.0, 0.0],
+            Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
+                [history.values(variable, 0)[n as usize], 0.0, 0.0]
+            }
             Multiplier::Vector(variable) => vector(history.values(variable, 0), n),
         })
     }

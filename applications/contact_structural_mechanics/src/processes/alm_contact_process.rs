@@ -4,23 +4,31 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use zelus_core::Result;
+use zelus_core::analysis::EXPLICIT;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::Model;
+use zelus_core::model::{Model, ModelPart};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
+use super::friction_settings::friction_law;
 use super::interface_settings::{check_positive, check_search};
-use crate::interaction::{AdaptationSettings, ContactInteraction, ContactSettings, FrictionSettings, NormalVariation};
+use crate::compatibility::{Refusal, Use, refusal};
+use crate::interaction::{
+    AdaptationSettings, ContactInteraction, ContactSettings, ExplicitGap, FrictionSettings, NormalVariation,
+    UzawaSettings,
+};
 use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
-use crate::pairs::find_family;
+use crate::pairs::{Family, find_family};
 use crate::search::{GapCheck, SearchSettings};
 
 #[derive(Debug, Deserialize)]
 struct Search {
     simple_search: bool,
+    adapt_search: bool,
+    dynamic_search: bool,
     search_factor: f64,
     active_check_factor: f64,
     database_step_update: usize,
@@ -52,20 +60,26 @@ struct Whole {
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
     contact_type: String,
-    friction_coefficients: BTreeMap<String, f64>,
     normal_variation: NormalVariation,
-    not_normal_update_frictional: bool,
-    slip_augmentation_coefficient: f64,
-    slip_threshold: f64,
-    slip_step_reset_frequency: i64,
-    tangent_factor: f64,
-    operator_threshold: f64,
+    clear_inactive_for_post: bool,
     zero_tolerance_factor: f64,
     integration_order: usize,
     search_parameters: Search,
     #[serde(rename = "advance_ALM_parameters")]
     parameters: Parameters,
     alternative_formulations: Alternatives,
+}
+
+/// The keys of friction; processes whose families have none lack them.
+#[derive(Debug, Deserialize)]
+struct FrictionKeys {
+    friction_coefficients: BTreeMap<String, f64>,
+    not_normal_update_frictional: bool,
+    slip_augmentation_coefficient: f64,
+    slip_threshold: f64,
+    slip_step_reset_frequency: i64,
+    tangent_factor: f64,
+    operator_threshold: f64,
 }
 
 /// The process; all it does is in its interaction.
@@ -76,42 +90,43 @@ pub struct AlmContactProcess {
 
 impl AlmContactProcess {
     fn boxed(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
-        Self::of_families(request, "ALMContact", 1.0, 1.0)
+        Self::of_families(request, &Stem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 })
     }
 
-    /// The process for the families whose names begin with `stem`.
-    ///
-    /// The estimated penalty is multiplied by `penalty_factor`; `least_penalty` takes its place when it is zero.
+    /// The process for the families whose names begin with that of `stem`.
     ///
     /// # Errors
     /// Settings that do not fit.
-    pub(super) fn of_families(
-        request: &mut ProcessRequest<'_>,
-        stem: &str,
-        penalty_factor: f64,
-        least_penalty: f64,
-    ) -> Result<Box<dyn Process>> {
+    pub(super) fn of_families(request: &mut ProcessRequest<'_>, stem: &Stem) -> Result<Box<dyn Process>> {
         let settings = request.settings()?;
-        let family_of = |contact_type: &str| format!("{stem}{contact_type}");
-        let (root, interaction) = interaction(&settings, request, &family_of, penalty_factor, least_penalty)?;
+        let (root, interaction) = interaction(&settings, request, stem)?;
         Ok(Box::new(Self { root, interaction: Some(interaction) }))
     }
 }
 
-/// The interaction that these settings describe; `family_of` turns the contact type into a `mortar_type`.
-pub(super) fn interaction(
+/// The families that a process serves, and how stiff their penalty is.
+pub(super) struct Stem {
+    /// How their names begin; the contact type follows.
+    pub name: &'static str,
+    /// Factor of the estimated penalty.
+    pub penalty_factor: f64,
+    /// What takes the place of an estimate of zero.
+    pub least_penalty: f64,
+}
+
+/// The interaction that these settings describe.
+fn interaction(
     settings: &Settings,
     request: &mut ProcessRequest<'_>,
-    family_of: &dyn Fn(&str) -> String,
-    penalty_factor: f64,
-    least_penalty: f64,
+    families: &Stem,
 ) -> Result<(String, ContactInteraction)> {
     let whole: Whole = settings.parse()?;
     let (stem, updated) = match whole.contact_type.strip_suffix("WithNormalUpdate") {
         Some(stem) => (stem, true),
         None => (whole.contact_type.as_str(), false),
     };
-    let family = find_family(&family_of(stem)).map_err(|d| d.at(settings.key_place("contact_type")))?;
+    let family =
+        find_family(&format!("{}{stem}", families.name)).map_err(|d| d.at(settings.key_place("contact_type")))?;
     let integration_order = IntegrationOrder::new(whole.integration_order).ok_or_else(|| {
         let fact = format!("\"integration_order\" is {}, it must be 1 to 5", whole.integration_order);
         settings.error("integration_order", "integration-order", fact)
@@ -121,10 +136,21 @@ pub(super) fn interaction(
         &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
     )?;
     check_search(settings)?;
+    let keys: Option<FrictionKeys> =
+        settings.node().get("frictional_law").is_some().then(|| settings.parse()).transpose()?;
+    let friction = match &keys {
+        None => FrictionSettings::default(),
+        Some(keys) => FrictionSettings {
+            law: friction_law(settings, family.frictional(), request)?,
+            coefficients: keys.friction_coefficients.clone(),
+            slip_augmentation: keys.slip_augmentation_coefficient,
+            slip_threshold: keys.slip_threshold,
+            reset_frequency: usize::try_from(keys.slip_step_reset_frequency).ok().filter(|f| *f > 0),
+        },
+    };
+    let keeps_normals = keys.as_ref().is_some_and(|keys| keys.not_normal_update_frictional);
     let normal_variation = match whole.normal_variation {
-        NormalVariation::None if updated || (family.frictional() && !whole.not_normal_update_frictional) => {
-            NormalVariation::Update
-        }
+        NormalVariation::None if updated || (family.frictional() && !keeps_normals) => NormalVariation::Update,
         other => other,
     };
     let chosen = ContactSettings {
@@ -137,47 +163,81 @@ pub(super) fn interaction(
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             check: whole.search_parameters.check_gap,
+            dynamic: whole.search_parameters.dynamic_search,
         },
         active_check_factor: whole.search_parameters.active_check_factor,
         simple_search: whole.search_parameters.simple_search,
+        adapt_search: whole.search_parameters.adapt_search,
         database_step_update: whole.search_parameters.database_step_update.max(1),
         manual: whole.parameters.manual.then_some(AlmParameters {
             penalty: whole.parameters.penalty,
             scale_factor: whole.parameters.scale_factor,
         }),
         estimate: [whole.parameters.stiffness_factor, whole.parameters.penalty_scale_factor],
-        penalty_factor,
-        least_penalty,
+        penalty_factor: families.penalty_factor,
+        least_penalty: families.least_penalty,
+        uzawa: uzawa(settings)?,
+        explicit: explicit_gap(settings, request)?,
         use_scale_factor: whole.parameters.use_scale_factor,
-        tangent_factor: whole.tangent_factor,
-        operator_threshold: whole.operator_threshold,
-        friction: FrictionSettings {
-            coefficients: whole.friction_coefficients,
-            slip_augmentation: whole.slip_augmentation_coefficient,
-            slip_threshold: whole.slip_threshold,
-            reset_frequency: usize::try_from(whole.slip_step_reset_frequency).ok().filter(|f| *f > 0),
-        },
+        tangent_factor: keys.as_ref().map_or(1.0, |keys| keys.tangent_factor),
+        operator_threshold: keys.as_ref().map_or(0.0, |keys| keys.operator_threshold),
+        friction,
         adaptation: AdaptationSettings {
             adapt_penalty: whole.parameters.adapt_penalty,
             max_gap_factor: whole.parameters.max_gap_factor,
             dynamic_factor: false,
         },
+        clear_inactive: whole.clear_inactive_for_post,
         zero_tolerance_factor: whole.zero_tolerance_factor,
         integration_order,
         axisymmetric: whole.alternative_formulations.axisymmetric,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
+    check_use(part, family, settings)?;
     check_variables(part, family, settings)?;
     let interaction = ContactInteraction::new(chosen, part)?;
     Ok((whole.model_part_name, interaction))
 }
 
+/// How far the outer loop goes; processes without one have no such keys.
+fn uzawa(settings: &Settings) -> Result<UzawaSettings> {
+    let Some(node) = settings.node().get("uzawa_parameters") else {
+        return Ok(UzawaSettings { tolerance: f64::INFINITY, max_updates: 0 });
+    };
+    check_positive(settings, &["uzawa_parameters.multiplier_tolerance"])?;
+    Ok(UzawaSettings {
+        tolerance: node.require("multiplier_tolerance")?.f64()?,
+        max_updates: node.require("max_multiplier_updates")?.usize()?,
+    })
+}
+
+/// How explicit steps adapt the penalty, where the process is the explicit one.
+fn explicit_gap(settings: &Settings, request: &ProcessRequest<'_>) -> Result<Option<ExplicitGap>> {
+    if request.entry.name != "explicit_penalty_contact_process" {
+        return Ok(None);
+    }
+    if !settings.get_bool("advance_explicit_parameters.manual_max_gap_theshold")? {
+        return Ok(Some(ExplicitGap::MeanMeshSize));
+    }
+    check_positive(settings, &["advance_explicit_parameters.max_gap_threshold"])?;
+    Ok(Some(ExplicitGap::Given(settings.get_f64("advance_explicit_parameters.max_gap_threshold")?)))
+}
+
+/// Refuses what the family cannot be used for.
+fn check_use(part: &ModelPart, family: &Family, settings: &Settings) -> Result<()> {
+    let key = "alternative_formulations.axisymmetric";
+    let wanted = Use {
+        dimension: part.info.domain_size,
+        axisymmetric: settings.get_bool(key)?,
+        explicit: part.info.is(EXPLICIT),
+    };
+    let Some(Refusal { reason, remedy }) = refusal(family, wanted) else { return Ok(()) };
+    let key = if wanted.explicit { "contact_type" } else { key };
+    Err(settings.error(key, "contact-use", reason).remedy(remedy).into())
+}
+
 /// The solver gives the nodes the variables of its `mortar_type`; another family's would be missing.
-fn check_variables(
-    part: &zelus_core::model::ModelPart,
-    family: &crate::pairs::Family,
-    settings: &Settings,
-) -> Result<()> {
+fn check_variables(part: &ModelPart, family: &Family, settings: &Settings) -> Result<()> {
     match family.variables.iter().find(|(name, _)| !part.nodes.history.has(name)) {
         None => Ok(()),
         Some((name, _)) => {

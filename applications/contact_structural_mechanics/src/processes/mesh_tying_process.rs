@@ -71,6 +71,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             check: GapCheck::CheckMapping,
+            dynamic: false,
         },
         database_step_update: whole.search_parameters.database_step_update.max(1),
         segmentation: segmentation(&settings)?,

@@ -1,8 +1,12 @@
 //! The processes of contact.
 
 mod alm_contact_process;
+mod explicit_penalty_contact_process;
+mod friction_settings;
 mod interface_settings;
 mod mesh_tying_process;
 mod mpc_contact_process;
 mod simple_mortar_mapper_process;
 mod penalty_contact_process;
+mod perturbed_lagrangian_contact_process;
+mod uzawa_contact_process;

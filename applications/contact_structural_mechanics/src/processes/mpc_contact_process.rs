@@ -11,6 +11,7 @@ use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
+use super::friction_settings::friction_law;
 use super::interface_settings::{check_search, check_slaves, segmentation};
 use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings, Weights};
 use crate::search::{GapCheck, SearchSettings};
@@ -68,17 +69,19 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let (kind, pure_slip) = contact_type(&settings)?;
     check_search(&settings)?;
     check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
+    let law = friction_law(&settings, kind == MpcKind::Frictional, request)?;
     let chosen = MpcSettings {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,
         kind,
         pure_slip,
-        friction: FrictionSettings { coefficients: whole.friction_coefficients, ..FrictionSettings::default() },
+        friction: FrictionSettings { law, coefficients: whole.friction_coefficients, ..FrictionSettings::default() },
         interval: Interval::from_node(settings.get("interval")?)?,
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             check: GapCheck::CheckMapping,
+            dynamic: false,
         },
         database_step_update: whole.search_parameters.database_step_update.max(1),
         segmentation: segmentation(&settings)?,

@@ -3,17 +3,15 @@
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use super::alm_contact_process::AlmContactProcess;
+use super::alm_contact_process::{AlmContactProcess, Stem};
 
-/// Factor of the estimated penalty.
-const STIFFER: f64 = 1e4;
-/// Penalty where the estimate is zero.
-const LEAST: f64 = 1e16;
+/// A spring stiff enough to hold surfaces apart alone.
+pub(super) const PENALTY: Stem = Stem { name: "PenaltyContact", penalty_factor: 1e4, least_penalty: 1e16 };
 
 register! { Process "penalty_contact_process",
     aliases: &["PenaltyContactProcess"],
     about: "contact by the penalty method on mortar pairs",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/penalty_contact_process.json"),
-    build: Build::Process(|request| AlmContactProcess::of_families(request, "PenaltyContact", STIFFER, LEAST)),
+    build: Build::Process(|request| AlmContactProcess::of_families(request, &PENALTY)),
 }

@@ -112,6 +112,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
             factor: settings.get_f64("search_parameters.search_factor")?,
             normal_orientation_threshold: FACING,
             check: GapCheck::CheckMapping,
+            dynamic: false,
         },
         segmentation: SegmentationSettings {
             distance_threshold: settings.get_f64("distance_threshold")?,

@@ -29,6 +29,8 @@ pub struct SearchSettings {
     pub normal_orientation_threshold: f64,
     /// How contact starts.
     pub check: GapCheck,
+    /// Whether nodes are looked for where their velocities take them (`dynamic_search`).
+    pub dynamic: bool,
 }
 
 /// A pair of facets near each other that do not face the same way.

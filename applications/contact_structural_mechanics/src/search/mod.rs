@@ -2,12 +2,14 @@
 
 mod candidates;
 mod direct_check;
+mod prediction;
 mod reach;
 mod self_contact;
 mod tree;
 
 pub use candidates::{Candidate, GapCheck, SearchSettings, candidates};
 pub use direct_check::touching_nodes;
+pub use prediction::predicted_positions;
 pub use reach::{late_pairs, warn_of_reach};
 pub use self_contact::assign_roles;
 pub use tree::{Bounds, Tree};

@@ -3,6 +3,7 @@
 use zelus_core::analysis::{Cutting, ExtensionDefinition};
 use zelus_core::register;
 use zelus_core::registry::Build;
+use zelus_core::strategies::CONDITION_NUMBER;
 
 use crate::pairs::variables_of;
 
@@ -10,6 +11,8 @@ use crate::pairs::variables_of;
 pub const ENSURE_CONTACT: &str = "ENSURE_CONTACT";
 /// Contact forces are scaled in the step in which a gap closes.
 pub const COMPUTE_DYNAMIC_FACTOR: &str = "COMPUTE_DYNAMIC_FACTOR";
+/// Factor of explicit steps while there is contact.
+const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
 /// The deck asks for an active set that changes only between complete Newton loops.
 pub const SIMPLIFIED_SEMI_SMOOTH_NEWTON: &str = "SIMPLIFIED_SEMI_SMOOTH_NEWTON";
 
@@ -31,6 +34,7 @@ register! { SolverExtension "contact_settings",
                 ("ensure_contact", ENSURE_CONTACT),
                 ("compute_dynamic_factor", COMPUTE_DYNAMIC_FACTOR),
                 ("simplified_semi_smooth_newton", SIMPLIFIED_SEMI_SMOOTH_NEWTON),
+                ("condn_convergence_criterion", CONDITION_NUMBER),
             ] {
                 if settings.get_bool(key)? {
                     marks.push(mark);
@@ -49,6 +53,15 @@ register! { SolverExtension "contact_settings",
                 return Err(problem.remedy("a step that fails is divided by it, e.g. 10.0").into());
             }
             Ok(Some(Cutting { factor, times: settings.get_usize("max_number_splits")? as u32 }))
+        },
+        values: |settings| {
+            let key = "delta_time_factor_for_contact";
+            let factor = settings.get_f64(key)?;
+            if factor <= 0.0 || factor > 1.0 {
+                let fact = format!("\"{key}\" is {factor}, it must be above 0 and at most 1");
+                return Err(settings.error(key, "invalid-value", fact).remedy("0.5 is the usual value").into());
+            }
+            Ok(vec![(DELTA_TIME_FACTOR, factor)])
         },
     }),
 }

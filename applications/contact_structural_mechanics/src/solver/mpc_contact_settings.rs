@@ -23,5 +23,6 @@ register! { SolverExtension "mpc_contact_settings",
             Ok(update.then_some(UPDATE_EACH_ITERATION).into_iter().collect())
         },
         cutting: |_| Ok(None),
+        values: |_| Ok(Vec::new()),
     }),
 }

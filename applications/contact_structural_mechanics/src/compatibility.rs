@@ -1,0 +1,57 @@
+//! What a family of contact cannot be used for, and why: stated once, asked by the processes, walked by a test.
+
+use crate::pairs::{Family, Multiplier};
+
+/// What a deck wants of a family.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Use {
+    /// Dimensions of the problem.
+    pub dimension: usize,
+    /// Whether a plane model is rotated about its axis.
+    pub axisymmetric: bool,
+    /// Whether steps are explicit.
+    pub explicit: bool,
+}
+
+/// Why a use is refused, and what to do instead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Refusal {
+    /// The reason.
+    pub reason: &'static str,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+/// A rule: when it holds, and what is then refused.
+type Rule = (fn(&Family, Use) -> bool, Refusal);
+
+/// Everything that is not listed runs: every family on every pair of shapes, in the plane, in space and (in the plane)
+/// about an axis, with every `normal_variation`, law of friction, adaptation of the penalty and time integration.
+const RULES: [Rule; 3] = [
+    (
+        |_, wanted| wanted.axisymmetric && wanted.dimension == 3,
+        Refusal {
+            reason: "a model in space has no axis to be rotated about",
+            remedy: "set \"axisymmetric\" to false, or \"domain_size\" to 2",
+        },
+    ),
+    (
+        |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Scalar(_) | Multiplier::Vector(_)),
+        Refusal {
+            reason: "explicit steps give every unknown a mass, and multipliers have none",
+            remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
+        },
+    ),
+    (
+        |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Outer(_)),
+        Refusal {
+            reason: "explicit steps do not iterate, so that no outer loop can follow",
+            remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
+        },
+    ),
+];
+
+/// The first reason not to use a family so.
+pub fn refusal(family: &Family, wanted: Use) -> Option<Refusal> {
+    RULES.iter().find(|(applies, _)| applies(family, wanted)).map(|(_, refusal)| *refusal)
+}

@@ -1,0 +1,125 @@
+//! The direction in which nodes slide, anew in every iteration, and how it turns.
+
+use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::vector3::{add, cross, dot, norm, scale};
+
+use super::step_parameters::StepParameters;
+use crate::active_set::SlipRule;
+use crate::formulations::{NodeState, Turning};
+use crate::mortar::{tangent, tangential};
+use crate::pairs::{Family, Multiplier};
+use crate::variables::{
+    INITIAL_PENALTY, NODAL_AREA, NODAL_H, TANGENT_ETA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+    WEIGHTED_GAP, WEIGHTED_SLIP,
+};
+
+/// Writes TANGENT_XI and TANGENT_ETA of the slave nodes, and how TANGENT_XI turns.
+///
+/// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
+/// multipliers, it is that of the weighted slip. For sliding nodes in space, whose direction is more than a sign, it is that
+/// of the trial traction q̂. A node that has none of them above round-off keeps the direction it had: at step start that is a
+/// far better guess than any fixed tangent. `pair_counts` holds the number of overlapping pairs of every node.
+pub(super) fn write_tangents(
+    part: &mut ModelPart,
+    slaves: &[u32],
+    family: &Family,
+    parameters: &StepParameters,
+    pair_counts: &[u32],
+) {
+    let dimension = part.info.domain_size;
+    let pure = parameters.slip_rule == SlipRule::Pure;
+    let old = part.nodes.values.values(&TANGENT_XI, 0);
+    let before = |at: usize| old.get(3 * at..3 * at + 3).map_or([0.0; 3], |t| [t[0], t[1], t[2]]);
+    let mut tangents = Vec::with_capacity(slaves.len());
+    let mut turnings = vec![Turning::default(); slaves.len()];
+    for (position, &node) in slaves.iter().enumerate() {
+        let at = node as usize;
+        let history = &part.nodes.history;
+        let vector_of = |name: &str| history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
+        let state = NodeState::of_flags(&part.nodes.flags, at);
+        let normal = vector_of(NORMAL.name());
+        let by_slip = || {
+            let (area, size) =
+                (part.nodes.values.values(&NODAL_AREA, 0)[at], part.nodes.values.values(&NODAL_H, 0)[at]);
+            let slip = vector_of(WEIGHTED_SLIP.name());
+            if norm(slip) > f64::EPSILON * size * area { scale(slip, area.recip()) } else { [0.0; 3] }
+        };
+        let direction = match family.multiplier {
+            Multiplier::Vector(variable) => {
+                let multiplier = vector_of(variable.name());
+                match state {
+                    NodeState::Slip if dimension == 3 => {
+                        let trial = Trial::new(part, at, parameters, multiplier, normal);
+                        turnings[position] = trial.turning(pair_counts[at], pure, parameters);
+                        if pure { by_slip() } else { trial.traction }
+                    }
+                    NodeState::Inactive if !pure => [0.0; 3],
+                    NodeState::Stick | NodeState::Slip if !pure => multiplier,
+                    _ => by_slip(),
+                }
+            }
+            _ => by_slip(),
+        };
+        let kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
+        tangents.push(tangent(if kept { before(at) } else { direction }, normal, dimension));
+    }
+    let across: Vec<[f64; 3]> = {
+        let normals = part.nodes.history.values(&NORMAL, 0);
+        let normal = |n: u32| std::array::from_fn(|c| normals[3 * n as usize + c]);
+        slaves.iter().zip(&tangents).map(|(&n, tangent)| cross(normal(n), *tangent)).collect()
+    };
+    for (variable, vectors) in [(&TANGENT_XI, &tangents), (&TANGENT_ETA, &across)] {
+        let column = part.nodes.values.values_mut(variable, 0);
+        for (&node, vector) in slaves.iter().zip(vectors) {
+            column[3 * node as usize..3 * node as usize + 3].copy_from_slice(vector);
+        }
+    }
+    if dimension == 3 && matches!(family.multiplier, Multiplier::Vector(_)) {
+        let column = part.nodes.values.values_mut(&TURNING_BY_SLIP, 0);
+        slaves.iter().zip(&turnings).for_each(|(&node, turning)| column[node as usize] = turning.by_slip);
+        let column = part.nodes.values.values_mut(&TURNING_BY_MULTIPLIER, 0);
+        slaves.iter().zip(&turnings).for_each(|(&node, turning)| column[node as usize] = turning.by_multiplier);
+    }
+}
+
+/// Trial traction q̂ = k P λ + κ ε WS of a node, and what bounds it.
+struct Trial {
+    traction: [f64; 3],
+    of_slip: [f64; 3],
+    penalty: f64,
+    pressure: f64,
+    multiplier_pressure: f64,
+    bound: crate::friction_law::Bound,
+}
+
+impl Trial {
+    fn new(part: &ModelPart, at: usize, parameters: &StepParameters, multiplier: [f64; 3], normal: [f64; 3]) -> Self {
+        let slip = part.nodes.history.get(WEIGHTED_SLIP.name()).map_or([0.0; 3], |field| field.vector(0, at));
+        let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
+        let of_slip = scale(slip, parameters.tangent_factor * penalty);
+        let multiplier_pressure = parameters.scale_factor * dot(multiplier, normal);
+        Self {
+            traction: add(scale(tangential(multiplier, normal), parameters.scale_factor), of_slip),
+            of_slip,
+            penalty,
+            pressure: multiplier_pressure + penalty * part.nodes.history.values(&WEIGHTED_GAP, 0)[at],
+            multiplier_pressure,
+            bound: parameters.friction_law.bound_at(&part.nodes, at),
+        }
+    }
+
+    /// Trial tractions within the bound belong to nodes about to stick; there the direction turns as at the bound.
+    fn turning(&self, pairs: u32, pure: bool, parameters: &StepParameters) -> Turning {
+        let bound = self.bound.at(self.pressure);
+        let size = norm(if pure { self.of_slip } else { self.traction }).max(bound);
+        if size <= 0.0 || bound <= 0.0 {
+            return Turning::default();
+        }
+        // Each pair states the law with the whole multiplier and its own gap.
+        let all = bound + (f64::from(pairs) - 1.0).max(0.0) * self.bound.at(self.multiplier_pressure);
+        Turning {
+            by_slip: all.max(0.0) * parameters.tangent_factor * self.penalty / size,
+            by_multiplier: if pure { 0.0 } else { parameters.scale_factor / size },
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Contact by the penalty method in explicit steps, which stiffen the penalty with the gap.
+
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+use super::alm_contact_process::AlmContactProcess;
+use super::penalty_contact_process::PENALTY;
+
+register! { Process "explicit_penalty_contact_process",
+    aliases: &["ExplicitPenaltyContactProcess"],
+    about: "contact by the penalty method on mortar pairs, in explicit steps",
+    source: "eqs. 4.11, D.3",
+    defaults: include_str!("../../../../configs/processes/explicit_penalty_contact_process.json"),
+    build: Build::Process(|request| AlmContactProcess::of_families(request, &PENALTY)),
+}
