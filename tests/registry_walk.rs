@@ -42,7 +42,8 @@ fn kinds() -> Vec<(&'static Entry, Shape, Option<&'static str>)> {
         let x = cell(shape, entry.space, 0.0, &mut Random(1));
         let fits = |law: &&str| Specimen::new(entry, Some(law), &x, &order(shape), Loads::Scalars).is_ok();
         let laws: Vec<&str> = names(Kind::ConstitutiveLaw).filter(fits).collect();
-        assert!(!laws.is_empty(), "no registered law fits {}", entry.name);
+        let why = || Specimen::new(entry, None, &x, &order(shape), Loads::Scalars).err();
+        assert!(!laws.is_empty(), "no registered law fits {}: {:?}", entry.name, why());
         out.extend(laws.into_iter().map(|law| (entry, shape, Some(law))));
     }
     out

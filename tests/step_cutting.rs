@@ -80,10 +80,10 @@ fn the_state_before_a_failed_attempt_comes_back_to_the_bit() {
 
 #[test]
 fn contact_with_friction_comes_back_to_the_bit() {
-    let folder = root().join("tests/cases/contact_2d/friction_slide");
-    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 3");
+    let folder = root().join("tests/cases/contact_2d/friction_tresca_slide");
+    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 5");
     let cut = run(&folder, &[few]);
-    assert_eq!(cut.code, Some(3), "{}", cut.text);
+    assert_eq!(cut.code, Some(0), "{}", cut.text);
     let (rules, end) = as_intervals(&cut.lengths);
     let end = format!("\"end_time\": {:e}", end * (1.0 - 1e-9));
     let given = run(&folder, &[few, (DECK, "\"time_step\": 0.2", &rules), (DECK, "\"end_time\": 0.9", &end)]);
@@ -97,8 +97,7 @@ fn contact_settings_say_how_steps_are_cut() {
     let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 3");
     let splits = "\"adaptative_strategy\": true, \"split_factor\": 4.0, \"max_number_splits\": 1, \"mortar_type\"";
     let cut = run(&folder, &[few, (DECK, "\"mortar_type\"", splits)]);
-    assert_eq!(cut.code, Some(3), "{}", cut.text);
-    assert_eq!(cut.lengths.first(), Some(&0.05), "{}", cut.text);
+    assert_eq!((cut.code, cut.attempts), (Some(3), 2), "{}", cut.text);
     assert!(
         cut.text.contains("retried with 1/4 of the step") && cut.text.contains("1 cuts of the step by 4"),
         "{}",

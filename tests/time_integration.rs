@@ -295,7 +295,7 @@ fn schemes_and_contact_that_do_not_fit_are_refused() {
         (DECK, "\"PenaltyContactFrictionless\"", "\"ALMContactFrictionless\""),
         (DECK, "\"penalty_contact_process\"", "\"alm_contact_process\""),
     ];
-    refused("bouncing_block", &multipliers, &["explicit-multipliers", "penalty"]);
+    refused("bouncing_block", &multipliers, &["contact-use", "multipliers have none", "penalty"]);
 }
 
 /// Kinetic and strain energy of the bouncing block, a bar of ten elements of width 0.1 with E = 100 and ρ = 1.

@@ -221,7 +221,9 @@ fn load(part: &mut ModelPart, entry: &Entry, loads: Loads) {
             fields.add_named(variable.name, components);
             let level = &mut fields.get_mut(variable.name).expect("added above").levels[0];
             level.chunks_mut(components).for_each(|value| {
-                value[..components.min(entry.space)].fill_with(|| random.next());
+                // Scalars may be masses, which are not negative.
+                let sign = |x: f64| if components == 1 { x.abs() } else { x };
+                value[..components.min(entry.space)].fill_with(|| sign(random.next()));
             });
         }
     }

@@ -346,7 +346,7 @@ fn degenerate<const NS: usize, const NM: usize, const NU: usize>() {
             let settings = SegmentationSettings::default();
             let (plain, dual) = (operators(&pair, &settings), operators(&pair.seeded::<NU>(), &settings));
             let Overlap::Cells(dual) = dual else {
-                assert_eq!(plain, Overlap::None);
+                assert!(!matches!(plain, Overlap::Cells(_)));
                 continue;
             };
             for x in dual.d.iter().flatten().chain(dual.m.iter().flatten()) {

@@ -14,7 +14,7 @@ use crate::io::replace_file;
 /// Bytes compressed at once; blocks are compressed in parallel.
 const BLOCK: usize = 1 << 16;
 /// Fast and small enough: higher levels cost several times more for a few per cent less.
-const LEVEL: u32 = 1;
+const LEVEL: u32 = 4;
 
 /// Writes a VTU file in double precision, its arrays appended, raw and compressed.
 ///
