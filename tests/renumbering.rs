@@ -11,8 +11,9 @@ use support::{read_json, root, said, scratch_copy, zelus};
 /// Decks stop at relative residuals of 1e-9 and below; sums in another order differ by round-off.
 const TOLERANCE: f64 = 1e-9;
 
-/// The same for decks that slide: sticking and sliding are found within the tolerance of the iteration, on ways that differ.
-const TOLERANCE_OF_SLIDING: f64 = 1e-7;
+/// The same for decks that slide. Their directions of sliding are known within the tolerance of the criterion only, and are
+/// reached on ways that depend on which node is taken first.
+const TOLERANCE_OF_SLIDING: f64 = 1e-5;
 
 /// Values below are zero but for round-off; the cases are of size one.
 const ZERO: f64 = 1e-18;
