@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use zelus_core::Result;
 use zelus_core::analysis::EXPLICIT;
-use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::{Model, ModelPart};
+use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::friction_settings::friction_law;
+use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search};
 use crate::compatibility::{Refusal, Use, refusal};
 use crate::interaction::{
@@ -82,26 +82,14 @@ struct FrictionKeys {
     operator_threshold: f64,
 }
 
-/// The process; all it does is in its interaction.
-pub struct AlmContactProcess {
-    root: String,
-    interaction: Option<ContactInteraction>,
-}
-
-impl AlmContactProcess {
-    fn boxed(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
-        Self::of_families(request, &Stem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 })
-    }
-
-    /// The process for the families whose names begin with that of `stem`.
-    ///
-    /// # Errors
-    /// Settings that do not fit.
-    pub(super) fn of_families(request: &mut ProcessRequest<'_>, stem: &Stem) -> Result<Box<dyn Process>> {
-        let settings = request.settings()?;
-        let (root, interaction) = interaction(&settings, request, stem)?;
-        Ok(Box::new(Self { root, interaction: Some(interaction) }))
-    }
+/// The process for the families whose names begin with that of `stem`.
+///
+/// # Errors
+/// Settings that do not fit.
+pub(super) fn of_families(request: &mut ProcessRequest<'_>, stem: &Stem) -> Result<Box<dyn Process>> {
+    let settings = request.settings()?;
+    let (root, interaction) = interaction(&settings, request, stem)?;
+    Ok(InteractionProcess::boxed(root, interaction))
 }
 
 /// The families that a process serves, and how stiff their penalty is.
@@ -253,18 +241,12 @@ fn check_variables(part: &ModelPart, family: &Family, settings: &Settings) -> Re
     }
 }
 
-impl Process for AlmContactProcess {
-    fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let interaction = self.interaction.take().ok_or_else(|| Diagnostic::error("contact", "initialised twice"))?;
-        model.root_mut(&self.root)?.interactions.push(Box::new(interaction));
-        Ok(())
-    }
-}
+const AUGMENTED: Stem = Stem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 };
 
 register! { Process "alm_contact_process",
     aliases: &["ALMContactProcess"],
     about: "contact by the augmented Lagrangian method on mortar pairs",
     source: "eqs. 4.9, 4.11, D.11",
     defaults: include_str!("../../../../configs/processes/alm_contact_process.json"),
-    build: Build::Process(AlmContactProcess::boxed),
+    build: Build::Process(|request| of_families(request, &AUGMENTED)),
 }

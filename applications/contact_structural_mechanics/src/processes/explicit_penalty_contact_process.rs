@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use super::alm_contact_process::AlmContactProcess;
+use super::alm_contact_process::of_families;
 use super::penalty_contact_process::PENALTY;
 
 register! { Process "explicit_penalty_contact_process",
@@ -11,5 +11,5 @@ register! { Process "explicit_penalty_contact_process",
     about: "contact by the penalty method on mortar pairs, in explicit steps",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/explicit_penalty_contact_process.json"),
-    build: Build::Process(|request| AlmContactProcess::of_families(request, &PENALTY)),
+    build: Build::Process(|request| of_families(request, &PENALTY)),
 }

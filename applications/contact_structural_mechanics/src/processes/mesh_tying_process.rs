@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use zelus_core::Result;
-use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::{Model, Named, ScalarVariable, VariableKind, named};
+use zelus_core::model::{Named, ScalarVariable, VariableKind, named};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
+use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation};
 use crate::interaction::{TyingInteraction, TyingSettings};
 use crate::pairs::find_tying_family;
@@ -37,11 +37,6 @@ struct Whole {
     assume_master_slave: BTreeMap<String, Vec<String>>,
     search_parameters: Search,
     scale_factor_parameters: ScaleFactor,
-}
-
-struct MeshTyingProcess {
-    root: String,
-    interaction: Option<TyingInteraction>,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
@@ -79,7 +74,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         stiffness_factor: manual.stiffness_factor,
     };
     let interaction = TyingInteraction::new(chosen, part)?;
-    Ok(Box::new(MeshTyingProcess { root: whole.model_part_name, interaction: Some(interaction) }))
+    Ok(InteractionProcess::boxed(whole.model_part_name, interaction))
 }
 
 /// The `mortar_type` that `"variable_name"` needs, and the numbers it stands for.
@@ -98,14 +93,6 @@ fn tied(settings: &Settings, dimension: usize) -> Result<(&'static str, Vec<Scal
             .error("variable_name", "unknown-variable", format!("{name:?} is no variable of nodes"))
             .remedy("tie a vector, e.g. \"DISPLACEMENT\", or a scalar or component")
             .into()),
-    }
-}
-
-impl Process for MeshTyingProcess {
-    fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let interaction = self.interaction.take().ok_or_else(|| Diagnostic::error("contact", "initialised twice"))?;
-        model.root_mut(&self.root)?.interactions.push(Box::new(interaction));
-        Ok(())
     }
 }
 

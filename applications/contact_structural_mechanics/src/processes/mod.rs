@@ -3,6 +3,7 @@
 mod alm_contact_process;
 mod explicit_penalty_contact_process;
 mod friction_settings;
+mod interaction_process;
 mod interface_settings;
 mod mesh_tying_process;
 mod mpc_contact_process;

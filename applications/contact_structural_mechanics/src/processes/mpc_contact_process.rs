@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use zelus_core::Result;
-use zelus_core::diagnostics::{Diagnostic, did_you_mean};
-use zelus_core::model::Model;
+use zelus_core::diagnostics::did_you_mean;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::friction_settings::friction_law;
+use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation};
 use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings, Weights};
 use crate::search::{GapCheck, SearchSettings};
@@ -42,11 +42,6 @@ struct Whole {
     update_condition_relation_step: bool,
     consistent_weights: bool,
     search_parameters: Search,
-}
-
-struct MpcContactProcess {
-    root: String,
-    interaction: Option<MpcInteraction>,
 }
 
 fn contact_type(settings: &Settings) -> Result<(MpcKind, bool)> {
@@ -95,15 +90,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = MpcInteraction::new(chosen, part)?;
-    Ok(Box::new(MpcContactProcess { root: whole.model_part_name, interaction: Some(interaction) }))
-}
-
-impl Process for MpcContactProcess {
-    fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let interaction = self.interaction.take().ok_or_else(|| Diagnostic::error("contact", "initialised twice"))?;
-        model.root_mut(&self.root)?.interactions.push(Box::new(interaction));
-        Ok(())
-    }
+    Ok(InteractionProcess::boxed(whole.model_part_name, interaction))
 }
 
 register! { Process "mpc_contact_process",

@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use super::alm_contact_process::{AlmContactProcess, Stem};
+use super::alm_contact_process::{Stem, of_families};
 
 /// A spring stiff enough to hold surfaces apart alone.
 pub(super) const PENALTY: Stem = Stem { name: "PenaltyContact", penalty_factor: 1e4, least_penalty: 1e16 };
@@ -13,5 +13,5 @@ register! { Process "penalty_contact_process",
     about: "contact by the penalty method on mortar pairs",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/penalty_contact_process.json"),
-    build: Build::Process(|request| AlmContactProcess::of_families(request, &PENALTY)),
+    build: Build::Process(|request| of_families(request, &PENALTY)),
 }

@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use super::alm_contact_process::{AlmContactProcess, Stem};
+use super::alm_contact_process::{Stem, of_families};
 
 const FAMILIES: Stem = Stem { name: "PerturbedLagrangianContact", penalty_factor: 1e4, least_penalty: 1.0 };
 
@@ -12,5 +12,5 @@ register! { Process "perturbed_lagrangian_contact_process",
     about: "contact by the perturbed Lagrangian on mortar pairs",
     source: "eq. 4.11; Simo, Wriggers and Taylor (1985)",
     defaults: include_str!("../../../../configs/processes/perturbed_lagrangian_contact_process.json"),
-    build: Build::Process(|request| AlmContactProcess::of_families(request, &FAMILIES)),
+    build: Build::Process(|request| of_families(request, &FAMILIES)),
 }

@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use super::alm_contact_process::{AlmContactProcess, Stem};
+use super::alm_contact_process::{Stem, of_families};
 
 const FAMILIES: Stem = Stem { name: "UzawaContact", penalty_factor: 1e1, least_penalty: 1.0 };
 
@@ -12,5 +12,5 @@ register! { Process "uzawa_contact_process",
     about: "contact by Uzawa's iteration on the penalty kernel",
     source: "eqs. 4.11, D.10",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
-    build: Build::Process(|request| AlmContactProcess::of_families(request, &FAMILIES)),
+    build: Build::Process(|request| of_families(request, &FAMILIES)),
 }
