@@ -20,6 +20,13 @@ impl SetChange {
     pub fn count(&self) -> usize {
         self.activated.len() + self.deactivated.len() + self.stick_slip.len()
     }
+
+    /// The changes of another interaction too.
+    pub fn extend(&mut self, more: Self) {
+        self.activated.extend(more.activated);
+        self.deactivated.extend(more.deactivated);
+        self.stick_slip.extend(more.stick_slip);
+    }
 }
 
 /// What follows when the iteration has converged.

@@ -4,12 +4,11 @@
 //! Corrections stay in the plane normal to the predictor p: K δ_R = R, dλ = −(p·δ_R)/(p·δ_q), du = δ_R + dλ δ_q. The first
 //! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
 
-use super::criterion::Measures;
-use super::linear_solve;
+use super::linear_solve::Solved;
 use super::newton::NewtonRaphson;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::strategy::{SolutionStrategy, accept, recorded};
+use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
 use crate::assembly::Assembler;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::Interaction;
@@ -101,19 +100,11 @@ impl ArcLength {
         Ok(full)
     }
 
-    fn solve(&mut self, part: &ModelPart, rhs: &[f64]) -> Result<(Vec<f64>, f64, String)> {
-        let newton = &mut self.newton;
-        let rhs = newton.assembler.equations().reduce(rhs);
-        let (solution, report) = linear_solve::solve(
-            &mut newton.assembler,
-            newton.solver.as_mut(),
-            &mut newton.gathered,
-            &rhs,
-            &part.dofs,
-            &part.nodes,
-        )?;
-        newton.add_seconds(&report);
-        Ok((newton.assembler.equations().expand(&solution), report.relative_residual, report.engine.to_owned()))
+    /// The solve, and its increment of all unknowns.
+    fn solve(&mut self, part: &ModelPart, rhs: &[f64]) -> Result<(Vec<f64>, Solved)> {
+        let rhs = self.newton.assembler.equations().reduce(rhs);
+        let solved = self.newton.solve(part, &rhs)?;
+        Ok((self.newton.assembler.equations().expand(&solved.increment), solved))
     }
 
     fn residual(
@@ -161,7 +152,7 @@ impl ArcLength {
             if self.settings.loads.is_empty() {
                 self.newton.assembler.scale_load_tangents(factor);
             }
-            let (along, mut linear_residual, mut engine) = self.solve(part, &load)?;
+            let (along, mut solved) = self.solve(part, &load)?;
             let increment: Vec<f64> = if iteration == 1 {
                 let size = dot(&along, &along).sqrt();
                 if size == 0.0 {
@@ -177,21 +168,15 @@ impl ArcLength {
                 predictor = along.iter().map(|d| more * d).collect();
                 predictor.clone()
             } else {
-                let (back, accuracy, name) = self.solve(part, &residual)?;
-                (linear_residual, engine) = (accuracy, name);
+                let back;
+                (back, solved) = self.solve(part, &residual)?;
                 let more = -dot(&predictor, &back) / dot(&predictor, &along);
                 factor += more;
                 back.iter().zip(&along).map(|(b, d)| b + more * d).collect()
             };
             step.iter_mut().zip(&increment).for_each(|(sum, d)| *sum += d);
             self.newton.move_by(part, &increment);
-            let mut change = crate::entities::SetChange::default();
-            for interaction in interactions.iter_mut() {
-                let more = interaction.after_update(part, iteration)?;
-                change.activated.extend(more.activated);
-                change.deactivated.extend(more.deactivated);
-                change.stick_slip.extend(more.stick_slip);
-            }
+            let change = update_interactions(part, interactions, iteration)?;
             (residual, load) = self.residual(part, interactions, factor)?;
             let assembler = &self.newton.assembler;
             let balanced = assembler.equations().balanced(&residual);
@@ -199,32 +184,11 @@ impl ArcLength {
                 let whole: Vec<f64> = load.iter().map(|q| factor * q).collect();
                 references = vec![assembler.equations().balanced(&whole).into_owned(), balanced.to_vec()];
             }
-            let (values, round_off) = (assembler.values(part), assembler.round_off(part));
-            let verdict = self.newton.criterion.judge(&Measures {
-                iteration,
-                nodes: &part.nodes,
-                dofs: &part.dofs,
-                equations: assembler.equations(),
-                residual: &balanced,
-                references: &references,
-                increment: &increment,
-                values: &values,
-                round_off: &round_off,
-            });
-            let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
-            let record = IterationRecord {
-                iteration,
-                checks: verdict.checks,
-                active_set_changes: change.activated.len() + change.deactivated.len(),
-                stick_slip_changes: change.stick_slip.len(),
-                changed_nodes: changed.copied().take(12).collect(),
-                linear_residual,
-                engine,
-                condition_number: None,
-            };
+            let verdict = self.newton.judge(part, iteration, &balanced, &references, &increment);
+            let record = IterationRecord::new(iteration, verdict.checks, &change, &solved);
             monitor.iteration(&record);
             records.push(record);
-            if residual.iter().chain(&values).any(|v| !v.is_finite()) {
+            if self.newton.first_infinite(part, &residual).is_some() {
                 break;
             }
             if verdict.converged && change.count() == 0 {

@@ -13,6 +13,18 @@ const CORRECTIONS: usize = 12;
 /// Residual relative to the right-hand side at which corrections stop.
 const ACCURACY: f64 = 1e-10;
 
+/// What a linear solve gave.
+pub(super) struct Solved {
+    /// Increment of the equations.
+    pub increment: Vec<f64>,
+    /// Norm of what is left over that of the right-hand side.
+    pub relative_residual: f64,
+    /// Who solved.
+    pub engine: String,
+    /// Why another engine than the one asked for solved.
+    pub fallback: Option<String>,
+}
+
 /// Why there is no increment.
 pub(super) enum Failed {
     /// The matrix is singular, which another state of the interactions may mend.

@@ -2,18 +2,18 @@
 
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
-use super::criterion::{ConvergenceCriterion, Measures};
+use super::criterion::{ConvergenceCriterion, Measures, Verdict};
 use super::gathered::Gathered;
 use super::line_search::LineSearch;
-use super::linear_solve;
+use super::linear_solve::{self, Failed, Solved};
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
-use super::strategy::{SolutionStrategy, accept, recorded};
+use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
 use crate::assembly::{Assembler, impose_constraints};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Result};
-use crate::entities::{Interaction, Outer, SetChange};
+use crate::entities::{Interaction, Outer};
 use crate::model::ModelPart;
 use crate::register;
 use crate::registry::Build;
@@ -157,47 +157,27 @@ impl NewtonRaphson {
             if iteration == 1 {
                 interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
             }
-            let (reduced, linear_residual, engine) = if rhs.iter().all(|v| *v == 0.0) {
-                (vec![0.0; rhs.len()], 0.0, "none: nothing out of balance".to_owned())
-            } else {
-                let mut solved = linear_solve::solve(
-                    &mut self.assembler,
-                    self.solver.as_mut(),
-                    &mut self.gathered,
-                    &rhs,
-                    &part.dofs,
-                    &part.nodes,
-                );
-                if let (Err(linear_solve::Failed::Singular(why)), None, Some(amount)) = (&solved, relaxed, relaxation) {
-                    part.messages.extend(self.warn_of_redundancy(why));
-                    relaxed = Some(amount);
-                    self.assembler.relax_multipliers(&part.dofs, amount);
-                    solved = linear_solve::solve(
-                        &mut self.assembler,
-                        self.solver.as_mut(),
-                        &mut self.gathered,
-                        &rhs,
-                        &part.dofs,
-                        &part.nodes,
-                    );
+            let mut solved = self.solve(part, &rhs);
+            if let (Err(Failed::Singular(why)), None, Some(amount)) = (&solved, relaxed, relaxation) {
+                part.messages.extend(self.warn_of_redundancy(why));
+                relaxed = Some(amount);
+                self.assembler.relax_multipliers(&part.dofs, amount);
+                solved = self.solve(part, &rhs);
+            }
+            let solved = match solved {
+                Ok(solved) => solved,
+                // Interactions may have let a body go that a shorter step holds.
+                Err(Failed::Singular(why)) if !interactions.is_empty() => {
+                    self.singular = true;
+                    return Ok((records, Some(why)));
                 }
-                let (increment, report) = match solved {
-                    Ok(solved) => solved,
-                    // Interactions may have let a body go that a shorter step holds.
-                    Err(linear_solve::Failed::Singular(why)) if !interactions.is_empty() => {
-                        self.singular = true;
-                        return Ok((records, Some(why)));
-                    }
-                    Err(failed) => return Err(failed.into()),
-                };
-                self.add_seconds(&report);
-                if let Some(why) = &report.fallback {
-                    monitor.note(&format!("linear solver: {why}"));
-                }
-                (increment, report.relative_residual, report.engine.to_owned())
+                Err(failed) => return Err(failed.into()),
             };
+            if let Some(why) = &solved.fallback {
+                monitor.note(&format!("linear solver: {why}"));
+            }
             let condition = if part.info.is(CONDITION_NUMBER) { self.condition_number(monitor) } else { None };
-            let mut increment = self.assembler.equations().expand(&reduced);
+            let mut increment = self.assembler.equations().expand(&solved.increment);
             let searched = self.settings.line_search.filter(|_| prescribed.iter().all(|d| *d == 0.0));
             increment.iter_mut().zip(&prescribed).for_each(|(sum, d)| *sum += d);
             prescribed.fill(0.0);
@@ -211,13 +191,7 @@ impl NewtonRaphson {
                 write_reactions(part, &residual);
             }
             let constraints = constraints_version(interactions);
-            let mut change = SetChange::default();
-            for interaction in interactions.iter_mut() {
-                let more = interaction.after_update(part, iteration)?;
-                change.activated.extend(more.activated);
-                change.deactivated.extend(more.deactivated);
-                change.stick_slip.extend(more.stick_slip);
-            }
+            let change = update_interactions(part, interactions, iteration)?;
             if constraints != constraints_version(interactions) {
                 self.assembler.begin_step(part, interactions)?;
                 prescribed = self.constraint_increment(part);
@@ -231,38 +205,19 @@ impl NewtonRaphson {
                 let balance = self.assembler.equations().reduce(&residual);
                 interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
             }
-            let values = self.assembler.values(part);
-            let round_off = self.assembler.round_off(part);
-            let verdict = self.criterion.judge(&Measures {
-                iteration,
-                nodes: &part.nodes,
-                dofs: &part.dofs,
-                equations: self.assembler.equations(),
-                residual: &balanced,
-                references: &references,
-                increment: &increment,
-                values: &values,
-                round_off: &round_off,
-            });
+            let verdict = self.judge(part, iteration, &balanced, &references, &increment);
             let decided = (change.count() as u64) << 1 | u64::from(verdict.converged);
             if !world().is_same(decided) {
                 let fact = format!("iteration {iteration}: the ranks have come to different decisions");
                 return Err(Error::System(format!("{fact}\n    run them on machines of one kind, or on fewer ranks")));
             }
-            let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
             let record = IterationRecord {
-                iteration,
-                checks: verdict.checks,
-                active_set_changes: change.activated.len() + change.deactivated.len(),
-                stick_slip_changes: change.stick_slip.len(),
-                changed_nodes: changed.copied().take(12).collect(),
-                linear_residual,
-                engine,
                 condition_number: condition,
+                ..IterationRecord::new(iteration, verdict.checks, &change, &solved)
             };
             monitor.iteration(&record);
             records.push(record);
-            if let Some(n) = (0..values.len()).find(|&n| !(residual[n].is_finite() && values[n].is_finite())) {
+            if let Some(n) = self.first_infinite(part, &residual) {
                 let dof = &part.dofs.dofs()[n];
                 let node = part.nodes.ids[dof.node as usize];
                 let what = format!("{} of node {node} or its residual is no longer finite", dof.variable);
@@ -295,6 +250,52 @@ impl NewtonRaphson {
             write_reactions(part, &residual);
         }
         Ok((records, Some(failure)))
+    }
+
+    /// Solves the present system; nothing out of balance needs no solver.
+    ///
+    /// # Errors
+    /// A singular matrix or a solver that fails, naming nodes.
+    pub(super) fn solve(&mut self, part: &ModelPart, rhs: &[f64]) -> Result<Solved, Failed> {
+        if rhs.iter().all(|v| *v == 0.0) {
+            let engine = "none: nothing out of balance".to_owned();
+            return Ok(Solved { increment: vec![0.0; rhs.len()], relative_residual: 0.0, engine, fallback: None });
+        }
+        let (solver, gathered) = (self.solver.as_mut(), &mut self.gathered);
+        let (increment, report) =
+            linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &part.dofs, &part.nodes)?;
+        let phases = [report.seconds_symbolic, report.seconds_numeric, report.seconds_solve];
+        self.linear_seconds.iter_mut().zip(phases).for_each(|(sum, seconds)| *sum += seconds);
+        let SolveReport { engine, relative_residual, fallback, .. } = report;
+        Ok(Solved { increment, relative_residual, engine: engine.to_owned(), fallback })
+    }
+
+    /// What the criterion says of the state after an iteration.
+    pub(super) fn judge(
+        &self,
+        part: &ModelPart,
+        iteration: usize,
+        balanced: &[f64],
+        references: &[Vec<f64>],
+        increment: &[f64],
+    ) -> Verdict {
+        self.criterion.judge(&Measures {
+            iteration,
+            nodes: &part.nodes,
+            dofs: &part.dofs,
+            equations: self.assembler.equations(),
+            residual: balanced,
+            references,
+            increment,
+            values: &self.assembler.values(part),
+            round_off: &self.assembler.round_off(part),
+        })
+    }
+
+    /// The first unknown that is no number any more, or whose residual is not.
+    pub(super) fn first_infinite(&self, part: &ModelPart, residual: &[f64]) -> Option<usize> {
+        let values = self.assembler.values(part);
+        (0..values.len()).find(|&n| !(residual[n].is_finite() && values[n].is_finite()))
     }
 
     /// Adds an increment to the unknowns; rates and positions follow.
@@ -345,11 +346,6 @@ impl NewtonRaphson {
         Ok(())
     }
 
-    pub(super) fn add_seconds(&mut self, report: &SolveReport) {
-        let phases = [report.seconds_symbolic, report.seconds_numeric, report.seconds_solve];
-        self.linear_seconds.iter_mut().zip(phases).for_each(|(sum, seconds)| *sum += seconds);
-    }
-
     /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
     /// left at their old values: the first solve takes them on through the tangent.
     ///
@@ -358,7 +354,8 @@ impl NewtonRaphson {
     pub(super) fn start(&mut self, part: &mut ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {
         let targets = self.assembler.values(part);
         let led = interactions.iter().find_map(|interaction| interaction.led_nodes());
-        let free = !self.failed && self.settings.move_mesh && !part.constraints.iter().any(|c| c.active);
+        let constrained = part.constraints.iter().any(|c| c.active);
+        let free = !self.failed && self.settings.move_mesh && !constrained;
         if let Some(led) = led.filter(|_| free && self.scheme.is_static()) {
             led.iter().for_each(|&node| part.nodes.follow(node as usize));
             return Ok(vec![0.0; targets.len()]);
@@ -377,7 +374,7 @@ impl NewtonRaphson {
         let mut increment: Vec<f64> = (0..start.len())
             .map(|n| if self.assembler.equations().is_fixed(n) { targets[n] - start[n] } else { 0.0 })
             .collect();
-        if part.constraints.iter().any(|c| c.active) {
+        if constrained {
             part.dofs.scatter_add(&increment, &mut part.nodes);
             let followed = self.constraint_increment(part);
             let back: Vec<f64> = increment.iter().map(|d| -d).collect();

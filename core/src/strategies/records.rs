@@ -1,6 +1,11 @@
 //! What a step leaves behind for the log and the report of the run.
 
 use super::criterion::Check;
+use super::linear_solve::Solved;
+use crate::entities::SetChange;
+
+/// Most nodes that a record names.
+const NAMED_NODES: usize = 12;
 
 /// One Newton iteration.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -22,6 +27,23 @@ pub struct IterationRecord {
     /// Condition number of the system, where it is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub condition_number: Option<f64>,
+}
+
+impl IterationRecord {
+    /// What the criteria measured after an iteration with this solve, in which the interactions changed so.
+    pub(super) fn new(iteration: usize, checks: Vec<Check>, change: &SetChange, solved: &Solved) -> Self {
+        let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
+        Self {
+            iteration,
+            checks,
+            active_set_changes: change.activated.len() + change.deactivated.len(),
+            stick_slip_changes: change.stick_slip.len(),
+            changed_nodes: changed.copied().take(NAMED_NODES).collect(),
+            linear_residual: solved.relative_residual,
+            engine: solved.engine.clone(),
+            condition_number: None,
+        }
+    }
 }
 
 /// One step, or one attempt at it.

@@ -4,7 +4,7 @@ use super::records::{IterationRecord, Monitor, StepRecord};
 use crate::assembly::Assembler;
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
-use crate::entities::Interaction;
+use crate::entities::{Interaction, SetChange};
 use crate::model::ModelPart;
 
 /// Solves the steps of one model part, one after another.
@@ -67,6 +67,22 @@ pub(super) fn accept(part: &mut ModelPart) -> Result<()> {
     let result = interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part));
     part.interactions = interactions;
     result
+}
+
+/// Lets interactions follow an update of the unknowns; what changed in all of them.
+///
+/// # Errors
+/// A pair that cannot be computed.
+pub(super) fn update_interactions(
+    part: &mut ModelPart,
+    interactions: &mut [Box<dyn Interaction>],
+    iteration: usize,
+) -> Result<SetChange> {
+    let mut change = SetChange::default();
+    for interaction in interactions {
+        change.extend(interaction.after_update(part, iteration)?);
+    }
+    Ok(change)
 }
 
 /// Runs `solve` on a part without its interactions and puts down what came of it: iterations and the reason of a failure.
