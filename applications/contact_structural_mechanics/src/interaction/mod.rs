@@ -3,18 +3,21 @@
 mod activation;
 mod adaptation;
 mod contact_interaction;
+mod contact_settings;
 mod cycling;
 mod friction;
 mod mpc_interaction;
 mod mpc_relation;
 mod nodal_forces;
+mod pairing;
 mod sliding;
 mod step_parameters;
 mod tying_interaction;
 mod uzawa;
 
 pub use adaptation::{AdaptationSettings, ExplicitGap};
-pub use contact_interaction::{ContactInteraction, ContactSettings};
+pub use contact_interaction::ContactInteraction;
+pub use contact_settings::ContactSettings;
 pub use friction::FrictionSettings;
 pub use mpc_interaction::{MpcInteraction, MpcKind, MpcSettings};
 pub use mpc_relation::Weights;

@@ -1,0 +1,77 @@
+//! What a deck chooses about contact, read by the processes and used by the interaction.
+
+use std::collections::BTreeMap;
+
+use zelus_core::parameters::Interval;
+
+use super::adaptation::{AdaptationSettings, ExplicitGap};
+use super::friction::FrictionSettings;
+use super::step_parameters::NormalVariation;
+use super::uzawa::UzawaSettings;
+use crate::interface::AlmParameters;
+use crate::mortar::IntegrationOrder;
+use crate::pairs::Family;
+use crate::search::SearchSettings;
+
+/// What a deck chooses about contact.
+#[derive(Clone)]
+pub struct ContactSettings {
+    /// Parts of the interfaces by key.
+    pub parts: BTreeMap<String, Vec<String>>,
+    /// Parts on the slave side by key.
+    pub slaves: BTreeMap<String, Vec<String>>,
+    /// The family of conditions.
+    pub family: &'static Family,
+    /// Times in which contact acts.
+    pub interval: Interval,
+    /// When normals follow the iteration.
+    pub normal_variation: NormalVariation,
+    /// Which facets are looked at.
+    pub search: SearchSettings,
+    /// Gap, in mesh sizes, below which a node starts active.
+    pub active_check_factor: f64,
+    /// Whether activation goes by 0.002 of the mesh size instead.
+    pub simple_search: bool,
+    /// Whether the factors of the search grow with the ratio of the largest and the smallest mesh size.
+    pub adapt_search: bool,
+    /// Steps between searches.
+    pub database_step_update: usize,
+    /// Penalty and scale factor given by hand.
+    pub manual: Option<AlmParameters>,
+    /// Factor of E/h in eq. 4.11, and ratio of scale factor and penalty.
+    pub estimate: [f64; 2],
+    /// Factor of the estimated penalty; the penalty families need a stiffer spring.
+    pub penalty_factor: f64,
+    /// Least penalty: what takes its place when the estimate is zero.
+    pub least_penalty: f64,
+    /// Whether the scale factor is used; otherwise it is 1.
+    pub use_scale_factor: bool,
+    /// Ratio of tangential and normal penalty.
+    pub tangent_factor: f64,
+    /// Change of the operators beyond which slip is measured objectively.
+    pub operator_threshold: f64,
+    /// Coefficients and the rules of stick and slip.
+    pub friction: FrictionSettings,
+    /// What of the parameters is adapted in every iteration.
+    pub adaptation: AdaptationSettings,
+    /// Whether augmented pressures of inactive nodes are zero after a step.
+    pub clear_inactive: bool,
+    /// How far Uzawa's outer loop goes, where the family has one.
+    pub uzawa: UzawaSettings,
+    /// How explicit steps adapt the penalty; `None` in implicit ones.
+    pub explicit: Option<ExplicitGap>,
+    /// Multiple of the geometric tolerance.
+    pub zero_tolerance_factor: f64,
+    /// Gauss rule on the cells.
+    pub integration_order: IntegrationOrder,
+    /// Whether the plane is rotated about the y axis.
+    pub axisymmetric: bool,
+}
+
+impl ContactSettings {
+    /// Name of the conditions up to the shape.
+    pub(super) fn condition_stem(&self) -> String {
+        let stem = self.family.condition;
+        if self.axisymmetric { stem.replace("MortarContact", "AxisymMortarContact") } else { stem.to_owned() }
+    }
+}

@@ -1,0 +1,289 @@
+//! The pairs of all interfaces of a deck: found by the search, kept in blocks of like shapes, integrated together.
+
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use zelus_core::Result;
+use zelus_core::communication::world;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::entities::EntityBlock;
+use zelus_core::model::ModelPart;
+use zelus_core::registry::{self, Kind};
+
+use super::contact_settings::ContactSettings;
+use super::step_parameters::StepParameters;
+use crate::interface::{Facet, Interface, Roles, centre_normal, positions, slave_nodes};
+use crate::pairs::{ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
+use crate::search::{Candidate, GapCheck, candidates, late_pairs, predicted_positions, touching_nodes, warn_of_reach};
+
+/// Pairs of facets and the blocks that evaluate them.
+pub(super) struct Pairing {
+    /// The interfaces the facets belong to.
+    pub interfaces: Vec<Interface>,
+    /// The pairs, by shape of slave and master.
+    pub blocks: Vec<Box<dyn ContactBlock>>,
+    /// Slave nodes that the direct check found on a master.
+    pub touching: BTreeSet<u32>,
+    /// Number of the present set of pairs.
+    pub graph: u64,
+    saved: Vec<Pair>,
+    warned_of_reach: bool,
+    warned_of_late_pairs: bool,
+}
+
+/// How the facets of a pair meet.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meeting {
+    /// They share an area that is integrated.
+    pub overlapping: bool,
+    /// They share an area, be it a sliver.
+    pub facing: bool,
+}
+
+impl Pairing {
+    /// No pairs yet between the facets of these interfaces.
+    pub(super) fn new(interfaces: Vec<Interface>) -> Self {
+        Self {
+            interfaces,
+            blocks: Vec::new(),
+            touching: BTreeSet::new(),
+            graph: 1,
+            saved: Vec::new(),
+            warned_of_reach: false,
+            warned_of_late_pairs: false,
+        }
+    }
+
+    /// Nodes of all interfaces, ascending.
+    pub(super) fn nodes(&self) -> Vec<u32> {
+        self.ascending(|interface| interface.nodes.clone())
+    }
+
+    /// Nodes that may carry multipliers, ascending.
+    pub(super) fn carriers(&self) -> Vec<u32> {
+        self.ascending(Interface::carriers)
+    }
+
+    /// Nodes of slave facets, ascending.
+    pub(super) fn slaves(&self) -> Vec<u32> {
+        slave_nodes(&self.interfaces)
+    }
+
+    fn ascending(&self, of: impl Fn(&Interface) -> Vec<u32>) -> Vec<u32> {
+        let mut nodes: Vec<u32> = self.interfaces.iter().flat_map(of).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Number of pairs.
+    pub(super) fn len(&self) -> usize {
+        self.blocks.iter().map(|block| block.pairs().len()).sum()
+    }
+
+    fn pairs(&self) -> Vec<Pair> {
+        self.blocks.iter().flat_map(|block| block.pairs().iter().cloned()).collect()
+    }
+
+    fn keys(&self) -> Vec<PairKey> {
+        self.blocks.iter().flat_map(|block| block.pairs().iter().map(|pair| pair.key)).collect()
+    }
+
+    fn facet(&self, interface: u32, facet: u32) -> &Facet {
+        &self.interfaces[interface as usize].facets[facet as usize]
+    }
+
+    fn slave(&self, key: PairKey) -> &Facet {
+        self.facet(key.interface, key.slave)
+    }
+
+    fn master(&self, key: PairKey) -> &Facet {
+        self.facet(key.interface, key.master)
+    }
+
+    /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
+    ///
+    /// # Errors
+    /// A condition for these shapes that is not registered.
+    pub(super) fn search(
+        &mut self,
+        part: &mut ModelPart,
+        settings: &ContactSettings,
+        parameters: &Arc<StepParameters>,
+    ) -> Result<()> {
+        let still = predicted_positions(part, settings.search.dynamic);
+        let sides = |key: PairKey| (self.slave(key).role, self.master(key).role);
+        let of_these_sides = |pair: &Pair| sides(pair.key) == (Roles::Slave, Roles::Master);
+        let mut known: BTreeMap<PairKey, Pair> =
+            self.pairs().into_iter().filter(of_these_sides).map(|pair| (pair.key, pair)).collect();
+        let (mut beyond, mut touching) = (BTreeSet::new(), BTreeSet::new());
+        for (key, within_reach) in self.candidates(part, settings) {
+            if settings.search.check == GapCheck::DirectCheck {
+                let nodes = touching_nodes(part, self.slave(key), self.master(key), settings.active_check_factor);
+                if !within_reach || (nodes.is_empty() && !known.contains_key(&key)) {
+                    continue;
+                }
+                touching.extend(nodes);
+            } else if !within_reach && !known.contains_key(&key) {
+                beyond.insert(key);
+            }
+            if let Entry::Vacant(place) = known.entry(key) {
+                place.insert(self.pair(part, key));
+            }
+        }
+        if let Some(still) = still {
+            part.nodes.current = still;
+        }
+        let before = self.keys();
+        self.set(known.into_values().collect(), settings, parameters)?;
+        let found: Vec<(Pair, Meeting)> = self.pairs().into_iter().zip(self.integrals(part).1).collect();
+        let lost = found.iter().filter(|(pair, i)| i.overlapping && beyond.contains(&pair.key)).count();
+        warn_of_reach(part, lost, &mut self.warned_of_reach);
+        // Slivers too: within the step they may grow to overlaps.
+        let kept = found.into_iter().filter(|(pair, i)| i.facing && !beyond.contains(&pair.key));
+        self.set(kept.map(|(pair, _)| pair).collect(), settings, parameters)?;
+        if before != self.keys() {
+            self.graph += 1;
+        }
+        self.touching = touching;
+        Ok(())
+    }
+
+    /// Pairs that are near each other, and whether their centres are within reach.
+    fn candidates(&self, part: &ModelPart, settings: &ContactSettings) -> Vec<(PairKey, bool)> {
+        let mut all = Vec::new();
+        for (at, interface) in self.interfaces.iter().enumerate() {
+            let found = candidates(part, interface, &settings.search).into_iter();
+            all.extend(found.map(|Candidate { slave, master, within_reach }| {
+                (PairKey { interface: at as u32, slave, master }, within_reach)
+            }));
+        }
+        all
+    }
+
+    fn pair(&self, part: &ModelPart, key: PairKey) -> Pair {
+        Pair {
+            key,
+            slave_normal: normal(part, self.slave(key)),
+            master_normal: normal(part, self.master(key)),
+            overlapping: true,
+            previous: Previous::default(),
+        }
+    }
+
+    fn set(&mut self, pairs: Vec<Pair>, settings: &ContactSettings, parameters: &Arc<StepParameters>) -> Result<()> {
+        self.blocks.clear();
+        self.blocks = self.blocks_of(pairs, settings, parameters)?;
+        Ok(())
+    }
+
+    fn blocks_of(
+        &self,
+        pairs: Vec<Pair>,
+        settings: &ContactSettings,
+        parameters: &Arc<StepParameters>,
+    ) -> Result<Vec<Box<dyn ContactBlock>>> {
+        let stem = settings.condition_stem();
+        let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
+        let mut blocks = Vec::new();
+        for ((slave, master), (pairs, nodes)) in groups {
+            let name = condition_name(&stem, slave, master);
+            let entry = registry::require(Kind::Condition, &name)?;
+            let request = PairRequest { entry, pairs, nodes, parameters: parameters.clone() };
+            let block = (settings.family.block)(slave, master, request).ok_or_else(|| {
+                Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
+            })?;
+            blocks.push(block);
+        }
+        Ok(blocks)
+    }
+
+    /// Takes all pairs away.
+    pub(super) fn clear(&mut self) {
+        if !self.blocks.is_empty() {
+            self.blocks.clear();
+            self.graph += 1;
+        }
+    }
+
+    /// The integrals of the pairs of this rank, and of all pairs how they meet.
+    pub(super) fn integrals(&self, part: &ModelPart) -> (Vec<Vec<Integral>>, Vec<Meeting>) {
+        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
+        let integrals: Vec<_> = self.blocks.iter().map(|block| block.integrate(&part.view(), &own)).collect();
+        let mut flags: Vec<bool> = integrals.iter().flatten().flat_map(|i| [i.overlapping, i.facing]).collect();
+        if part.partition.is_some() {
+            world().any_of(&mut flags);
+        }
+        let meetings = flags.chunks_exact(2).map(|pair| Meeting { overlapping: pair[0], facing: pair[1] }).collect();
+        (integrals, meetings)
+    }
+
+    /// Takes the normals of masters, and of `slaves` too, from the present configuration.
+    pub(super) fn refresh_normals(&mut self, part: &ModelPart, slaves: bool) {
+        let mut blocks = std::mem::take(&mut self.blocks);
+        for pair in blocks.iter_mut().flat_map(|block| block.pairs_mut()) {
+            pair.master_normal = normal(part, self.master(pair.key));
+            if slaves {
+                pair.slave_normal = normal(part, self.slave(pair.key));
+            }
+        }
+        self.blocks = blocks;
+    }
+
+    /// Says once that facets have come through each other, deeper than `allowed`, that the step did not look at.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    pub(super) fn warn_of_late_pairs(
+        &mut self,
+        part: &mut ModelPart,
+        settings: &ContactSettings,
+        parameters: &Arc<StepParameters>,
+        allowed: f64,
+    ) -> Result<()> {
+        if self.warned_of_late_pairs || !allowed.is_finite() {
+            return Ok(());
+        }
+        let known: BTreeSet<PairKey> = self.keys().into_iter().collect();
+        let near = self.candidates(part, settings).into_iter().map(|(key, _)| key);
+        let late: Vec<Pair> = near.filter(|key| !known.contains(key)).map(|key| self.pair(part, key)).collect();
+        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
+        let through = self
+            .blocks_of(late, settings, parameters)?
+            .iter()
+            .flat_map(|block| block.integrate(&part.view(), &own))
+            .filter(|i| i.overlapping && i.gap.iter().zip(&i.area).any(|(gap, area)| *gap < -allowed * area.abs()))
+            .count();
+        let mut of_all = [through as f64];
+        if part.partition.is_some() {
+            world().sum(&mut of_all);
+        }
+        let through = of_all[0] as usize;
+        self.warned_of_late_pairs = through > 0;
+        part.messages.extend((through > 0).then(|| late_pairs(through, allowed)));
+        Ok(())
+    }
+
+    /// Keeps the pairs of an accepted state.
+    pub(super) fn save(&mut self) {
+        self.saved = self.pairs();
+    }
+
+    /// Goes back to the pairs kept last.
+    pub(super) fn restore(&mut self, settings: &ContactSettings, parameters: &Arc<StepParameters>) {
+        let saved = std::mem::take(&mut self.saved);
+        // The same shapes were made into blocks before.
+        let _ = self.set(saved, settings, parameters);
+        self.graph += 1;
+    }
+
+    /// The blocks as the assembly sees them.
+    pub(super) fn as_entities(&self) -> Vec<&dyn EntityBlock> {
+        self.blocks.iter().map(|block| block.as_entities()).collect()
+    }
+}
+
+fn normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
+    centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
+}
