@@ -6,8 +6,8 @@ mod support;
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use support::{Results, read_nodes, root, said, scratch_copy, zelus};
+use std::path::Path;
+use support::{Results, cases, read_nodes, root, said, scratch_copy, zelus};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -125,22 +125,10 @@ fn run(folder: &Path) -> Vec<String> {
     problems
 }
 
-fn folders_with_case(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path()) {
-        if entry.is_dir() {
-            folders_with_case(&entry, found);
-        } else if entry.file_name().is_some_and(|name| name == "case.json") {
-            found.push(folder.to_owned());
-        }
-    }
-}
-
 #[test]
 fn every_case_agrees_with_its_reference() {
     let base = root().join("tests/cases");
-    let mut folders = Vec::new();
-    folders_with_case(&base, &mut folders);
-    folders.sort();
+    let mut folders = cases();
     let wanted = std::env::var("ZELUS_CASE").unwrap_or_default();
     folders.retain(|folder| folder.to_string_lossy().contains(&wanted));
     let mut failed = Vec::new();

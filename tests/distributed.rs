@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
-use support::{contents, read_json, root, said, scratch_copy, zelus};
+use support::{change, contents, read_json, root, said, scratch_copy, zelus};
 
 const RANKS: [usize; 5] = [1, 2, 3, 4, 8];
 const DECK: &str = "ProjectParameters.json";
@@ -186,13 +186,6 @@ fn contact_by_constraints() {
 
 fn case(name: &str) -> tempfile::TempDir {
     scratch_copy(&root().join("tests/cases").join(name))
-}
-
-fn change(folder: &Path, file: &str, find: &str, with: &str) {
-    let path = folder.join(file);
-    let text = std::fs::read_to_string(&path).expect("a file of the deck");
-    assert!(text.contains(find), "{file} does not have {find:?}");
-    std::fs::write(path, text.replace(find, with)).expect("a file of the deck");
 }
 
 /// The run fails with this exit code and says the text once.

@@ -3,8 +3,8 @@
 mod support;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use support::{read_json, root, said, scratch_copy, zelus};
+use std::path::Path;
+use support::{cases, read_json, said, scratch_copy, zelus};
 
 /// Difference allowed, relative to the largest value of the quantity.
 ///
@@ -158,21 +158,9 @@ fn difference(folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn decks_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path()) {
-        if entry.is_dir() {
-            decks_below(&entry, found);
-        } else if entry.file_name().is_some_and(|name| name == "case.json") {
-            found.push(folder.to_owned());
-        }
-    }
-}
-
 #[test]
 fn reversed_numbers_change_no_result() {
-    let mut decks = Vec::new();
-    decks_below(&root().join("tests/cases"), &mut decks);
-    decks.sort();
+    let decks = cases();
     let problems: Vec<String> = decks
         .iter()
         .filter_map(|deck| difference(deck).err().map(|problem| format!("{}: {problem}", deck.display())))

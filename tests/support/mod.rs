@@ -39,6 +39,23 @@ fn copy_into(from: &Path, to: &Path) {
     }
 }
 
+/// The cases of this repository: every folder below `tests/cases` with a `case.json`, ascending.
+pub fn cases() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut pending = vec![root().join("tests/cases")];
+    while let Some(folder) = pending.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder").map(|e| e.expect("an entry").path()) {
+            if entry.is_dir() {
+                pending.push(entry);
+            } else if entry.file_name().is_some_and(|name| name == "case.json") {
+                found.push(folder.clone());
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
 /// Every file under a folder with its content, by path relative to it.
 pub fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();

@@ -4,9 +4,13 @@
 //! constant part is assembled once; the *coupling* of interactions (contact) is rebuilt when pairs change; the *load*
 //! tangents of follower forces are small and not symmetric.
 
+mod inertia;
+
 use std::time::Instant;
 
 use zelus_linear_algebra::{Csr, Symmetry, System};
+
+pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::distribution::Distribution;
@@ -15,29 +19,8 @@ use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use crate::communication::world;
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, Interaction, LocalSystems, StepView, Tangent, Want};
-use crate::model::{ModelPart, Named, Nodes, ScalarVariable, named};
-
-/// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
-///
-/// Damping is Rayleigh's, C = alpha M + beta K; RAYLEIGH_ALPHA and RAYLEIGH_BETA of an element's properties go before.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Inertia {
-    /// Factor of M in the tangent, 1/time².
-    pub mass_factor: f64,
-    /// Factor of C in the tangent, 1/time.
-    pub damping_factor: f64,
-    /// Rayleigh's alpha, 1/time.
-    pub alpha: f64,
-    /// Rayleigh's beta, time.
-    pub beta: f64,
-    /// Acceleration that M acts on, a number an unknown.
-    pub acceleration: Vec<f64>,
-    /// Velocity that C acts on, a number an unknown.
-    pub velocity: Vec<f64>,
-    /// Forces of the step before that still act, a number an unknown; empty for none.
-    pub carried: Vec<f64>,
-}
+use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
+use crate::model::{ModelPart, Named, ScalarVariable, named};
 
 /// Seconds spent assembling, by what was assembled.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -268,87 +251,6 @@ impl Assembler {
         Ok(rhs)
     }
 
-    /// M a + C v less the forces carried over: what inertia and damping take up, over all unknowns.
-    ///
-    /// # Errors
-    /// An entity that cannot be computed.
-    pub fn inertia_forces(&mut self, part: &ModelPart, inertia: &Inertia) -> Result<Vec<f64>> {
-        let own = self.own_inertia_forces(part, inertia);
-        let mut out = world().agree(own)?;
-        self.add_up(&mut out);
-        Ok(out)
-    }
-
-    fn own_inertia_forces(&mut self, part: &ModelPart, inertia: &Inertia) -> Result<Vec<f64>> {
-        self.ensure_constant(part)?;
-        let mut out = vec![0.0; part.dofs.len()];
-        let single = !damped_by_properties(part);
-        let alpha = if single { inertia.alpha } else { 0.0 };
-        let minus: Vec<f64> =
-            inertia.acceleration.iter().zip(&inertia.velocity).map(|(a, v)| -(a + alpha * v)).collect();
-        self.mass(part)?;
-        self.mul_subtract(self.mass.as_ref().expect("just made"), &minus, &mut out);
-        let minus = |factor: f64| inertia.velocity.iter().map(|v| -factor * v).collect::<Vec<f64>>();
-        if !single {
-            let damping = self.damping(part, [inertia.alpha, inertia.beta])?;
-            self.mul_subtract(&damping, &minus(1.0), &mut out);
-        } else if inertia.beta != 0.0 {
-            self.mul_subtract(&self.stiffness(part)?, &minus(inertia.beta), &mut out);
-        }
-        let is_own = |number: usize| self.distribution.as_ref().is_none_or(|d| d.is_own(number));
-        let carried = out.iter_mut().zip(&inertia.carried).enumerate();
-        carried.filter(|(number, _)| is_own(*number)).for_each(|(_, (sum, force))| *sum -= force);
-        Ok(out)
-    }
-
-    /// The damping matrix on the bulk pattern, where properties have factors of their own or elements are dampers.
-    fn damping(&mut self, part: &ModelPart, rayleigh: [f64; 2]) -> Result<Vec<f64>> {
-        if let Some((_, values)) = self.damping.as_ref().filter(|(key, _)| *key == rayleigh) {
-            return Ok(values.clone());
-        }
-        let view = part.view();
-        let nodes = undeformed(part);
-        let initial = StepView { nodes: &nodes, ..view };
-        let mut values = vec![0.0; self.pattern.zero.entries()];
-        let mut lasting = true;
-        let numbered = part.element_blocks.iter().zip(&self.element_numbers);
-        for (block, numbers) in numbered.chain(part.condition_blocks.iter().zip(&self.condition_numbers)) {
-            let element = block.entry().kind == crate::registry::Kind::Element;
-            let [alpha, beta] = if element { rayleigh_of(part, block.as_ref(), rayleigh) } else { [0.0, rayleigh[1]] };
-            if alpha != 0.0 {
-                let lumped = self.lumped;
-                let compute = |range, out: &mut LocalSystems| {
-                    block.mass(&initial, range, lumped, out).map(|_| out.lhs.iter_mut().for_each(|m| *m *= alpha))
-                };
-                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
-            }
-            let stiff = match block.tangent() {
-                Tangent::Zero => false,
-                Tangent::General => element,
-                Tangent::Constant | Tangent::Symmetric => true,
-            };
-            if beta != 0.0 && stiff {
-                let compute = |range, out: &mut LocalSystems| {
-                    let systems = block.local_systems(&view, range, Want::Both, out);
-                    systems.map(|()| out.lhs.iter_mut().for_each(|k| *k *= beta))
-                };
-                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
-                lasting &= block.tangent() == Tangent::Constant;
-            }
-            if element && block.has_damping() {
-                let compute = |range, out: &mut LocalSystems| {
-                    block.damping(&view, range, out);
-                    Ok(())
-                };
-                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
-            }
-        }
-        if lasting {
-            self.damping = Some((rayleigh, values.clone()));
-        }
-        Ok(values)
-    }
-
     /// Forces of the conditions alone: the loads, over all unknowns.
     ///
     /// # Errors
@@ -567,80 +469,6 @@ impl Assembler {
         }
         Ok(())
     }
-
-    fn stiffness(&self, part: &ModelPart) -> Result<Vec<f64>> {
-        let mut values = self.constant.clone().expect("assembled before the first residual");
-        let is_element = |block: &dyn EntityBlock| block.entry().kind == crate::registry::Kind::Element;
-        self.add_blocks(
-            part,
-            |block| is_variable(block) && (is_element(block) || block.tangent() == Tangent::Symmetric),
-            &mut values,
-        )?;
-        Ok(values)
-    }
-
-    /// The mass matrix on the bulk pattern, that of the initial positions.
-    ///
-    /// # Errors
-    /// An entity that cannot be computed.
-    pub fn mass(&mut self, part: &ModelPart) -> Result<&[f64]> {
-        if self.mass.is_none() {
-            let nodes = undeformed(part);
-            let view = StepView { nodes: &nodes, ..part.view() };
-            let mut values = vec![0.0; self.pattern.zero.entries()];
-            for (block, numbers) in part.element_blocks.iter().zip(&self.element_numbers) {
-                let lumped = self.lumped;
-                let compute = |range, out: &mut LocalSystems| block.mass(&view, range, lumped, out).map(|_| ());
-                self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
-            }
-            self.mass = Some(values);
-        }
-        Ok(self.mass.as_ref().expect("just made"))
-    }
-
-    /// Row sums of the mass matrix, a number an unknown.
-    ///
-    /// # Errors
-    /// As [`Assembler::mass`].
-    pub fn lumped_mass(&mut self, part: &ModelPart) -> Result<Vec<f64>> {
-        let own = self.mass(part).map(<[f64]>::to_vec);
-        let values = world().agree(own)?;
-        let mut out = vec![0.0; part.dofs.len()];
-        self.mul_subtract(&values, &vec![-1.0; part.dofs.len()], &mut out);
-        self.add_up(&mut out);
-        Ok(out)
-    }
-}
-
-/// The nodes at their initial positions: mass does not change with the motion.
-fn undeformed(part: &ModelPart) -> Nodes {
-    let mut nodes = part.nodes.clone();
-    nodes.current.clone_from(&nodes.initial);
-    nodes
-}
-
-/// Whether the properties of an element give Rayleigh's factors, which then go before those of the solver, or some elements
-/// are dampers.
-pub fn damped_by_properties(part: &ModelPart) -> bool {
-    let names = ["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"];
-    part.properties.values().any(|p| names.iter().any(|name| p.number(name).is_some()))
-        || part.element_blocks.iter().any(|block| block.has_damping())
-}
-
-/// The largest of Rayleigh's factors, those of the solver and of all properties.
-pub fn strongest_damping(part: &ModelPart, [alpha, beta]: [f64; 2]) -> [f64; 2] {
-    part.properties.values().fold([alpha, beta], |[alpha, beta], properties| {
-        let own = |name: &str, other: f64| properties.number(name).map_or(other, |own| own.max(other));
-        [own("RAYLEIGH_ALPHA", alpha), own("RAYLEIGH_BETA", beta)]
-    })
-}
-
-/// Rayleigh's factors of a block, whose entities share their properties.
-fn rayleigh_of(part: &ModelPart, block: &dyn EntityBlock, [alpha, beta]: [f64; 2]) -> [f64; 2] {
-    let first = block.members().first().map(|&member| part.elements.properties[member as usize]);
-    let properties = first.and_then(|id| part.properties.get(&id));
-    let own = |name: &str, default: f64| properties.and_then(|p| p.number(name)).unwrap_or(default);
-    [own("RAYLEIGH_ALPHA", alpha), own("RAYLEIGH_BETA", beta)]
 }
 
 fn is_variable(block: &dyn EntityBlock) -> bool {
