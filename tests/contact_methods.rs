@@ -94,6 +94,33 @@ fn a_perturbed_lagrangian_yields_like_a_spring() {
     }
 }
 
+/// The penetration ends at the bound that the first penalty, too soft or too stiff, left it beyond (eq. D.4). Facets are a
+/// third long, and so are the bounds over their factors. It gets there linearly, at the rate of penetration over closing.
+#[test]
+fn an_adapted_penalty_brings_the_penetration_between_its_bounds() {
+    let stiffness = stack_stiffness();
+    for (share, expected) in [(1e-1, 9e-4 / 3.0), (1e6, 9e-5 / 3.0)] {
+        let scratch = case("contact_2d/uzawa");
+        let deck = std::fs::read_to_string(scratch.path().join(DECK)).expect("the deck");
+        let deck = deck
+            .replace("uzawa_contact_process", "penalty_contact_process")
+            .replace("UzawaContactFrictionless", "PenaltyContactFrictionless")
+            .replace("\"LAGRANGE_MULTIPLIER_CONTACT_PRESSURE\", ", "")
+            .replace("\"max_iteration\": 20", "\"max_iteration\": 40");
+        let mut deck: Value = serde_json::from_str(&deck).expect("JSON");
+        let process = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
+        process.as_object_mut().expect("an object").remove("uzawa_parameters");
+        process["advance_ALM_parameters"] = json!({
+            "manual_ALM": true, "penalty": share * stiffness, "adapt_penalty": true,
+            "adaptation_rule": "APM", "min_gap_factor": 9e-5, "max_gap_factor": 9e-4,
+        });
+        write_json(&scratch.path().join(DECK), &deck);
+        let said = run(scratch.path());
+        let found = number_after(&said, "deepest penetration");
+        assert!((found / expected - 1.0).abs() < 1e-6, "penalty {share} K: {found}, expected {expected}\n{said}");
+    }
+}
+
 /// Multiplies a number, or wraps an expression.
 fn scaled(value: &Value, factor: f64) -> Value {
     match value {

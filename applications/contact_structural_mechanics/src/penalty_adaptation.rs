@@ -1,5 +1,38 @@
 //! Rules that adapt the penalty of a node while the iteration runs; gaps are lengths, negative in penetration.
 
+use serde::Deserialize;
+
+/// How the penalty of an active node follows its gap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+pub enum PenaltyRule {
+    /// Algorithm 7.
+    #[serde(rename = "AALM")]
+    AugmentedLagrangian,
+    /// Eq. D.4.
+    #[serde(rename = "APM")]
+    AdaptedPenalty,
+}
+
+impl PenaltyRule {
+    /// The next penalty, from the present and the last iterate's gap and the least and largest gap that is good enough.
+    pub fn adapt(self, penalty: f64, gap: f64, previous: f64, [least, largest]: [f64; 2]) -> f64 {
+        match self {
+            Self::AugmentedLagrangian => adapted_augmented_lagrangian(penalty, gap, previous, largest),
+            Self::AdaptedPenalty if gap < 0.0 => adapted_penalty(penalty, gap, least, largest),
+            Self::AdaptedPenalty => penalty,
+        }
+    }
+
+    /// The penalty of which a share must stay: that of the `run` where the answer does not depend on it, and the `present`
+    /// one where it is to find its way.
+    pub fn floor_refers_to(self, run: f64, present: f64) -> f64 {
+        match self {
+            Self::AugmentedLagrangian => run,
+            Self::AdaptedPenalty => present,
+        }
+    }
+}
+
 /// Adapted augmented Lagrangian (Algorithm 7, Bussetta, Marceau and Ponthot), as the reference program runs it.
 ///
 /// `gap`, `previous` are the present and the last iterate's weighted gap over the nodal area, `max_gap` the gap up to

@@ -3,18 +3,20 @@
 use zelus_core::model::ModelPart;
 use zelus_core::model::flags::ACTIVE;
 
-use crate::penalty_adaptation::{adapted_augmented_lagrangian, dynamic_factor};
+use crate::penalty_adaptation::{PenaltyRule, dynamic_factor};
 use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP};
 
-/// Least share of the penalty of the run: a gap that turns from round-off to open would otherwise take all of it away.
+/// Least share of a penalty that stays: a gap of round-off would otherwise take all of it away.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// What is adapted.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AdaptationSettings {
-    /// Whether penalties follow Algorithm 7 (`adapt_penalty`).
-    pub adapt_penalty: bool,
-    /// Gap, in mesh sizes, with which Algorithm 7 is content.
+    /// What penalties follow (`adapt_penalty`); they stay when `None`.
+    pub rule: Option<PenaltyRule>,
+    /// Least gap, in mesh sizes, with which the adapted penalty method is content.
+    pub min_gap_factor: f64,
+    /// Largest gap, in mesh sizes, with which the rule is content.
     pub max_gap_factor: f64,
     /// Whether forces of nodes whose gap has just closed are scaled (`compute_dynamic_factor`).
     pub dynamic_factor: bool,
@@ -45,7 +47,7 @@ impl ExplicitGap {
 impl AdaptationSettings {
     /// Whether anything is to be done.
     pub(super) fn acts(self) -> bool {
-        self.adapt_penalty || self.dynamic_factor
+        self.rule.is_some() || self.dynamic_factor
     }
 
     /// Weighted gaps of the slave nodes before the next integration, when they will be needed: those of the last iterate,
@@ -76,16 +78,16 @@ impl AdaptationSettings {
             let mut adapted = values.values(&INITIAL_PENALTY, 0)[at];
             if self.dynamic_factor {
                 let (base, factor) = dynamic_factor(penalty, gap, before, self.max_gap_factor, max_gap);
-                if !self.adapt_penalty {
+                if self.rule.is_none() {
                     adapted = base;
                 }
                 values.values_mut(&DYNAMIC_FACTOR, 0)[at] = factor;
             }
-            if self.adapt_penalty {
-                let allowed = self.max_gap_factor * values.values(&NODAL_H, 0)[at];
-                let next = adapted_augmented_lagrangian(adapted, gap, before, allowed);
+            if let Some(rule) = self.rule {
+                let size = values.values(&NODAL_H, 0)[at];
+                let next = rule.adapt(adapted, gap, before, [self.min_gap_factor * size, self.max_gap_factor * size]);
                 if next.is_finite() {
-                    adapted = next.max(LEAST_SHARE * penalty);
+                    adapted = next.max(LEAST_SHARE * rule.floor_refers_to(penalty, adapted));
                 }
             }
             values.values_mut(&INITIAL_PENALTY, 0)[at] = adapted;

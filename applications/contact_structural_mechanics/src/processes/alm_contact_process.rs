@@ -22,6 +22,7 @@ use crate::interaction::{
 use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
 use crate::pairs::{Family, find_family};
+use crate::penalty_adaptation::PenaltyRule;
 use crate::search::{GapCheck, SearchSettings};
 
 #[derive(Debug, Deserialize)]
@@ -47,6 +48,9 @@ struct Parameters {
     scale_factor: f64,
     adapt_penalty: bool,
     max_gap_factor: f64,
+    /// Processes whose families have multipliers lack the two keys of the adapted penalty method.
+    adaptation_rule: Option<PenaltyRule>,
+    min_gap_factor: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -141,6 +145,7 @@ fn interaction(
         NormalVariation::None if updated || (family.frictional() && !keeps_normals) => NormalVariation::Update,
         other => other,
     };
+    let rule = whole.parameters.adaptation_rule.unwrap_or(PenaltyRule::AugmentedLagrangian);
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,
@@ -171,7 +176,8 @@ fn interaction(
         operator_threshold: keys.as_ref().map_or(0.0, |keys| keys.operator_threshold),
         friction,
         adaptation: AdaptationSettings {
-            adapt_penalty: whole.parameters.adapt_penalty,
+            rule: whole.parameters.adapt_penalty.then_some(rule),
+            min_gap_factor: whole.parameters.min_gap_factor.unwrap_or(0.0),
             max_gap_factor: whole.parameters.max_gap_factor,
             dynamic_factor: false,
         },
