@@ -9,12 +9,9 @@ use zelus_core::model::{ModelPart, ScalarVariable};
 use zelus_core::registry::{self, Kind};
 
 use crate::constraint_block::ConstraintBlock;
-use crate::constraints::Constraint;
+use crate::constraints::{Constraint, INTERACTION};
 use crate::method::{ConstraintState, MULTIPLIERS, Method};
 use crate::variables::{CONSTRAINT_MULTIPLIER, CONSTRAINT_PENALTY, CONSTRAINT_VIOLATION};
-
-/// Name of every interaction that imposes constraints.
-pub const NAME: &str = "constraints";
 
 /// All constraints of one model part under one method.
 pub struct ConstraintInteraction<M: Method> {
@@ -59,7 +56,7 @@ impl<M: Method> ConstraintInteraction<M> {
 
 impl<M: Method> Interaction for ConstraintInteraction<M> {
     fn name(&self) -> &str {
-        NAME
+        INTERACTION
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {

@@ -10,8 +10,10 @@ use zelus_core::model::{ModelPart, Nodes, PropertyValue};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use crate::constraint_interaction::NAME;
 use crate::variables::POSITION;
+
+/// Name of every interaction that imposes constraints.
+pub const INTERACTION: &str = "constraints";
 
 const WALL: &str = "WallCondition2N";
 const LINEAR: [&str; 2] = ["LinearConstraintCondition2N", "LinearConstraintCondition3N"];
@@ -101,7 +103,7 @@ impl<const NODES: usize> Kernel<NODES, 1> for Stated {
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
-        if request.part.interactions.iter().any(|interaction| interaction.name() == NAME) {
+        if request.part.interactions.iter().any(|interaction| interaction.name() == INTERACTION) {
             return Ok(Self);
         }
         let fact = format!("no process says how {} is imposed", request.entry.name);

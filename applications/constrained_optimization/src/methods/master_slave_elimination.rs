@@ -11,8 +11,8 @@ use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use crate::constraint_interaction::NAME;
 use crate::constraints::Constraint;
+use crate::constraints::INTERACTION;
 use crate::variables::{CONSTRAINT_MULTIPLIER, CONSTRAINT_VIOLATION, POSITION};
 
 /// A constraint and the position that it eliminates.
@@ -52,7 +52,7 @@ impl Interaction for EliminationInteraction {
     }
 
     fn name(&self) -> &str {
-        NAME
+        INTERACTION
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {

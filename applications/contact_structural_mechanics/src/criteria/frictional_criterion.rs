@@ -5,10 +5,10 @@
 
 use zelus_core::Result;
 use zelus_core::model::variables::NORMAL;
-use zelus_core::strategies::{Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_round_off};
+use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_round_off};
 use zelus_core::vector3::{dot, sub};
 
-use super::contact_criterion::{Form, Tolerance, measure_primary};
+use super::measure::{Form, Tolerance, check};
 use crate::formulations::NodeState;
 use crate::friction_law::smooth_nodes;
 use crate::mortar::tangential;
@@ -100,7 +100,7 @@ fn split(measures: &Measures<'_>, vector: &[f64], whole: bool) -> Sizes {
 
 impl ConvergenceCriterion for FrictionalCriterion {
     fn judge(&self, measures: &Measures<'_>) -> Verdict {
-        let mut checks = vec![measure_primary(measures, self.primary)];
+        let mut checks = vec![check(measures, Block::Primary, self.primary)];
         let (sizes, references, round_off) = match self.multiplier {
             Form::Residual => (
                 split(measures, measures.residual, false),

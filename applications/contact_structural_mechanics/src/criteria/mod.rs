@@ -5,6 +5,8 @@
 
 mod contact_criterion;
 mod frictional_criterion;
+mod measure;
 
-pub use contact_criterion::{ContactCriterion, Form};
+pub use contact_criterion::ContactCriterion;
 pub use frictional_criterion::FrictionalCriterion;
+pub use measure::Form;

@@ -6,11 +6,10 @@ use rustc_hash::FxHashMap;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::Shape;
+use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::flags::{INTERFACE, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, SubPart};
 use zelus_core::vector3::{dot, sub};
-
-use super::normals::centre_normal;
 
 /// Which sides a facet can be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -254,7 +253,7 @@ fn facet(part: &ModelPart, mut nodes: Vec<u32>, source: FacetSource, element: u3
     };
     let points: Vec<[f64; 3]> = nodes.iter().map(|&n| part.nodes.initial[n as usize]).collect();
     let outward = sub(centre(&nodes), centre(part.elements.nodes(element)));
-    let Some(normal) = centre_normal(shape, &points) else {
+    let Some(normal) = unit_normal(shape, &points, shape.cell().centre) else {
         let fact = format!("a facet of element {} has no area", part.elements.ids[element as usize]);
         return Err(Diagnostic::error("degenerate-facet", fact).remedy("mend the mesh").into());
     };

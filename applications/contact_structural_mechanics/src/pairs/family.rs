@@ -8,8 +8,8 @@ use zelus_core::model::{ScalarVariable, Variable};
 use zelus_core::registry::{self, Build, Entry, Kind};
 use zelus_core::{Result, diagnostics::Diagnostic};
 
+use super::contact_block::ContactBlock;
 use super::pair::Pair;
-use super::pair_block::ContactBlock;
 use crate::interaction::StepParameters;
 
 /// The multipliers of a family.

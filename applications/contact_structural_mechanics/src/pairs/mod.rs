@@ -1,5 +1,6 @@
 //! Contact pairs as blocks: what the search found, in the form the assembly takes.
 
+mod contact_block;
 mod facet_operators;
 mod family;
 mod grouping;
@@ -7,11 +8,12 @@ mod pair;
 mod pair_block;
 mod tying_block;
 
+pub use contact_block::{ContactBlock, Own};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
 pub use family::{
     Family, Friction, Multiplier, PairRequest, TyingFamily, find_family, find_tying_family, variables_of,
 };
 pub use grouping::{Groups, condition_name, group_by_shapes};
 pub use pair::{Integral, Pair, PairKey, Previous};
-pub use pair_block::{ContactBlock, Own, PairBlock, PairFormulation};
+pub use pair_block::{PairBlock, PairFormulation};
 pub use tying_block::{TyingRequest, tying_block};

@@ -10,6 +10,7 @@ use zelus_core::registry::Entry;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{cross, normalised, sub};
 
+use super::contact_block::{ContactBlock, Own};
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
@@ -42,30 +43,6 @@ pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
     ) -> [[f64; 3]; NS] {
         [[0.0; 3]; NS]
     }
-}
-
-/// Whether this rank evaluates the pair with these nodes.
-pub type Own<'a> = &'a (dyn Fn(&[u32]) -> bool + Sync);
-
-/// A block of pairs as the interaction sees it.
-pub trait ContactBlock: EntityBlock {
-    /// The pairs.
-    fn pairs(&self) -> &[Pair];
-
-    /// The pairs, to change.
-    fn pairs_mut(&mut self) -> &mut [Pair];
-
-    /// Node indices on the slave side of the `at`-th pair.
-    fn slave_nodes(&self, at: usize) -> &[u32];
-
-    /// Gap, slip and area of every pair in the present configuration; those whose nodes are not `own` stay without overlap.
-    fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral>;
-
-    /// Step start: keeps the operators of the `own` pairs against which slip is measured.
-    fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>);
-
-    /// The same block for the assembly.
-    fn as_entities(&self) -> &dyn EntityBlock;
 }
 
 /// Pairs with `NS` slave and `NM` master nodes and `NU` displacement unknowns.

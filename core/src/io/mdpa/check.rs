@@ -1,7 +1,7 @@
 //! What the blocks of an mdpa file say of each other: ids defined once, references to what exists.
 
 use super::document::*;
-use super::reader::Problems;
+use super::problems::Problems;
 use crate::diagnostics::Diagnostic;
 use rustc_hash::FxHashMap;
 

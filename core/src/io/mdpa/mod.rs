@@ -7,6 +7,7 @@
 mod blocks;
 mod check;
 mod document;
+mod problems;
 mod reader;
 #[cfg(test)]
 mod tests;

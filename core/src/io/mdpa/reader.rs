@@ -1,9 +1,10 @@
 //! From the text of an mdpa file to the document.
 
 use super::document::*;
+use super::problems::Problems;
 use super::tokens::{Number, Tokens, parse_prefix};
 use super::{check, check::Lines};
-use crate::diagnostics::{Diagnostic, Error, Place, Report, Result, did_you_mean};
+use crate::diagnostics::{Diagnostic, Error, Place, Result, did_you_mean};
 use std::path::Path;
 
 /// What the reader must know of the registered elements, conditions and geometries, and of the flags.
@@ -40,41 +41,14 @@ pub fn read_bytes(bytes: &[u8], path: &Path, names: &EntityNames) -> Result<(Mdp
     let mut reader = Reader {
         tokens: Tokens::new(bytes),
         names,
-        problems: Problems { path, report: Report::new() },
+        problems: Problems::new(path),
         document: MdpaDocument { file: path.to_owned(), ..Default::default() },
         lines: Lines::default(),
     };
     reader.file();
     let Reader { mut problems, mut document, lines, .. } = reader;
     check::check(&mut document, &lines, &mut problems);
-    Ok((document, problems.report.finish()?))
-}
-
-/// The problems of one file, up to a number a user may want to see.
-pub(super) struct Problems<'a> {
-    path: &'a Path,
-    report: Report,
-}
-
-impl Problems<'_> {
-    const CAP: usize = 50;
-
-    pub(super) fn full(&self) -> bool {
-        self.report.diagnostics().len() > Self::CAP
-    }
-
-    pub(super) fn push(&mut self, line: u32, diagnostic: Diagnostic) {
-        if self.report.diagnostics().len() == Self::CAP {
-            let fact = format!("more than {} problems; the rest of the file is not looked at", Self::CAP);
-            self.report.push(Diagnostic::error("too-many-problems", fact).at(Place::file(self.path)));
-        } else if !self.full() {
-            self.report.push(diagnostic.at(Place::at(self.path, line, 0)));
-        }
-    }
-
-    pub(super) fn error(&mut self, line: u32, code: &'static str, fact: impl Into<String>) {
-        self.push(line, Diagnostic::error(code, fact));
-    }
+    Ok((document, problems.finish()?))
 }
 
 /// A block that is being read: its kind and the line where it begins.
