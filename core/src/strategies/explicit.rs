@@ -8,7 +8,7 @@ use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::scheme::{SchemeRequest, gather};
+use super::scheme::gather;
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, Inertia, damped_by_properties, impose_constraints, strongest_damping};
 use crate::diagnostics::{Diagnostic, Result};
@@ -21,9 +21,6 @@ use crate::parameters::Settings;
 const SAFETY: f64 = 0.8;
 /// Steps between two that are announced.
 const ANNOUNCED: usize = 100;
-
-/// Makes the update of an explicit scheme; registered as `Build::Factory(&(make as ExplicitSchemeFactory))`.
-pub type ExplicitSchemeFactory = fn(&SchemeRequest<'_>) -> Result<CentralDifferences>;
 
 /// How explicit steps are made.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -28,13 +28,13 @@ mod strategy;
 pub use arc_length::{ArcLength, ArcLengthSettings};
 pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
-pub use central_differences::CentralDifferences;
+pub use central_differences::{CentralDifferences, ExplicitSchemeFactory};
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
     is_round_off, norm,
 };
 pub use displacement_criterion::DisplacementCriterion;
-pub use explicit::{ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy};
+pub use explicit::{ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
 pub use newton::{CONDITION_NUMBER, NewtonRaphson, NewtonSettings};
