@@ -26,17 +26,21 @@ mod direct;
 mod interface;
 mod lu;
 
+mod condensation;
 mod krylov;
 mod precondition;
 
 mod condition;
 mod rank;
 
+pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
 pub use partition::{WeightedGraph, partition_graph};
 pub use rank::rank;
-pub use solver::{DirectSettings, Engine, KrylovSettings, LinearSolver, Preconditioner, SolveError, SolveReport};
+pub use solver::{
+    DirectSettings, Engine, KrylovSettings, LinearSolver, Multipliers, Preconditioner, SolveError, SolveReport,
+};
 pub use system::{Layout, Symmetry, System};
 
 /// A solver of the kind asked for.

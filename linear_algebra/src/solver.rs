@@ -1,5 +1,6 @@
 //! The one interface of all solvers, what they report and how they fail.
 
+use crate::condensation::{CondensationSettings, NotCondensable};
 use crate::system::System;
 
 /// What one solve did.
@@ -48,6 +49,9 @@ pub enum SolveError {
         /// Residual wanted.
         tolerance: f64,
     },
+    /// The multipliers cannot be condensed, and the settings allow no other way.
+    #[error("the multipliers cannot be condensed: {0}")]
+    NotCondensable(NotCondensable),
     /// The input is unusable or the machine gave up; the text says what happened.
     #[error("{0}")]
     Failed(String),
@@ -64,6 +68,11 @@ pub trait LinearSolver: Send {
     /// [`SolveError::Singular`] when the matrix has no inverse, [`SolveError::NotConverged`] when the residual stays
     /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
+
+    /// Why the last solve did not condense multipliers that it should have.
+    fn not_condensed(&self) -> Option<NotCondensable> {
+        None
+    }
 }
 
 /// Which solver to create, with its settings.
@@ -118,12 +127,26 @@ pub struct KrylovSettings {
     pub iterations: usize,
     /// The preconditioner.
     pub preconditioner: Preconditioner,
+    /// What is done with systems that have multipliers.
+    pub multipliers: Multipliers,
 }
 
 impl Default for KrylovSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, iterations: 1000, preconditioner: Preconditioner::default() }
+        Self { tolerance: 1e-9, iterations: 1000, preconditioner: Preconditioner::default(), multipliers: Multipliers::default() }
     }
+}
+
+/// What a Krylov engine does with a system that has multipliers.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Multipliers {
+    /// It leaves the system to the direct engine.
+    #[default]
+    Leave,
+    /// It iterates on the whole system.
+    Keep,
+    /// It iterates on the system without them and recovers them.
+    Condense(CondensationSettings),
 }
 
 /// Approximate inverses that speed up a Krylov engine.

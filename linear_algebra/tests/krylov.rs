@@ -19,7 +19,7 @@ fn clamped_box(cells: usize) -> (Csr, Layout) {
 }
 
 fn engines(preconditioner: Preconditioner) -> [Engine; 2] {
-    let settings = KrylovSettings { tolerance: 1e-9, iterations: 600, preconditioner };
+    let settings = KrylovSettings { tolerance: 1e-9, iterations: 600, preconditioner, ..Default::default() };
     [Engine::ConjugateGradient(settings.clone()), Engine::Gmres { krylov: settings, restart: 100 }]
 }
 

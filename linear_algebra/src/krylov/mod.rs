@@ -1,4 +1,4 @@
-//! Krylov engines: conjugate gradients and restarted GMRES with a preconditioner.
+//! Krylov engines: conjugate gradients and restarted GMRES with a preconditioner, on systems whose multipliers are condensed.
 
 mod conjugate_gradient;
 mod gmres;
@@ -9,10 +9,11 @@ pub(crate) use conjugate_gradient::conjugate_gradient;
 pub(crate) use gmres::gmres;
 
 use crate::check;
+use crate::condensation::{Condensation, CondensationSettings, NotCondensable};
 use crate::csr::Csr;
 use crate::direct::DirectSolver;
 use crate::precondition::{self, Precondition};
-use crate::solver::{DirectSettings, KrylovSettings, LinearSolver, SolveError, SolveReport};
+use crate::solver::{DirectSettings, KrylovSettings, LinearSolver, Multipliers, SolveError, SolveReport};
 use crate::system::{Stamps, System};
 use crate::vector;
 
@@ -37,6 +38,14 @@ impl Method {
             Self::Gmres { .. } => "gmres",
         }
     }
+
+    /// The name when multipliers are condensed.
+    fn condensed_name(self) -> &'static str {
+        match self {
+            Self::ConjugateGradient => "conjugate_gradient, condensed",
+            Self::Gmres { .. } => "gmres, condensed",
+        }
+    }
 }
 
 /// Directions kept when GMRES stands in for conjugate gradients.
@@ -49,16 +58,43 @@ pub(crate) struct KrylovSolver {
     settings: KrylovSettings,
     preconditioner: Option<(Box<dyn Precondition>, Stamps)>,
     stand_in: DirectSolver,
+    condensed: Option<(Condensation, Stamps)>,
+    condensations: u64,
+    refused: Option<NotCondensable>,
+}
+
+/// What an iteration gave and what it took.
+struct Iterated {
+    progress: Progress,
+    method: Method,
+    seconds_preconditioner: f64,
 }
 
 impl KrylovSolver {
     pub(crate) fn new(method: Method, settings: KrylovSettings) -> Self {
-        Self { method, settings, preconditioner: None, stand_in: DirectSolver::new(DirectSettings::default()) }
+        Self {
+            method,
+            settings,
+            preconditioner: None,
+            stand_in: DirectSolver::new(DirectSettings::default()),
+            condensed: None,
+            condensations: 0,
+            refused: None,
+        }
     }
 
-    /// Iterates on the matrix; `None` when the iteration did not get there.
-    fn iterate(&mut self, method: Method, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> (Progress, f64) {
+    /// The iteration that suits a system.
+    fn method_for(&self, system: &System<'_>) -> Method {
+        match self.method {
+            Method::ConjugateGradient if !system.is_symmetric() => Method::Gmres { restart: STAND_IN_RESTART },
+            method => method,
+        }
+    }
+
+    /// Iterates on the matrix, as far as the iteration gets.
+    fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Iterated {
         let start = Instant::now();
+        let method = self.method_for(system);
         let stamps = Stamps::of(system);
         if self.preconditioner.as_ref().is_none_or(|(_, old)| *old != stamps) {
             let merged: Option<Csr> = system.active_coupling().map(|_| system.merged());
@@ -66,7 +102,7 @@ impl KrylovSolver {
             let made = precondition::create(self.settings.preconditioner, matrix, system.layout);
             self.preconditioner = Some((made, stamps));
         }
-        let seconds = start.elapsed().as_secs_f64();
+        let seconds_preconditioner = start.elapsed().as_secs_f64();
         let (preconditioner, _) = self.preconditioner.as_ref().expect("made above");
         let multiply = |x: &[f64], y: &mut [f64]| system.mul_vec(x, y);
         let apply = |r: &mut [f64]| preconditioner.apply(r);
@@ -80,10 +116,64 @@ impl KrylovSolver {
             let mut residual = vec![0.0; rhs.len()];
             progress.relative_residual = system.residual(rhs, x, &mut residual) / scale;
         }
-        (progress, seconds)
+        Iterated { progress, method, seconds_preconditioner }
+    }
+
+    /// Iterates on the system without multipliers, and corrects for what the condensation left out.
+    fn iterate_condensed(
+        &mut self,
+        settings: &CondensationSettings,
+        system: &System<'_>,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> Result<Iterated, NotCondensable> {
+        let start = Instant::now();
+        let stamps = Stamps::of(system);
+        let (condensation, _) = match self.condensed.take().filter(|(_, old)| *old == stamps) {
+            Some(kept) => kept,
+            None => {
+                self.condensations += 1;
+                (Condensation::new(system, settings, self.condensations)?, stamps)
+            }
+        };
+        let left = condensation.system();
+        let mut sum = Iterated {
+            progress: Progress { iterations: 0, relative_residual: 1.0 },
+            method: self.method_for(&left),
+            seconds_preconditioner: start.elapsed().as_secs_f64(),
+        };
+        let scale = vector::norm(rhs);
+        let mut residual = rhs.to_vec();
+        let (mut trial, mut correction) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
+        x.fill(0.0);
+        for _ in 0..CORRECTIONS {
+            let mut solution = vec![0.0; left.equations()];
+            let inner = self.iterate(&left, &condensation.reduce(&residual), &mut solution);
+            sum.progress.iterations += inner.progress.iterations;
+            sum.seconds_preconditioner += inner.seconds_preconditioner;
+            condensation.expand(&residual, &solution, &mut correction);
+            trial.copy_from_slice(x);
+            vector::add_scaled(1.0, &correction, &mut trial);
+            let size = system.residual(rhs, &trial, &mut residual);
+            let relative_residual = if scale > 0.0 { size / scale } else { 0.0 };
+            let before = sum.progress.relative_residual;
+            if relative_residual.is_nan() || relative_residual >= before {
+                break;
+            }
+            x.copy_from_slice(&trial);
+            sum.progress.relative_residual = relative_residual;
+            let arrived = relative_residual <= DRIFT * self.settings.tolerance;
+            if arrived || relative_residual > 0.5 * before {
+                break;
+            }
+        }
+        self.condensed = Some((condensation, stamps));
+        Ok(sum)
     }
 }
 
+/// Solves of the condensed system before an answer is given up.
+const CORRECTIONS: usize = 4;
 /// Residual, as a multiple of the tolerance, that rounding in the recurrence of the residual excuses.
 const DRIFT: f64 = 10.0;
 
@@ -92,43 +182,60 @@ impl LinearSolver for KrylovSolver {
         self.method.name()
     }
 
+    fn not_condensed(&self) -> Option<NotCondensable> {
+        self.refused
+    }
+
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
         check::input(system, rhs, x)?;
         check::empty_rows(system)?;
         if x.iter().any(|x| !x.is_finite()) {
             x.fill(0.0);
         }
-        let is_saddle = (0..system.equations()).any(|i| system.layout.multiplier[i] || system.bulk.row(i).0.is_empty());
-        let mut reasons = Vec::new();
-        if is_saddle {
-            reasons.push(format!("{} does not solve systems with multipliers", self.name()));
-        } else {
-            let method = match self.method {
-                Method::ConjugateGradient if !system.is_symmetric() => {
-                    reasons.push("the matrix is not symmetric".into());
-                    Method::Gmres { restart: STAND_IN_RESTART }
+        self.refused = None;
+        let has_multipliers = system.layout.multiplier.contains(&true);
+        let is_saddle = has_multipliers || (0..system.equations()).any(|i| system.bulk.row(i).0.is_empty());
+        let start = Instant::now();
+        let (iterated, condensed) = match self.settings.multipliers {
+            Multipliers::Condense(settings) if has_multipliers => {
+                match self.iterate_condensed(&settings, system, rhs, x) {
+                    Ok(iterated) => (Ok(iterated), true),
+                    Err(why) if settings.fallback => {
+                        self.refused = Some(why);
+                        (Err(format!("the multipliers are not condensed: {why}")), true)
+                    }
+                    Err(why) => return Err(SolveError::NotCondensable(why)),
                 }
-                method => method,
-            };
-            let start = Instant::now();
-            let (progress, seconds_numeric) = self.iterate(method, system, rhs, x);
-            if progress.relative_residual <= DRIFT * self.settings.tolerance {
-                return Ok(SolveReport {
-                    engine: method.name(),
-                    relative_residual: progress.relative_residual,
-                    iterations: progress.iterations,
-                    fallback: reasons.pop(),
-                    seconds_symbolic: 0.0,
-                    seconds_numeric,
-                    seconds_solve: start.elapsed().as_secs_f64() - seconds_numeric,
-                });
             }
-            reasons.push(format!(
-                "{} reached only {:.1e} after {} iterations",
-                method.name(),
-                progress.relative_residual,
-                progress.iterations
-            ));
+            Multipliers::Keep => (Ok(self.iterate(system, rhs, x)), false),
+            _ if is_saddle => (Err(format!("{} does not solve systems with multipliers", self.name())), false),
+            _ => (Ok(self.iterate(system, rhs, x)), false),
+        };
+        let mut reasons = Vec::new();
+        match iterated {
+            Ok(Iterated { progress, method, seconds_preconditioner }) => {
+                if method != self.method {
+                    reasons.push("the matrix is not symmetric".into());
+                }
+                if progress.relative_residual <= DRIFT * self.settings.tolerance {
+                    return Ok(SolveReport {
+                        engine: if condensed { method.condensed_name() } else { method.name() },
+                        relative_residual: progress.relative_residual,
+                        iterations: progress.iterations,
+                        fallback: reasons.pop(),
+                        seconds_symbolic: 0.0,
+                        seconds_numeric: seconds_preconditioner,
+                        seconds_solve: start.elapsed().as_secs_f64() - seconds_preconditioner,
+                    });
+                }
+                reasons.push(format!(
+                    "{} reached only {:.1e} after {} iterations",
+                    method.name(),
+                    progress.relative_residual,
+                    progress.iterations
+                ));
+            }
+            Err(why) => reasons.push(why),
         }
         let mut report = self.stand_in.solve(system, rhs, x)?;
         reasons.extend(report.fallback.take());

@@ -1,0 +1,256 @@
+//! Condensed systems against whole ones, and what cannot be condensed.
+
+mod samples;
+
+use samples::{Brick, fix};
+use zelus_linear_algebra::{
+    Condensation, CondensationSettings, Csr, DirectSettings, Engine, KrylovSettings, Layout, Multipliers,
+    NotCondensable, Preconditioner, SolveError, Symmetry, System, create,
+};
+
+/// What the multipliers of a slave node say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    /// One multiplier along a normal.
+    Normal,
+    /// One a direction, all of them conditions.
+    Stick,
+    /// One a direction; those across the normal have equations of their own.
+    Components,
+    /// As components, with a tangential part that follows the normal one.
+    Slip,
+    /// Equations of their own only.
+    Inactive,
+    /// One inactive multiplier.
+    InactiveNormal,
+}
+
+const KINDS: [Kind; 6] =
+    [Kind::Normal, Kind::Stick, Kind::Components, Kind::Slip, Kind::Inactive, Kind::InactiveNormal];
+
+struct Sample {
+    layout: Layout,
+    bulk: Csr,
+    coupling: Csr,
+}
+
+impl Sample {
+    fn system(&self) -> System<'_> {
+        System {
+            coupling: Some(&self.coupling),
+            coupling_symmetric: false,
+            ..System::bulk(&self.layout, &self.bulk, Symmetry::PositiveDefinite)
+        }
+    }
+}
+
+/// Numbers between −1 and 1 without pattern.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Two boxes of `n³` cells, the upper one held by the multipliers `kind` of its lowest nodes; `scale` is that of the
+/// multipliers, `off` what they do to the next slave node, relative to their own. The equations `without` of the slave
+/// nodes (node, direction) are left out.
+fn pressed(
+    n: usize,
+    kind: impl Fn(usize) -> Kind,
+    scale: f64,
+    off: f64,
+    without: impl Fn(usize, usize) -> bool,
+) -> Sample {
+    let (lower, upper) = (Brick { cells: [n; 3] }, Brick { cells: [n; 3] });
+    let (young, nodes) = (1e5, lower.nodes() + upper.nodes());
+    let mut bulk = Vec::new();
+    lower.stiffness(0, young, &mut bulk);
+    upper.stiffness(lower.nodes(), young, &mut bulk);
+    fix(&mut bulk, lower.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), young);
+    // Springs, so that nothing is free where few nodes touch.
+    bulk.extend((0..3 * nodes).map(|i| (i, i, 1e-3 * young)));
+    let mut layout = Layout::blocked(nodes, 3);
+    let mut coupling = Vec::new();
+    let mut random = Random(88172645463325252);
+    let slaves: Vec<usize> = upper.layer(0).iter().map(|node| node + lower.nodes()).collect();
+    let masters = lower.layer(n);
+    for (at, (&slave, &master)) in slaves.iter().zip(&masters).enumerate() {
+        let kind = kind(at);
+        let count = if matches!(kind, Kind::Normal | Kind::InactiveNormal) { 1 } else { 3 };
+        let first = layout.node.len();
+        layout.node.extend(vec![slave as u32; count]);
+        layout.multiplier.extend(vec![true; count]);
+        let penalty = 0.1 * scale * (1.5 + random.next());
+        let own = -scale * scale / penalty;
+        if matches!(kind, Kind::Inactive | Kind::InactiveNormal) {
+            coupling.extend((0..count).map(|c| (first + c, first + c, own)));
+            continue;
+        }
+        let mut normal = [0.3 * random.next(), 0.3 * random.next(), 1.0];
+        let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+        normal.iter_mut().for_each(|x| *x /= length);
+        let (d, next) = (1.0 + 0.3 * random.next(), (at + 1) % slaves.len());
+        let weights = [(slave, d), (master, -0.7 * d), (masters[next], -0.3 * d), (slaves[next], off * d)];
+        for c in 0..3 {
+            for e in 0..3 {
+                let across = f64::from(u8::from(c == e)) - normal[c] * normal[e];
+                // Rows of the conditions, with what the motion of the operators adds.
+                let direction = match kind {
+                    Kind::Stick => f64::from(u8::from(c == e)),
+                    _ => normal[c] * normal[e],
+                };
+                for (node, weight) in weights {
+                    let entry = scale * weight * (direction + 0.02 * random.next());
+                    if kind != Kind::Normal {
+                        coupling.push((first + c, 3 * node + e, entry));
+                    } else if c == 0 {
+                        coupling.push((first, 3 * node + e, scale * weight * (normal[e] + 0.02 * random.next())));
+                    }
+                }
+                if matches!(kind, Kind::Components | Kind::Slip) {
+                    let follows = if kind == Kind::Slip { 0.3 * normal[e] * if c == 0 { 1.0 } else { 0.2 } } else { 0.0 };
+                    coupling.push((first + c, first + e, own * (across - follows)));
+                }
+                // The augmentation.
+                for (node, weight) in weights {
+                    coupling.push((3 * slave + c, 3 * node + e, penalty * d * weight * normal[c] * normal[e]));
+                }
+            }
+            for (node, weight) in weights {
+                if kind == Kind::Normal {
+                    coupling.push((3 * node + c, first, scale * weight * normal[c]));
+                } else {
+                    coupling.push((3 * node + c, first + c, scale * weight));
+                }
+            }
+        }
+    }
+    let equations = layout.equations();
+    let is_left_out = |i: usize| {
+        i < 3 * nodes && slaves.iter().position(|&s| s == i / 3).is_some_and(|at| without(at, i % 3))
+    };
+    let mut number = vec![usize::MAX; equations];
+    let mut left = Layout::default();
+    for i in (0..equations).filter(|&i| !is_left_out(i)) {
+        number[i] = left.node.len();
+        left.node.push(layout.node[i]);
+        left.multiplier.push(layout.multiplier[i]);
+    }
+    let matrix = |triplets: &[(usize, usize, f64)]| {
+        let kept = triplets.iter().filter(|(i, j, _)| number[*i] != usize::MAX && number[*j] != usize::MAX);
+        let kept: Vec<(usize, usize, f64)> = kept.map(|&(i, j, value)| (number[i], number[j], value)).collect();
+        Csr::from_triplets(left.equations(), &kept)
+    };
+    Sample { bulk: matrix(&bulk), coupling: matrix(&coupling), layout: left }
+}
+
+fn rhs(n: usize) -> Vec<f64> {
+    let mut random = Random(2463534242);
+    (0..n).map(|_| random.next()).collect()
+}
+
+fn worst(a: &[f64], b: &[f64]) -> f64 {
+    let size = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+}
+
+/// The answers of the whole and of the condensed system, both by the direct engine; displacements and multipliers apart.
+fn both(sample: &Sample) -> [f64; 2] {
+    let system = sample.system();
+    let b = rhs(system.equations());
+    let mut whole = vec![0.0; b.len()];
+    create(Engine::Direct(DirectSettings::default())).solve(&system, &b, &mut whole).expect("regular");
+    let condensation = Condensation::new(&system, &CondensationSettings::default(), 1).expect("condensable");
+    let left = condensation.system();
+    let mut u = vec![0.0; left.equations()];
+    create(Engine::Direct(DirectSettings::default())).solve(&left, &condensation.reduce(&b), &mut u).expect("regular");
+    let mut x = vec![0.0; b.len()];
+    condensation.expand(&b, &u, &mut x);
+    [false, true].map(|multiplier| {
+        let of = |x: &[f64]| -> Vec<f64> {
+            x.iter().zip(&sample.layout.multiplier).filter(|(_, m)| **m == multiplier).map(|(x, _)| *x).collect()
+        };
+        worst(&of(&x), &of(&whole))
+    })
+}
+
+#[test]
+fn condensed_and_whole_systems_have_one_answer() {
+    for scale in [1e2, 1e5, 1e8] {
+        for kind in KINDS {
+            let differences = both(&pressed(3, |_| kind, scale, 0.0, |_, _| false));
+            assert!(differences.iter().all(|d| *d < 1e-9), "{kind:?}, scale {scale:e}: {differences:?}");
+        }
+        let mixed = both(&pressed(4, |at| KINDS[at % KINDS.len()], scale, 0.0, |_, _| false));
+        assert!(mixed.iter().all(|d| *d < 1e-9), "scale {scale:e}: {mixed:?}");
+    }
+}
+
+#[test]
+fn prescribed_displacements_of_slave_nodes_leave_conditions_that_others_carry() {
+    for kind in [Kind::Normal, Kind::Components, Kind::Slip] {
+        let differences = both(&pressed(3, |_| kind, 1e5, 0.0, |at, direction| at % 3 == 0 && direction < 2));
+        assert!(differences.iter().all(|d| *d < 1e-9), "{kind:?}: {differences:?}");
+    }
+    let sample = pressed(3, |_| Kind::Stick, 1e5, 0.0, |at, direction| at == 5 && direction == 1);
+    let refused = Condensation::new(&sample.system(), &CondensationSettings::default(), 1).expect_err("undetermined");
+    let NotCondensable::Undetermined { multiplier, share } = refused else { panic!("{refused:?}") };
+    assert!(sample.layout.multiplier[multiplier] && share < 1e-12, "{refused:?}");
+}
+
+fn gmres(settings: CondensationSettings) -> Engine {
+    let multipliers = Multipliers::Condense(settings);
+    let krylov = KrylovSettings { tolerance: 1e-11, iterations: 600, preconditioner: Preconditioner::Ilu0, multipliers };
+    Engine::Gmres { krylov, restart: 100 }
+}
+
+#[test]
+fn what_couples_nodes_is_measured_named_and_corrected() {
+    let system_with = |off: f64| pressed(3, |_| Kind::Stick, 1e5, off, |_, _| false);
+    let large = system_with(0.1);
+    let b = rhs(large.system().equations());
+    let mut x = vec![0.0; b.len()];
+    let mut solver = create(gmres(CondensationSettings::default()));
+    let report = solver.solve(&large.system(), &b, &mut x).expect("the direct engine serves");
+    let Some(NotCondensable::OffNode { multiplier, equation, share }) = solver.not_condensed() else {
+        panic!("{report:?}")
+    };
+    assert!(large.layout.node[multiplier] != large.layout.node[equation] && (share - 0.1).abs() < 1e-3, "{share}");
+    assert!(report.fallback.is_some_and(|why| why.contains("another node")));
+    let strict = CondensationSettings { fallback: false, ..Default::default() };
+    let refused = create(gmres(strict)).solve(&large.system(), &b, &mut x);
+    assert!(matches!(refused, Err(SolveError::NotCondensable(NotCondensable::OffNode { .. }))), "{refused:?}");
+
+    let small = system_with(1e-7);
+    let report = solver.solve(&small.system(), &b, &mut x).expect("condensable");
+    assert_eq!((report.engine, solver.not_condensed()), ("gmres, condensed", None), "{report:?}");
+    assert!(report.relative_residual <= 1e-10, "{report:?}");
+}
+
+#[test]
+fn iterative_engines_solve_condensed_systems() {
+    for (kinds, symmetric) in [(&KINDS[..], false), (&KINDS[4..], true)] {
+        let sample = pressed(6, |at| kinds[at % kinds.len()], 1e5, 0.0, |_, _| false);
+        let system = sample.system();
+        let b = rhs(system.equations());
+        let mut whole = vec![0.0; b.len()];
+        create(Engine::Direct(DirectSettings::default())).solve(&system, &b, &mut whole).expect("regular");
+        let Engine::Gmres { krylov, .. } = gmres(CondensationSettings::default()) else { unreachable!("made above") };
+        for preconditioner in [Preconditioner::BlockJacobi, Preconditioner::Ilu0] {
+            let krylov = KrylovSettings { preconditioner, ..krylov.clone() };
+            for engine in [Engine::ConjugateGradient(krylov.clone()), Engine::Gmres { krylov, restart: 200 }] {
+                let is_gradient = matches!(engine, Engine::ConjugateGradient(_)) && symmetric;
+                let mut x = vec![0.0; b.len()];
+                let report = create(engine).solve(&system, &b, &mut x).expect("regular");
+                let name = if is_gradient { "conjugate_gradient, condensed" } else { "gmres, condensed" };
+                assert_eq!(report.engine, name, "{preconditioner:?}: {report:?}");
+                assert!(worst(&x, &whole) < 1e-7, "{preconditioner:?}: {}", worst(&x, &whole));
+            }
+        }
+    }
+}
