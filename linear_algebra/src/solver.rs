@@ -133,7 +133,12 @@ pub struct KrylovSettings {
 
 impl Default for KrylovSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, iterations: 1000, preconditioner: Preconditioner::default(), multipliers: Multipliers::default() }
+        Self {
+            tolerance: 1e-9,
+            iterations: 1000,
+            preconditioner: Preconditioner::default(),
+            multipliers: Multipliers::default(),
+        }
     }
 }
 

@@ -113,7 +113,8 @@ fn pressed(
                     }
                 }
                 if matches!(kind, Kind::Components | Kind::Slip) {
-                    let follows = if kind == Kind::Slip { 0.3 * normal[e] * if c == 0 { 1.0 } else { 0.2 } } else { 0.0 };
+                    let follows =
+                        if kind == Kind::Slip { 0.3 * normal[e] * if c == 0 { 1.0 } else { 0.2 } } else { 0.0 };
                     coupling.push((first + c, first + e, own * (across - follows)));
                 }
                 // The augmentation.
@@ -131,9 +132,8 @@ fn pressed(
         }
     }
     let equations = layout.equations();
-    let is_left_out = |i: usize| {
-        i < 3 * nodes && slaves.iter().position(|&s| s == i / 3).is_some_and(|at| without(at, i % 3))
-    };
+    let is_left_out =
+        |i: usize| i < 3 * nodes && slaves.iter().position(|&s| s == i / 3).is_some_and(|at| without(at, i % 3));
     let mut number = vec![usize::MAX; equations];
     let mut left = Layout::default();
     for i in (0..equations).filter(|&i| !is_left_out(i)) {
@@ -205,7 +205,8 @@ fn prescribed_displacements_of_slave_nodes_leave_conditions_that_others_carry() 
 
 fn gmres(settings: CondensationSettings) -> Engine {
     let multipliers = Multipliers::Condense(settings);
-    let krylov = KrylovSettings { tolerance: 1e-11, iterations: 600, preconditioner: Preconditioner::Ilu0, multipliers };
+    let krylov =
+        KrylovSettings { tolerance: 1e-11, iterations: 600, preconditioner: Preconditioner::Ilu0, multipliers };
     Engine::Gmres { krylov, restart: 100 }
 }
 

@@ -1,6 +1,6 @@
 //! The linear solvers that decks name, and the engine that serves each.
 
-use zelus_linear_algebra::{DirectSettings, Engine, KrylovSettings, LinearSolver, Preconditioner, create};
+use zelus_linear_algebra::{DirectSettings, Engine, KrylovSettings, LinearSolver, Multipliers, Preconditioner, create};
 
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
@@ -8,22 +8,26 @@ use crate::register;
 use crate::registry::{self, Build, Kind};
 
 /// An engine for the settings of a deck.
-pub(super) type EngineFactory = fn(&Settings) -> Engine;
+pub(super) type EngineFactory = fn(&Settings, Multipliers) -> Engine;
 
-/// The solver for `linear_solver_settings`, and a sentence saying which engine serves.
+/// The solver for `linear_solver_settings`, and a sentence saying which engine serves; iterative ones treat `multipliers` so.
 ///
 /// # Errors
 /// An unknown name.
-pub(super) fn make(settings: &Settings) -> Result<(Box<dyn LinearSolver>, String)> {
+pub(super) fn make(settings: &Settings, multipliers: Multipliers) -> Result<(Box<dyn LinearSolver>, String)> {
     let given = settings.node().get("solver_type").map(|n| n.str()).transpose()?.unwrap_or("");
     let name = given.rsplit('.').next().unwrap_or(given);
     let name = if name.is_empty() { "sparse_lu" } else { name };
     let entry = registry::require(Kind::LinearSolver, name).map_err(|d| d.at(settings.key_place("solver_type")))?;
     let Build::Factory(factory) = entry.build else { unreachable!("linear solvers register a factory") };
-    let engine = factory.downcast_ref::<EngineFactory>().expect("linear solvers register an EngineFactory")(settings);
+    let factory = factory.downcast_ref::<EngineFactory>().expect("linear solvers register an EngineFactory");
+    let engine = factory(settings, multipliers);
+    let condenses = matches!(&engine, Engine::ConjugateGradient(krylov) | Engine::Gmres { krylov, .. }
+        if matches!(krylov.multipliers, Multipliers::Condense(_)));
+    let how = if condenses { ", multipliers are condensed" } else { "" };
     let solver = create(engine);
     let asked = if given.is_empty() { "no linear solver named".to_owned() } else { format!("\"{given}\"") };
-    let says = format!("linear solver: {asked} is served by {}", solver.name());
+    let says = format!("linear solver: {asked} is served by {}{how}", solver.name());
     Ok((solver, says))
 }
 
@@ -64,13 +68,13 @@ pub(super) fn petsc(settings: &Settings, unknowns: usize) -> Result<Option<(zelu
     Ok(Some((chosen, format!("linear solver: PETSc over all ranks, {engine}"))))
 }
 
-fn direct(_: &Settings) -> Engine {
+fn direct(_: &Settings, _: Multipliers) -> Engine {
     Engine::Direct(DirectSettings::default())
 }
 
-fn krylov(settings: &Settings) -> KrylovSettings {
+fn krylov(settings: &Settings, multipliers: Multipliers) -> KrylovSettings {
     let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
-    let mut krylov = KrylovSettings { preconditioner: Preconditioner::Ilu0, ..KrylovSettings::default() };
+    let mut krylov = KrylovSettings { preconditioner: Preconditioner::Ilu0, multipliers, ..KrylovSettings::default() };
     if let Some(tolerance) = number("tolerance") {
         krylov.tolerance = tolerance;
     }
@@ -93,11 +97,11 @@ register! { LinearSolver "amgcl",
 }
 register! { LinearSolver "cg",
     aliases: &["CGSolver", "conjugate_gradient"],
-    about: "conjugate gradients, for symmetric systems without contact",
-    build: Build::Factory(&((|settings| Engine::ConjugateGradient(krylov(settings))) as EngineFactory)),
+    about: "conjugate gradients with incomplete LU; GMRES where contact leaves no symmetry, with condensed multipliers",
+    build: Build::Factory(&((|settings, multipliers| Engine::ConjugateGradient(krylov(settings, multipliers))) as EngineFactory)),
 }
 register! { LinearSolver "gmres",
     aliases: &["bicgstab", "BICGSTABSolver", "tfqmr", "TFQMRSolver"],
-    about: "restarted GMRES, for any system",
-    build: Build::Factory(&((|settings| Engine::Gmres { krylov: krylov(settings), restart: 100 }) as EngineFactory)),
+    about: "restarted GMRES with incomplete LU; multipliers of contact are condensed",
+    build: Build::Factory(&((|settings, multipliers| Engine::Gmres { krylov: krylov(settings, multipliers), restart: 100 }) as EngineFactory)),
 }

@@ -10,7 +10,7 @@ use crate::registry::{self, Build, Entry, Kind};
 use crate::strategies::{
     ArcLength, ArcLengthSettings, CentralDifferences, ConvergenceCriterion, CriterionFactory, CriterionRequest,
     ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy, LineSearch, NewtonRaphson, NewtonSettings, Scheme,
-    SchemeFactory, SchemeRequest, SolutionStrategy,
+    SchemeFactory, SchemeRequest, SolutionStrategy, multipliers,
 };
 
 /// A variable with history on the nodes: name and number of components.
@@ -237,7 +237,8 @@ impl SolverSettings {
             }
             TimeScheme::Implicit(scheme) => scheme,
         };
-        let (solver, says) = super::linear_solvers::make(&self.settings.sub("linear_solver_settings")?)?;
+        let named = self.settings.sub("linear_solver_settings")?;
+        let (solver, says) = super::linear_solvers::make(&named, multipliers(&part.info))?;
         let analysis = self.settings.get_str("analysis_type")?;
         if !matches!(analysis, "linear" | "non_linear") {
             let fact = format!("\"analysis_type\" is \"{analysis}\"");
@@ -274,12 +275,13 @@ impl SolverSettings {
         }
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
-        #[cfg_attr(not(feature = "petsc"), expect(unused_mut, reason = "PETSc is set later"))]
-        let (mut newton, mut says) = (NewtonRaphson::new(settings, scheme, criterion, solver, part), says);
+        let mut newton = NewtonRaphson::new(settings, scheme, criterion, solver, part);
+        newton.solver_named_at(named.key_place("solver_type"));
+        #[cfg(feature = "petsc")]
+        let mut says = says;
         #[cfg(feature = "petsc")]
         if part.partition.is_some()
-            && let Some((petsc, by_petsc)) =
-                super::linear_solvers::petsc(&self.settings.sub("linear_solver_settings")?, part.dofs.len())?
+            && let Some((petsc, by_petsc)) = super::linear_solvers::petsc(&named, part.dofs.len())?
         {
             newton.solve_by_petsc(petsc);
             says = by_petsc;

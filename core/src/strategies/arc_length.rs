@@ -101,7 +101,7 @@ impl ArcLength {
     }
 
     /// The solve, and its increment of all unknowns.
-    fn solve(&mut self, part: &ModelPart, rhs: &[f64]) -> Result<(Vec<f64>, Solved)> {
+    fn solve(&mut self, part: &mut ModelPart, rhs: &[f64]) -> Result<(Vec<f64>, Solved)> {
         let rhs = self.newton.assembler.equations().reduce(rhs);
         let solved = self.newton.solve(part, &rhs)?;
         Ok((self.newton.assembler.equations().expand(&solved.increment), solved))

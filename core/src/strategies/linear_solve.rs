@@ -2,6 +2,7 @@
 
 use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, vector};
 
+use super::condensing;
 use super::gathered::Gathered;
 use crate::assembly::{Assembler, DofTable};
 use crate::communication::world;
@@ -19,6 +20,8 @@ pub(super) struct Solved {
     pub increment: Vec<f64>,
     /// Norm of what is left over that of the right-hand side.
     pub relative_residual: f64,
+    /// Krylov iterations, or steps of refinement.
+    pub iterations: usize,
     /// Who solved.
     pub engine: String,
     /// Why another engine than the one asked for solved.
@@ -158,6 +161,10 @@ fn explain(
     dofs: &DofTable,
     nodes: &Nodes,
 ) -> Failed {
+    if let SolveError::NotCondensable(refused) = error {
+        let (fact, remedy) = (condensing::fact(*refused, unknowns, dofs, nodes), condensing::remedy(*refused));
+        return Failed::Other(Error::System(format!("linear solve: {fact}\n    {remedy}")));
+    }
     let SolveError::Singular { equations, rank_deficiency } = error else {
         return Failed::Other(Error::System(format!("linear solve: {error}")));
     };

@@ -8,6 +8,7 @@ mod arc_length;
 mod bdf_scheme;
 mod bossak_scheme;
 mod central_differences;
+mod condensing;
 mod criterion;
 mod critical_step;
 mod displacement_criterion;
@@ -29,6 +30,8 @@ pub use arc_length::{ArcLength, ArcLengthSettings};
 pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
 pub use central_differences::{CentralDifferences, ExplicitSchemeFactory};
+pub(crate) use condensing::multipliers;
+pub use condensing::{CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE};
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
     is_round_off, norm,

@@ -2,6 +2,7 @@
 
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
+use super::condensing;
 use super::criterion::{ConvergenceCriterion, Measures, Verdict};
 use super::gathered::Gathered;
 use super::line_search::LineSearch;
@@ -12,7 +13,7 @@ use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
 use crate::assembly::{Assembler, impose_constraints};
 use crate::communication::world;
-use crate::diagnostics::{Diagnostic, Error, Result};
+use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::entities::{Interaction, Outer};
 use crate::model::ModelPart;
 use crate::register;
@@ -50,6 +51,10 @@ pub struct NewtonRaphson {
     /// Whether the last step ended at a singular system.
     singular: bool,
     warned: bool,
+    /// Where the deck names the linear solver.
+    solver_place: Option<Place>,
+    /// Whether the run has been warned that multipliers are not condensed.
+    warned_of_multipliers: bool,
 }
 
 impl SolutionStrategy for NewtonRaphson {
@@ -102,7 +107,14 @@ impl NewtonRaphson {
             linear_seconds: [0.0; 3],
             singular: false,
             warned: false,
+            solver_place: None,
+            warned_of_multipliers: false,
         }
+    }
+
+    /// Where the deck names the linear solver, for warnings.
+    pub fn solver_named_at(&mut self, place: Place) {
+        self.solver_place = Some(place);
     }
 
     /// Lets PETSc solve the equations of all ranks, each with its own rows, in place of rank 0.
@@ -256,18 +268,27 @@ impl NewtonRaphson {
     ///
     /// # Errors
     /// A singular matrix or a solver that fails, naming nodes.
-    pub(super) fn solve(&mut self, part: &ModelPart, rhs: &[f64]) -> Result<Solved, Failed> {
+    pub(super) fn solve(&mut self, part: &mut ModelPart, rhs: &[f64]) -> Result<Solved, Failed> {
         if rhs.iter().all(|v| *v == 0.0) {
             let engine = "none: nothing out of balance".to_owned();
-            return Ok(Solved { increment: vec![0.0; rhs.len()], relative_residual: 0.0, engine, fallback: None });
+            let increment = vec![0.0; rhs.len()];
+            return Ok(Solved { increment, relative_residual: 0.0, iterations: 0, engine, fallback: None });
         }
         let (solver, gathered) = (self.solver.as_mut(), &mut self.gathered);
         let (increment, report) =
             linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &part.dofs, &part.nodes)?;
         let phases = [report.seconds_symbolic, report.seconds_numeric, report.seconds_solve];
         self.linear_seconds.iter_mut().zip(phases).for_each(|(sum, seconds)| *sum += seconds);
-        let SolveReport { engine, relative_residual, fallback, .. } = report;
-        Ok(Solved { increment, relative_residual, engine: engine.to_owned(), fallback })
+        let SolveReport { engine, relative_residual, iterations, mut fallback, .. } = report;
+        if let Some(refused) = self.solver.not_condensed() {
+            // Said once, and with the names of nodes.
+            fallback = None;
+            if !std::mem::replace(&mut self.warned_of_multipliers, true) {
+                let (unknowns, place) = (self.assembler.equations().unknowns(), self.solver_place.as_ref());
+                part.messages.push(condensing::warning(refused, unknowns, &part.dofs, &part.nodes, place));
+            }
+        }
+        Ok(Solved { increment, relative_residual, iterations, engine: engine.to_owned(), fallback })
     }
 
     /// What the criterion says of the state after an iteration.

@@ -22,6 +22,8 @@ pub struct IterationRecord {
     pub changed_nodes: Vec<usize>,
     /// Relative residual of the linear solve.
     pub linear_residual: f64,
+    /// Krylov iterations of the linear solve, or its steps of refinement.
+    pub linear_iterations: usize,
     /// Engine of the linear solve.
     pub engine: String,
     /// Condition number of the system, where it is asked for.
@@ -40,6 +42,7 @@ impl IterationRecord {
             stick_slip_changes: change.stick_slip.len(),
             changed_nodes: changed.copied().take(NAMED_NODES).collect(),
             linear_residual: solved.relative_residual,
+            linear_iterations: solved.iterations,
             engine: solved.engine.clone(),
             condition_number: None,
         }

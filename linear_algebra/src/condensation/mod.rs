@@ -62,7 +62,10 @@ impl std::fmt::Display for NotCondensable {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::OffNode { multiplier, equation, share } => {
-                write!(f, "multiplier {multiplier} acts on equation {equation} of another node ({share:.1e} of its own)")
+                write!(
+                    f,
+                    "multiplier {multiplier} acts on equation {equation} of another node ({share:.1e} of its own)"
+                )
             }
             Self::Undetermined { multiplier, share } => {
                 write!(f, "its node does not determine multiplier {multiplier} ({share:.1e} of its largest entry)")
@@ -301,11 +304,7 @@ fn couples(system: &System<'_>) -> bool {
 }
 
 /// Largest entry of each multiplier's column, once no multiplier acts on other nodes with multipliers.
-fn columns_of_multipliers(
-    system: &System<'_>,
-    places: &Places,
-    tolerance: f64,
-) -> Result<Vec<f64>, NotCondensable> {
+fn columns_of_multipliers(system: &System<'_>, places: &Places, tolerance: f64) -> Result<Vec<f64>, NotCondensable> {
     let n = system.equations();
     let mut largest = vec![0.0_f64; n];
     let mut own = vec![0.0_f64; n];
@@ -356,9 +355,8 @@ fn eliminate(
     }
     let alpha = if alpha > 0.0 { alpha } else { 1.0 };
     let size: Vec<f64> = equations[own..].iter().map(|&e| largest[e as usize]).collect();
-    let elimination = node::eliminate(&g, &h, [own, m], &size, alpha, zero_row).map_err(|(at, share)| {
-        NotCondensable::Undetermined { multiplier: equations[own + at] as usize, share }
-    })?;
+    let elimination = node::eliminate(&g, &h, [own, m], &size, alpha, zero_row)
+        .map_err(|(at, share)| NotCondensable::Undetermined { multiplier: equations[own + at] as usize, share })?;
     let recovery = (0..m)
         .map(|at| {
             for (&e, &factor) in equations.iter().zip(&elimination.recovery[at * s..(at + 1) * s]) {

@@ -3,7 +3,9 @@
 use zelus_core::analysis::{Cutting, ExtensionDefinition};
 use zelus_core::register;
 use zelus_core::registry::Build;
-use zelus_core::strategies::CONDITION_NUMBER;
+use zelus_core::strategies::{
+    CONDENSE_MULTIPLIERS, CONDITION_NUMBER, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,
+};
 
 use crate::pairs::variables_of;
 
@@ -30,13 +32,16 @@ register! { SolverExtension "contact_settings",
         },
         marks: |settings| {
             let mut marks = Vec::new();
-            for (key, mark) in [
-                ("ensure_contact", ENSURE_CONTACT),
-                ("compute_dynamic_factor", COMPUTE_DYNAMIC_FACTOR),
-                ("simplified_semi_smooth_newton", SIMPLIFIED_SEMI_SMOOTH_NEWTON),
-                ("condn_convergence_criterion", CONDITION_NUMBER),
+            for (key, wanted, mark) in [
+                ("ensure_contact", true, ENSURE_CONTACT),
+                ("compute_dynamic_factor", true, COMPUTE_DYNAMIC_FACTOR),
+                ("simplified_semi_smooth_newton", true, SIMPLIFIED_SEMI_SMOOTH_NEWTON),
+                ("condn_convergence_criterion", true, CONDITION_NUMBER),
+                ("use_mixed_ulm_solver", true, CONDENSE_MULTIPLIERS),
+                ("use_mixed_ulm_solver", false, KEEP_MULTIPLIERS),
+                ("fallback_if_dual_lm_not_valid", false, ONLY_CONDENSED),
             ] {
-                if settings.get_bool(key)? {
+                if settings.get_bool(key)? == wanted {
                     marks.push(mark);
                 }
             }
@@ -61,7 +66,19 @@ register! { SolverExtension "contact_settings",
                 let fact = format!("\"{key}\" is {factor}, it must be above 0 and at most 1");
                 return Err(settings.error(key, "invalid-value", fact).remedy("0.5 is the usual value").into());
             }
-            Ok(vec![(DELTA_TIME_FACTOR, factor)])
+            let mut values = vec![(DELTA_TIME_FACTOR, factor)];
+            for (key, name) in [
+                ("mixed_ulm_solver_parameters.dual_lm_off_node_tolerance", OFF_NODE_TOLERANCE),
+                ("mixed_ulm_solver_parameters.dual_lm_zero_row_tolerance", ZERO_ROW_TOLERANCE),
+            ] {
+                let tolerance = settings.get_f64(key)?;
+                if !(0.0..1.0).contains(&tolerance) {
+                    let fact = format!("\"{key}\" is {tolerance}, it must be at least 0 and below 1");
+                    return Err(settings.error(key, "invalid-value", fact).remedy("leave it at its default").into());
+                }
+                values.push((name, tolerance));
+            }
+            Ok(values)
         },
     }),
 }

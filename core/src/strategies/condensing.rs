@@ -1,0 +1,80 @@
+//! Whether iterative engines see multipliers: what a model part's marks ask for, and why it was not to be.
+
+use zelus_linear_algebra::{CondensationSettings, Multipliers, NotCondensable};
+
+use crate::assembly::DofTable;
+use crate::diagnostics::{Diagnostic, Place};
+use crate::model::{Nodes, ProcessInfo};
+
+/// Mark of the step data: iterative engines solve for the unknowns without multipliers.
+pub const CONDENSE_MULTIPLIERS: &str = "CONDENSE_MULTIPLIERS";
+/// Mark of the step data: iterative engines solve for all unknowns at once.
+pub const KEEP_MULTIPLIERS: &str = "KEEP_MULTIPLIERS";
+/// Mark of the step data: multipliers that cannot be condensed are an error.
+pub const ONLY_CONDENSED: &str = "ONLY_CONDENSED";
+/// Number of the step data: [`CondensationSettings::off_node`].
+pub const OFF_NODE_TOLERANCE: &str = "DUAL_LM_OFF_NODE_TOLERANCE";
+/// Number of the step data: [`CondensationSettings::zero_row`].
+pub const ZERO_ROW_TOLERANCE: &str = "DUAL_LM_ZERO_ROW_TOLERANCE";
+
+/// What iterative engines do with multipliers, by the marks of a model part.
+pub(crate) fn multipliers(info: &ProcessInfo) -> Multipliers {
+    let usual = CondensationSettings::default();
+    if info.is(CONDENSE_MULTIPLIERS) {
+        Multipliers::Condense(CondensationSettings {
+            off_node: info.value_or(OFF_NODE_TOLERANCE, usual.off_node),
+            zero_row: info.value_or(ZERO_ROW_TOLERANCE, usual.zero_row),
+            fallback: !info.is(ONLY_CONDENSED),
+        })
+    } else if info.is(KEEP_MULTIPLIERS) {
+        Multipliers::Keep
+    } else {
+        Multipliers::Leave
+    }
+}
+
+/// Why multipliers are not condensed, by the names of their nodes.
+pub(super) fn fact(refused: NotCondensable, unknowns: &[u32], dofs: &DofTable, nodes: &Nodes) -> String {
+    let name = |equation: usize| {
+        let dof = &dofs.dofs()[unknowns[equation] as usize];
+        format!("{} of node {}", dof.variable, nodes.ids[dof.node as usize])
+    };
+    match refused {
+        NotCondensable::OffNode { multiplier, equation, share } => format!(
+            "{} acts on {} by {share:.1e} of what it does on its own node, so that multipliers cannot be condensed",
+            name(multiplier),
+            name(equation)
+        ),
+        NotCondensable::Undetermined { multiplier, share } => format!(
+            "the free unknowns of its node see {share:.1e} of {}, so that multipliers cannot be condensed",
+            name(multiplier)
+        ),
+    }
+}
+
+/// What to do about it.
+pub(super) fn remedy(refused: NotCondensable) -> &'static str {
+    match refused {
+        NotCondensable::OffNode { .. } => {
+            "name a direct engine, or avoid facets that overlap by a sliver, where dual functions do not exist, and nodes \
+             that are slave and master"
+        }
+        NotCondensable::Undetermined { .. } => {
+            "name a direct engine, or prescribe no displacement of slave nodes that contact or tie prescribes, too"
+        }
+    }
+}
+
+/// The warning that the direct engine solves for all unknowns; `place` names the iterative engine.
+pub(super) fn warning(
+    refused: NotCondensable,
+    unknowns: &[u32],
+    dofs: &DofTable,
+    nodes: &Nodes,
+    place: Option<&Place>,
+) -> Diagnostic {
+    let fact = fact(refused, unknowns, dofs, nodes);
+    Diagnostic::warning("not-condensed", format!("{fact}: the direct engine solves for all unknowns"))
+        .at(place.cloned())
+        .remedy(remedy(refused))
+}
