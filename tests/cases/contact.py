@@ -291,6 +291,8 @@ def write():
     stack(solid + "hexahedra_matching", "Matching hexahedra pass a constant-stress patch test.", ("3D8N", 2), ("3D8N", 2))
     stack(solid + "hexahedra_nonmatching", "Non-matching hexahedra (quad-quad) pass a constant-stress patch test.", ("3D8N", 2), ("3D8N", 3))
     stack(solid + "hexahedra_coarse_slave", "The coarser side as slave passes the same patch test.", ("3D8N", 2), ("3D8N", 3), slave="lower")
+    stack(solid + "iterative_engine", "GMRES on condensed multipliers passes the same patch test.", ("3D8N", 2), ("3D8N", 3),
+          linear_solver_settings={"solver_type": "gmres", "tolerance": 1e-11})
     stack(solid + "hexahedra_skewed", "Parallelogram facets (quad-quad) pass a constant-stress patch test.", ("3D8N", 2), ("3D8N", 3),
           skew=lambda x, y, z: (x + 0.3 * y, y, z))
     stack(solid + "tetrahedra", "Non-matching tetrahedra (tri-tri) pass a constant-stress patch test.", ("3D4N", 2), ("3D4N", 3))

@@ -169,6 +169,8 @@ def write():
               shape, True, law="Tresca", limits=(0.2,))
     block("contact_2d/friction_tresca_stick", "Under Tresca's law a block sheared by 0.8 of the limit sticks.", "2D4N", False,
           steps=1, law="Tresca", limits=(0.2,))
+    block("contact_3d/friction_iterative_engine", "GMRES on condensed multipliers lets a sheared block stick.", "3D8N", False,
+          steps=1, settings={"linear_solver_settings": {"solver_type": "gmres", "tolerance": 1e-11}})
     block("contact_2d/friction_perfect_stick", "With a huge coefficient of friction a sheared block is tied.", "2D4N", False,
           steps=1, limits=(1e9,))
     block("contact_2d/friction_pure_slip", "A family that always slides resists with μ p from the first step on.", "2D4N", True,

@@ -162,8 +162,8 @@ impl KrylovSolver {
             }
             x.copy_from_slice(&trial);
             sum.progress.relative_residual = relative_residual;
-            let arrived = relative_residual <= DRIFT * self.settings.tolerance;
-            if arrived || relative_residual > 0.5 * before {
+            let has_solved = inner.progress.relative_residual <= DRIFT * self.settings.tolerance;
+            if relative_residual <= DRIFT * self.settings.tolerance || relative_residual > 0.5 * before || !has_solved {
                 break;
             }
         }
