@@ -218,7 +218,7 @@ fn what_cannot_be_condensed_is_named_once_and_solved_whole() {
         let (difference, field) = direct.difference(&run);
         assert!(difference < AGREE, "{case}: {field} differs by {difference:e}");
 
-        let strict = Run::new(case, "gmres", |deck| set(deck, "fallback_if_dual_lm_not_valid", false));
+        let strict = Run::of(case, "gmres", |deck| set(deck, "fallback_if_dual_lm_not_valid", false));
         assert_eq!(strict.code, Some(4), "{case}: {}", strict.said);
         assert!(
             strict.said.contains("cannot be condensed") && strict.said.contains("name a direct engine"),
