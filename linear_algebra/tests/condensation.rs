@@ -206,7 +206,7 @@ fn prescribed_displacements_of_slave_nodes_leave_conditions_that_others_carry() 
 fn gmres(settings: CondensationSettings) -> Engine {
     let multipliers = Multipliers::Condense(settings);
     let krylov =
-        KrylovSettings { tolerance: 1e-11, iterations: 600, preconditioner: Preconditioner::Ilu0, multipliers };
+        KrylovSettings { tolerance: 1e-11, iterations: 3000, preconditioner: Preconditioner::Ilu0, multipliers };
     Engine::Gmres { krylov, restart: 100 }
 }
 
