@@ -5,7 +5,7 @@
 //! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
 
 use super::linear_solve::Solved;
-use super::newton::NewtonRaphson;
+use super::newton::{NewtonRaphson, References};
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
@@ -143,7 +143,7 @@ impl ArcLength {
         let mut factor = self.factor;
         let mut predictor = Vec::new();
         let mut step = vec![0.0; part.dofs.len()];
-        let mut references: Vec<Vec<f64>> = Vec::new();
+        let mut references = References::default();
         let mut records = Vec::new();
         let (mut residual, mut load) = self.residual(part, interactions, factor)?;
         for iteration in 1..=self.newton.settings.max_iteration {
@@ -182,7 +182,10 @@ impl ArcLength {
             let balanced = assembler.equations().balanced(&residual);
             if iteration == 1 {
                 let whole: Vec<f64> = load.iter().map(|q| factor * q).collect();
-                references = vec![assembler.equations().balanced(&whole).into_owned(), balanced.to_vec()];
+                references.start = vec![assembler.equations().balanced(&whole).into_owned(), balanced.to_vec()];
+            }
+            if change.count() > 0 {
+                references.switched = Some(balanced.to_vec());
             }
             let verdict = self.newton.judge(part, iteration, &balanced, &references, &increment);
             let record = IterationRecord::new(iteration, verdict.checks, &change, &solved);

@@ -41,6 +41,9 @@ pub struct Measures<'a> {
     pub residual: &'a [f64],
     /// Residuals that a relative measure refers to: before the first solve, prescribed increments included, and after it.
     pub references: &'a [Vec<f64>],
+    /// Residual after the last iteration in which interactions changed state: what is left then of equations that did not
+    /// act before. `None` before the first such change.
+    pub switched: Option<&'a [f64]>,
     /// Increment of the iteration.
     pub increment: &'a [f64],
     /// Values after the update.

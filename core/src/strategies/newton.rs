@@ -37,6 +37,15 @@ pub struct NewtonSettings {
     pub line_search: Option<LineSearch>,
 }
 
+/// Residuals of a step that later ones are compared with.
+#[derive(Debug, Default)]
+pub(super) struct References {
+    /// Before and after the first solve.
+    pub start: Vec<Vec<f64>>,
+    /// After the last change of state.
+    pub switched: Option<Vec<f64>>,
+}
+
 /// Newton's iteration with its scheme, criterion, linear solver and system.
 pub struct NewtonRaphson {
     pub(super) settings: NewtonSettings,
@@ -146,7 +155,7 @@ impl NewtonRaphson {
         let mut residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
         let relaxation = interactions.iter().find_map(|interaction| interaction.relaxation());
         let mut relaxed = None;
-        let mut references: Vec<Vec<f64>> = Vec::new();
+        let mut references = References::default();
         let mut records = Vec::new();
         let mut last = if self.settings.linear { 1 } else { self.settings.max_iteration };
         let mut iteration = 0;
@@ -163,7 +172,7 @@ impl NewtonRaphson {
                 self.assembler.subtract_product(&prescribed, &mut residual);
             }
             if iteration == 1 {
-                references.push(self.assembler.equations().balanced(&residual).into_owned());
+                references.start.push(self.assembler.equations().balanced(&residual).into_owned());
             }
             let rhs = self.assembler.equations().reduce(&residual);
             if iteration == 1 {
@@ -211,7 +220,10 @@ impl NewtonRaphson {
             residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
             let balanced = self.assembler.equations().balanced(&residual);
             if iteration == 1 {
-                references.push(balanced.to_vec());
+                references.start.push(balanced.to_vec());
+            }
+            if change.count() > 0 {
+                references.switched = Some(balanced.to_vec());
             }
             if !interactions.is_empty() {
                 let balance = self.assembler.equations().reduce(&residual);
@@ -297,7 +309,7 @@ impl NewtonRaphson {
         part: &ModelPart,
         iteration: usize,
         balanced: &[f64],
-        references: &[Vec<f64>],
+        references: &References,
         increment: &[f64],
     ) -> Verdict {
         self.criterion.judge(&Measures {
@@ -306,7 +318,8 @@ impl NewtonRaphson {
             dofs: &part.dofs,
             equations: self.assembler.equations(),
             residual: balanced,
-            references,
+            references: &references.start,
+            switched: references.switched.as_deref(),
             increment,
             values: &self.assembler.values(part),
             round_off: &self.assembler.round_off(part),

@@ -98,13 +98,20 @@ fn split(measures: &Measures<'_>, vector: &[f64], whole: bool) -> Sizes {
     sizes
 }
 
+/// The residuals that a relative measure refers to. A node that has come to slide obeys another equation than at the start
+/// of the step, so what it left when states last changed counts too.
+fn references(measures: &Measures<'_>) -> Vec<Sizes> {
+    let start = measures.references.iter().map(Vec::as_slice);
+    start.chain(measures.switched).map(|r| split(measures, r, false)).collect()
+}
+
 impl ConvergenceCriterion for FrictionalCriterion {
     fn judge(&self, measures: &Measures<'_>) -> Verdict {
         let mut checks = vec![check(measures, Block::Primary, self.primary)];
         let (sizes, references, round_off) = match self.multiplier {
             Form::Residual => (
                 split(measures, measures.residual, false),
-                measures.references.iter().map(|r| split(measures, r, false)).collect(),
+                references(measures),
                 Some(split(measures, measures.round_off, true)),
             ),
             Form::Increment => {
