@@ -56,7 +56,7 @@ fn replace(folder: &Path, file: &str, pairs: &[(&str, &str)]) {
 }
 
 fn check(name: &str, family: &Family, wish: Wish) {
-    let Use { dimension, axisymmetric, explicit } = wish.wanted;
+    let Use { dimension, axisymmetric, explicit, arc_length } = wish.wanted;
     let case = if dimension == 2 { "contact_2d/nonmatching" } else { "contact_3d/hexahedra_nonmatching" };
     let scratch = scratch_copy(&root().join("tests/cases").join(case));
     if axisymmetric && dimension == 2 {
@@ -77,6 +77,9 @@ fn check(name: &str, family: &Family, wish: Wish) {
     let (process, contact_type) = process_of(name, explicit);
     let solver = &mut deck["solver_settings"];
     solver["contact_settings"]["mortar_type"] = json!(name);
+    if arc_length {
+        solver["solving_strategy_settings"] = json!({"type": "arc_length", "advanced_settings": {}});
+    }
     if explicit || wish.dynamic {
         solver["solver_type"] = json!("Dynamic");
         solver["time_integration_method"] = json!(if explicit { "explicit" } else { "implicit" });
@@ -112,7 +115,7 @@ fn check(name: &str, family: &Family, wish: Wish) {
 }
 
 fn plain(dimension: usize) -> Wish {
-    let wanted = Use { dimension, axisymmetric: false, explicit: false };
+    let wanted = Use { dimension, axisymmetric: false, explicit: false, arc_length: false };
     Wish { wanted, variation: VARIATIONS[0], dynamic: false, tresca: false, adapt_penalty: false }
 }
 
@@ -133,6 +136,7 @@ fn every_family_runs_or_is_refused_about_an_axis_in_time_and_adapted() {
             let plain = plain(dimension);
             check(name, family, Wish { wanted: Use { axisymmetric: true, ..plain.wanted }, ..plain });
             check(name, family, Wish { wanted: Use { explicit: true, ..plain.wanted }, ..plain });
+            check(name, family, Wish { wanted: Use { arc_length: true, ..plain.wanted }, ..plain });
             check(name, family, Wish { dynamic: true, ..plain });
             check(name, family, Wish { adapt_penalty: true, ..plain });
             if family.friction == Friction::Coulomb {

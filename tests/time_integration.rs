@@ -107,6 +107,29 @@ fn forced_motion_shows_the_order_of_all_backward_differences() {
     }
 }
 
+/// c u̇ + u = c with c = α + β, at rest at first but for the velocity 1 that is in balance: u = c (1 − e^{−t/c}).
+#[test]
+fn pseudo_static_motion_creeps_to_rest_in_second_order() {
+    let c: f64 = 0.3;
+    let fall = (-1.0 / c).exp();
+    let mut changes = scheme("\"scheme_type\": \"pseudo_static\"");
+    changes.push((
+        DECK,
+        "\"rayleigh_alpha\": 0.0, \"rayleigh_beta\": 0.0",
+        "\"rayleigh_alpha\": 0.2, \"rayleigh_beta\": 0.1",
+    ));
+    changes.push((DECK, "0.0*t", "0.5*0.3"));
+    assert_order("pseudo_static", &changes, (c * (1.0 - fall), Some(fall)), 1.0, 2.0);
+    // without damping each step is in equilibrium at once
+    let mut still = scheme("\"scheme_type\": \"pseudo_static\"");
+    still.push((DECK, "0.0*t", "0.5*t"));
+    let results = oscillate(&still, 0.1, 1.0);
+    for step in 0..results.len() {
+        let (u, time) = (results.nodal("DISPLACEMENT_X", step)[&2], results.times()[step]);
+        assert!((u - time).abs() < 1e-9, "at {time}: {u}");
+    }
+}
+
 /// One step of generalised-α (Bossak and Newmark with `f` = 0) for ü + u = 0, from (u, v, a).
 fn step_alpha([u, v, a]: [f64; 3], dt: f64, m: f64, f: f64) -> [f64; 3] {
     let (gamma, beta) = (0.5 - m + f, 0.25 * (1.0 - m + f).powi(2));
@@ -287,6 +310,8 @@ fn schemes_and_contact_that_do_not_fit_are_refused() {
     refused("oscillator", &[explicit], &["scheme-method", "newmark", "central_differences"]);
     refused("oscillator", &[central], &["scheme-method", "time_integration_method"]);
     refused("oscillator", &scheme("\"scheme_type\": \"bdf6\""), &["bdf6", "bdf"]);
+    refused("oscillator", &scheme("\"scheme_type\": \"relaxation\""), &["relaxation", "pseudo_static"]);
+    refused("oscillator", &scheme("\"scheme_type\": \"multi_stage\""), &["multi_stage", "central_differences"]);
     refused("oscillator", &scheme("\"scheme_type\": \"generalized_alpha\", \"rho_inf\": 1.5"), &["rho_inf", "1.5"]);
     refused("oscillator", &[explicit, central, (MATERIAL, "\"DENSITY\": 3.0", "\"DENSITY\": 0.0")], &["lumped-mass"]);
     let multipliers = [

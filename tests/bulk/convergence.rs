@@ -47,7 +47,7 @@ fn body_force(dim: usize) -> Vec<String> {
     (0..dim).map(component).collect()
 }
 
-fn error(shape: Shape, cells: usize) -> f64 {
+fn error(element: &str, shape: Shape, cells: usize) -> f64 {
     let dim = shape.dim();
     let divisions = vec![cells; dim];
     // inner nodes are displaced by a smooth map that keeps the boundary
@@ -57,7 +57,7 @@ fn error(shape: Shape, cells: usize) -> f64 {
     });
     let law = if dim == 2 { "LinearElasticPlaneStrain2DLaw" } else { "LinearElastic3DLaw" };
     let material = json!({"YOUNG_MODULUS": YOUNG, "POISSON_RATIO": NU, "DENSITY": 1.0});
-    let mut deck = Deck::new(&grid, "SmallDisplacementElement", law, material);
+    let mut deck = Deck::new(&grid, element, law, material);
     deck.set("analysis_type", json!("linear"));
     let force = body_force(dim);
     let value = std::array::from_fn(|a| force.get(a).map_or(json!(0.0), |text| json!(text)));
@@ -68,10 +68,14 @@ fn error(shape: Shape, cells: usize) -> f64 {
 
 /// Slopes between two meshes; 0.15 below the theoretical one is allowed, the meshes being coarse.
 fn check(shape: Shape, cells: [usize; 2], order: f64) {
-    let [coarse, fine] = cells.map(|cells| error(shape, cells));
+    check_of("SmallDisplacementElement", shape, cells, order);
+}
+
+fn check_of(element: &str, shape: Shape, cells: [usize; 2], order: f64) {
+    let [coarse, fine] = cells.map(|cells| error(element, shape, cells));
     let slope = (coarse / fine).ln() / (cells[1] as f64 / cells[0] as f64).ln();
-    println!("{shape:?} {cells:?}: {coarse:.3e} {fine:.3e} slope {slope:.3}");
-    assert!(slope > order - 0.15, "{shape:?}: the error falls with the power {slope:.3}, not {order}");
+    println!("{element} {shape:?} {cells:?}: {coarse:.3e} {fine:.3e} slope {slope:.3}");
+    assert!(slope > order - 0.15, "{element} {shape:?}: the error falls with the power {slope:.3}, not {order}");
 }
 
 #[test]
@@ -100,4 +104,14 @@ fn second_order_in_space() {
     check(Shape::Prism15, [5, 9], 3.0);
     check(Shape::Hex20, [4, 7], 3.0);
     check(Shape::Hex27, [4, 7], 3.0);
+}
+
+/// With the volumetric strain at the nodes as good as without, the body force being part of the stabilisation.
+#[test]
+fn mixed_elements() {
+    let check = |shape, cells| check_of("SmallDisplacementMixedVolumetricStrainElement", shape, cells, 2.0);
+    check(Shape::Tri3, [32, 64]);
+    check(Shape::Quad4, [16, 32]);
+    check(Shape::Tet4, [10, 16]);
+    check(Shape::Hex8, [12, 18]);
 }

@@ -203,6 +203,15 @@ impl<'a> Deck<'a> {
 
     /// Runs the deck; fails the test when it does not run through.
     pub fn run(&self) -> Ran {
+        let (result, ran) = self.attempt();
+        if let Err(problem) = result {
+            panic!("{}: {problem}", self.element);
+        }
+        ran
+    }
+
+    /// Runs the deck; what was said of it, and what it left on disk.
+    pub fn attempt(&self) -> (zelus_core::Result<()>, Ran) {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let step = self.solver["time_stepping"]["time_step"].as_f64().expect("a time step");
         let mut processes = self.processes.clone();
@@ -221,11 +230,8 @@ impl<'a> Deck<'a> {
         write("mesh.mdpa", self.mesh());
         let path = folder.path().join("ProjectParameters.json");
         let (result, report) = zelus::run(&path, &RunOptions::default(), &mut Silent);
-        if let Err(problem) = result {
-            panic!("{}: {problem}", self.element);
-        }
         let text = std::fs::read_to_string(folder.path().join("results.json")).expect("results");
-        Ran { json: serde_json::from_str(&text).expect("JSON"), report }
+        (result, Ran { json: serde_json::from_str(&text).expect("JSON"), report })
     }
 }
 

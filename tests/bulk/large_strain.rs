@@ -70,6 +70,40 @@ fn neo_hookean_tension_along_one_and_two_axes() {
     }
 }
 
+/// With W = ½ μ (J^(−2/3) tr C − 3) + ½ κ (J − 1)² the stress is σ = μ J^(−5/3) dev b + κ (J − 1) 1. Along x the bar is pulled
+/// to 1.8, across nothing holds it; 1e-7 of the iteration, the bulk modulus being 500 times the other.
+#[test]
+fn tension_with_one_pressure_an_element() {
+    let (young, nu, stretch): (f64, f64, f64) = (3.0, 0.499, 1.8);
+    let (mu, bulk) = (0.5 * young / (1.0 + nu), young / (3.0 * (1.0 - 2.0 * nu)));
+    let stress = |l: f64, own: f64| {
+        let j = stretch * l * l;
+        mu * j.powf(-5.0 / 3.0) * (own * own - (stretch * stretch + 2.0 * l * l) / 3.0) + bulk * (j - 1.0)
+    };
+    let (mut low, mut high) = (0.5, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if stress(middle, middle) > 0.0 { high = middle } else { low = middle }
+    }
+    let law = "HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D";
+    for shape in [Shape::Hex8, Shape::Tet4] {
+        let grid = Grid::new(shape, &[2, 1, 1], |p| p);
+        let variables = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": nu});
+        let mut deck = Deck::new(&grid, "TotalLagrangianQ1P0MixedElement", law, variables);
+        deck.steps(0.1, 1.0).gauss("CAUCHY_STRESS_VECTOR");
+        for axis in 0..3 {
+            deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
+        }
+        deck.fix(|p| p[0] == 1.0, [json!(format!("{}*t", stretch - 1.0)), FREE, FREE]);
+        let ran = deck.run();
+        let corner = grid.nodes_where(|p| p == [1.0, 1.0, 1.0])[0];
+        assert_close(1.0 + ran.last("DISPLACEMENT", corner)[2], low, 1e-7, &format!("{shape:?} across"));
+        for (_, found) in ran.gauss("CAUCHY_STRESS_VECTOR", ran.times().len() - 1) {
+            assert_close(found[0], stress(low, stretch), 1e-6, &format!("{shape:?} stress"));
+        }
+    }
+}
+
 /// F = 1 + γ e_x ⊗ e_y keeps the volume: σ_xy = μ γ, σ_xx = μ γ², the others 0.
 #[test]
 fn neo_hookean_simple_shear() {

@@ -162,3 +162,30 @@ fn a_cut_step_restores_the_plastic_strains() {
         assert_close(found[0], yield_stress + hardening * alpha, 1e-6, "stress");
     }
 }
+
+/// Under a traction beyond the yield stress a perfectly plastic bar has no equilibrium: the run ends, with what converged on
+/// disk, as not converged (exit code 3), and says where and what to do. Steps are cut up to the yield stress.
+#[test]
+fn a_load_beyond_the_limit_ends_the_run_with_what_converged() {
+    let grid = Grid::new(Shape::Hex8, &[2, 1, 1], |p| p);
+    let variables = json!({"YOUNG_MODULUS": 200.0, "POISSON_RATIO": 0.3, "YIELD_STRESS": 0.4,
+        "ISOTROPIC_HARDENING_MODULUS": 0.0});
+    let mut deck = Deck::new(&grid, "SmallDisplacementElement", "SmallStrainJ2Plasticity3DLaw", variables);
+    deck.steps(0.25, 1.0);
+    for axis in 0..3 {
+        deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
+    }
+    let load = [json!("0.6*t"), json!(0.0), json!(0.0)];
+    deck.vector_load(|p| p[0] == 1.0, "SurfaceLoadCondition", "SURFACE_LOAD", load);
+    let (result, ran) = deck.attempt();
+    let said = match result {
+        Err(zelus_core::Error::NotConverged(said)) => said,
+        other => panic!("{other:?}"),
+    };
+    for words in ["step ", "iteration", "DISPLACEMENT_", "of node", "cuts of the step", "are written", "Try"] {
+        assert!(said.contains(words), "no {words:?} in {said}");
+    }
+    let times = ran.times();
+    let last = times[times.len() - 1];
+    assert!(times[..2] == [0.25, 0.5] && (0.6..=2.0 / 3.0 + 1e-9).contains(&last), "{times:?}: {said}");
+}

@@ -4,7 +4,8 @@ import json, os
 HERE = os.path.dirname(os.path.abspath(__file__))
 KRATOS = "KratosMultiphysics"
 CONTACT = KRATOS + ".ContactStructuralMechanicsApplication"
-LAWS = {"3d": "LinearElastic3DLaw", "strain": "LinearElasticPlaneStrain2DLaw", "stress": "LinearElasticPlaneStress2DLaw"}
+LAWS = {"3d": "LinearElastic3DLaw", "strain": "LinearElasticPlaneStrain2DLaw", "stress": "LinearElasticPlaneStress2DLaw",
+        "j2": "SmallStrainJ2Plasticity3DLaw"}
 
 
 def pretty(value, indent=0, width=118):
@@ -110,6 +111,21 @@ def parameters(name, solver_settings, constraints, loads=(), contact=(), outputs
         "processes": {"constraints_process_list": list(constraints), "loads_process_list": list(loads),
                       **({"contact_process_list": list(contact)} if contact else {}),
                       "json_output_process_list": list(outputs)}}
+
+
+def stages(decks):
+    """Decks by name as stages in sequence on one model, each a second long; the first reads the mesh."""
+    out = {}
+    for number, (name, deck) in enumerate(decks.items()):
+        if number:
+            deck["solver_settings"]["model_import_settings"] = {"input_type": "use_input_model_part"}
+            deck["solver_settings"]["material_import_settings"] = {"materials_filename": ""}
+        deck["problem_data"].update(start_time=float(number), end_time=number + 0.6)
+        where = KRATOS + ".StructuralMechanicsApplication.structural_mechanics_analysis"
+        out[name] = {"stage_preprocess": {}, "stage_settings": {"analysis_stage": where, **deck}, "stage_postprocess": {}}
+    return {"orchestrator": {"name": "Orchestrators.KratosMultiphysics.SequentialOrchestrator", "settings": {
+        "echo_level": 0, "execution_list": list(decks), "load_from_checkpoint": None, "stage_checkpoints": False}},
+        "stages": out}
 
 
 def check(quantity, tolerance, results="results.json", **expected):

@@ -55,7 +55,8 @@ def split(kind, c):
 class Box:
     """A box of cells: node ids, cells, and the oriented facets of its sides "x0", "x1", "y0", ... ."""
 
-    def __init__(self, mesh, name, shape, divisions, low, high, mapping=None, distortion=0.0):
+    def __init__(self, mesh, name, shape, divisions, low, high, mapping=None, distortion=0.0,
+                 element="SmallDisplacementElement"):
         kind, groups = SHAPES[shape]
         dim = len(divisions)
         self.mesh, self.name, self.shape, self.dim = mesh, name, shape, dim
@@ -99,7 +100,7 @@ class Box:
                 self.side_nodes[letter + end] = sorted(on)
                 self.facets[letter + end] = [f for f in boundary if all(i in on for i in f)]
         self.boundary = sorted(set().union(*self.side_nodes.values()))
-        self.elements = [mesh.add_element("SmallDisplacementElement" + shape, cell) for cell in self.cells]
+        self.elements = [mesh.add_element(element + shape, cell) for cell in self.cells]
         self.skin = []
         mesh.part(name, self.nodes, self.elements)
 

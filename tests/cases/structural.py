@@ -38,11 +38,11 @@ def displacement_patch(shape):
         affine_checks(fields, 1e-9) + [check("CAUCHY_STRESS_VECTOR", 1e-8 * max(map(abs, stress)), value=stress)])
 
 
-def load_patch(shape):
+def load_patch(shape, element="SmallDisplacementElement", short=""):
     """A block on rollers under tension and, where the sides are, a pressure: uniform stress from the load conditions."""
     dim = int(shape[0])
     mesh = Mesh()
-    box = Box(mesh, "Body", shape, [2] * dim, [0.0] * dim, [1.0, 0.8, 0.6][:dim], distortion=0.2)
+    box = Box(mesh, "Body", shape, [2] * dim, [0.0] * dim, [1.0, 0.8, 0.6][:dim], distortion=0.2, element=element)
     family = "LineLoad" if dim == 2 else "SurfaceLoad"
     tension, pressure = 2.0e3, 1.0e3
     last = "xyz"[dim - 1]
@@ -60,16 +60,19 @@ def load_patch(shape):
     else:
         exx, eyy, ezz = (sxx - nu * sll) / e, -nu * (sxx + sll) / e, (sll - nu * sxx) / e
         fields, stress = [[0, exx, 0, 0], [0, 0, eyy, 0], [0, 0, 0, ezz]], [sxx, 0.0, sll, 0.0, 0.0, 0.0]
+    fields_of = {}
+    if short:  # the volumetric strain is an unknown of the nodes
+        fields_of["VOLUMETRIC_STRAIN"] = sum(field[axis + 1] for axis, field in enumerate(fields))
     write_case(
-        f"elements/load_patch_{shape}",
-        f"SmallDisplacementElement{shape} under {family}Condition traction and pressure carries the uniform stress applied.",
+        f"elements/load_patch_{short}{shape}",
+        f"{element}{shape} under {family}Condition traction and pressure carries the uniform stress applied.",
         "Uniform stress is exact for the patch; loads act on the deformed facets, which moves the answer by the strain, 2e-6.",
         parameters("mesh", solver(dim, "mesh"), supports,
                    [condition_load("Pulled", family.replace("Load", "_Load").upper(), tension, [1.0, 0.0, 0.0]),
                     condition_pressure("Pressed", "NEGATIVE_FACE_PRESSURE" if dim == 2 else "POSITIVE_FACE_PRESSURE", pressure)],
-                   outputs=[json_output("results.json", ["DISPLACEMENT"], gauss=["CAUCHY_STRESS_VECTOR"])]),
+                   outputs=[json_output("results.json", ["DISPLACEMENT", *fields_of], gauss=["CAUCHY_STRESS_VECTOR"])]),
         [material("Body", 1, "3d" if dim == 3 else "strain", YOUNG, POISSON)], mesh,
-        affine_checks(fields, 1e-5) + [check("CAUCHY_STRESS_VECTOR", 1e-5 * max(map(abs, stress)), value=stress)])
+        affine_checks(fields, 1e-5) + [check(name, 1e-5 * exx, value=value) for name, value in fields_of.items()] + [check("CAUCHY_STRESS_VECTOR", 1e-5 * max(map(abs, stress)), value=stress)])
 
 
 def bar(folder, requirement, law, factor_x, factor_y, thickness=1.0, **settings):
@@ -163,27 +166,82 @@ def two_stages():
     mesh.part("Sides", sorted(set(box.side_nodes["x0"] + box.side_nodes["x1"])))
     mesh.part("Top", box.side_nodes["y1"], (), box.conditions("y1", "LineLoad"))
     stiffness, loads = oedometer(YOUNG, POISSON), {"first": 1.0e6, "second": 3.0e6}
-    stages = {}
-    for number, (name, load) in enumerate(loads.items()):
-        settings = solver(2, "mesh")
-        if number:
-            settings["model_import_settings"] = {"input_type": "use_input_model_part"}
-            settings["material_import_settings"] = {"materials_filename": ""}
-        stage = parameters("mesh", settings, [fix("Bottom", y=0.0), fix("Sides", x=0.0)],
-                           [condition_load("Top", "LINE_LOAD", load, [0.0, -1.0, 0.0])],
-                           outputs=[json_output(f"{name}.json", ["DISPLACEMENT"])])
-        stage["problem_data"].update(start_time=float(number), end_time=number + 0.5)
-        where = "KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis"
-        stages[name] = {"stage_preprocess": {}, "stage_settings": {"analysis_stage": where, **stage}, "stage_postprocess": {}}
+    decks = {name: parameters("mesh", solver(2, "mesh"), [fix("Bottom", y=0.0), fix("Sides", x=0.0)],
+                              [condition_load("Top", "LINE_LOAD", load, [0.0, -1.0, 0.0])],
+                              outputs=[json_output(f"{name}.json", ["DISPLACEMENT"])]) for name, load in loads.items()}
     write_case(
         "structural/two_stages", "The orchestrator runs the stages of its execution list in sequence on one model.",
         "A confined column keeps its cross-section, so the closed form of each stage is exact up to round-off.",
-        {"orchestrator": {"name": "Orchestrators.KratosMultiphysics.SequentialOrchestrator", "settings": {
-            "echo_level": 0, "execution_list": list(loads), "load_from_checkpoint": None, "stage_checkpoints": False}},
-         "stages": stages},
-        [material("Body", 1, "strain", YOUNG, POISSON)], mesh,
+        stages(decks), [material("Body", 1, "strain", YOUNG, POISSON)], mesh,
         [check("DISPLACEMENT_Y", 1e-9 * load / stiffness, f"{name}.json", affine=[0, 0, -load / stiffness, 0])
          for name, load in loads.items()])
+
+
+def stages_of_plastic_flow():
+    """A bar is pulled until it flows, let go, and pulled on: each in a stage of its own."""
+    mesh = Mesh()
+    box = Box(mesh, "Body", "3D8N", [2, 1, 1], [0.0, 0.0, 0.0], [2.0, 1.0, 1.0])
+    supports = []
+    for axis in "xyz":
+        mesh.part("Symmetry" + axis.upper(), box.side_nodes[axis + "0"])
+        supports.append(fix("Symmetry" + axis.upper(), **{axis: 0.0}))
+    mesh.part("Pulled", box.side_nodes["x1"])
+    young, nu, limit, hardening = 200.0, 0.3, 0.4, 20.0
+    slope = young * hardening / (young + hardening)
+    strains = {"pull": 0.01, "release": None, "pull_on": 0.02}
+    decks, checks = {}, []
+    for name, strain in strains.items():
+        before = 0.0 if name == "pull" else strains["pull"]
+        ends = [] if strain is None else [fix("Pulled", x=f"{2 * strain:g}*t" if name == "pull" else 2 * strain)]
+        decks[name] = parameters(
+            "mesh", solver(3, "mesh", 0.5 if name == "pull" else 1.0, residual_absolute_tolerance=1e-12), supports + ends,
+            outputs=[json_output(f"{name}.json", ["DISPLACEMENT"], gauss=["CAUCHY_STRESS_VECTOR", "EQUIVALENT_PLASTIC_STRAIN"])])
+        largest = max(before, strain or 0.0)
+        stress = limit + slope * (largest - limit / young) if strain else 0.0
+        flowed = (young * largest - limit) / (young + hardening)
+        across = -nu * stress / young - flowed / 2
+        along = stress / young + flowed
+        checks += affine_checks([[0, along, 0, 0], [0, 0, across, 0], [0, 0, 0, across]], 1e-8, results=f"{name}.json")
+        checks.append(check("CAUCHY_STRESS_VECTOR", 1e-8, f"{name}.json", value=[stress, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        checks.append(check("EQUIVALENT_PLASTIC_STRAIN", 1e-9, f"{name}.json", value=[flowed]))
+    write_case(
+        "structural/stages_of_plastic_flow",
+        "Plastic strain stays from stage to stage: what is let go keeps it, and pulled on it yields where it stopped.",
+        "Stress is uniform, so the closed form of a bar under linear hardening holds to the tolerance of the iteration.",
+        stages(decks), [material("Body", 1, "j2", young, nu, YIELD_STRESS=limit, ISOTROPIC_HARDENING_MODULUS=hardening)],
+        mesh, checks)
+
+
+def mixture_of_layers():
+    """An elastic and a plastic layer side by side under one strain along x."""
+    mesh = Mesh()
+    box = Box(mesh, "Body", "3D8N", [1, 1, 1], [0.0, 0.0, 0.0], [1.0, 1.0, 1.0])
+    mesh.part("Boundary", box.boundary)
+    mesh.part("Pulled", box.side_nodes["x1"])
+    limit, hardening, strain, factors = 0.4, 20.0, 0.01, [0.6, 0.9]
+    layers = [("LinearElastic3DLaw", 100.0, 0.2, {}),
+              ("SmallStrainJ2Plasticity3DLaw", 200.0, 0.3, {"YIELD_STRESS": limit, "ISOTROPIC_HARDENING_MODULUS": hardening})]
+    shares = [f / sum(factors) for f in factors]
+    elastic = oedometer(100.0, 0.2) * strain
+    bulk, mu = 200.0 / (3 * (1 - 2 * 0.3)), 200.0 / (2 * (1 + 0.3))
+    flowed = (2 * mu * strain - limit) / (3 * mu + hardening)
+    plastic = bulk * strain + 2 / 3 * (limit + hardening * flowed)
+    stress = shares[0] * elastic + shares[1] * plastic
+    lateral = elastic * 0.2 / (1 - 0.2)
+    across = shares[0] * lateral + shares[1] * (bulk * strain - (limit + hardening * flowed) / 3)
+    subs = [{"properties_id": 11 + i, "Material": {
+        "constitutive_law": {"name": law}, "Variables": {"YOUNG_MODULUS": young, "POISSON_RATIO": nu, **more}, "Tables": {}}}
+        for i, (law, young, nu, more) in enumerate(layers)]
+    write_case(
+        "structural/mixture_of_layers", "A parallel mixture adds up the stresses of its layers by their shares.",
+        "The strain is prescribed, so each layer's closed form holds to round-off.",
+        parameters("mesh", solver(3, "mesh"), [fix("Boundary", 0.0, 0.0, 0.0), fix("Pulled", x=strain)],
+                   outputs=[json_output("results.json", ["DISPLACEMENT"], gauss=["CAUCHY_STRESS_VECTOR", "EQUIVALENT_PLASTIC_STRAIN"])]),
+        [{"model_part_name": "Structure.Body", "properties_id": 1, "Material": {
+            "constitutive_law": {"name": "ParallelRuleOfMixturesLaw3D", "combination_factors": factors},
+            "Variables": {"DENSITY": 1.0}, "Tables": {}}, "sub_properties": subs}], mesh,
+        [check("CAUCHY_STRESS_VECTOR", 1e-12, value=[stress, across, across, 0.0, 0.0, 0.0]),
+         check("EQUIVALENT_PLASTIC_STRAIN", 1e-14, value=[shares[1] * flowed])])
 
 
 def write():
@@ -191,6 +249,8 @@ def write():
         displacement_patch(shape)
     for shape in LINEAR:
         load_patch(shape)
+    for shape in ("2D3N", "2D4N", "3D4N", "3D8N"):
+        load_patch(shape, "SmallDisplacementMixedVolumetricStrainElement", "mixed_")
     strain_x, strain_y = (1 - POISSON ** 2) / YOUNG, -POISSON * (1 + POISSON) / YOUNG
     bar("structural/bar_plane_stress", "A plane stress bar stretches by qL/E and narrows by Poisson's ratio.",
         "stress", 1 / YOUNG, -POISSON / YOUNG)
@@ -223,3 +283,5 @@ def write():
            [nodal_load("Top", "LINE_LOAD", 1.0e6, down)], {1.0: -1.0e6})
     self_weight()
     two_stages()
+    stages_of_plastic_flow()
+    mixture_of_layers()

@@ -156,7 +156,9 @@ impl Results {
         let mut found = Vec::new();
         for (key, v) in entries.iter().filter(|(key, _)| key.starts_with("ELEMENT_")) {
             for (point, series) in v[quantity].as_object().into_iter().flatten() {
-                let components = series[step].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+                let value = &series[step];
+                let one = std::slice::from_ref(value);
+                let components = value.as_array().map_or(one, Vec::as_slice).iter().filter_map(Value::as_f64).collect();
                 found.push((key.clone(), point.clone(), components));
             }
         }

@@ -215,7 +215,9 @@ fn load(part: &mut ModelPart, entry: &Entry, loads: Loads) {
     let wanted = if loads == Loads::Scalars { VariableKind::Scalar } else { VariableKind::Vector3 };
     let mut random = Random(5);
     let data = if entry.kind == Kind::Element { &mut part.elements.data } else { &mut part.conditions.data };
-    for variable in variables().values().filter(|v| v.kind == wanted && v.name != DISPLACEMENT.name()) {
+    // constants that resist rotations are refused
+    let taken = |name: &str| name == DISPLACEMENT.name() || name.contains("ROTATIONAL") || name == "NODAL_INERTIA";
+    for variable in variables().values().filter(|v| v.kind == wanted && !taken(v.name)) {
         let components = if loads == Loads::Scalars { 1 } else { 3 };
         for fields in [&mut *data, &mut part.nodes.history] {
             fields.add_named(variable.name, components);

@@ -11,6 +11,8 @@ pub struct Use {
     pub axisymmetric: bool,
     /// Whether steps are explicit.
     pub explicit: bool,
+    /// Whether the load factor is an unknown.
+    pub arc_length: bool,
 }
 
 /// Why a use is refused, and what to do instead.
@@ -26,8 +28,8 @@ pub struct Refusal {
 type Rule = (fn(&Family, Use) -> bool, Refusal);
 
 /// Everything that is not listed runs: every family on every pair of shapes, in the plane, in space and (in the plane)
-/// about an axis, with every `normal_variation`, law of friction, adaptation of the penalty and time integration.
-const RULES: [Rule; 3] = [
+/// about an axis, with every `normal_variation`, law of friction, adaptation of the penalty, strategy and time integration.
+const RULES: [Rule; 4] = [
     (
         |_, wanted| wanted.axisymmetric && wanted.dimension == 3,
         Refusal {
@@ -47,6 +49,13 @@ const RULES: [Rule; 3] = [
         Refusal {
             reason: "explicit steps do not iterate, so that no outer loop can follow",
             remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
+        },
+    ),
+    (
+        |family, wanted| wanted.arc_length && matches!(family.multiplier, Multiplier::Outer(_)),
+        Refusal {
+            reason: "an outer loop would go along the path with every update of the multipliers",
+            remedy: "use alm_contact_process, or \"solving_strategy_settings\" of the type \"newton_raphson\"",
         },
     ),
 ];

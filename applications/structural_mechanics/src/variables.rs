@@ -12,6 +12,7 @@ register_variable! {
         "Pressure on the side the normal points from: a line is pushed to its right, a surface against t1 × t2.";
     pub NEGATIVE_FACE_PRESSURE: f64 =
         "Pressure on the other side: a line is pushed to the left of its direction, a surface along t1 × t2.";
+    pub VOLUMETRIC_STRAIN: f64 = "Change of volume per volume, an unknown of the nodes of mixed elements.";
     pub NODAL_MASS: f64 = "Mass at a node.";
     pub NODAL_DISPLACEMENT_STIFFNESS: [f64; 3] = "Stiffness of a spring in each direction (force per length).";
     pub NODAL_DAMPING_RATIO: [f64; 3] = "Viscosity of a damper in each direction (force per velocity).";
@@ -29,6 +30,7 @@ register_variable! {
     kind COMPUTE_LUMPED_MASS_MATRIX: Boolean = "Whether the mass matrix is diagonal.";
     kind RAYLEIGH_ALPHA: Scalar = "Factor of the mass matrix in Rayleigh damping (per time).";
     kind RAYLEIGH_BETA: Scalar = "Factor of the stiffness matrix in Rayleigh damping (time).";
+    kind LAYER_EULER_ANGLES: Vector = "Directions of the layers of a mixture; laws are isotropic, so that they do not matter.";
     kind YIELD_STRESS: Scalar = "Yield stress in tension and compression (force per area).";
     kind YIELD_STRESS_TENSION: Scalar = "Yield stress in tension; serves where YIELD_STRESS is not given.";
     kind YIELD_STRESS_COMPRESSION: Scalar = "Yield stress in compression; that of tension holds for both.";

@@ -16,5 +16,5 @@ pub use cutting::Cutting;
 pub use mesh::read_deck_mesh;
 pub use orchestrator::{RunOptions, check, run};
 pub use report::{RunReport, Sizes};
-pub use solver::{EXPLICIT, ExtensionDefinition, NodalVariable, SolverDefinition};
+pub use solver::{ARC_LENGTH, EXPLICIT, ExtensionDefinition, NodalVariable, SolverDefinition};
 pub use time_stepping::TimeStepping;

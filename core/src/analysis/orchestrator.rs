@@ -8,7 +8,7 @@ use super::stage::Stage;
 use crate::communication::fair_threads;
 use crate::diagnostics::{Diagnostic, Error, Result, did_you_mean};
 use crate::model::Model;
-use crate::parameters::{Document, Node};
+use crate::parameters::{Document, Node, Value};
 use crate::strategies::Monitor;
 
 /// What a caller of [`run`] chooses.
@@ -23,6 +23,7 @@ pub fn run(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (Res
     with_threads(options, |report| {
         let (deck, folder) = open(path)?;
         let mut model = Model::default();
+        warn_of_checkpoints(&deck, report, monitor);
         for (name, stage) in stages(&deck, report)? {
             let stage = Stage::prepare(&name, &stage, &folder, &mut model, report, monitor)?;
             stage.run(&mut model, report, monitor)?;
@@ -37,6 +38,7 @@ pub fn check(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (R
     with_threads(options, |report| {
         let (deck, folder) = open(path)?;
         let mut model = Model::default();
+        warn_of_checkpoints(&deck, report, monitor);
         for (name, stage) in stages(&deck, report)? {
             Stage::prepare(&name, &stage, &folder, &mut model, report, monitor)?;
             report.stages.push(name);
@@ -76,6 +78,7 @@ pub(super) fn stages(deck: &Node, report: &mut RunReport) -> Result<Vec<(String,
         report.problem.clone_from(&name);
         return Ok(vec![(name, deck.clone())]);
     }
+    refuse_other_orchestrators(deck)?;
     let all = deck.require("stages")?.object()?;
     let order: Vec<String> = match deck.get_path("orchestrator.settings.execution_list") {
         Some(list) => list.array()?.iter().map(|n| n.str().map(str::to_owned)).collect::<Result<_>>()?,
@@ -89,9 +92,58 @@ pub(super) fn stages(deck: &Node, report: &mut RunReport) -> Result<Vec<(String,
                 Diagnostic::error("unknown-stage", format!("there is no stage {name:?}")).at(deck.place()).remedy(hint),
             )
         })?;
+        for key in ["stage_preprocess", "stage_postprocess"] {
+            refuse_work_between_stages(stage, key)?;
+        }
         let settings = stage.require("stage_settings")?.clone();
         report.problem = name_of(&settings).unwrap_or_default();
         out.push((name, settings));
     }
     Ok(out)
+}
+
+/// Stages run one after another, from the first.
+fn refuse_other_orchestrators(deck: &Node) -> Result<()> {
+    if let Some(name) = deck.get_path("orchestrator.name")
+        && !name.str()?.ends_with("SequentialOrchestrator")
+    {
+        let fact = format!("there is no orchestrator {:?}", name.str()?);
+        let remedy = "use \"Orchestrators.KratosMultiphysics.SequentialOrchestrator\"";
+        return Err(Diagnostic::error("orchestrator", fact).at(name.place()).remedy(remedy).into());
+    }
+    match deck.get_path("orchestrator.settings.load_from_checkpoint").filter(|from| !from.is_null()) {
+        None => Ok(()),
+        Some(from) => Err(Diagnostic::error("checkpoint", "checkpoints are not read")
+            .at(from.place())
+            .remedy("set \"load_from_checkpoint\" to null: all stages are run from the first")
+            .into()),
+    }
+}
+
+fn refuse_work_between_stages(stage: &Node, key: &str) -> Result<()> {
+    let Some(work) = stage.get(key).and_then(Node::as_object) else { return Ok(()) };
+    let is_empty = |node: &Node| match &node.value {
+        Value::Array(items) => items.is_empty(),
+        Value::Object(members) => members.iter().next().is_none(),
+        _ => false,
+    };
+    match work.in_source_order().iter().find(|member| !is_empty(&member.node)) {
+        None => Ok(()),
+        Some(member) => Err(Diagnostic::error("stage-work", format!("\"{}\" of \"{key}\" is not run", member.key))
+            .at(member.node.place())
+            .remedy("put processes into the \"processes\" of a stage's settings, and take this out")
+            .into()),
+    }
+}
+
+fn warn_of_checkpoints(deck: &Node, report: &mut RunReport, monitor: &mut dyn Monitor) {
+    let Some(wanted) = deck.get_path("orchestrator.settings.stage_checkpoints") else { return };
+    if matches!(&wanted.value, Value::Bool(false)) || wanted.as_array().is_some_and(|list| list.is_empty()) {
+        return;
+    }
+    let warning = Diagnostic::warning("checkpoint", "checkpoints are not written")
+        .at(wanted.place())
+        .remedy("set \"stage_checkpoints\" to false: all stages are run from the first");
+    report.warnings.push(warning.to_string());
+    monitor.warn(&warning);
 }

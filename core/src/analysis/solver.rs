@@ -19,6 +19,9 @@ pub type NodalVariable = (&'static str, usize);
 /// Mark of the step data: steps are explicit.
 pub const EXPLICIT: &str = "EXPLICIT";
 
+/// Mark of the step data: the load factor is an unknown.
+pub const ARC_LENGTH: &str = "ARC_LENGTH";
+
 /// What an application registers for a `solver_type`, as `Build::Factory(&SolverDefinition {…})`.
 pub struct SolverDefinition {
     /// Registered solver that these settings, as the user wrote them, ask for instead; `None` for this one.
@@ -153,6 +156,8 @@ impl SolverSettings {
         let levels = self.settings.get_usize("buffer_size")?.max(2);
         part.nodes.history.set_levels(levels);
         part.info.marks.insert(EXPLICIT, self.definition.explicit);
+        let follows_path = self.way_of_solution().is_ok_and(|(way, _)| way == "arc_length");
+        part.info.marks.insert(ARC_LENGTH, follows_path);
         for &(name, components) in &self.variables {
             part.nodes.history.add_named(name, components);
         }

@@ -237,9 +237,12 @@ impl Stage {
                 if record.singular {
                     return Err(Error::System(format!("step {} to time {to}: {failure}\n    {tried}", record.step)));
                 }
+                let written = match from > self.start_time {
+                    true => format!("results up to time {from} are written"),
+                    false => "no step has converged".to_owned(),
+                };
                 return Err(Error::NotConverged(format!(
-                    "step {} to time {to}: {failure}\n    {tried}; results up to time {from} are written. Try {}, or \
-                     look at the nodes named",
+                    "step {} to time {to}: {failure}\n    {tried}; {written}. Try {}, or look at the nodes named",
                     record.step,
                     self.strategy.remedy()
                 )));
@@ -511,6 +514,9 @@ pub(super) fn import(
     }
     let part = model.root_mut(root)?;
     solver.prepare(part)?;
+    for kind in part.elements.kinds.iter().chain(&part.conditions.kinds).filter(|kind| !kind.nodal.is_empty()) {
+        kind.nodal.iter().for_each(|&(name, components)| part.nodes.history.add_named(name, components));
+    }
     let materials = settings.get("material_import_settings.materials_filename")?;
     let name = materials.str()?;
     if !name.is_empty() {

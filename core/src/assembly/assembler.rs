@@ -157,6 +157,11 @@ impl Assembler {
         }
     }
 
+    /// Whether elements of any rank have a tangent that depends on the state.
+    pub fn has_variable_elements(&self) -> bool {
+        self.traits.variable_elements
+    }
+
     /// The map between unknowns and equations.
     pub fn equations(&self) -> &Equations {
         &self.equations

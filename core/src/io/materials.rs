@@ -34,9 +34,7 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
         seen.push(name.clone());
         let mut properties = part.properties.remove(&id).unwrap_or_else(|| Properties::new(id));
         properties.place = Some(item.place());
-        if let Some(material) = item.get("Material") {
-            read_material(material, &mut properties, &mut report);
-        }
+        read_item(item, &mut properties, &mut report);
         part.properties.insert(id, properties);
         if let Ok(selected) = part.part(&name) {
             let (elements, conditions) = (selected.elements.clone(), selected.conditions.clone());
@@ -46,6 +44,26 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
         attach(part, &name, id);
     }
     report.finish()
+}
+
+/// Material and sub-properties of one entry.
+fn read_item(item: &Node, properties: &mut Properties, report: &mut Report) {
+    if let Some(material) = item.get("Material") {
+        read_material(material, properties, report);
+    }
+    let Some(subs) = item.get("sub_properties") else { return };
+    for sub in report.absorb(subs.array()).unwrap_or_default() {
+        let Some(id) = report.absorb(sub.require("properties_id").and_then(Node::usize)) else { continue };
+        let mut own = Properties::new(id);
+        own.place = Some(sub.place());
+        read_item(sub, &mut own, report);
+        properties.parts.push(own);
+    }
+    if !properties.law.as_ref().is_some_and(|law| law.contains("Mixtures")) {
+        let fact = format!("the law of properties {} does not use sub-properties", properties.id);
+        let remedy = "laws of mixtures do: ParallelRuleOfMixturesLaw3D or 2D";
+        report.push(Diagnostic::warning("unused-key", fact).at(subs.place()).remedy(remedy));
+    }
 }
 
 fn head(item: &Node) -> Result<(String, usize)> {
@@ -99,6 +117,15 @@ fn read_material(material: &Node, properties: &mut Properties, report: &mut Repo
             Err(problem) => report.push(problem.at(law.place())),
         }
     }
+    for member in
+        material.get("constitutive_law").and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order())
+    {
+        if let Some(list) = member.node.as_array()
+            && let Some(numbers) = report.absorb(list.iter().map(Node::f64).collect())
+        {
+            properties.law_lists.insert(member.key.clone(), numbers);
+        }
+    }
     for member in material.get("Variables").and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order()) {
         let name = last_of_path(&member.key);
         let Some(kind) = kind_of(name) else {
@@ -120,8 +147,9 @@ fn read_material(material: &Node, properties: &mut Properties, report: &mut Repo
         }
     }
     if let Some(inner) = material.get("sub_properties") {
-        let fact = "sub-properties are not used: a material is one law and its values";
-        report.push(Diagnostic::warning("unused-key", fact).at(inner.place()));
+        let remedy = "put \"sub_properties\" beside \"Material\", as Kratos reads them";
+        let problem = Diagnostic::error("misplaced-key", "\"sub_properties\" inside \"Material\" are not read");
+        report.push(problem.at(inner.place()).remedy(remedy));
     }
 }
 

@@ -31,6 +31,10 @@ pub struct Properties {
     pub tables: BTreeMap<(String, String), Table>,
     /// Registered name of the constitutive law, when given.
     pub law: Option<String>,
+    /// Lists of numbers beside the law's name, e.g. `combination_factors`.
+    pub law_lists: BTreeMap<String, Vec<f64>>,
+    /// Sub-properties, in the order of the file.
+    pub parts: Vec<Properties>,
     /// Where the file defines it.
     pub place: Option<Place>,
 }

@@ -114,6 +114,8 @@ pub struct Entry {
     pub cell: Option<Shape>,
     /// Dimensions of the space an element or condition lives in: 2 or 3; 0 for everything else.
     pub space: usize,
+    /// Variables with history that nodes of an element or condition have: name and number of components.
+    pub nodal: &'static [(&'static str, usize)],
     /// How it is made.
     pub build: Build,
     /// Source file of the registration.
@@ -134,6 +136,7 @@ impl Entry {
             defaults: "",
             cell: None,
             space: 0,
+            nodal: &[],
             build: Build::NameOnly,
             file,
             line,
@@ -174,10 +177,11 @@ pub struct Absent {
 
 inventory::collect!(Absent);
 
-/// What to use instead of a known name that is not there.
+/// What to use instead of a known name that is not there; of several beginnings the longest counts.
 pub fn instead_of(kind: Kind, name: &str) -> Option<&'static str> {
-    let known = |absent: &&Absent| absent.kind == kind && absent.stems.iter().any(|stem| name.starts_with(stem));
-    inventory::iter::<Absent>().find(known).map(|absent| absent.remedy)
+    let all = inventory::iter::<Absent>().filter(|absent| absent.kind == kind);
+    let known = all.flat_map(|absent| absent.stems.iter().map(|stem| (*stem, absent.remedy)));
+    known.filter(|(stem, _)| name.starts_with(stem)).max_by_key(|(stem, _)| stem.len()).map(|(_, remedy)| remedy)
 }
 
 type Index = BTreeMap<Kind, BTreeMap<&'static str, &'static Entry>>;

@@ -4,7 +4,7 @@
 //! Corrections stay in the plane normal to the predictor p: K δ_R = R, dλ = −(p·δ_R)/(p·δ_q), du = δ_R + dλ δ_q. The first
 //! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
 
-use super::linear_solve::Solved;
+use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
@@ -50,6 +50,12 @@ impl ArcLengthSettings {
             loads: parts.into_iter().zip(variables).collect(),
         })
     }
+}
+
+/// How multipliers give way where constraints repeat each other, and whether they do in this step.
+struct Relaxation {
+    amount: Option<f64>,
+    taken: bool,
 }
 
 /// Newton's iteration with the load factor as a further unknown.
@@ -100,10 +106,19 @@ impl ArcLength {
         Ok(full)
     }
 
-    /// The solve, and its increment of all unknowns.
-    fn solve(&mut self, part: &mut ModelPart, rhs: &[f64]) -> Result<(Vec<f64>, Solved)> {
+    /// The solve, and its increment of all unknowns; `relaxation` is taken on where multipliers make it singular.
+    fn solve(&mut self, part: &mut ModelPart, rhs: &[f64], relaxation: &mut Relaxation) -> Result<(Vec<f64>, Solved)> {
         let rhs = self.newton.assembler.equations().reduce(rhs);
-        let solved = self.newton.solve(part, &rhs)?;
+        let mut solved = self.newton.solve(part, &rhs);
+        if let (Err(Failed::Singular(why)), Relaxation { amount: Some(amount), taken: taken @ false }) =
+            (&solved, relaxation)
+        {
+            part.messages.extend(self.newton.warn_of_redundancy(why));
+            *taken = true;
+            self.newton.assembler.relax_multipliers(&part.dofs, *amount);
+            solved = self.newton.solve(part, &rhs);
+        }
+        let solved = solved?;
         Ok((self.newton.assembler.equations().expand(&solved.increment), solved))
     }
 
@@ -140,6 +155,8 @@ impl ArcLength {
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
         }
+        let amount = interactions.iter().find_map(|interaction| interaction.relaxation());
+        let mut relaxation = Relaxation { amount, taken: false };
         let mut factor = self.factor;
         let mut predictor = Vec::new();
         let mut step = vec![0.0; part.dofs.len()];
@@ -152,7 +169,10 @@ impl ArcLength {
             if self.settings.loads.is_empty() {
                 self.newton.assembler.scale_load_tangents(factor);
             }
-            let (along, mut solved) = self.solve(part, &load)?;
+            if let Relaxation { amount: Some(amount), taken: true } = relaxation {
+                self.newton.assembler.relax_multipliers(&part.dofs, amount);
+            }
+            let (along, mut solved) = self.solve(part, &load, &mut relaxation)?;
             let increment: Vec<f64> = if iteration == 1 {
                 let size = dot(&along, &along).sqrt();
                 if size == 0.0 {
@@ -169,7 +189,7 @@ impl ArcLength {
                 predictor.clone()
             } else {
                 let back;
-                (back, solved) = self.solve(part, &residual)?;
+                (back, solved) = self.solve(part, &residual, &mut relaxation)?;
                 let more = -dot(&predictor, &back) / dot(&predictor, &along);
                 factor += more;
                 back.iter().zip(&along).map(|(b, d)| b + more * d).collect()

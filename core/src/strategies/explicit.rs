@@ -80,7 +80,7 @@ impl ExplicitStrategy {
     /// Numbers the unknowns of `part`, whose blocks and interactions are ready, and lumps the mass.
     ///
     /// # Errors
-    /// Lagrange multipliers, which have no mass; an entity that cannot be computed.
+    /// Lagrange multipliers and other unknowns without mass; an entity that cannot be computed.
     pub fn new(settings: ExplicitSettings, scheme: CentralDifferences, part: &mut ModelPart) -> Result<Self> {
         let interactions = std::mem::take(&mut part.interactions);
         let mut assembler = Assembler::new(part, &interactions, true);
@@ -89,6 +89,11 @@ impl ExplicitStrategy {
             let fact = format!("explicit integration cannot carry the Lagrange multipliers {}", dof.variable.column);
             let remedy = "use contact by penalty, \"mortar_type\": \"PenaltyContactFrictionless\"";
             return Err(Diagnostic::error("explicit-multipliers", fact).remedy(remedy).into());
+        }
+        if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.variable.column != DISPLACEMENT.name()) {
+            let fact = format!("explicit integration cannot carry {}, which has no mass", dof.variable.column);
+            let remedy = "use elements of displacements only, e.g. SmallDisplacementBbarElement2D4N or 3D8N";
+            return Err(Diagnostic::error("explicit-unknowns", fact).remedy(remedy).into());
         }
         scheme.prepare(part);
         part.nodes.history.add(&FORCE_RESIDUAL);

@@ -20,6 +20,7 @@ mod linear_solve;
 mod newton;
 #[cfg(feature = "petsc")]
 mod owned_rows;
+mod pseudo_static_scheme;
 mod reactions;
 mod records;
 mod residual_criterion;
@@ -41,6 +42,7 @@ pub use explicit::{ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
 pub use newton::{CONDITION_NUMBER, NewtonRaphson, NewtonSettings};
+pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
 pub use residual_criterion::ResidualCriterion;
 pub use scheme::{Scheme, SchemeFactory, SchemeRequest, StaticScheme};

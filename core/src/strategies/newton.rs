@@ -192,6 +192,14 @@ impl NewtonRaphson {
                     self.singular = true;
                     return Ok((records, Some(why)));
                 }
+                // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
+                Err(Failed::Singular(why))
+                    if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>
+                {
+                    let first = why.lines().next().unwrap_or_default();
+                    let limit = "at a limit load prescribe displacements, or use \"arc_length\"";
+                    return Ok((records, Some(format!("iteration {iteration}: {first}; {limit}"))));
+                }
                 Err(failed) => return Err(failed.into()),
             };
             if let Some(why) = &solved.fallback {
@@ -433,7 +441,7 @@ impl NewtonRaphson {
     }
 
     /// The warning, once a run, that constraints of interactions repeat what others ask for.
-    fn warn_of_redundancy(&mut self, why: &str) -> Option<Diagnostic> {
+    pub(super) fn warn_of_redundancy(&mut self, why: &str) -> Option<Diagnostic> {
         let first = why.lines().next().unwrap_or_default();
         (!std::mem::replace(&mut self.warned, true)).then(|| {
             Diagnostic::warning("redundant-constraints", format!("{first}; solved with relaxed constraints")).remedy(

@@ -24,7 +24,7 @@ pub trait SolutionStrategy: Send {
 
     /// What to try when steps fail.
     fn remedy(&self) -> &'static str {
-        "a shorter \"time_step\", more \"max_iteration\", \"line_search\": true"
+        "a shorter \"time_step\", more \"max_iteration\", \"line_search\": true, at a limit load \"arc_length\""
     }
 
     /// Steps between two that are announced: more than 1 where steps are many and short.

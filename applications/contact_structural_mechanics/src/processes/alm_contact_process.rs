@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use zelus_core::Result;
-use zelus_core::analysis::EXPLICIT;
+use zelus_core::analysis::{ARC_LENGTH, EXPLICIT};
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
@@ -224,9 +224,10 @@ fn check_use(part: &ModelPart, family: &Family, settings: &Settings) -> Result<(
         dimension: part.info.domain_size,
         axisymmetric: settings.get_bool(key)?,
         explicit: part.info.is(EXPLICIT),
+        arc_length: part.info.is(ARC_LENGTH),
     };
     let Some(Refusal { reason, remedy }) = refusal(family, wanted) else { return Ok(()) };
-    let key = if wanted.explicit { "contact_type" } else { key };
+    let key = if wanted.explicit || wanted.arc_length { "contact_type" } else { key };
     Err(settings.error(key, "contact-use", reason).remedy(remedy).into())
 }
 

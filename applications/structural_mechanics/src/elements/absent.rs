@@ -1,4 +1,4 @@
-//! Elements and laws of the reference program that are known and not there, and what to use instead.
+//! Elements, laws, schemes and solvers of the reference program that are known and not there, and what to use instead.
 
 use zelus_core::register_absent;
 
@@ -16,8 +16,11 @@ register_absent! { Element ["Cable", "SlidingCable", "RingElement"] =>
 
 register_absent! { Element ["Bushing"] => "use SpringDamperElement3D2N for its displacements" }
 
-register_absent! { Element ["SmallDisplacementMixedStrain", "SmallDisplacementMixedVolumetric", "TotalLagrangianMixedVolumetric", "TotalLagrangianQ1P0"] =>
-"against volumetric locking use SmallDisplacementBbarElement2D4N or 3D8N, or elements of second order" }
+register_absent! { Element ["SmallDisplacementMixedStrain", "SmallDisplacementMixedVolumetricStrainOss"] =>
+"against volumetric locking use SmallDisplacementMixedVolumetricStrainElement, or SmallDisplacementBbarElement2D4N or 3D8N" }
+
+register_absent! { Element ["TotalLagrangianMixedVolumetric", "TotalLagrangianQ1P0"] =>
+"against volumetric locking at large strains use TotalLagrangianQ1P0MixedElement3D8N, or elements of second order" }
 
 register_absent! { ConstitutiveLaw ["SmallStrainKinematicPlasticity", "FiniteStrainKinematicPlasticity", "PlasticityIsotropicKinematic"] =>
 "kinematic hardening is not there: isotropic hardening is, SmallStrainJ2Plasticity3DLaw" }
@@ -25,5 +28,20 @@ register_absent! { ConstitutiveLaw ["SmallStrainKinematicPlasticity", "FiniteStr
 register_absent! { ConstitutiveLaw ["SmallStrainIsotropicPlasticity", "FiniteStrainIsotropicPlasticity"] =>
 "of yield surfaces and potentials only VonMisesVonMises is there, in space and plane strain" }
 
+register_absent! { ConstitutiveLaw ["SmallStrainIsotropicPlasticityPlaneStress", "FiniteStrainIsotropicPlasticityPlaneStress", "SmallStrainJ2PlasticityPlaneStress", "J2PlasticityPlaneStress"] =>
+"plasticity in plane stress is not there: mesh the thickness with solids, e.g. SmallDisplacementElement3D8N with SmallStrainJ2Plasticity3DLaw" }
+
 register_absent! { ConstitutiveLaw ["SmallStrainIsotropicDamage", "SmallStrainDplusDminus", "DamageDPlusDMinus", "SmallStrainHighCycleFatigue", "AssociativePlasticDamage", "SmallStrainPlasticDamage"] =>
 "damage and fatigue are not there: elastic laws and von Mises plasticity are" }
+
+register_absent! { ConstitutiveLaw ["SerialParallelRuleOfMixtures", "TractionSeparationLaw"] =>
+"of mixtures those whose layers strain alike are there: ParallelRuleOfMixturesLaw3D or 2D with sub_properties" }
+
+register_absent! { Scheme ["relaxation"] =>
+"dynamic relaxation is not there: use \"solver_type\": \"Static\" for the state at rest, or \"pseudo_static\" with damping for the way to it" }
+
+register_absent! { Scheme ["multi_stage"] =>
+"of explicit schemes \"central_differences\" is there: one evaluation of the forces a step" }
+
+register_absent! { Solver ["eigen_value", "harmonic_analysis", "prebuckling", "formfinding", "adjoint_static", "static_shifted_boundary"] =>
+"of structural solvers \"Static\" and \"Dynamic\" are there" }

@@ -26,7 +26,7 @@ pub(super) struct Material<const S: usize> {
 }
 
 impl<const S: usize> Material<S> {
-    fn new(properties: &Properties, shape: Shape, plane: bool) -> Result<Self> {
+    fn new(properties: &Properties, shape: Shape, plane: bool, pressure: bool) -> Result<Self> {
         let order = properties.number("INTEGRATION_ORDER").unwrap_or(shape.cell().default_order as f64);
         if !(1.0..=MAX_ORDER as f64).contains(&order) || order.fract() != 0.0 {
             let fact = format!("INTEGRATION_ORDER of properties {} is {order}", properties.id);
@@ -45,9 +45,22 @@ impl<const S: usize> Material<S> {
                 return Err(problem.remedy("give a positive number").into());
             }
         }
+        let law = law_of::<S>(properties, plane)?;
+        if law.bulk_of_element().is_some() != pressure {
+            let both = if pressure {
+                "resists changes of volume, and so do"
+            } else {
+                "does not resist changes of volume, nor do"
+            };
+            let fact = format!("the law of properties {} {both} these elements", properties.id);
+            let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
+            let remedy = "TotalLagrangianQ1P0MixedElement3D8N goes with \
+                          HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D, and neither with others";
+            return Err(problem.remedy(remedy).into());
+        }
         Ok(Self {
             id: properties.id,
-            law: law_of::<S>(properties, plane)?,
+            law,
             density,
             thickness,
             acceleration: properties.vector3("VOLUME_ACCELERATION").unwrap_or_default(),
@@ -56,11 +69,12 @@ impl<const S: usize> Material<S> {
         })
     }
 
-    /// The materials of all entities of a block, by ascending id of the properties; `plane` means a slab, not a ring.
+    /// The materials of all entities of a block, by ascending id of the properties; `plane` means a slab, not a ring,
+    /// `pressure` that the element holds it.
     ///
     /// # Errors
     /// Every set of properties that an element cannot compute with.
-    pub(super) fn all(request: &BlockRequest<'_>, shape: Shape, plane: bool) -> Result<Vec<Self>> {
+    pub(super) fn all(request: &BlockRequest<'_>, shape: Shape, plane: bool, pressure: bool) -> Result<Vec<Self>> {
         let mut ids: Vec<usize> = request.members.iter().map(|&m| request.table.properties[m as usize]).collect();
         ids.sort_unstable();
         ids.dedup();
@@ -68,7 +82,7 @@ impl<const S: usize> Material<S> {
         let mut materials = Vec::with_capacity(ids.len());
         for id in ids {
             let made = match request.part.properties.get(&id) {
-                Some(properties) => Self::new(properties, shape, plane),
+                Some(properties) => Self::new(properties, shape, plane, pressure),
                 None => {
                     let fact = format!("{} uses properties {id}, which do not exist", request.entry.name);
                     Err(Diagnostic::error("missing-properties", fact)

@@ -7,6 +7,7 @@ mod absent;
 mod axisymmetric;
 mod formulation;
 mod material;
+mod mixed_volumetric_strain;
 mod nodal_concentrated;
 #[cfg(test)]
 mod nodal_tests;
@@ -21,16 +22,19 @@ mod reference_tests;
 #[cfg(test)]
 mod tests;
 mod total_lagrangian;
+mod total_lagrangian_q1p0;
 mod truss;
 mod updated_lagrangian;
 
 pub use formulation::Formulation;
+pub use mixed_volumetric_strain::MixedVolumetricStrain;
 pub use nodal_concentrated::NodalConcentrated;
 pub use small_displacement::SmallDisplacement;
 pub use small_displacement_bbar::SmallDisplacementBbar;
 pub use solid::Solid;
 pub use spring_damper::SpringDamper;
 pub use total_lagrangian::TotalLagrangian;
+pub use total_lagrangian_q1p0::TotalLagrangianQ1P0;
 pub use truss::Truss;
 pub use updated_lagrangian::UpdatedLagrangian;
 

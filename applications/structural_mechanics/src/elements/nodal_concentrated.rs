@@ -41,7 +41,7 @@ impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
     }
 
     fn state(&self, entity: &Gather<'_, 1>, view: &StepView<'_>) -> Result<Constants, String> {
-        refuse_rotations(entity)?;
+        refuse_rotations(entity, view)?;
         let mass = scalar(entity, view, &NODAL_MASS);
         if !(mass >= 0.0 && mass.is_finite()) {
             return Err(format!("NODAL_MASS is {mass}, it must not be negative"));

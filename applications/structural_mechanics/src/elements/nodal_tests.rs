@@ -34,6 +34,19 @@ fn rotational_springs_are_refused() {
 }
 
 #[test]
+fn rotational_constants_of_the_elements_own_data_are_refused() {
+    for (name, nodes) in [("NodalConcentratedElement3D1N", 1), ("SpringDamperElement3D2N", 2)] {
+        let x: Vec<Vec3> = (0..nodes).map(|at| [at as f64, 0.0, 0.0]).collect();
+        for variable in [&NODAL_ROTATIONAL_STIFFNESS, &NODAL_ROTATIONAL_DAMPING_RATIO, &NODAL_INERTIA] {
+            let mut single = Single::new(Kind::Element, name, None, &[], &x);
+            single.part.elements.data.values_mut(variable, 0)[2] = 1.0;
+            let said = single.try_initialize().unwrap_err();
+            assert!(said.contains(variable.name()) && said.contains("nodes have no rotations"), "{said}");
+        }
+    }
+}
+
+#[test]
 fn springs_and_dampers_between_nodes_pull_equally() {
     let mut random = Random(41);
     for (name, space) in [("SpringDamperElement2D2N", 2), ("SpringDamperElement3D2N", 3)] {

@@ -31,10 +31,13 @@ pub(super) fn vector<const NODES: usize>(
 /// Nodes have no rotations: constants that resist them cannot be honoured.
 ///
 /// # Errors
-/// A rotational constant other than zero in the properties.
-pub(super) fn refuse_rotations<const NODES: usize>(entity: &Gather<'_, NODES>) -> Result<(), String> {
+/// A rotational constant other than zero, in the properties or in the element's own data.
+pub(super) fn refuse_rotations<const NODES: usize>(
+    entity: &Gather<'_, NODES>,
+    view: &StepView<'_>,
+) -> Result<(), String> {
     for variable in [&NODAL_ROTATIONAL_STIFFNESS, &NODAL_INERTIA, &NODAL_ROTATIONAL_DAMPING_RATIO] {
-        if entity.properties.vector3(variable.name()).is_some_and(|v| v != [0.0; 3]) {
+        if vector(entity, view, variable) != [0.0; 3] {
             return Err(format!("{} has no effect, nodes have no rotations: take it out", variable.name()));
         }
     }

@@ -45,10 +45,12 @@ pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const 
     let material = solid.material(entity);
     let motion = solid.motion(entity, view);
     let mean = Solid::<F, NODES, DIM, S>::mean_gradients(material, entity);
+    let [_, pressure] = Solid::<F, NODES, DIM, S>::pressure(material, entity, &motion, state).ok()?;
     let table = material.rule;
     let mut out = Gauss::default();
     for g in 0..table.len() {
-        let state = Solid::<F, NODES, DIM, S>::point(material, g, entity, &motion, &mean, state).ok()?.state;
+        let mut state = Solid::<F, NODES, DIM, S>::point(material, g, entity, &motion, &mean, state).ok()?.state;
+        state.pressure = pressure;
         let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
@@ -68,7 +70,8 @@ pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const 
     Some(out)
 }
 
-fn value<const S: usize>(
+/// Appends a variable of one Gauss point; `None` when unknown.
+pub(super) fn value<const S: usize>(
     law: &dyn ConstitutiveLaw<S>,
     state: &StrainState<'_, S>,
     measure: StressMeasure,

@@ -18,7 +18,9 @@ use super::formulation::Formulation;
 use super::material::Material;
 use super::results;
 use crate::laws::StrainState;
-use crate::tensor::{IDENTITY, Tensor, determinant, pairs, product, strain_vector, stress_tensor, transposed};
+use crate::tensor::{
+    IDENTITY, Tensor, determinant, pairs, product, strain_vector, stress_tensor, stress_vector, transposed,
+};
 use crate::variables::VOLUME_ACCELERATION;
 
 /// Solid element with `NODES` nodes in `DIM` dimensions and `S` strains (3 plane, 4 axisymmetric or plane B-bar, 6 solid).
@@ -55,7 +57,7 @@ pub(super) struct Motion<const NODES: usize> {
 }
 
 /// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
-fn gradient<const NODES: usize, const DIM: usize>(
+pub(super) fn gradient<const NODES: usize, const DIM: usize>(
     x: &[[f64; 3]; NODES],
     dn: &[[f64; DIM]; NODES],
 ) -> [[f64; DIM]; DIM] {
@@ -71,7 +73,7 @@ fn gradient<const NODES: usize, const DIM: usize>(
 }
 
 /// A square matrix in the upper left of the unit tensor.
-fn padded<const DIM: usize>(a: &[[f64; DIM]; DIM]) -> Tensor {
+pub(super) fn padded<const DIM: usize>(a: &[[f64; DIM]; DIM]) -> Tensor {
     let mut out = IDENTITY;
     for i in 0..DIM {
         out[i][..DIM].copy_from_slice(&a[i]);
@@ -80,7 +82,7 @@ fn padded<const DIM: usize>(a: &[[f64; DIM]; DIM]) -> Tensor {
 }
 
 /// Gradients with respect to the positions `x`, and the determinant of the map from the reference cell.
-fn physical_gradients<const NODES: usize, const DIM: usize>(
+pub(super) fn physical_gradients<const NODES: usize, const DIM: usize>(
     x: &[[f64; 3]; NODES],
     local: &[[f64; DIM]; NODES],
 ) -> ([[f64; DIM]; NODES], f64) {
@@ -245,8 +247,34 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             hoop,
             excess,
             weight: table.weight(g) * det * turn,
-            state: StrainState { strain, f, det_f, small: !F::FINITE, history: material.remembered(g, state) },
+            state: StrainState {
+                strain,
+                f,
+                det_f,
+                small: !F::FINITE,
+                pressure: 0.0,
+                history: material.remembered(g, state),
+            },
         })
+    }
+
+    /// Volume and pressure of an element that holds one, p = −κ (J̄ − 1); no pressure in others.
+    pub(super) fn pressure(
+        material: &Material<S>,
+        entity: &Gather<'_, NODES>,
+        motion: &Motion<NODES>,
+        state: &[f64],
+    ) -> Result<[f64; 2], String> {
+        let (mut volume, mut change) = (0.0, 0.0);
+        if let Some(bulk) = material.law.bulk_of_element() {
+            for g in 0..material.rule.len() {
+                let point = Self::point(material, g, entity, motion, &[[0.0; DIM]; NODES], state)?;
+                volume += point.weight;
+                change += point.weight * (point.state.det_f - 1.0);
+            }
+            change *= -bulk / volume;
+        }
+        Ok([volume, change])
     }
 
     /// Derivative of the strain with respect to the displacements, one row a Voigt component.
@@ -330,7 +358,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let shape = Shape::of(DIM, NODES).expect("solids are registered for known shapes only");
-        let materials = Material::all(request, shape, DIM == 2 && !Self::AXISYMMETRIC)?;
+        let materials = Material::all(request, shape, DIM == 2 && !Self::AXISYMMETRIC, F::CONSTANT_PRESSURE)?;
         let constant = !F::FINITE && !Self::AXISYMMETRIC && materials.iter().all(|m| m.law.is_linear());
         let tangent = if constant {
             Tangent::Constant
@@ -374,8 +402,12 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         let mut upper = [[0.0; SIZE]; SIZE];
         let mut d = [[0.0; S]; S];
         let mean = Self::mean_gradients(material, entity);
+        let [volume, pressure] = Self::pressure(material, entity, &motion, state)?;
+        // ∫ J Bᵀ C⁻¹ dV
+        let mut of_volume = [0.0; SIZE];
         for g in 0..material.rule.len() {
             let mut point = Self::point(material, g, entity, &motion, &mean, state)?;
+            point.state.pressure = pressure;
             point.state.small &= !view.decides_normals();
             if material.density > 0.0 {
                 self.body_forces(material, &material.rule.n()[g], point.weight, &acceleration, rhs);
@@ -407,8 +439,21 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
                     out[first..].iter_mut().zip(&db[first..]).for_each(|(out, db)| *out += b * db);
                 }
             }
+            if F::CONSTANT_PRESSURE {
+                let f = crate::tensor::inverse(&point.state.f);
+                let inverse_c = stress_vector::<S>(&product(&f, &transposed(&f)));
+                for (row, k) in b.iter().zip(inverse_c) {
+                    let factor = point.weight * point.state.det_f * k;
+                    of_volume.iter_mut().zip(row).for_each(|(sum, b)| *sum += factor * b);
+                }
+            }
             if F::FINITE {
                 Self::add_geometric(&point, &stress, &mut upper);
+            }
+        }
+        if let Some(bulk) = material.law.bulk_of_element().filter(|_| !lhs.is_empty()) {
+            for (row, x) in upper.iter_mut().zip(&of_volume) {
+                row.iter_mut().zip(&of_volume).for_each(|(out, y)| *out += bulk / volume * x * y);
             }
         }
         if !lhs.is_empty() {

@@ -48,7 +48,7 @@ impl<const DIM: usize, const SIZE: usize> Kernel<2, SIZE> for SpringDamper<DIM> 
     }
 
     fn state(&self, entity: &Gather<'_, 2>, view: &StepView<'_>) -> Result<Constants, String> {
-        refuse_rotations(entity)?;
+        refuse_rotations(entity, view)?;
         Ok(Constants {
             stiffness: vector(entity, view, &NODAL_DISPLACEMENT_STIFFNESS),
             damping: vector(entity, view, &NODAL_DAMPING_RATIO),

@@ -24,7 +24,7 @@ pub struct HyperElastic {
 }
 
 /// C = 1 + 2E.
-fn right_cauchy_green<const S: usize>(state: &StrainState<'_, S>) -> Tensor {
+pub(super) fn right_cauchy_green<const S: usize>(state: &StrainState<'_, S>) -> Tensor {
     let mut c = strain_tensor(&state.strain);
     for i in 0..3 {
         for j in 0..3 {

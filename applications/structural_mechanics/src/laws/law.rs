@@ -20,6 +20,8 @@ pub struct StrainState<'a, const S: usize> {
     pub det_f: f64,
     /// Whether `strain` is the small strain and `f` is 1 + strain.
     pub small: bool,
+    /// Pressure that the element holds constant, positive in compression; 0 in all other elements.
+    pub pressure: f64,
     /// What the law remembers from the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
@@ -49,6 +51,11 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     /// Whether the tangent is symmetric, for the small strain of a small-displacement element or for Green–Lagrange's.
     fn is_symmetric(&self, _small: bool) -> bool {
         true
+    }
+
+    /// Bulk modulus where the law leaves the volume to the element, which adds the pressure.
+    fn bulk_of_element(&self) -> Option<f64> {
+        None
     }
 
     /// How many numbers the law remembers of a point; all 0 before the first step.

@@ -35,7 +35,7 @@ fn law<const S: usize>(name: &str, values: &[(&str, f64)]) -> Box<dyn Constituti
 
 /// A state of Green–Lagrange strain with this history; `f` is only there for measures other than PK2.
 fn state<const S: usize>(strain: [f64; S], f: Tensor, history: &[f64]) -> StrainState<'_, S> {
-    StrainState { strain, f, det_f: determinant(&f), small: false, history }
+    StrainState { strain, f, det_f: determinant(&f), small: false, pressure: 0.0, history }
 }
 
 fn green<const S: usize>(f: &Tensor) -> [f64; S] {

@@ -23,7 +23,7 @@ fn state<const S: usize>(f: Tensor) -> StrainState<'static, S> {
     let unit = strain_vector::<S>(&IDENTITY);
     let mut green = strain;
     green.iter_mut().zip(unit).for_each(|(e, one)| *e -= 0.5 * one);
-    StrainState { strain: green, f, det_f: determinant(&f), small: false, history: &[] }
+    StrainState { strain: green, f, det_f: determinant(&f), small: false, pressure: 0.0, history: &[] }
 }
 
 /// A random deformation gradient whose out-of-plane part suits `S` strains.
@@ -60,7 +60,7 @@ fn check_derivatives<const S: usize>(name: &str) {
                     c[i][j] = IDENTITY[i][j] + 2.0 * c[i][j];
                 }
             }
-            StrainState { strain, f: base.f, det_f: determinant(&c).sqrt(), small: false, history: &[] }
+            StrainState { strain, f: base.f, det_f: determinant(&c).sqrt(), small: false, pressure: 0.0, history: &[] }
         };
         let mut d = [[0.0; S]; S];
         let stress = law.pk2(&base, Some(&mut d));
@@ -139,13 +139,20 @@ fn small_strains_agree_with_hooke() {
 fn hooke_in_one_direction() {
     // free lateral strain −ν ε gives σ = E ε
     let (f, e) = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 1e-3);
-    let solid = StrainState { strain: [e, -NU * e, -NU * e, 0.0, 0.0, 0.0], f, det_f: 1.0, small: false, history: &[] };
+    let solid = StrainState {
+        strain: [e, -NU * e, -NU * e, 0.0, 0.0, 0.0],
+        f,
+        det_f: 1.0,
+        small: false,
+        pressure: 0.0,
+        history: &[],
+    };
     let stress = law::<6>("LinearElastic3DLaw").pk2(&solid, None);
     assert!(near(stress[0], E * e, 1e-13) && size(&stress[1..]) < 1e-13);
-    let plane = StrainState { strain: [e, -NU * e, 0.0], f, det_f: 1.0, small: false, history: &[] };
+    let plane = StrainState { strain: [e, -NU * e, 0.0], f, det_f: 1.0, small: false, pressure: 0.0, history: &[] };
     let stress = law::<3>("LinearElasticPlaneStress2DLaw").pk2(&plane, None);
     assert!(near(stress[0], E * e, 1e-13) && stress[1].abs() < 1e-13);
-    let shear = StrainState { strain: [0.0, 0.0, e], f, det_f: 1.0, small: false, history: &[] };
+    let shear = StrainState { strain: [0.0, 0.0, e], f, det_f: 1.0, small: false, pressure: 0.0, history: &[] };
     assert!(near(law::<3>("LinearElasticPlaneStrain2DLaw").pk2(&shear, None)[2], E / (2.0 * (1.0 + NU)) * e, 1e-14));
 }
 

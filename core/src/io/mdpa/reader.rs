@@ -150,7 +150,9 @@ impl<'a> Reader<'a> {
     }
 
     pub(super) fn unknown_block(&mut self, kind: &str, line: u32, known: &[&str]) {
-        let remedy = did_you_mean(kind, known.iter().copied());
+        let elsewhere = (kind == "SubProperties")
+            .then(|| "give them in the materials file, as \"sub_properties\" beside \"Material\"".to_owned());
+        let remedy = elsewhere.or_else(|| did_you_mean(kind, known.iter().copied()));
         let remedy = remedy.unwrap_or_else(|| format!("blocks known here: {}", known.join(", ")));
         self.problems
             .push(line, Diagnostic::error("unknown-block", format!("there is no block `{kind}`")).remedy(remedy));

@@ -1,0 +1,23 @@
+//! Total Lagrangian with one pressure an element, against volumetric locking at large strains (Q1P0).
+//!
+//! ∫ δE : S(E, p) dV with p = −κ (J̄ − 1), J̄ = ∫ J dV/V: the pressure that makes ∫ δp (J − 1 + p/κ) dV vanish. Its change adds
+//! κ/V g gᵀ to the stiffness, g = ∫ J Bᵀ C⁻¹ dV. (The reference program keeps p from iteration to iteration; it has the
+//! same value once converged.)
+
+use super::formulation::Formulation;
+use super::register_solids;
+
+/// Green–Lagrange strain on the initial configuration, the volume averaged over the element.
+#[derive(Debug)]
+pub struct TotalLagrangianQ1P0;
+
+impl Formulation for TotalLagrangianQ1P0 {
+    const FINITE: bool = true;
+    const PRESENT: bool = false;
+    const CONSTANT_PRESSURE: bool = true;
+}
+
+register_solids! { "TotalLagrangianQ1P0MixedElement", TotalLagrangianQ1P0, 6,
+"Solid for finite deformations that hardly change the volume: one pressure an element, with an isochoric law",
+"∫ δE : S(E, p) dV, p = −κ (J̄ − 1)";
+3: "3D4N" 4, "3D8N" 8 }
