@@ -13,7 +13,7 @@ use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::MasterSlaveConstraint;
 use crate::io;
-use crate::model::{Fields, Flags, Model, ModelPart, Nodes, ProcessInfo};
+use crate::model::{Fields, Flags, Model, ModelPart, Nodes, ProcessInfo, Properties};
 use crate::parameters::{Node, Settings};
 use crate::partition::{Partition, partition, surfaces};
 use crate::processes::{Process, ProcessRequest};
@@ -354,9 +354,12 @@ impl Saved {
 /// Gives every rank its share of the mesh, where there are several ranks and enough to share.
 ///
 /// # Errors
-/// Ranks that have read different meshes; a mesh that cannot be cut.
+/// Ranks that have read different files; a mesh that cannot be cut.
 fn distribute(part: &mut ModelPart, deck: &Node, monitor: &mut dyn Monitor) -> Result<()> {
     let ranks = world().size();
+    if ranks > 1 {
+        read_the_same(part, deck)?;
+    }
     // What elements remember of an earlier stage stays where it is.
     let fits = |p: &Partition| p.elements.len() == part.elements.len() && p.nodes.len() == part.nodes.len();
     if part.partition.as_ref().is_some_and(|p| fits(p) && p.conditions.len() == part.conditions.len()) {
@@ -365,12 +368,6 @@ fn distribute(part: &mut ModelPart, deck: &Node, monitor: &mut dyn Monitor) -> R
     part.partition = None;
     if ranks == 1 {
         return Ok(());
-    }
-    if !world().is_same(fingerprint(part)) {
-        return Err(Error::System(
-            "the ranks have read different meshes\n    give all of them the same files, e.g. in a shared folder"
-                .to_owned(),
-        ));
     }
     if part.elements.len() < ranks || part.interactions.iter().any(|interaction| interaction.needs_all_elements()) {
         monitor
@@ -391,8 +388,36 @@ fn distribute(part: &mut ModelPart, deck: &Node, monitor: &mut dyn Monitor) -> R
     Ok(())
 }
 
+/// Errors when the ranks have not read the same files; collective.
+fn read_the_same(part: &ModelPart, deck: &Node) -> Result<()> {
+    for (what, number) in [("meshes", of_mesh(part)), ("materials", of_materials(part)), ("decks", of_deck(deck))] {
+        if !world().is_same(number) {
+            return Err(Error::System(format!(
+                "the ranks have read different {what}\n    give all of them the same files, e.g. in a shared folder"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// A number that differs where decks differ.
+fn of_deck(deck: &Node) -> u64 {
+    let mut hasher = rustc_hash::FxHasher::default();
+    deck.to_json().to_string().hash(&mut hasher);
+    hasher.finish()
+}
+
+/// A number that differs where properties differ, wherever they stand.
+fn of_materials(part: &ModelPart) -> u64 {
+    let mut hasher = rustc_hash::FxHasher::default();
+    for properties in part.properties.values() {
+        format!("{:?}", Properties { place: None, ..properties.clone() }).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
 /// A number that differs where meshes differ.
-fn fingerprint(part: &ModelPart) -> u64 {
+fn of_mesh(part: &ModelPart) -> u64 {
     let mut hasher = rustc_hash::FxHasher::default();
     part.nodes.ids.hash(&mut hasher);
     part.nodes.initial.iter().flatten().for_each(|x| x.to_bits().hash(&mut hasher));

@@ -17,6 +17,14 @@ pub fn replace_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::
     on_one_rank(|| replace(path, fill))
 }
 
+/// As [`replace_file`], for a file that is this rank's own.
+///
+/// # Errors
+/// As [`replace_file`], but at once: other ranks know of it when they agree.
+pub fn replace_own_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    replace(path, fill)
+}
+
 /// Does what only one rank may do.
 ///
 /// # Errors

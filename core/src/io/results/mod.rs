@@ -1,10 +1,11 @@
-//! Result files from plain arrays: legacy VTK, VTU with its PVD series, GiD.
+//! Result files from plain arrays: legacy VTK, VTU with its PVD series, PVTU, GiD.
 //!
 //! A [`Dataset`] is what a picture shows: points, cells, named columns. The writers know nothing of models.
 
 mod dataset;
 mod gid;
 mod number;
+mod pvtu;
 #[cfg(test)]
 mod tests;
 mod vtk;
@@ -12,5 +13,6 @@ mod vtu;
 
 pub use dataset::{Cells, Column, Dataset, Values};
 pub use gid::{GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step};
+pub use pvtu::write_pvtu;
 pub use vtk::{VtkFormat, write_vtk};
-pub use vtu::{write_pvd, write_vtu};
+pub use vtu::{write_piece, write_pvd, write_vtu};

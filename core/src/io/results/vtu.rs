@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::dataset::{Column, Dataset, Values};
 use crate::diagnostics::Result;
-use crate::io::replace_file;
+use crate::io::{replace_file, replace_own_file};
 
 /// Bytes compressed at once; blocks are compressed in parallel.
 const BLOCK: usize = 1 << 16;
@@ -22,6 +22,14 @@ const LEVEL: u32 = 4;
 /// [`crate::diagnostics::Error::System`] when the disk refuses.
 pub fn write_vtu(path: &Path, data: &Dataset) -> Result<()> {
     replace_file(path, |out| vtu(out, data))
+}
+
+/// Writes the VTU file of this rank, whatever the other ranks write.
+///
+/// # Errors
+/// [`crate::diagnostics::Error::System`] when the disk refuses this rank; the others do not know of it.
+pub fn write_piece(path: &Path, data: &Dataset) -> Result<()> {
+    replace_own_file(path, |out| vtu(out, data))
 }
 
 fn vtu(out: &mut impl Write, data: &Dataset) -> io::Result<()> {
@@ -57,6 +65,14 @@ fn vtu(out: &mut impl Write, data: &Dataset) -> io::Result<()> {
     writeln!(out, "\n</AppendedData>\n</VTKFile>")
 }
 
+/// The name VTK has for the numbers of a column.
+pub(super) fn type_of(values: &Values) -> &'static str {
+    match values {
+        Values::Real(_) => "Float64",
+        Values::Whole(_) => "Int32",
+    }
+}
+
 /// The compressed arrays of a file, one after another.
 #[derive(Default)]
 struct Appended {
@@ -65,11 +81,11 @@ struct Appended {
 
 impl Appended {
     fn column(&mut self, out: &mut impl Write, column: &Column) -> io::Result<()> {
-        let (kind, bytes): (_, Vec<u8>) = match &column.values {
-            Values::Real(values) => ("Float64", values.iter().flat_map(|x| x.to_le_bytes()).collect()),
-            Values::Whole(values) => ("Int32", values.iter().flat_map(|x| x.to_le_bytes()).collect()),
+        let bytes: Vec<u8> = match &column.values {
+            Values::Real(values) => values.iter().flat_map(|x| x.to_le_bytes()).collect(),
+            Values::Whole(values) => values.iter().flat_map(|x| x.to_le_bytes()).collect(),
         };
-        self.array(out, &column.name, kind, column.components, &bytes)
+        self.array(out, &column.name, type_of(&column.values), column.components, &bytes)
     }
 
     /// Keeps an array and writes the tag that refers to it.
@@ -102,7 +118,8 @@ fn compress(bytes: &[u8]) -> io::Result<Vec<u8>> {
     encoder.finish()
 }
 
-fn escape(text: &str) -> String {
+/// Text as an attribute of XML may hold it.
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 

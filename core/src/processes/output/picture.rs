@@ -7,6 +7,7 @@ use crate::diagnostics::{Report, Result};
 use crate::io::results::{Column, Dataset};
 use crate::model::{EntityTable, ModelPart, SubPart};
 use crate::parameters::Settings;
+use crate::partition::Partition;
 use crate::registry::Kind;
 
 /// Which entities are the cells.
@@ -49,6 +50,14 @@ impl Mesh {
         let nodes: Vec<u32> = (0..part.nodes.len() as u32).filter(|&node| used[node as usize]).collect();
         let data = dataset(part, table, &nodes, &cells, deformed);
         Self { data, nodes, cells, kind }
+    }
+
+    /// The piece of a rank: its cells with their points, and its points without cells.
+    pub(super) fn piece(&self, partition: &Partition, rank: usize) -> Dataset {
+        let owners = if self.kind == Kind::Element { &partition.elements } else { &partition.conditions };
+        let is_own = |owner: u32| owner as usize == rank;
+        let has_cell = |at: usize| is_own(owners[self.cells[at] as usize]);
+        self.data.piece(has_cell, |at| is_own(partition.nodes[self.nodes[at] as usize]))
     }
 
     /// The table of the cells.
@@ -118,12 +127,12 @@ impl Picture {
         })
     }
 
-    /// The picture of one part now.
-    pub(super) fn draw(&self, part: &ModelPart, selection: &SubPart) -> Dataset {
+    /// The picture of one part now; with columns of Gauss points, collective.
+    pub(super) fn draw(&self, part: &ModelPart, selection: &SubPart) -> Mesh {
         let mut mesh = Mesh::new(part, selection, self.choice, self.deformed);
         mesh.data.point_data = self.point_data(part, selection, &mesh);
         mesh.data.cell_data = self.cell_data(part, &mesh);
-        mesh.data
+        mesh
     }
 
     fn point_data(&self, part: &ModelPart, selection: &SubPart, mesh: &Mesh) -> Vec<Column> {

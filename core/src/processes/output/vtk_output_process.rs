@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::control::{OutputControl, Unit};
-use super::picture::Picture;
+use super::picture::{Mesh, Picture};
 use super::place::{PartPath, one_of};
+use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::io::on_one_rank;
-use crate::io::results::{VtkFormat, write_pvd, write_vtk, write_vtu};
+use crate::io::results::{VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessRequest};
@@ -69,25 +70,47 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
 
 impl VtkOutput {
     fn write(&mut self, part: &ModelPart, selection: &SubPart, path: &str) -> Result<()> {
-        let data = self.picture.draw(part, selection);
+        let mesh = self.picture.draw(part, selection);
         let label = match self.control.unit {
             Unit::Step => part.info.step.to_string(),
             Unit::Time => format!("{:.*}", self.decimals, part.info.time),
         };
         let series = format!("{}{}{}", self.prefix, path.replace('.', "_"), self.postfix);
         let Some(format) = self.legacy else {
-            let file = format!("{series}_{label}.vtu");
-            write_vtu(&self.folder.join(&file), &data)?;
+            let file = self.write_vtu(part, &mesh, &format!("{series}_{label}"))?;
             let steps = self.series.entry(series.clone()).or_default();
             steps.push((part.info.time, file));
             return write_pvd(&self.folder.join(format!("{series}.pvd")), steps);
         };
-        write_vtk(&self.folder.join(format!("{series}_0_{label}.vtk")), &data, format)
+        write_vtk(&self.folder.join(format!("{series}_0_{label}.vtk")), &mesh.data, format)
+    }
+
+    /// Writes a VTU file, or one a rank and a PVTU file that lists them; gives the name of what to open. Collective.
+    ///
+    /// Ranks without cells and points write nothing, unless all are without. The list is written once all that it lists is.
+    fn write_vtu(&self, part: &ModelPart, mesh: &Mesh, name: &str) -> Result<String> {
+        let Some(partition) = &part.partition else {
+            let file = format!("{name}.vtu");
+            write_vtu(&self.folder.join(&file), &mesh.data)?;
+            return Ok(file);
+        };
+        let piece_file = |rank: usize| format!("{name}_{rank}.vtu");
+        let own = mesh.piece(partition, world().rank());
+        let is_needed = !own.points.is_empty() || (mesh.data.points.is_empty() && world().is_root());
+        let path = self.folder.join(piece_file(world().rank()));
+        world().agree(if is_needed { write_piece(&path, &own) } else { Ok(()) })?;
+        let mut has_piece = vec![false; partition.ranks];
+        has_piece[world().rank()] = is_needed;
+        world().any_of(&mut has_piece);
+        let pieces: Vec<String> = (0..partition.ranks).filter(|&rank| has_piece[rank]).map(piece_file).collect();
+        let file = format!("{name}.pvtu");
+        write_pvtu(&self.folder.join(&file), &mesh.data, &pieces)?;
+        Ok(file)
     }
 
     /// Removes the pictures of an earlier run, so that no step of it is taken for one of this run.
     fn clear(&self) -> Result<()> {
-        let endings: &[&str] = if self.legacy.is_some() { &["vtk"] } else { &["vtu", "pvd"] };
+        let endings: &[&str] = if self.legacy.is_some() { &["vtk"] } else { &["vtu", "pvtu", "pvd"] };
         for entry in std::fs::read_dir(&self.folder).into_iter().flatten().flatten() {
             let path = entry.path();
             if path.extension().and_then(|e| e.to_str()).is_some_and(|e| endings.contains(&e)) && path.is_file() {
@@ -144,7 +167,8 @@ register! { Process "vtk_output_process",
 
 register! { Process "vtu_output_process",
     aliases: &["VtuOutputProcess"],
-    about: "writes compressed VTU files in double precision and a PVD file that lists them with their times",
+    about: "writes compressed VTU files in double precision and a PVD file that lists them with their times; several ranks \
+        write a piece each",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/vtu_output_process.json")),
     build: Build::Process(|request| build(request, true)),
 }
