@@ -94,13 +94,26 @@ fn launched() -> usize {
     ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"].iter().find_map(|name| std::env::var(name).ok()?.parse().ok()).unwrap_or(1)
 }
 
+/// Processes of the run on the machine of this one, itself included.
+fn neighbours() -> usize {
+    let names = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
+    let count = names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok()).unwrap_or(world().size());
+    count.max(1)
+}
+
+/// Cores this process may use.
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// Threads a process takes when nothing else is said: the cores it may use, shared by the processes on its machine.
 pub fn fair_threads() -> usize {
-    if world().size() == 1 {
-        return 0;
-    }
-    let names = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
-    let neighbours = names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok()).unwrap_or(world().size());
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    (cores / neighbours.max(1)).max(1)
+    if world().size() == 1 { 0 } else { (cores() / neighbours()).max(1) }
+}
+
+/// Threads this process may take while those of the other ranks on its machine wait: theirs and its own, as far as there
+/// are cores it may use.
+pub fn threads_while_others_wait() -> usize {
+    let own = rayon::current_num_threads();
+    (own * neighbours()).min(cores()).max(own)
 }

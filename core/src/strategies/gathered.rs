@@ -1,8 +1,9 @@
 //! The equations of all ranks added up on rank 0, where one direct solver serves them all.
 
+use rayon::ThreadPool;
 use zelus_linear_algebra::{Csr, System};
 
-use crate::communication::world;
+use crate::communication::{threads_while_others_wait, world};
 
 /// The three matrices of a system on rank 0; empty on the others.
 #[derive(Default)]
@@ -11,6 +12,8 @@ pub(super) struct Gathered {
     coupling: GatheredMatrix,
     loads: GatheredMatrix,
     solves: u64,
+    /// As many threads as there are on the machine of rank 0, on rank 0.
+    threads: Option<ThreadPool>,
     /// Solves where the rows are, in place of rank 0.
     #[cfg(feature = "petsc")]
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,
@@ -29,6 +32,22 @@ impl Gathered {
         } else {
             self.loads = GatheredMatrix::default();
         }
+    }
+
+    /// Does what the other ranks wait for, with the threads of those on this machine.
+    pub(super) fn while_others_wait<T: Send>(&mut self, work: impl FnOnce(&Self) -> T + Send) -> T {
+        let count = threads_while_others_wait();
+        if count == rayon::current_num_threads() {
+            return work(self);
+        }
+        // Without more threads the own ones do the same work.
+        let threads = self.threads.take().or_else(|| rayon::ThreadPoolBuilder::new().num_threads(count).build().ok());
+        let done = match &threads {
+            Some(threads) => threads.install(|| work(self)),
+            None => work(self),
+        };
+        self.threads = threads;
+        done
     }
 
     /// The whole system, on rank 0, and the tangents of follower loads.

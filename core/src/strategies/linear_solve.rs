@@ -51,7 +51,8 @@ impl From<Error> for Failed {
     }
 }
 
-/// Solves for the increment of the equations; on several ranks, rank 0 solves for all of them.
+/// Solves for the increment of the equations; on several ranks, rank 0 solves for all of them, with the
+/// threads of those that wait beside it.
 ///
 /// # Errors
 /// A singular matrix or a solver that fails, naming nodes.
@@ -75,9 +76,12 @@ pub(super) fn solve(
         return solved.map_err(|error| explain(&error, None, unknowns, dofs, nodes));
     }
     gathered.update(&system, loads.as_ref());
-    let (whole, loads) = gathered.system(&system);
     let solved = if world().is_root() {
-        solve_here(&whole, loads, assembler.merged_stamps(), solver, rhs, unknowns, dofs, nodes)
+        let stamps = assembler.merged_stamps();
+        gathered.while_others_wait(|gathered| {
+            let (whole, loads) = gathered.system(&system);
+            solve_here(&whole, loads, stamps, solver, rhs, unknowns, dofs, nodes)
+        })
     } else {
         Ok((vec![0.0; rhs.len()], elsewhere()))
     };
