@@ -2,6 +2,8 @@
 
 use zelus_linear_algebra::{DirectSettings, Engine, KrylovSettings, LinearSolver, Multipliers, Preconditioner, create};
 
+#[cfg(feature = "petsc")]
+use crate::assembly::DofTable;
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
 use crate::register;
@@ -31,9 +33,14 @@ pub(super) fn make(settings: &Settings, multipliers: Multipliers) -> Result<(Box
     Ok((solver, says))
 }
 
-/// Unknowns from which on PETSc solves where the deck does not say who shall: rank 0 is the faster one below.
+/// Unknowns from which on PETSc solves by multigrid where the deck does not say who shall: rank 0 is as fast below.
 #[cfg(feature = "petsc")]
-const DISTRIBUTED: usize = 30_000;
+const MULTIGRID: usize = 70_000;
+
+/// As [`MULTIGRID`], for systems with multipliers, which PETSc can only factorise: rank 0 does it several times faster, so
+/// this is where its memory may end.
+#[cfg(feature = "petsc")]
+const FACTORISED: usize = 500_000;
 
 /// What PETSc solves with on several ranks, and a sentence saying so; `None` where rank 0 shall solve for all.
 ///
@@ -42,12 +49,13 @@ const DISTRIBUTED: usize = 30_000;
 /// # Errors
 /// An unknown engine.
 #[cfg(feature = "petsc")]
-pub(super) fn petsc(settings: &Settings, unknowns: usize) -> Result<Option<(zelus_petsc::PetscSettings, String)>> {
+pub(super) fn petsc(settings: &Settings, dofs: &DofTable) -> Result<Option<(zelus_petsc::PetscSettings, String)>> {
     use zelus_petsc::{PetscEngine, PetscSettings};
     let word = |key: &str| settings.node().get(key).map(|n| n.str()).transpose().map(|word| word.unwrap_or(""));
     let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
     let name = word("petsc_engine")?;
-    if name == "none" || (name.is_empty() && unknowns < DISTRIBUTED) {
+    let enough = if dofs.dofs().iter().any(|dof| dof.multiplier) { FACTORISED } else { MULTIGRID };
+    if name == "none" || (name.is_empty() && dofs.len() < enough) {
         return Ok(None);
     }
     let engine = PetscEngine::find(name);

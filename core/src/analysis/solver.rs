@@ -286,7 +286,7 @@ impl SolverSettings {
         let mut says = says;
         #[cfg(feature = "petsc")]
         if part.partition.is_some()
-            && let Some((petsc, by_petsc)) = super::linear_solvers::petsc(&named, part.dofs.len())?
+            && let Some((petsc, by_petsc)) = super::linear_solvers::petsc(&named, &part.dofs)?
         {
             newton.solve_by_petsc(petsc);
             says = by_petsc;

@@ -1,5 +1,7 @@
 //! The equations of all ranks added up on rank 0, where one direct solver serves them all.
 
+use std::sync::OnceLock;
+
 use rayon::ThreadPool;
 use zelus_linear_algebra::{Csr, System};
 
@@ -13,7 +15,7 @@ pub(super) struct Gathered {
     loads: GatheredMatrix,
     solves: u64,
     /// As many threads as there are on the machine of rank 0, on rank 0.
-    threads: Option<ThreadPool>,
+    threads: OnceLock<Option<ThreadPool>>,
     /// Solves where the rows are, in place of rank 0.
     #[cfg(feature = "petsc")]
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,
@@ -35,19 +37,17 @@ impl Gathered {
     }
 
     /// Does what the other ranks wait for, with the threads of those on this machine.
-    pub(super) fn while_others_wait<T: Send>(&mut self, work: impl FnOnce(&Self) -> T + Send) -> T {
+    pub(super) fn while_others_wait<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         let count = threads_while_others_wait();
         if count == rayon::current_num_threads() {
-            return work(self);
+            return work();
         }
         // Without more threads the own ones do the same work.
-        let threads = self.threads.take().or_else(|| rayon::ThreadPoolBuilder::new().num_threads(count).build().ok());
-        let done = match &threads {
-            Some(threads) => threads.install(|| work(self)),
-            None => work(self),
-        };
-        self.threads = threads;
-        done
+        let threads = self.threads.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(count).build().ok());
+        match threads {
+            Some(threads) => threads.install(work),
+            None => work(),
+        }
     }
 
     /// The whole system, on rank 0, and the tangents of follower loads.

@@ -76,12 +76,10 @@ pub(super) fn solve(
         return solved.map_err(|error| explain(&error, None, unknowns, dofs, nodes));
     }
     gathered.update(&system, loads.as_ref());
+    let (whole, loads) = gathered.system(&system);
     let solved = if world().is_root() {
         let stamps = assembler.merged_stamps();
-        gathered.while_others_wait(|gathered| {
-            let (whole, loads) = gathered.system(&system);
-            solve_here(&whole, loads, stamps, solver, rhs, unknowns, dofs, nodes)
-        })
+        gathered.while_others_wait(|| solve_here(&whole, loads, stamps, solver, rhs, unknowns, dofs, nodes))
     } else {
         Ok((vec![0.0; rhs.len()], elsewhere()))
     };
