@@ -114,6 +114,34 @@ def stack(folder, requirement, lower=("2D4N", 3), upper=("2D4N", 3), slave="uppe
                [material("Lower", 1, law, *LOWER), material("Upper", 2, law, *UPPER)], mesh, checks)
 
 
+def slid_past():
+    """A block pressed on rigid ground and moved along it in one step, farther than its pairs reach."""
+    mesh, pressed, moved = Mesh(), 0.01, 2.0
+    low = Box(mesh, "Lower", "2D4N", [10, 1], [0.0, 0.0], [4.0, 1.0])
+    top = Box(mesh, "Upper", "2D4N", [4, 2], [0.5, 1.0], [1.5, 2.0])
+    slave, master = top.conditions("y0", "Line"), low.conditions("y1", "Line")
+    mesh.part("Slave", top.side_nodes["y0"], (), slave)
+    mesh.part("Interface", low.side_nodes["y1"] + top.side_nodes["y0"], (), slave + master)
+    mesh.part("Ground", low.side_nodes["y0"] + low.side_nodes["y1"])
+    mesh.part("Top", top.side_nodes["y1"])
+    mesh.part("SidesX", top.side_nodes["x0"] + top.side_nodes["x1"])
+    along = f"{moved}*(t-1.0)"
+    k = scale_factor(mesh, [(top.facets["y0"], UPPER[0]), (low.facets["y1"], LOWER[0])])
+    pressure, checks = oedometer(*UPPER) * pressed, []
+    for time, x in ((1.0, 0.0), (2.0, moved)):
+        checks.append(check("DISPLACEMENT_X", 1e-7 * pressed, "upper.json", value=x, time=time))
+        checks.append(check("DISPLACEMENT_Y", 1e-7 * pressed, "upper.json", affine=[pressed, 0.0, -pressed, 0.0], time=time))
+        checks.append(check(MULTIPLIER, 1e-6 * pressure / k, "slave.json", value=-pressure / k, time=time))
+    write_case("contact_2d/slid_past", "A block that slides off all its pairs in one step is in contact where it ends.",
+               "A confined block on rigid ground has uniform pressure wherever it stands; the tolerance is the iteration's.",
+               parameters("mesh", contact_solver(2, "mesh"), [fix("Ground", x=0.0, y=0.0), fix("Top", y=-pressed),
+                                                              fix("SidesX", x=along)], (),
+                          [contact_process([("Interface", "Slave")])],
+                          [json_output("upper.json", ["DISPLACEMENT"], "Upper"),
+                           json_output("slave.json", [MULTIPLIER, "WEIGHTED_GAP"], "Slave")], 2.0),
+               [material("Lower", 1, "strain", *LOWER), material("Upper", 2, "strain", *UPPER)], mesh, checks)
+
+
 def by_another_method(folder, process_name, family, **process_settings):
     """Lets the contact of a written case be that of another process and family."""
     path = os.path.join(HERE, folder, "ProjectParameters.json")
@@ -274,6 +302,11 @@ def write():
           process_settings={"normal_variation": "nodal_elemental_derivatives"})
     stack(flat + "closing_gap", "An open gap carries nothing; once closed, the pressure follows the remaining displacement.",
           upper=("2D4N", 4), drive=("-0.005*t", {1.0: -0.005, 2.0: -0.010, 4.0: -0.020}), gap=0.0075, end_time=4.0)
+    dropped = "A block that falls a long way in one step, with no pairs at its start, comes to rest on the other."
+    stack(flat + "dropped", dropped, upper=("2D4N", 4), drive=("-1.02*t", {1.0: -1.02}), gap=1.0)
+    stack(flat + "dropped_deep", dropped[:-1] + ", even from deeper in it than a mesh size.", upper=("2D4N", 4),
+          drive=("-1.4*t", {1.0: -1.4}), gap=1.0)
+    slid_past()
     stack(flat + "opening", "A contact that is pulled apart carries nothing afterwards.",
           upper=("2D4N", 4), drive=("0.01*(2*t - 3)", {1.0: -0.01, 2.0: 0.01}), end_time=2.0)
     for name in ("displacement", "mixed", "and", "or"):
@@ -310,6 +343,7 @@ def write():
           ("3D8N", 2), ("3D8N", 3), find_skin=True, multiplier=False)
     stack(solid + "normal_variation", "The derivatives of the normals leave the answer as it is.", ("3D8N", 2), ("3D8N", 3),
           process_settings={"normal_variation": "nodal_elemental_derivatives"})
+    stack(solid + "dropped", dropped, ("3D8N", 2), ("3D8N", 3), drive=("-1.02*t", {1.0: -1.02}), gap=1.0)
     stack(solid + "opening", "A contact that is pulled apart carries nothing afterwards.", ("3D8N", 2), ("3D8N", 3),
           drive=("0.01*(2*t - 3)", {1.0: -0.01, 2.0: 0.01}), end_time=2.0)
     free_sides(solid + "free_sides", ("3D8N", 2), ("3D8N", 3))

@@ -36,6 +36,8 @@ pub enum Outer {
     Done,
     /// Something was changed that the iteration must follow: an outer loop goes on.
     Again,
+    /// Blocks were added that the state must obey too, and why: the iteration goes on with them.
+    Widened(String),
     /// The outer loop does not come to an end, and why.
     Failed(String),
 }

@@ -159,6 +159,7 @@ impl NewtonRaphson {
         let mut records = Vec::new();
         let mut last = if self.settings.linear { 1 } else { self.settings.max_iteration };
         let mut iteration = 0;
+        let mut widened = None;
         while iteration < last {
             iteration += 1;
             if !self.settings.linear {
@@ -261,10 +262,16 @@ impl NewtonRaphson {
                     match interaction.after_convergence(part)? {
                         Outer::Done => {}
                         Outer::Again => converged = false,
+                        Outer::Widened(why) => {
+                            monitor.note(&format!("step {}: {why}; the iteration goes on with them", part.info.step));
+                            widened = Some(why);
+                            converged = false;
+                        }
                         Outer::Failed(why) => return Ok((records, Some(why))),
                     }
                 }
                 if !converged {
+                    self.assembler.begin_step(part, interactions)?;
                     last = iteration + self.settings.max_iteration;
                     residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
                     continue;
@@ -278,6 +285,7 @@ impl NewtonRaphson {
             }
         }
         let failure = self.explain(part, &records, &residual);
+        let failure = widened.into_iter().fold(failure, |failure, why: String| format!("{failure}; {why}"));
         if self.settings.compute_reactions {
             write_reactions(part, &residual);
         }

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use zelus_core::Result;
-use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, Outer, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
@@ -15,7 +14,8 @@ use super::activation::{self, Start};
 use super::contact_settings::ContactSettings;
 use super::cycling::CycleGuard;
 use super::friction;
-use super::pairing::Pairing;
+use super::late_pairs::{Late, farthest_motion, late_pairs};
+use super::pairing::{Pairing, add_up_nodes};
 use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
@@ -25,7 +25,7 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
-use crate::search::{GapCheck, assign_roles};
+use crate::search::{GapCheck, assign_roles, warn_of_late_pairs};
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA,
@@ -55,6 +55,11 @@ pub struct ContactInteraction {
     cycles: CycleGuard,
     /// Nodes that were pushed along their motion in this step and stick since.
     released: BTreeSet<u32>,
+    /// Searches in converged states of this step.
+    searches: usize,
+    /// Facets in each other that the last of them left out; `None` before the first.
+    left_out: Option<usize>,
+    warned_of_late_pairs: bool,
 }
 
 impl ContactInteraction {
@@ -90,6 +95,9 @@ impl ContactInteraction {
             pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             released: BTreeSet::new(),
+            searches: 0,
+            left_out: None,
+            warned_of_late_pairs: false,
         })
     }
 
@@ -182,6 +190,68 @@ impl ContactInteraction {
         }
     }
 
+    /// Distance within which nodes start in contact, and depth beyond which facets are in each other (length).
+    fn near(&self) -> f64 {
+        self.settings.active_check_factor * self.threshold
+    }
+
+    /// Distance beyond which a search takes no facets for a pair (length).
+    fn limit(&self) -> f64 {
+        if self.settings.search.check == GapCheck::CheckMapping { self.threshold } else { FAR }
+    }
+
+    /// Lets the rules of the active set decide in the present state.
+    fn update_active_set(&mut self, part: &mut ModelPart) -> SetChange {
+        let family = self.settings.family;
+        let (mut decisions, before) =
+            activation::decide(part, &self.slaves, family, &self.parameters, &mut self.released);
+        self.cycles.restrict(&mut decisions, &before, &part.nodes.initial);
+        part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
+        activation::apply(part, &decisions, &before, family, &self.parameters)
+    }
+
+    /// Facets that are in each other now and are no pair.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    fn late_pairs(&self, part: &ModelPart) -> Result<Late> {
+        // Facets that have hardly moved since the search are not deeper in each other than they were then.
+        let still = self.steps_since_search == 0 && 2.0 * farthest_motion(part, &self.pairing.nodes()) < self.near();
+        if still || !self.threshold.is_finite() {
+            return Ok(Late::default());
+        }
+        // Where the first of them found nodes in the depth, the next finds all their pairs.
+        let all = self.searches > 0;
+        late_pairs(part, &self.pairing, &self.settings, &self.parameters, self.limit(), self.near(), all)
+    }
+
+    /// Looks at a converged state: nodes that came through facets they had no pair with get one, and the iteration goes on.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    fn search_again(&mut self, part: &mut ModelPart) -> Result<Outer> {
+        let late = self.late_pairs(part)?;
+        self.left_out = Some(late.others);
+        if late.missed.is_empty() {
+            return Ok(Outer::Done);
+        }
+        let why = match late.nodes.iter().take(6).map(|&n| part.nodes.ids[n as usize].to_string()).collect::<Vec<_>>() {
+            ids if ids.is_empty() => format!("{} pairs more are found where the nodes have come to", late.missed.len()),
+            ids => format!("nodes {} came through facets they had no pair with", ids.join(" ")),
+        };
+        if self.searches == MOST_SEARCHES {
+            let outer = Outer::Failed(format!("{why}, after {MOST_SEARCHES} searches within the step"));
+            return Ok(if late.nodes.is_empty() { Outer::Done } else { outer });
+        }
+        self.searches += 1;
+        self.pairing.add(late.missed, &self.settings, &self.parameters)?;
+        self.cycles.begin_step();
+        self.integrate(part);
+        self.update_active_set(part);
+        self.write_tangents(part);
+        Ok(Outer::Widened(why))
+    }
+
     fn write_tangents(&self, part: &mut ModelPart) {
         if self.settings.family.frictional() {
             let counts = &self.pair_counts;
@@ -226,7 +296,7 @@ impl ContactInteraction {
         };
         self.parameters = Arc::new(StepParameters {
             segmentation: SegmentationSettings {
-                distance_threshold: if settings.search.check == GapCheck::CheckMapping { self.threshold } else { FAR },
+                distance_threshold: if part.info.domain_size == 2 { FAR } else { self.limit() },
                 zero_tolerance_factor: settings.zero_tolerance_factor,
                 integration_order: settings.integration_order,
                 axisymmetric: settings.axisymmetric.then(thickness),
@@ -254,24 +324,8 @@ impl ContactInteraction {
 /// Share of the scale factor that makes redundant multipliers regular.
 const RELAXATION: f64 = 1e-8;
 
-/// Adds up over the ranks what each has at these nodes; each column comes with its number of numbers a node.
-fn add_up_nodes(nodes: &[u32], columns: &mut [(usize, &mut [f64])]) {
-    let place = |width: usize, node: u32| width * node as usize..width * (node as usize + 1);
-    let own = |(width, column): &(usize, &mut [f64])| -> Vec<f64> {
-        nodes.iter().flat_map(|&node| column[place(*width, node)].to_vec()).collect()
-    };
-    let mut values: Vec<f64> = columns.iter().flat_map(own).collect();
-    world().sum(&mut values);
-    let mut rest = &values[..];
-    for (width, column) in columns {
-        for &node in nodes {
-            let (sums, others) = rest.split_at(*width);
-            column[place(*width, node)].copy_from_slice(sums);
-            rest = others;
-        }
-    }
-}
-
+/// Searches in converged states of a step after which it counts as not converged.
+const MOST_SEARCHES: usize = 5;
 /// A distance beyond everything.
 const FAR: f64 = 1e24;
 
@@ -320,6 +374,8 @@ impl Interaction for ContactInteraction {
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.acting = self.settings.interval.contains(part.info.time);
         self.cycles.begin_step();
+        self.searches = 0;
+        self.left_out = None;
         self.uzawa = Uzawa::default();
         self.released.clear();
         if !self.acting {
@@ -331,7 +387,7 @@ impl Interaction for ContactInteraction {
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.settings.database_step_update {
             self.assign_open_roles(part);
-            self.pairing.search(part, &self.settings, &self.parameters)?;
+            self.pairing.search(part, &self.settings, &self.parameters, self.limit())?;
             self.steps_since_search = 0;
         }
         self.integrate(part);
@@ -339,7 +395,7 @@ impl Interaction for ContactInteraction {
             GapCheck::DirectCheck => Start::Touching(&self.pairing.touching),
             GapCheck::NoCheck => Start::Reach(f64::MAX),
             GapCheck::CheckMapping if self.settings.simple_search => Start::ShareOfMeshSize,
-            GapCheck::CheckMapping => Start::Reach(self.settings.active_check_factor * self.threshold),
+            GapCheck::CheckMapping => Start::Reach(self.near()),
         };
         let friction = (self.parameters.friction_law, self.parameters.slip_rule);
         activation::start(part, &self.slaves, start, &self.at_origin, friction);
@@ -372,12 +428,7 @@ impl Interaction for ContactInteraction {
         let adaptation = self.settings.adaptation;
         let gaps = adaptation.gaps(part, &self.slaves, self.settings.explicit.is_some());
         self.integrate(part);
-        let family = self.settings.family;
-        let (mut decisions, before) =
-            activation::decide(part, &self.slaves, family, &self.parameters, &mut self.released);
-        self.cycles.restrict(&mut decisions, &before, &part.nodes.initial);
-        part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
-        let change = activation::apply(part, &decisions, &before, family, &self.parameters);
+        let change = self.update_active_set(part);
         let penalty = part.info.value_or(INITIAL_PENALTY.name(), 1.0);
         adaptation.adapt(part, &self.slaves, penalty, &gaps, self.max_gap);
         if self.settings.explicit.is_some() {
@@ -397,19 +448,28 @@ impl Interaction for ContactInteraction {
     }
 
     fn after_convergence(&mut self, part: &mut ModelPart) -> Result<Outer> {
-        let Multiplier::Outer(variable) = self.settings.family.multiplier else { return Ok(Outer::Done) };
         if !self.acting {
             return Ok(Outer::Done);
         }
-        let (scale_factor, settings) = (self.parameters.scale_factor, self.settings.uzawa);
-        Ok(self.uzawa.update(part, &self.slaves, variable, &self.mean_gaps, scale_factor, settings))
+        if let Multiplier::Outer(variable) = self.settings.family.multiplier {
+            let (scale_factor, settings) = (self.parameters.scale_factor, self.settings.uzawa);
+            let outer = self.uzawa.update(part, &self.slaves, variable, &self.mean_gaps, scale_factor, settings);
+            if outer != Outer::Done {
+                return Ok(outer);
+            }
+        }
+        self.search_again(part)
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        if self.acting {
-            let allowed = self.settings.active_check_factor * self.threshold;
-            self.pairing.warn_of_late_pairs(part, &self.settings, &self.parameters, allowed)?;
+        if self.acting && !self.warned_of_late_pairs {
+            let found = |late: Late| late.missed.len() + late.others;
+            let left_out = self.left_out.map_or_else(|| self.late_pairs(part).map(found), Ok)?;
+            self.warned_of_late_pairs = left_out > 0;
+            part.messages.extend((left_out > 0).then(|| warn_of_late_pairs(left_out, self.near())));
         }
+        // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
+        activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
         let cleared = |n: u32| self.settings.clear_inactive && !part.nodes.flags.is(ACTIVE, n as usize);
         let inactive: Vec<u32> = self.slaves.iter().copied().filter(|&n| cleared(n)).collect();
         let pressure = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);

@@ -14,8 +14,9 @@ use zelus_core::registry::{self, Kind};
 use super::contact_settings::ContactSettings;
 use super::step_parameters::StepParameters;
 use crate::interface::{Facet, Interface, Roles, centre_normal, positions, slave_nodes};
+use crate::mortar::SegmentationSettings;
 use crate::pairs::{ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
-use crate::search::{Candidate, GapCheck, candidates, late_pairs, predicted_positions, touching_nodes, warn_of_reach};
+use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
 
 /// Pairs of facets and the blocks that evaluate them.
 pub(super) struct Pairing {
@@ -29,7 +30,6 @@ pub(super) struct Pairing {
     pub graph: u64,
     saved: Vec<Pair>,
     warned_of_reach: bool,
-    warned_of_late_pairs: bool,
 }
 
 /// How the facets of a pair meet.
@@ -51,7 +51,6 @@ impl Pairing {
             graph: 1,
             saved: Vec::new(),
             warned_of_reach: false,
-            warned_of_late_pairs: false,
         }
     }
 
@@ -86,7 +85,7 @@ impl Pairing {
         self.blocks.iter().flat_map(|block| block.pairs().iter().cloned()).collect()
     }
 
-    fn keys(&self) -> Vec<PairKey> {
+    pub(super) fn keys(&self) -> Vec<PairKey> {
         self.blocks.iter().flat_map(|block| block.pairs().iter().map(|pair| pair.key)).collect()
     }
 
@@ -94,15 +93,19 @@ impl Pairing {
         &self.interfaces[interface as usize].facets[facet as usize]
     }
 
-    fn slave(&self, key: PairKey) -> &Facet {
+    pub(super) fn slave(&self, key: PairKey) -> &Facet {
         self.facet(key.interface, key.slave)
     }
 
-    fn master(&self, key: PairKey) -> &Facet {
+    pub(super) fn master(&self, key: PairKey) -> &Facet {
         self.facet(key.interface, key.master)
     }
 
     /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
+    ///
+    /// Lines behind each other by more than `limit` are not taken for a pair: they may be the far sides of a thin body. Those
+    /// that are a pair stay one until the next search, however deep an iterate presses them in. Surfaces must not be farther
+    /// apart than `limit`.
     ///
     /// # Errors
     /// A condition for these shapes that is not registered.
@@ -111,6 +114,7 @@ impl Pairing {
         part: &mut ModelPart,
         settings: &ContactSettings,
         parameters: &Arc<StepParameters>,
+        limit: f64,
     ) -> Result<()> {
         let still = predicted_positions(part, settings.search.dynamic);
         let sides = |key: PairKey| (self.slave(key).role, self.master(key).role);
@@ -136,7 +140,7 @@ impl Pairing {
             part.nodes.current = still;
         }
         let before = self.keys();
-        self.set(known.into_values().collect(), settings, parameters)?;
+        self.set(known.into_values().collect(), settings, &searching(parameters, limit))?;
         let found: Vec<(Pair, Meeting)> = self.pairs().into_iter().zip(self.integrals(part).1).collect();
         let lost = found.iter().filter(|(pair, i)| i.overlapping && beyond.contains(&pair.key)).count();
         warn_of_reach(part, lost, &mut self.warned_of_reach);
@@ -151,7 +155,7 @@ impl Pairing {
     }
 
     /// Pairs that are near each other, and whether their centres are within reach.
-    fn candidates(&self, part: &ModelPart, settings: &ContactSettings) -> Vec<(PairKey, bool)> {
+    pub(super) fn candidates(&self, part: &ModelPart, settings: &ContactSettings) -> Vec<(PairKey, bool)> {
         let mut all = Vec::new();
         for (at, interface) in self.interfaces.iter().enumerate() {
             let found = candidates(part, interface, &settings.search).into_iter();
@@ -162,7 +166,7 @@ impl Pairing {
         all
     }
 
-    fn pair(&self, part: &ModelPart, key: PairKey) -> Pair {
+    pub(super) fn pair(&self, part: &ModelPart, key: PairKey) -> Pair {
         Pair {
             key,
             slave_normal: normal(part, self.slave(key)),
@@ -178,7 +182,7 @@ impl Pairing {
         Ok(())
     }
 
-    fn blocks_of(
+    pub(super) fn blocks_of(
         &self,
         pairs: Vec<Pair>,
         settings: &ContactSettings,
@@ -231,38 +235,19 @@ impl Pairing {
         self.blocks = blocks;
     }
 
-    /// Says once that facets have come through each other, deeper than `allowed`, that the step did not look at.
+    /// Takes more pairs in, within a step.
     ///
     /// # Errors
     /// Those of making blocks.
-    pub(super) fn warn_of_late_pairs(
+    pub(super) fn add(
         &mut self,
-        part: &mut ModelPart,
+        pairs: Vec<Pair>,
         settings: &ContactSettings,
         parameters: &Arc<StepParameters>,
-        allowed: f64,
     ) -> Result<()> {
-        if self.warned_of_late_pairs || !allowed.is_finite() {
-            return Ok(());
-        }
-        let known: BTreeSet<PairKey> = self.keys().into_iter().collect();
-        let near = self.candidates(part, settings).into_iter().map(|(key, _)| key);
-        let late: Vec<Pair> = near.filter(|key| !known.contains(key)).map(|key| self.pair(part, key)).collect();
-        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
-        let through = self
-            .blocks_of(late, settings, parameters)?
-            .iter()
-            .flat_map(|block| block.integrate(&part.view(), &own))
-            .filter(|i| i.overlapping && i.gap.iter().zip(&i.area).any(|(gap, area)| *gap < -allowed * area.abs()))
-            .count();
-        let mut of_all = [through as f64];
-        if part.partition.is_some() {
-            world().sum(&mut of_all);
-        }
-        let through = of_all[0] as usize;
-        self.warned_of_late_pairs = through > 0;
-        part.messages.extend((through > 0).then(|| late_pairs(through, allowed)));
-        Ok(())
+        let all = self.pairs().into_iter().chain(pairs).collect();
+        self.graph += 1;
+        self.set(all, settings, parameters)
     }
 
     /// Keeps the pairs of an accepted state.
@@ -284,6 +269,30 @@ impl Pairing {
     }
 }
 
+/// The parameters of a search that limits distances.
+pub(super) fn searching(parameters: &StepParameters, limit: f64) -> Arc<StepParameters> {
+    let segmentation = SegmentationSettings { distance_threshold: limit, ..parameters.segmentation };
+    Arc::new(StepParameters { segmentation, ..parameters.clone() })
+}
+
 fn normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
     centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
+}
+
+/// Adds up over the ranks what each has at these nodes; each column comes with its number of numbers a node.
+pub(super) fn add_up_nodes(nodes: &[u32], columns: &mut [(usize, &mut [f64])]) {
+    let place = |width: usize, node: u32| width * node as usize..width * (node as usize + 1);
+    let own = |(width, column): &(usize, &mut [f64])| -> Vec<f64> {
+        nodes.iter().flat_map(|&node| column[place(*width, node)].to_vec()).collect()
+    };
+    let mut values: Vec<f64> = columns.iter().flat_map(own).collect();
+    world().sum(&mut values);
+    let mut rest = &values[..];
+    for (width, column) in columns {
+        for &node in nodes {
+            let (sums, others) = rest.split_at(*width);
+            column[place(*width, node)].copy_from_slice(sums);
+            rest = others;
+        }
+    }
 }

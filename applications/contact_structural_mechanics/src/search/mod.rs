@@ -10,6 +10,6 @@ mod tree;
 pub use candidates::{Candidate, GapCheck, SearchSettings, candidates};
 pub use direct_check::touching_nodes;
 pub use prediction::predicted_positions;
-pub use reach::{late_pairs, warn_of_reach};
+pub use reach::{warn_of_late_pairs, warn_of_reach};
 pub use self_contact::assign_roles;
 pub use tree::{Bounds, Tree};
