@@ -136,6 +136,11 @@ pub trait Interaction: Send + Sync {
         None
     }
 
+    /// The first iterate is there, and the step begins again without it: keeps what the step's answer takes from it.
+    ///
+    /// Called in place of [`Interaction::after_update`]; [`Interaction::after_prediction`] follows.
+    fn keep_first_iterate(&mut self, _part: &mut ModelPart) {}
+
     /// Keeps what a retried step must restore.
     fn save(&mut self);
 

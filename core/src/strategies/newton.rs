@@ -1,5 +1,7 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
+mod start;
+
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 use super::condensing;
@@ -14,7 +16,7 @@ use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
 use crate::assembly::{Assembler, impose_constraints};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
-use crate::entities::{Interaction, Outer};
+use crate::entities::{Interaction, Outer, SetChange};
 use crate::model::ModelPart;
 use crate::register;
 use crate::registry::Build;
@@ -147,7 +149,9 @@ impl NewtonRaphson {
             let forces = self.assembler.inertia_forces(part, &past)?;
             self.scheme.keep(forces);
         }
-        let mut prescribed = self.start(part, interactions)?;
+        let begin = self.assembler.values(part);
+        let leads = self.leads(part, interactions);
+        let mut prescribed = self.start(part, interactions, leads)?;
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
         }
@@ -221,7 +225,15 @@ impl NewtonRaphson {
                 write_reactions(part, &residual);
             }
             let constraints = constraints_version(interactions);
-            let change = update_interactions(part, interactions, iteration)?;
+            // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
+            // serves for what the interactions take from it and nothing else.
+            let afresh = leads && iteration == 1 && self.overshoots(part, interactions, &references.start[0])?;
+            let change = if afresh {
+                interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
+                SetChange::default()
+            } else {
+                update_interactions(part, interactions, iteration)?
+            };
             if constraints != constraints_version(interactions) {
                 self.assembler.begin_step(part, interactions)?;
                 prescribed = self.constraint_increment(part);
@@ -255,6 +267,11 @@ impl NewtonRaphson {
                 let node = part.nodes.ids[dof.node as usize];
                 let what = format!("{} of node {node} or its residual is no longer finite", dof.variable);
                 return Ok((records, Some(format!("diverged in iteration {iteration}: {what}"))));
+            }
+            if afresh {
+                prescribed = self.begin_again(part, interactions, &begin)?;
+                residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
+                continue;
             }
             let mut converged = self.settings.linear || (verdict.converged && change.count() == 0);
             if converged && !self.settings.linear {
@@ -394,58 +411,6 @@ impl NewtonRaphson {
         }
         increment.iter_mut().for_each(|d| *d *= factor);
         Ok(())
-    }
-
-    /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
-    /// left at their old values: the first solve takes them on through the tangent.
-    ///
-    /// Where the first iterate decides on the answer they stay at their new values instead, ahead of the mesh; not so after
-    /// a failed attempt, since elements may turn inside out that way.
-    pub(super) fn start(&mut self, part: &mut ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {
-        let targets = self.assembler.values(part);
-        let led = interactions.iter().find_map(|interaction| interaction.led_nodes());
-        let constrained = part.constraints.iter().any(|c| c.active);
-        let free = !self.failed && self.settings.move_mesh && !constrained;
-        if let Some(led) = led.filter(|_| free && self.scheme.is_static()) {
-            led.iter().for_each(|&node| part.nodes.follow(node as usize));
-            return Ok(vec![0.0; targets.len()]);
-        }
-        for (number, dof) in part.dofs.dofs().iter().enumerate() {
-            if self.assembler.equations().is_fixed(number)
-                && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
-                && field.levels.len() > 1
-            {
-                let at = dof.node as usize * field.components + dof.variable.offset();
-                field.levels[0][at] = field.levels[1][at];
-            }
-        }
-        self.scheme.predict(part)?;
-        let start = self.assembler.values(part);
-        let mut increment: Vec<f64> = (0..start.len())
-            .map(|n| if self.assembler.equations().is_fixed(n) { targets[n] - start[n] } else { 0.0 })
-            .collect();
-        if constrained {
-            part.dofs.scatter_add(&increment, &mut part.nodes);
-            let followed = self.constraint_increment(part);
-            let back: Vec<f64> = increment.iter().map(|d| -d).collect();
-            part.dofs.scatter_add(&back, &mut part.nodes);
-            increment.iter_mut().zip(followed).for_each(|(sum, d)| *sum += d);
-        }
-        self.scheme.update(part);
-        if self.settings.move_mesh {
-            part.move_mesh();
-        }
-        Ok(increment)
-    }
-
-    /// What constrained unknowns lack to obey their constraints at the present values of the others.
-    fn constraint_increment(&self, part: &mut ModelPart) -> Vec<f64> {
-        let before = self.assembler.values(part);
-        impose_constraints(&mut part.nodes, &part.constraints);
-        let lack: Vec<f64> = self.assembler.values(part).iter().zip(&before).map(|(after, b)| after - b).collect();
-        let back: Vec<f64> = lack.iter().map(|d| -d).collect();
-        part.dofs.scatter_add(&back, &mut part.nodes);
-        lack
     }
 
     /// The warning, once a run, that constraints of interactions repeat what others ask for.

@@ -415,6 +415,12 @@ impl Interaction for ContactInteraction {
         Ok(())
     }
 
+    fn keep_first_iterate(&mut self, part: &mut ModelPart) {
+        if self.acting {
+            nodal_normals(part, &self.pairing.interfaces);
+        }
+    }
+
     fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange> {
         if !self.acting {
             return Ok(SetChange::default());

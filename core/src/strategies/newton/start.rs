@@ -1,0 +1,111 @@
+//! How a step of Newton's iteration begins: where prescribed values are, and what the first iterate is for.
+
+use super::NewtonRaphson;
+use crate::assembly::impose_constraints;
+use crate::diagnostics::Result;
+use crate::entities::Interaction;
+use crate::model::ModelPart;
+
+impl NewtonRaphson {
+    /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
+    /// left at their old values: the first solve takes them on through the tangent.
+    ///
+    /// A step that `leads` keeps them at their new values instead, ahead of the mesh.
+    pub(in crate::strategies) fn start(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        leads: bool,
+    ) -> Result<Vec<f64>> {
+        let targets = self.assembler.values(part);
+        let led = interactions.iter().find_map(|interaction| interaction.led_nodes());
+        let constrained = part.constraints.iter().any(|c| c.active);
+        if let Some(led) = led.filter(|_| leads) {
+            led.iter().for_each(|&node| part.nodes.follow(node as usize));
+            return Ok(vec![0.0; targets.len()]);
+        }
+        for (number, dof) in part.dofs.dofs().iter().enumerate() {
+            if self.assembler.equations().is_fixed(number)
+                && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
+                && field.levels.len() > 1
+            {
+                let at = dof.node as usize * field.components + dof.variable.offset();
+                field.levels[0][at] = field.levels[1][at];
+            }
+        }
+        self.scheme.predict(part)?;
+        let start = self.assembler.values(part);
+        let mut increment: Vec<f64> = (0..start.len())
+            .map(|n| if self.assembler.equations().is_fixed(n) { targets[n] - start[n] } else { 0.0 })
+            .collect();
+        if constrained {
+            part.dofs.scatter_add(&increment, &mut part.nodes);
+            let followed = self.constraint_increment(part);
+            let back: Vec<f64> = increment.iter().map(|d| -d).collect();
+            part.dofs.scatter_add(&back, &mut part.nodes);
+            increment.iter_mut().zip(followed).for_each(|(sum, d)| *sum += d);
+        }
+        self.scheme.update(part);
+        if self.settings.move_mesh {
+            part.move_mesh();
+        }
+        Ok(increment)
+    }
+
+    /// Whether the step begins with prescribed values ahead of the mesh, because its first iterate decides on the answer.
+    ///
+    /// Not so after a failed attempt, since elements may turn inside out that way.
+    pub(super) fn leads(&self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> bool {
+        let led = interactions.iter().any(|interaction| interaction.led_nodes().is_some());
+        let free = !self.failed && self.settings.move_mesh && !part.constraints.iter().any(|c| c.active);
+        led && free && self.scheme.is_static()
+    }
+
+    /// Whether forces are farther out of balance after the first iteration than before it, in a step that prescribes motion.
+    pub(super) fn overshoots(
+        &mut self,
+        part: &ModelPart,
+        interactions: &[Box<dyn Interaction>],
+        before: &[f64],
+    ) -> Result<bool> {
+        let (now, old) = (self.assembler.values(part), part.dofs.gather(&part.nodes, 1));
+        let moves = (0..now.len()).any(|n| self.assembler.equations().is_fixed(n) && now[n] != old[n]);
+        if !moves || self.settings.linear {
+            return Ok(false);
+        }
+        let after = self.assembler.residual(part, interactions, None)?;
+        let after = self.assembler.equations().balanced(&after);
+        let forces = |balance: &[f64]| -> f64 {
+            part.dofs.dofs().iter().zip(balance).filter(|(dof, _)| !dof.multiplier).map(|(_, r)| r * r).sum()
+        };
+        Ok(forces(&after) > forces(before))
+    }
+
+    /// Goes back to the step's start, `begin` but for prescribed unknowns, and gives the increments of those.
+    pub(super) fn begin_again(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+        begin: &[f64],
+    ) -> Result<Vec<f64>> {
+        let now = self.assembler.values(part);
+        let fixed = |n: usize| self.assembler.equations().is_fixed(n);
+        let back: Vec<f64> = (0..now.len()).map(|n| if fixed(n) { 0.0 } else { begin[n] - now[n] }).collect();
+        part.dofs.scatter_add(&back, &mut part.nodes);
+        let prescribed = self.start(part, interactions, false)?;
+        for interaction in interactions.iter_mut() {
+            interaction.after_prediction(part)?;
+        }
+        Ok(prescribed)
+    }
+
+    /// What constrained unknowns lack to obey their constraints at the present values of the others.
+    pub(super) fn constraint_increment(&self, part: &mut ModelPart) -> Vec<f64> {
+        let before = self.assembler.values(part);
+        impose_constraints(&mut part.nodes, &part.constraints);
+        let lack: Vec<f64> = self.assembler.values(part).iter().zip(&before).map(|(after, b)| after - b).collect();
+        let back: Vec<f64> = lack.iter().map(|d| -d).collect();
+        part.dofs.scatter_add(&back, &mut part.nodes);
+        lack
+    }
+}
