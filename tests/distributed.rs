@@ -187,6 +187,35 @@ fn petsc_solves_for_all() {
     equals_serial("contact_3d/friction_stick", &[asks[0], slips], EXACT, true);
 }
 
+/// Multigrid gets systems without multipliers; where these cannot be condensed a factorisation serves, and a warning says so.
+#[test]
+fn multigrid_solves_for_all_but_multipliers() {
+    if !cfg!(feature = "petsc") {
+        println!("skipped: built without the feature `petsc`");
+        return;
+    }
+    let gmres = "\"solver_type\": \"gmres\", \"petsc_engine\": \"gmres_gamg\"";
+    equals_serial("contact_3d/iterative_engine", &[("\"solver_type\": \"gmres\"", gmres)], EQUAL, true);
+    let asks = "\"solver_type\": \"Static\", \"linear_solver_settings\": {\"petsc_engine\": \"gmres_gamg\", \"tolerance\": 1e-11}";
+    equals_serial("mesh_tying/tetrahedra_on_hexahedra", &[("\"solver_type\": \"Static\"", asks)], EQUAL, true);
+    for (name, is_condensed) in [("mesh_tying/hexahedra", true), ("mesh_tying/hexahedra_on_tetrahedra", false)] {
+        let folder = case(name);
+        change(folder.path(), DECK, "\"solver_type\": \"Static\"", asks);
+        let arguments = ["run", DECK, "--report", "report.json"];
+        let Some(output) = distributed(folder.path(), 2, &arguments) else { return };
+        assert!(output.status.success(), "{name}: {}", said(&output));
+        let report = read_json(&folder.path().join("report.json")).expect("the report");
+        let engine = &report["steps"][0]["iterations"][0]["engine"];
+        assert_eq!(engine, if is_condensed { "gmres_gamg" } else { "mumps_lu" }, "{name}: {}", said(&output));
+        assert_eq!(
+            said(&output).matches("warning[not-condensed]").count(),
+            usize::from(!is_condensed),
+            "{}",
+            said(&output)
+        );
+    }
+}
+
 #[test]
 fn contact_by_constraints() {
     equals_serial("mpc/pressed_and_opened", &[], EXACT, true);

@@ -288,7 +288,7 @@ impl SolverSettings {
         if part.partition.is_some()
             && let Some((petsc, by_petsc)) = super::linear_solvers::petsc(&named, &part.dofs)?
         {
-            newton.solve_by_petsc(petsc);
+            newton.solve_by_petsc(petsc, multipliers(&part.info));
             says = by_petsc;
         }
         Ok(match arc {

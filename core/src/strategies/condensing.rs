@@ -74,7 +74,7 @@ pub(super) fn warning(
     place: Option<&Place>,
 ) -> Diagnostic {
     let fact = fact(refused, unknowns, dofs, nodes);
-    Diagnostic::warning("not-condensed", format!("{fact}: the direct engine solves for all unknowns"))
+    Diagnostic::warning("not-condensed", format!("{fact}: a direct engine solves for all unknowns"))
         .at(place.cloned())
         .remedy(remedy(refused))
 }

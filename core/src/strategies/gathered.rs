@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use rayon::ThreadPool;
-use zelus_linear_algebra::{Csr, System};
+use zelus_linear_algebra::{Csr, NotCondensable, System};
 
 use crate::communication::{threads_while_others_wait, world};
 
@@ -48,6 +48,14 @@ impl Gathered {
             Some(threads) => threads.install(work),
             None => work(),
         }
+    }
+
+    /// Why the last solve where the rows are did not condense multipliers that it should have.
+    pub(super) fn not_condensed(&self) -> Option<NotCondensable> {
+        #[cfg(feature = "petsc")]
+        return self.petsc.as_ref().and_then(super::owned_rows::OwnedRows::not_condensed);
+        #[cfg(not(feature = "petsc"))]
+        None
     }
 
     /// The whole system, on rank 0, and the tangents of follower loads.

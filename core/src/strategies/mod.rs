@@ -19,6 +19,8 @@ mod line_search;
 mod linear_solve;
 mod newton;
 #[cfg(feature = "petsc")]
+mod owned_condensation;
+#[cfg(feature = "petsc")]
 mod owned_rows;
 mod pseudo_static_scheme;
 mod reactions;

@@ -2,6 +2,8 @@
 
 mod start;
 
+#[cfg(feature = "petsc")]
+use zelus_linear_algebra::Multipliers;
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 use super::condensing;
@@ -130,8 +132,9 @@ impl NewtonRaphson {
 
     /// Lets PETSc solve the equations of all ranks, each with its own rows, in place of rank 0.
     #[cfg(feature = "petsc")]
-    pub fn solve_by_petsc(&mut self, settings: zelus_petsc::PetscSettings) {
-        self.gathered.petsc = Some(super::owned_rows::OwnedRows::new(settings));
+    pub fn solve_by_petsc(&mut self, settings: zelus_petsc::PetscSettings, multipliers: Multipliers) {
+        let condensing = if let Multipliers::Condense(settings) = multipliers { Some(settings) } else { None };
+        self.gathered.petsc = Some(super::owned_rows::OwnedRows::new(settings, condensing));
     }
 
     fn iterate(
@@ -325,7 +328,7 @@ impl NewtonRaphson {
         let phases = [report.seconds_symbolic, report.seconds_numeric, report.seconds_solve];
         self.linear_seconds.iter_mut().zip(phases).for_each(|(sum, seconds)| *sum += seconds);
         let SolveReport { engine, relative_residual, iterations, mut fallback, .. } = report;
-        if let Some(refused) = self.solver.not_condensed() {
+        if let Some(refused) = self.solver.not_condensed().or(self.gathered.not_condensed()) {
             // Said once, and with the names of nodes.
             fallback = None;
             if !std::mem::replace(&mut self.warned_of_multipliers, true) {

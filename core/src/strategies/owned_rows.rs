@@ -2,9 +2,10 @@
 //!
 //! Equations are counted anew: those of rank 0 come first, then those of rank 1 and so on.
 
-use zelus_linear_algebra::{Csr, SolveError, SolveReport, Symmetry, System};
+use zelus_linear_algebra::{CondensationSettings, Csr, NotCondensable, SolveError, SolveReport, Symmetry, System};
 use zelus_petsc::{DistributedMatrix, DistributedSolver, PetscSettings, RigidModes};
 
+use super::owned_condensation::OwnedCondensation;
 use crate::assembly::{Assembler, DofTable};
 use crate::communication::{petsc, world};
 use crate::diagnostics::Result;
@@ -28,12 +29,19 @@ pub(super) struct OwnedRows {
     /// Where the entries from each rank go.
     places: Vec<Vec<u32>>,
     modes: RigidModes,
+    /// How multipliers are condensed, where they are to be.
+    condensing: Option<CondensationSettings>,
+    /// What is condensed now, with the stamp of the rows it was made of, or why it is not.
+    condensed: Option<(Result<OwnedCondensation, NotCondensable>, u64)>,
 }
 
 impl OwnedRows {
-    /// Nothing yet.
-    pub(super) fn new(settings: PetscSettings) -> Self {
+    /// Nothing yet; multigrid gets the system without multipliers as `condensing` says.
+    pub(super) fn new(settings: PetscSettings, condensing: Option<CondensationSettings>) -> Self {
+        let is_multigrid = settings.engine.is_some_and(|engine| !engine.is_direct());
         Self {
+            condensing: condensing.filter(|_| is_multigrid),
+            condensed: None,
             settings,
             solver: None,
             made_of: None,
@@ -63,20 +71,35 @@ impl OwnedRows {
     ) -> Result<std::result::Result<(Vec<f64>, SolveReport), SolveError>> {
         let system = assembler.system();
         self.update(assembler, &system, loads, dofs, nodes);
+        self.condense(&system);
+        let left = match &self.condensed {
+            Some((Ok(left), _)) => Some(left),
+            Some((Err(refused), _)) if self.condensing.is_some_and(|settings| !settings.fallback) => {
+                return Ok(Err(SolveError::NotCondensable(*refused)));
+            }
+            _ => None,
+        };
         let has_coupling = world().any(system.coupling.is_some() || loads.is_some());
+        let modes =
+            left.map(|left| modes(assembler.equations().unknowns(), &left.equations[world().rank()], dofs, nodes));
+        let equations = left.map_or(&self.equations, |left| &left.equations);
         let matrix = DistributedMatrix {
-            first_row: self.first_row(world().rank()),
-            row_starts: &self.row_starts,
-            columns: &self.columns,
-            values: &self.values,
+            first_row: first_row(equations, world().rank()),
+            row_starts: left.map_or(&self.row_starts, |left| &left.row_starts),
+            columns: left.map_or(&self.columns, |left| &left.columns),
+            values: left.map_or(&self.values, |left| &left.values),
             symmetry: if has_coupling { Symmetry::General } else { system.bulk_symmetry },
-            has_multipliers: system.layout.multiplier.contains(&true),
-            modes: Some(&self.modes),
-            graph: self.graph,
+            has_multipliers: left.is_none() && system.layout.multiplier.contains(&true),
+            modes: Some(modes.as_ref().unwrap_or(&self.modes)),
+            // The pattern of a condensed system changes with what is active.
+            graph: if left.is_some() { u64::MAX - self.stamp } else { self.graph },
             stamp: self.stamp,
         };
-        let own = &self.equations[world().rank()];
-        let rhs_owned: Vec<f64> = own.iter().map(|&e| rhs[e as usize]).collect();
+        let own = &equations[world().rank()];
+        let rhs_owned = match left {
+            Some(left) => left.reduce(rhs),
+            None => own.iter().map(|&e| rhs[e as usize]).collect(),
+        };
         let mut x_owned = vec![0.0; own.len()];
         let solver = match &mut self.solver {
             Some(solver) => solver,
@@ -84,22 +107,43 @@ impl OwnedRows {
         };
         let report = match solver.solve(&matrix, &rhs_owned, &mut x_owned) {
             Ok(report) => report,
-            Err(SolveError::Singular { equations, rank_deficiency }) => {
-                let all: Vec<u32> = self.equations.concat();
-                let equations = equations.into_iter().filter_map(|e| all.get(e).map(|&e| e as usize)).collect();
+            Err(SolveError::Singular { equations: suspicious, rank_deficiency }) => {
+                let all: Vec<u32> = equations.concat();
+                let equations = suspicious.into_iter().filter_map(|e| all.get(e).map(|&e| e as usize)).collect();
                 return Ok(Err(SolveError::Singular { equations, rank_deficiency }));
             }
             Err(error) => return Ok(Err(error)),
         };
-        let counts: Vec<usize> = self.equations.iter().map(Vec::len).collect();
+        let counts: Vec<usize> = equations.iter().map(Vec::len).collect();
         let mut x = vec![0.0; rhs.len()];
         let all = world().gather_counted(&x_owned, &counts);
-        self.equations.iter().flatten().zip(all).for_each(|(&equation, value)| x[equation as usize] = value);
+        equations.iter().flatten().zip(all).for_each(|(&equation, value)| x[equation as usize] = value);
+        if let Some(left) = left {
+            left.recover(rhs, &mut x);
+        }
         Ok(Ok((x, report)))
     }
 
-    fn first_row(&self, rank: usize) -> u64 {
-        self.equations[..rank].iter().map(|list| list.len() as u64).sum()
+    /// Why the multipliers of the last solve were not condensed.
+    pub(super) fn not_condensed(&self) -> Option<NotCondensable> {
+        self.condensed.as_ref().and_then(|(condensed, _)| condensed.as_ref().err().copied())
+    }
+
+    /// Brings the condensed rows up to date; collective.
+    fn condense(&mut self, system: &System<'_>) {
+        let Some(settings) = self.condensing.filter(|_| system.layout.multiplier.contains(&true)) else { return };
+        if self.condensed.as_ref().is_some_and(|(_, stamp)| *stamp == self.stamp) {
+            return;
+        }
+        let all: Vec<u32> = self.equations.concat();
+        let row = |(at, &equation): (usize, &u32)| {
+            let range = self.row_starts[at]..self.row_starts[at + 1];
+            let columns = self.columns[range.clone()].iter().map(|&column| all[column as usize]).collect();
+            (equation, columns, &self.values[range])
+        };
+        let rows = self.equations[world().rank()].iter().enumerate().map(row);
+        let made = OwnedCondensation::new(rows, &self.equations, system.layout, &settings);
+        self.condensed = Some((made, self.stamp));
     }
 
     fn update(
@@ -153,7 +197,7 @@ impl OwnedRows {
             }
         }
         let (rows, columns) = (world.exchange_indices(&rows), world.exchange_indices(&columns));
-        let first = self.first_row(world.rank()) as u32;
+        let first = first_row(&self.equations, world.rank()) as u32;
         let own = self.equations[world.rank()].len();
         let mut lists: Vec<Vec<u32>> = vec![Vec::new(); own];
         for (&row, &column) in rows.iter().flatten().zip(columns.iter().flatten()) {
@@ -175,6 +219,11 @@ impl OwnedRows {
         self.modes = modes(unknowns, &self.equations[world.rank()], dofs, nodes);
         self.graph += 1;
     }
+}
+
+/// Number of the first row of a rank, whose equations are counted after those of the ranks before.
+fn first_row(equations: &[Vec<u32>], rank: usize) -> u64 {
+    equations[..rank].iter().map(|list| list.len() as u64).sum()
 }
 
 /// Positions and directions of equations, for rigid motions; collective.

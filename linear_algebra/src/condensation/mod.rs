@@ -183,6 +183,11 @@ impl Condensation {
         System { bulk_graph: self.stamp, bulk_values: self.stamp, ..plain }
     }
 
+    /// Equation of the whole system of each equation left, ascending.
+    pub fn equations(&self) -> &[u32] {
+        &self.kept
+    }
+
     /// Right-hand side of the system that is left, for one of the whole system.
     ///
     /// # Panics
