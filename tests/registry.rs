@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use support::root;
 use zelus as _;
 use zelus_core::parameters::Defaults;
-use zelus_core::registry::{Kind, duplicates, entries};
+use zelus_core::registry::{Kind, duplicates, entries, require};
 
 #[test]
 fn every_name_is_registered_once() {
@@ -50,4 +50,33 @@ fn every_name_says_what_it_is_and_where_it_lives() {
         }
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// Of several beginnings that fit a name the longest counts.
+#[test]
+fn known_names_that_are_not_there_say_what_to_use_instead() {
+    for (kind, name, words) in [
+        (Kind::Element, "ShellThinElement3D3N", "mesh the thickness"),
+        (
+            Kind::Element,
+            "SmallDisplacementMixedVolumetricStrainOssElement2D3N",
+            "SmallDisplacementMixedVolumetricStrainElement",
+        ),
+        (Kind::Element, "TotalLagrangianMixedVolumetricStrainElement3D4N", "TotalLagrangianQ1P0MixedElement3D8N"),
+        (Kind::Condition, "PointMomentCondition3D1N", "PointLoadCondition"),
+        (Kind::Condition, "DisplacementControlCondition3D1N", "arc_length"),
+        (
+            Kind::ConstitutiveLaw,
+            "SmallStrainIsotropicPlasticityPlaneStressVonMisesVonMises",
+            "SmallDisplacementElement3D8N",
+        ),
+        (Kind::ConstitutiveLaw, "SmallStrainIsotropicPlasticity3DTrescaTresca", "VonMisesVonMises"),
+        (Kind::ConstitutiveLaw, "SerialParallelRuleOfMixturesLaw3D", "ParallelRuleOfMixturesLaw3D"),
+        (Kind::Scheme, "relaxation", "pseudo_static"),
+        (Kind::Scheme, "multi_stage", "central_differences"),
+        (Kind::Solver, "eigen_value", "Static"),
+    ] {
+        let said = require(kind, name).expect_err(name).to_string();
+        assert!(said.contains(words), "{name}: no {words:?} in {said}");
+    }
 }

@@ -1,4 +1,4 @@
-//! Elements, laws, schemes and solvers of the reference program that are known and not there, and what to use instead.
+//! Elements, conditions, laws, schemes and solvers of the reference program that are known and not there, and what to use instead.
 
 use zelus_core::register_absent;
 
@@ -45,3 +45,12 @@ register_absent! { Scheme ["multi_stage"] =>
 
 register_absent! { Solver ["eigen_value", "harmonic_analysis", "prebuckling", "formfinding", "adjoint_static", "static_shifted_boundary"] =>
 "of structural solvers \"Static\" and \"Dynamic\" are there" }
+
+register_absent! { Condition ["DisplacementControl"] =>
+"prescribe DISPLACEMENT, or follow the load by \"solving_strategy_settings\" of the type \"arc_length\"" }
+
+register_absent! { Condition ["PointMoment"] =>
+"nodes have no rotations: apply a pair of forces, PointLoadCondition" }
+
+register_absent! { Condition ["MovingLoad"] =>
+"use LineLoadCondition with a load that is a function of x and t" }
