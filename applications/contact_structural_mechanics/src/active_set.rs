@@ -1,8 +1,9 @@
 //! The rules by which slave nodes enter and leave contact, stick and slide: pure functions of nodal numbers.
 //!
 //! The augmented normal pressure p̂ = k λ_n + ε WG decides: active if p̂ < 0. WG is the weighted gap of the node summed
-//! over its pairs. Tangentially q̂ = k P λ + c κ ε WS, with the weighted slip WS, is compared with the bound that the
-//! law of friction sets under p̂.
+//! over its pairs. Tangentially q̂ = k P λ + c κ ε WS/A, with the weighted slip WS and the area A of the node, is compared
+//! with the bound that the law of friction sets under p̂: slips over areas are lengths, and states do not depend on units.
+//! A node that enters has no traction yet; there κ ε WS stands against p̂ = ε WG, both weighted.
 //! No tolerance is applied to p̂. A sliding node sticks again when its slip has turned against its traction and q̂, with the
 //! weight c of the deck or with c = 1, has fallen below the bound by a margin.
 
@@ -64,6 +65,8 @@ pub struct SlaveNumbers {
     pub weighted_gap: f64,
     /// Weighted slip WS.
     pub weighted_slip: [f64; 3],
+    /// Area A that weighs gap and slip.
+    pub area: f64,
     /// Unit tangent τ in which the last solve took a sliding node to slide.
     pub tangent: [f64; 3],
     /// Penalty ε.
@@ -80,6 +83,12 @@ impl SlaveNumbers {
     /// Augmented normal pressure p̂.
     pub fn pressure(&self) -> f64 {
         augmented_pressure(self.scale_factor, dot(self.multiplier, self.normal), self.penalty, self.weighted_gap)
+    }
+
+    /// Traction κ ε WS/A that the slip of a node in contact adds to its multiplier's.
+    fn slip_traction(&self) -> [f64; 3] {
+        let area = if self.area > 0.0 { self.area } else { 1.0 };
+        scale(self.weighted_slip, self.tangent_factor * self.penalty / area)
     }
 }
 
@@ -124,10 +133,11 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     }
     let sliding = node.state == NodeState::Slip;
     let lambda_t = tangential(node.multiplier, node.normal);
-    let augmented = |coefficient: f64| {
-        let slip = scale(node.weighted_slip, coefficient * node.tangent_factor * node.penalty);
-        add(scale(lambda_t, node.scale_factor), slip)
+    let of_slip = match node.state.is_active() {
+        true => node.slip_traction(),
+        false => scale(node.weighted_slip, node.tangent_factor * node.penalty),
     };
+    let augmented = |coefficient: f64| add(scale(lambda_t, node.scale_factor), scale(of_slip, coefficient));
     let bound = node.friction.at(pressure);
     let (q, over) = match rule {
         // Sliding is at the bound by its own equation, and right as long as the slip goes along the traction. Comparing
@@ -176,7 +186,7 @@ const LEAST_PUSH: f64 = 1e-6;
 
 /// Whether friction pushes a sliding node along its motion: its slip is against the traction that should oppose it.
 pub fn is_pushed(node: &SlaveNumbers, rule: SlipRule) -> bool {
-    let along = dot(node.tangent, node.weighted_slip) * node.tangent_factor * node.penalty;
+    let along = dot(node.tangent, node.slip_traction());
     rule != SlipRule::Pure
         && node.state == NodeState::Slip
         && !node.friction.is_smooth()
@@ -228,6 +238,7 @@ mod tests {
             multiplier,
             weighted_gap: -0.5,
             weighted_slip: [0.1, 0.0, 0.0],
+            area: 1.0,
             tangent: [1.0, 0.0, 0.0],
             penalty: 2.0,
             friction: Bound { coefficient: 0.3, threshold: 0.0 },

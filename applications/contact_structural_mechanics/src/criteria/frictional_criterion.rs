@@ -6,12 +6,13 @@
 use zelus_core::Result;
 use zelus_core::model::variables::NORMAL;
 use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_round_off};
-use zelus_core::vector3::{dot, sub};
+use zelus_core::vector3::{dot, scale, sub};
 
 use super::measure::{Form, Tolerance, check};
 use crate::formulations::NodeState;
 use crate::friction_law::smooth_nodes;
 use crate::mortar::tangential;
+use crate::variables::NODAL_AREA;
 
 /// The criterion of the families with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,9 +66,20 @@ impl Sizes {
     }
 }
 
-/// Splits the multiplier entries of a vector over all unknowns. `whole` counts each node's entries in full in all its
-/// parts, as befits sizes of round-off, which have no sign.
-fn split(measures: &Measures<'_>, vector: &[f64], whole: bool) -> Sizes {
+/// What a vector over all unknowns holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Entries {
+    /// Values of unknowns.
+    Values,
+    /// Residuals. Rows that state a gap or a slip hold it times an area, rows that state a multiplier do not.
+    Residuals,
+    /// Sizes of the round-off of residuals; they have no sign.
+    RoundOff,
+}
+
+/// Splits the multiplier entries of a vector over all unknowns. Rows that state a multiplier count with the area of their
+/// node, so that sums do not depend on units; sizes of round-off count in full in all parts of a node.
+fn split(measures: &Measures<'_>, vector: &[f64], holds: Entries) -> Sizes {
     let nodes = measures.nodes;
     let mut entries = vec![([0.0; 3], 0_usize); nodes.len()];
     for &unknown in measures.equations.unknowns() {
@@ -80,20 +92,29 @@ fn split(measures: &Measures<'_>, vector: &[f64], whole: bool) -> Sizes {
     }
     let normals = nodes.history.get(NORMAL.name());
     let is_smooth = smooth_nodes(nodes);
+    let areas = nodes.values.values(&NODAL_AREA, 0);
     let mut sizes = Sizes::default();
     for (at, (values, count)) in entries.into_iter().enumerate().filter(|(_, (_, count))| *count > 0) {
+        let area = areas.get(at).copied().filter(|area| *area > 0.0 && holds != Entries::Values).unwrap_or(1.0);
+        let state = NodeState::of_flags(&nodes.flags, at);
+        if state == NodeState::Inactive {
+            sizes.add(0, scale(values, area), count);
+            continue;
+        }
         let smooth = is_smooth(at);
-        let part = match NodeState::of_flags(&nodes.flags, at) {
-            NodeState::Stick if !smooth => 1,
-            NodeState::Slip if !smooth => 2,
-            _ => {
-                sizes.add(0, values, count);
-                continue;
-            }
+        let normal = normals.map_or([0.0; 3], |n| n.vector(0, at));
+        let (across, along) = match holds {
+            Entries::RoundOff => (values, values),
+            _ => (sub(values, tangential(values, normal)), tangential(values, normal)),
         };
-        let tangent = if whole { values } else { tangential(values, normals.map_or([0.0; 3], |n| n.vector(0, at))) };
-        sizes.add(0, if whole { values } else { sub(values, tangent) }, 1);
-        sizes.add(part, tangent, count - 1);
+        let along = if state == NodeState::Slip { scale(along, area) } else { along };
+        let part = match state {
+            _ if smooth => 0,
+            NodeState::Stick => 1,
+            _ => 2,
+        };
+        sizes.add(0, across, 1);
+        sizes.add(part, along, count - 1);
     }
     sizes
 }
@@ -102,7 +123,7 @@ fn split(measures: &Measures<'_>, vector: &[f64], whole: bool) -> Sizes {
 /// of the step, so what it left when states last changed counts too.
 fn references(measures: &Measures<'_>) -> Vec<Sizes> {
     let start = measures.references.iter().map(Vec::as_slice);
-    start.chain(measures.switched).map(|r| split(measures, r, false)).collect()
+    start.chain(measures.switched).map(|r| split(measures, r, Entries::Residuals)).collect()
 }
 
 impl ConvergenceCriterion for FrictionalCriterion {
@@ -110,13 +131,15 @@ impl ConvergenceCriterion for FrictionalCriterion {
         let mut checks = vec![check(measures, Block::Primary, self.primary)];
         let (sizes, references, round_off) = match self.multiplier {
             Form::Residual => (
-                split(measures, measures.residual, false),
+                split(measures, measures.residual, Entries::Residuals),
                 references(measures),
-                Some(split(measures, measures.round_off, true)),
+                Some(split(measures, measures.round_off, Entries::RoundOff)),
             ),
-            Form::Increment => {
-                (split(measures, measures.increment, false), vec![split(measures, measures.values, false)], None)
-            }
+            Form::Increment => (
+                split(measures, measures.increment, Entries::Values),
+                vec![split(measures, measures.values, Entries::Values)],
+                None,
+            ),
         };
         let normal = sizes.norm(0) / (sizes.counts[0].max(1) as f64).sqrt();
         for part in 0..3 {

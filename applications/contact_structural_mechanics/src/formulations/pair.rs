@@ -52,13 +52,13 @@ pub struct SlaveNode {
     pub turning: Turning,
 }
 
-/// How the direction of sliding of a node turns with its trial traction q̂ = k P λ + κ ε WS, τ = q̂/|q̂|.
+/// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ ε WS/A, τ = q̂/|q̂|.
 ///
 /// Zero where the direction is a sign, as in the plane. It enters the tangent only; without it a body that slides is free
 /// across its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turning {
-    /// κ ε B/|q̂| with the bounds B of all pairs of the node together: traction by weighted slip across τ.
+    /// κ ε B/(A |q̂|) with the bounds B of all pairs of the node together: traction by weighted slip across τ.
     pub by_slip: f64,
     /// k/|q̂|: traction by multiplier across τ, in shares of the pair's bound.
     pub by_multiplier: f64,

@@ -226,6 +226,7 @@ fn numbers(part: &ModelPart, at: usize, family: &Family, parameters: &StepParame
             .values(&TANGENT_XI, 0)
             .get(3 * at..3 * at + 3)
             .map_or([0.0; 3], |t| [t[0], t[1], t[2]]),
+        area: part.nodes.values.values(&NODAL_AREA, 0)[at],
         penalty: part.nodes.values.values(&INITIAL_PENALTY, 0)[at],
         friction: parameters.friction_law.bound_at(&part.nodes, at),
         scale_factor: parameters.scale_factor,

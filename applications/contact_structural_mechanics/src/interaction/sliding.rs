@@ -82,11 +82,12 @@ pub(super) fn write_tangents(
     }
 }
 
-/// Trial traction q̂ = k P λ + κ ε WS of a node, and what bounds it.
+/// Trial traction q̂ = k P λ + κ ε WS/A of a node of area A, and what bounds it.
 struct Trial {
     traction: [f64; 3],
     of_slip: [f64; 3],
-    penalty: f64,
+    /// κ ε/A: traction by weighted slip.
+    by_slip: f64,
     pressure: f64,
     multiplier_pressure: f64,
     bound: crate::friction_law::Bound,
@@ -96,12 +97,14 @@ impl Trial {
     fn new(part: &ModelPart, at: usize, parameters: &StepParameters, multiplier: [f64; 3], normal: [f64; 3]) -> Self {
         let slip = part.nodes.history.get(WEIGHTED_SLIP.name()).map_or([0.0; 3], |field| field.vector(0, at));
         let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
-        let of_slip = scale(slip, parameters.tangent_factor * penalty);
+        let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
+        let by_slip = parameters.tangent_factor * penalty / if area > 0.0 { area } else { 1.0 };
+        let of_slip = scale(slip, by_slip);
         let multiplier_pressure = parameters.scale_factor * dot(multiplier, normal);
         Self {
             traction: add(scale(tangential(multiplier, normal), parameters.scale_factor), of_slip),
             of_slip,
-            penalty,
+            by_slip,
             pressure: multiplier_pressure + penalty * part.nodes.history.values(&WEIGHTED_GAP, 0)[at],
             multiplier_pressure,
             bound: parameters.friction_law.bound_at(&part.nodes, at),
@@ -118,7 +121,7 @@ impl Trial {
         // Each pair states the law with the whole multiplier and its own gap.
         let all = bound + (f64::from(pairs) - 1.0).max(0.0) * self.bound.at(self.multiplier_pressure);
         Turning {
-            by_slip: all.max(0.0) * parameters.tangent_factor * self.penalty / size,
+            by_slip: all.max(0.0) * self.by_slip / size,
             by_multiplier: if pure { 0.0 } else { parameters.scale_factor / size },
         }
     }

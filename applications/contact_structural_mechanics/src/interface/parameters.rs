@@ -9,9 +9,6 @@ use super::facets::{Interface, Roles};
 use super::normals::positions;
 use crate::variables::NODAL_H;
 
-/// Keeps quotients finite on empty sides; Kratos' value.
-const TINY: f64 = 1e-12;
-
 /// Penalty and scale factor of an interface, force per length cubed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AlmParameters {
@@ -41,8 +38,7 @@ pub fn alm_parameters(
             stiffness += young * size;
             length += size / facet.nodes.len() as f64 * facet.nodes.iter().map(|&n| sizes[n as usize]).sum::<f64>();
         }
-        let (young, h) = (stiffness / (area + TINY), length / (area + TINY));
-        (young, stiffness_factor * young / (h + TINY))
+        if area > 0.0 && length > 0.0 { (stiffness / area, stiffness_factor * stiffness / length) } else { (0.0, 0.0) }
     };
     let ((young, slave), (_, master)) = (side(Roles::Slave), side(Roles::Master));
     let slave = if young <= f64::EPSILON { master } else { slave };
