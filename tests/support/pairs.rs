@@ -5,7 +5,7 @@ use std::sync::Arc;
 use zelus::contact_structural_mechanics::active_set::SlipRule;
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
-use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, SegmentationSettings};
+use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name,
 };
@@ -197,6 +197,7 @@ impl Setting {
             master_normal: self.master_normal,
             overlapping: true,
             previous: Previous::default(),
+            habit: Habit::default(),
         };
         let request = PairRequest {
             entry: entry.unwrap_or(entries()[0]),

@@ -3,7 +3,7 @@
 use super::*;
 use crate::friction_law::Bound;
 use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
-use crate::mortar::{Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential};
+use crate::mortar::{Habit, Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential};
 use zelus_core::vector3::normalised;
 
 const ALM: AlmFrictionless = AlmFrictionless { scale_factor: 1.7 };
@@ -171,6 +171,7 @@ fn line_pair(line: &[f64], start: &[f64]) -> PairGeometry<f64, 2, 2> {
         nodal_normals: [vector(line, 4), vector(line, 5)],
         slave_normal: vector(start, 6),
         master_normal: vector(start, 7),
+        habit: Habit::default(),
     }
 }
 
@@ -227,7 +228,14 @@ fn sign_of_the_contact_force() {
     let slave = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let master = [3, 2, 1, 0].map(|n: usize| [slave[n][0], slave[n][1], -0.01]);
     let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
-    let pair = PairGeometry { slave, master, nodal_normals: [up; 4], slave_normal: up, master_normal: down };
+    let pair = PairGeometry {
+        slave,
+        master,
+        nodal_normals: [up; 4],
+        slave_normal: up,
+        master_normal: down,
+        habit: Habit::default(),
+    };
     let node = SlaveNode {
         state: NodeState::Slip,
         penalty: 50.0,

@@ -321,6 +321,8 @@ impl ContactInteraction {
     }
 }
 
+/// Iterations after which pairs go on as they integrate: most steps have converged by then, as in the reference program.
+const SETTLED: usize = 5;
 /// Share of the scale factor that makes redundant multipliers regular.
 const RELAXATION: f64 = 1e-8;
 
@@ -401,9 +403,7 @@ impl Interaction for ContactInteraction {
         activation::start(part, &self.slaves, start, &self.at_origin, friction);
         friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, &self.settings.friction);
         self.pairing.refresh_normals(part, self.updates_normals());
-        for block in &mut self.pairing.blocks {
-            block.keep_operators(&part.view(), &|nodes| part.evaluates_pair(nodes));
-        }
+        self.pairing.begin_step(part);
         Ok(())
     }
 
@@ -434,6 +434,9 @@ impl Interaction for ContactInteraction {
         let adaptation = self.settings.adaptation;
         let gaps = adaptation.gaps(part, &self.slaves, self.settings.explicit.is_some());
         self.integrate(part);
+        if iteration >= SETTLED {
+            self.pairing.keep_habits(part);
+        }
         let change = self.update_active_set(part);
         let penalty = part.info.value_or(INITIAL_PENALTY.name(), 1.0);
         adaptation.adapt(part, &self.slaves, penalty, &gaps, self.max_gap);

@@ -14,7 +14,7 @@ use zelus_core::registry::{self, Kind};
 use super::contact_settings::ContactSettings;
 use super::step_parameters::StepParameters;
 use crate::interface::{Facet, Interface, Roles, centre_normal, positions, slave_nodes};
-use crate::mortar::SegmentationSettings;
+use crate::mortar::{Habit, SegmentationSettings};
 use crate::pairs::{ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
 
@@ -173,6 +173,7 @@ impl Pairing {
             master_normal: normal(part, self.master(key)),
             overlapping: true,
             previous: Previous::default(),
+            habit: Habit::default(),
         }
     }
 
@@ -233,6 +234,21 @@ impl Pairing {
             }
         }
         self.blocks = blocks;
+    }
+
+    /// Step start: keeps the operators against which slip is measured, and forgets the habits of the last step.
+    pub(super) fn begin_step(&mut self, part: &ModelPart) {
+        self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.habit = Habit::default());
+        for block in &mut self.blocks {
+            block.keep_operators(&part.view(), &|nodes| part.evaluates_pair(nodes));
+        }
+    }
+
+    /// Lets pairs go on as they integrate now, until the step ends.
+    pub(super) fn keep_habits(&mut self, part: &ModelPart) {
+        for block in &mut self.blocks {
+            block.keep_habits(&part.view(), &|nodes| part.evaluates_pair(nodes));
+        }
     }
 
     /// Takes more pairs in, within a step.

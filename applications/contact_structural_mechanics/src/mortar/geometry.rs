@@ -1,5 +1,6 @@
 //! The two facets of a contact pair as they stand, and the normals that go with them.
 
+use super::habit::Habit;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, value};
 
@@ -17,6 +18,8 @@ pub struct PairGeometry<T, const NS: usize, const NM: usize> {
     pub slave_normal: [T; 3],
     /// Unit normal of the plane of the master onto which points are projected; it may lag behind the master facet.
     pub master_normal: [T; 3],
+    /// What the pair did before and goes on doing.
+    pub habit: Habit,
 }
 
 /// Number of space dimensions of a pair whose slave has `ns` nodes.
@@ -54,6 +57,7 @@ impl<const NS: usize, const NM: usize> PairGeometry<f64, NS, NM> {
             nodal_normals: self.nodal_normals.map(constant),
             slave_normal: constant(self.slave_normal),
             master_normal: constant(self.master_normal),
+            habit: self.habit,
         }
     }
 }
@@ -68,6 +72,7 @@ impl<T: Real, const NS: usize, const NM: usize> PairGeometry<T, NS, NM> {
             nodal_normals: self.nodal_normals.map(value),
             slave_normal: value(self.slave_normal),
             master_normal: value(self.master_normal),
+            habit: self.habit,
         }
     }
 }

@@ -12,6 +12,8 @@
 //! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration;
 //! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments.
 //!
+//! All of it is continuous in the positions but for a few choices, which a pair can keep: [`habit`].
+//!
 //! With normals that belong to the present geometry, D, M and g̃ agree with the reference program to 1e-10 (its inverse
 //! maps stop there). Three deliberate differences: a lagging slave normal tilts the direction of projection but does
 //! not shrink the facet; a quadrilateral master inside a triangular slave is cut into (0,1,2), (0,2,3), which covers it
@@ -24,6 +26,7 @@
 mod flat_master;
 pub mod gap;
 pub mod geometry;
+pub mod habit;
 pub mod operators;
 mod quadrature;
 mod segmentation_2d;
@@ -34,6 +37,7 @@ pub mod slip;
 
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{PairGeometry, dimension};
+pub use habit::Habit;
 pub use operators::{Operators, Overlap, operators, operators_on_flat_master};
 pub use settings::{IntegrationOrder, SegmentationSettings};
 pub use slip::{incremental_slip, is_objective, objective_slip, tangent, tangential};

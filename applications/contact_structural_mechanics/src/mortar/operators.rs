@@ -87,8 +87,9 @@ fn integrated<T: Real, const NS: usize, const NM: usize>(
     } else {
         Polygon::new(pair, settings).map_or(0.0, |polygon| sums.integrate_polygon(&polygon, settings, whole))
     };
+    let least = if pair.habit.slivers { 0.0 } else { LEAST_OVERLAP * whole };
     match covered {
-        covered if covered > LEAST_OVERLAP * whole => Overlap::Cells(sums.finish()),
+        covered if covered > least => Overlap::Cells(sums.finish()),
         covered if covered > 0.0 => Overlap::Sliver,
         _ => Overlap::None,
     }
@@ -246,7 +247,8 @@ impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
                 self.me[j][k] = self.me[k][j];
             }
         }
-        let Some(inverse) = inverse(self.me.map(|row| row.map(T::value))) else {
+        let inverse = inverse(self.me.map(|row| row.map(T::value))).filter(|_| !self.pair.habit.plain);
+        let Some(inverse) = inverse else {
             return Operators { d: self.me, m: self.mixed };
         };
         // X = Me⁻¹ ∫ N¹⊗N² on values, then one correction, which brings the derivative.

@@ -55,7 +55,18 @@ impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
             return None;
         }
         list.sort();
-        Some(Self { slave, master, vertices: list.vertices, len: list.len })
+        let mut polygon = Self { slave, master, vertices: list.vertices, len: list.len };
+        if let Some(origin) = pair.habit.origin {
+            polygon.begin_near(origin);
+        }
+        Some(polygon)
+    }
+
+    /// Turns the vertices so that the first is the one nearest to local coordinates of the slave.
+    fn begin_near(&mut self, origin: [f64; 2]) {
+        let distance = |&n: &usize| length(minus(self.local(self.vertices[n]).map(T::value), origin));
+        let nearest = (0..self.len).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        self.vertices[..self.len].rotate_left(nearest.unwrap_or(0));
     }
 
     /// The vertices, the first of them the one all cells share.

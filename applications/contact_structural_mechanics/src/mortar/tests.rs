@@ -40,7 +40,14 @@ fn flipped<const N: usize>(nodes: [[f64; 3]; N]) -> [[f64; 3]; N] {
 fn pair<const NS: usize, const NM: usize>(slave: [[f64; 3]; NS], master: [[f64; 3]; NM]) -> PairGeometry<f64, NS, NM> {
     let slave_normal = shape::unit_normal(&slave, shape::centre::<NS>());
     let master_normal = shape::unit_normal(&master, shape::centre::<NM>());
-    PairGeometry { slave, master, nodal_normals: [slave_normal; NS], slave_normal, master_normal }
+    PairGeometry {
+        slave,
+        master,
+        nodal_normals: [slave_normal; NS],
+        slave_normal,
+        master_normal,
+        habit: Habit::default(),
+    }
 }
 
 /// A partly overlapping pair with noise on nodes and normals.
@@ -249,6 +256,7 @@ fn rigid<const NS: usize, const NM: usize, const NU: usize>() {
             nodal_normals: before.nodal_normals.map(rotated),
             slave_normal: rotated(before.slave_normal),
             master_normal: rotated(before.master_normal),
+            habit: before.habit,
         };
         let settings = SegmentationSettings::default();
         let (Overlap::Cells(a), Overlap::Cells(b)) = (operators(&before, &settings), operators(&after, &settings))
@@ -402,6 +410,7 @@ fn reference_values<const NS: usize, const NM: usize, const NU: usize>() {
             nodal_normals: std::array::from_fn(|_| vector()),
             slave_normal: vector(),
             master_normal: vector(),
+            habit: Habit::default(),
         };
         let o = value_of(&pair);
         let gap = weighted_gap(&o, &pair.slave, &pair.master, &pair.nodal_normals);

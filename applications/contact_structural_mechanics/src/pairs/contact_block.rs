@@ -24,6 +24,9 @@ pub trait ContactBlock: EntityBlock {
     /// Step start: keeps the operators of the `own` pairs against which slip is measured.
     fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>);
 
+    /// Lets the `own` pairs go on as they integrate now.
+    fn keep_habits(&mut self, view: &StepView<'_>, own: Own<'_>);
+
     /// The same block for the assembly.
     fn as_entities(&self) -> &dyn EntityBlock;
 }

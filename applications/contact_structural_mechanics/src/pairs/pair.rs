@@ -1,6 +1,6 @@
 //! One slave facet and one master facet that overlap.
 
-use crate::mortar::Operators;
+use crate::mortar::{Habit, Operators};
 
 /// Which facets of which interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -45,6 +45,8 @@ pub struct Pair {
     pub overlapping: bool,
     /// Operators at the start of the step.
     pub previous: Previous,
+    /// What it goes on doing until the step ends.
+    pub habit: Habit,
 }
 
 /// What a pair adds to its slave nodes.

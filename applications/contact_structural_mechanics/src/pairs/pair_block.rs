@@ -15,7 +15,7 @@ use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
 use crate::interaction::{NormalVariation, StepParameters};
-use crate::mortar::{Operators, Overlap, PairGeometry, dimension, operators, weighted_gap};
+use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, operators, weighted_gap};
 use crate::variables::{
     DYNAMIC_FACTOR, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
 };
@@ -90,6 +90,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
             nodal_normals: self.slaves(at).map(|n| vector(normals, n)),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
+            habit: pair.habit,
         }
     }
 
@@ -312,6 +313,16 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
     fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>) {
         let kept: Vec<Previous> = self.integrate(view, own).into_iter().map(|integral| integral.operators).collect();
         self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
+    }
+
+    fn keep_habits(&mut self, view: &StepView<'_>, own: Own<'_>) {
+        let habit = |at: usize| {
+            let geometry = self.geometry(at, view);
+            let found = operators(&geometry, &self.parameters.segmentation).cells().filter(|_| own(self.nodes(at)));
+            found.map_or(geometry.habit, |found| Habit::of(&geometry, &self.parameters.segmentation, &found))
+        };
+        let habits: Vec<Habit> = (0..self.pairs.len()).map(habit).collect();
+        self.pairs.iter_mut().zip(habits).for_each(|(pair, habit)| pair.habit = habit);
     }
 
     fn as_entities(&self) -> &dyn EntityBlock {

@@ -1,0 +1,80 @@
+//! What a pair goes on doing while a step is iterated, so that its operators stay continuous.
+//!
+//! The reference program's integration jumps: cells share the first vertex of the overlap by a rule on kinds of vertices, an
+//! overlap of one triangle takes plain functions for dual ones, a sliver counts for nothing. Where an equilibrium lies on
+//! such a jump no state is one, however short the step; a pair that keeps what it did last has one.
+
+use super::geometry::PairGeometry;
+use super::operators::Operators;
+use super::segmentation_3d::Polygon;
+use super::settings::SegmentationSettings;
+
+/// The choices a pair keeps; none at first.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Habit {
+    /// Local coordinates on the slave near which the vertex lies that all cells share.
+    pub origin: Option<[f64; 2]>,
+    /// Whether plain functions stand in for dual ones.
+    pub plain: bool,
+    /// Whether slivers count.
+    pub slivers: bool,
+}
+
+impl Habit {
+    /// The choices that gave these operators.
+    pub fn of<const NS: usize, const NM: usize>(
+        pair: &PairGeometry<f64, NS, NM>,
+        settings: &SegmentationSettings,
+        found: &Operators<f64, NS, NM>,
+    ) -> Self {
+        let origin = || {
+            // Intervals of the plane have no such choice.
+            let polygon = if NS == 2 { None } else { Polygon::new(pair, settings) }?;
+            Some(polygon.local(polygon.vertices()[0]))
+        };
+        Self {
+            origin: pair.habit.origin.or_else(origin),
+            plain: pair.habit.plain || !found.is_diagonal(),
+            slivers: true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Overlap, operators};
+    use super::*;
+
+    /// Two trapezoids; moved by `x`, a master node leaves the slave across its lower edge.
+    fn pair(x: f64, habit: Habit) -> PairGeometry<f64, 4, 4> {
+        let place = |[px, py]: [f64; 2]| [px + 0.4, py + x, 0.1];
+        PairGeometry {
+            slave: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 1.0, 0.0], [0.0, 1.3, 0.0]],
+            master: [[0.0, 0.0], [0.1, 1.1], [0.9, 1.0], [1.0, 0.1]].map(place),
+            nodal_normals: [[0.0, 0.0, 1.0]; 4],
+            slave_normal: [0.0, 0.0, 1.0],
+            master_normal: [0.0, 0.0, -1.0],
+            habit,
+        }
+    }
+
+    fn jump(habit: Habit) -> f64 {
+        let at = |x| match operators(&pair(x, habit), &SegmentationSettings::default()) {
+            Overlap::Cells(found) => found,
+            _ => panic!("they overlap"),
+        };
+        let change = at(1e-9).minus(&at(-1e-9));
+        change.m.iter().flatten().fold(0.0_f64, |most, m| most.max(m.abs()))
+    }
+
+    #[test]
+    fn a_pair_that_keeps_its_first_vertex_changes_continuously() {
+        let Overlap::Cells(found) = operators(&pair(1e-9, Habit::default()), &SegmentationSettings::default()) else {
+            panic!("they overlap")
+        };
+        let kept = Habit::of(&pair(1e-9, Habit::default()), &SegmentationSettings::default(), &found);
+        assert!(kept.origin.is_some() && !kept.plain);
+        assert!(jump(Habit::default()) > 1e-4, "{}", jump(Habit::default()));
+        assert!(jump(kept) < 1e-7, "{}", jump(kept));
+    }
+}
