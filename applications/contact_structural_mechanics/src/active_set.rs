@@ -293,6 +293,29 @@ mod tests {
     }
 
     #[test]
+    fn units_change_no_state() {
+        // Lengths in another unit: areas in the plane are lengths, k and ε stiffnesses over lengths.
+        let with = |length: f64, lambda_t: f64, slip: f64| {
+            let node = SlaveNumbers {
+                multiplier: [lambda_t * length, 0.0, -length],
+                weighted_gap: 0.0,
+                weighted_slip: [slip * length * length, 0.0, 0.0],
+                area: 0.2 * length,
+                penalty: 2.0 / length,
+                scale_factor: 4.0 / length,
+                ..node(NodeState::Slip, [0.0; 3])
+            };
+            alm_frictional(&node, COULOMB)
+        };
+        for (lambda_t, slip, state) in [(0.3, -0.01, NodeState::Stick), (0.3, -0.001, NodeState::Slip)] {
+            for length in [1.0, 1e3, 1e-3] {
+                let decision = with(length, lambda_t, slip);
+                assert_eq!(decision.state, state, "lengths x {length}");
+            }
+        }
+    }
+
+    #[test]
     fn leaving_contact_keeps_the_multiplier() {
         let open = SlaveNumbers { weighted_gap: 5.0, ..node(NodeState::Stick, [0.1, 0.0, -1.0]) };
         let decision = alm_frictional(&open, COULOMB);
