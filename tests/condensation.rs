@@ -1,4 +1,5 @@
-//! Iterative engines on decks with multipliers: condensed systems have the answer of the whole ones, and refusals are named.
+//! Iterative engines on decks with multipliers: condensed systems have the answer of the whole ones, and refusals are
+//! named.
 
 mod support;
 
@@ -102,7 +103,8 @@ fn fields(folder: &Path, case: &Path) -> BTreeMap<String, Vec<f64>> {
     found
 }
 
-/// Scalar and vector multipliers without friction, stick, ties, self-contact, contact that opens, in the plane and in space.
+/// Scalar and vector multipliers without friction, stick, ties, self-contact, contact that opens, in the plane and in
+/// space.
 #[test]
 fn condensed_systems_have_the_answer_of_the_direct_engine() {
     for case in [

@@ -199,8 +199,8 @@ fn shape_of(folder: &Path, file: &str) -> Vec<f64> {
 
 #[test]
 fn units_and_stiffness_change_no_iteration_and_no_digit() {
-    // Relative residuals refer to the start of a step too, where penetrations count with the penalty by their weighted gap, as
-    // in the reference program: iterations of steps that begin deep inside depend on the unit of lengths.
+    // Relative residuals refer to the start of a step too, where penetrations count with the penalty by their weighted
+    // gap, as in the reference program: iterations of steps that begin deep inside depend on the unit of lengths.
     for (name, file, lengths) in [
         ("contact_2d/nonmatching", "upper.json", 1e3),
         ("contact_2d/friction_arc", "results.json", 1e3),
@@ -365,7 +365,8 @@ fn impact(method: &str, elements: usize, time_step: f64) -> Impact {
     Impact { displacement: mean("DISPLACEMENT_Y", 1) - exact, energy: mean("VELOCITY_Y", 2) / 1e-4 }
 }
 
-/// The bar touches the wall for the time 2 L/c that a wave needs to its end and back, and leaves with the speed it came with.
+/// The bar touches the wall for the time 2 L/c that a wave needs to its end and back, and leaves with the speed it came
+/// with.
 #[test]
 fn a_bar_rebounds_in_explicit_and_implicit_steps() {
     for method in ["explicit", "implicit"] {

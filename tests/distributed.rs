@@ -187,7 +187,8 @@ fn petsc_solves_for_all() {
     equals_serial("contact_3d/friction_stick", &[asks[0], slips], EXACT, true);
 }
 
-/// Multigrid gets systems without multipliers; where these cannot be condensed a factorisation serves, and a warning says so.
+/// Multigrid gets systems without multipliers; where these cannot be condensed a factorisation serves, and a warning
+/// says so.
 #[test]
 fn multigrid_solves_for_all_but_multipliers() {
     if !cfg!(feature = "petsc") {

@@ -99,7 +99,8 @@ fn cook(element: &str, shape: Shape, cells: usize, law: &str, variables: Value, 
 }
 
 /// EXTERNAL: 23.96 at the middle for E = 1, ν = 1/3, F = 1 in plane stress (Cook 1974, and many after him); 32.2 to 32.3 at
-/// the corner for E = 70, a traction of 6.25 in plane strain (CalculiX, Code_Aster, Elmer), whose spread is 0.3 %. 0.3 and 0.5 % for 16 cells.
+/// the corner for E = 70, a traction of 6.25 in plane strain (CalculiX, Code_Aster, Elmer), whose spread is 0.3 %. 0.3
+/// and 0.5 % for 16 cells.
 #[test]
 fn cooks_membrane() {
     let law = |young: f64| json!({"YOUNG_MODULUS": young, "POISSON_RATIO": 1.0 / 3.0, "THICKNESS": 1.0});
@@ -113,9 +114,9 @@ fn cooks_membrane() {
     assert_close(strain[1], 32.25, 5e-3, "plane strain");
 }
 
-/// EXTERNAL: 16.442 at the middle for E = 1.125, ν → ½ in plane strain, the same shear modulus as above (published with mixed
-/// elements, e.g. Kasper and Taylor 2000); here ν = 0.4999, which moves it by 1e-4. 1 % for 32 cells with mean dilatation
-/// and for 64 with the volumetric strain at the nodes (2 % for triangles), while the plain element locks.
+/// EXTERNAL: 16.442 at the middle for E = 1.125, ν → ½ in plane strain, the same shear modulus as above (published with
+/// mixed elements, e.g. Kasper and Taylor 2000); here ν = 0.4999, which moves it by 1e-4. 1 % for 32 cells with mean
+/// dilatation and for 64 with the volumetric strain at the nodes (2 % for triangles), while the plain element locks.
 #[test]
 fn cooks_membrane_without_change_of_volume() {
     let law = || json!({"YOUNG_MODULUS": 1.125, "POISSON_RATIO": 0.4999, "THICKNESS": 1.0});
@@ -146,7 +147,8 @@ pub fn ring(a: f64, b: f64) -> impl Fn(Vec3) -> Vec3 {
     }
 }
 
-/// 1e-4 for eight cells of second order with curved sides; pressure follows the surface, which moves it by the strain, 1e-6.
+/// 1e-4 for eight cells of second order with curved sides; pressure follows the surface, which moves it by the strain,
+/// 1e-6.
 #[test]
 fn a_thick_cylinder_in_plane_strain() {
     let (a, b, young, nu, pressure) = (1.0, 2.0, 1e6, 0.3, 1.0);

@@ -70,8 +70,8 @@ fn neo_hookean_tension_along_one_and_two_axes() {
     }
 }
 
-/// With W = ½ μ (J^(−2/3) tr C − 3) + ½ κ (J − 1)² the stress is σ = μ J^(−5/3) dev b + κ (J − 1) 1. Along x the bar is pulled
-/// to 1.8, across nothing holds it; 1e-7 of the iteration, the bulk modulus being 500 times the other.
+/// With W = ½ μ (J^(−2/3) tr C − 3) + ½ κ (J − 1)² the stress is σ = μ J^(−5/3) dev b + κ (J − 1) 1. Along x the bar is
+/// pulled to 1.8, across nothing holds it; 1e-7 of the iteration, the bulk modulus being 500 times the other.
 #[test]
 fn tension_with_one_pressure_an_element() {
     let (young, nu, stretch): (f64, f64, f64) = (3.0, 0.499, 1.8);

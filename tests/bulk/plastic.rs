@@ -68,8 +68,8 @@ fn the_limit_load_of_a_thick_cylinder_as_a_solid_of_revolution() {
     assert!(ran.gauss("EQUIVALENT_PLASTIC_STRAIN", last).iter().all(|(_, p)| p[0] > 0.0), "the whole wall flows");
 }
 
-/// A bar with linear hardening, its ends moved to and fro: σ = σ_y + E H/(E + H) (ε − σ_y/E) when first loaded, then elastic
-/// until the yield surface, which has grown, is met on the other side. The state is uniform: 1e-9.
+/// A bar with linear hardening, its ends moved to and fro: σ = σ_y + E H/(E + H) (ε − σ_y/E) when first loaded, then
+/// elastic until the yield surface, which has grown, is met on the other side. The state is uniform: 1e-9.
 #[test]
 fn a_bar_is_loaded_unloaded_and_loaded_the_other_way() {
     let (young, hardening, yield_stress) = (200.0, 20.0, 0.4);
@@ -135,8 +135,8 @@ fn a_bar_pulled_to_twice_its_length() {
     }
 }
 
-/// A step to three times the length fails and is cut. Had its attempts left plastic strains behind, the end would not be that
-/// of the closed form, which knows one pull only: 1e-6, what the looser iteration leaves.
+/// A step to three times the length fails and is cut. Had its attempts left plastic strains behind, the end would not
+/// be that of the closed form, which knows one pull only: 1e-6, what the looser iteration leaves.
 #[test]
 fn a_cut_step_restores_the_plastic_strains() {
     let (young, hardening, yield_stress) = (200.0, 20.0, 0.4);
@@ -163,8 +163,9 @@ fn a_cut_step_restores_the_plastic_strains() {
     }
 }
 
-/// Under a traction beyond the yield stress a perfectly plastic bar has no equilibrium: the run ends, with what converged on
-/// disk, as not converged (exit code 3), and says where and what to do. Steps are cut up to the yield stress.
+/// Under a traction beyond the yield stress a perfectly plastic bar has no equilibrium: the run ends, with what
+/// converged on disk, as not converged (exit code 3), and says where and what to do. Steps are cut up to the yield
+/// stress.
 #[test]
 fn a_load_beyond_the_limit_ends_the_run_with_what_converged() {
     let grid = Grid::new(Shape::Hex8, &[2, 1, 1], |p| p);

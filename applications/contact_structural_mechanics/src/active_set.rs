@@ -4,8 +4,8 @@
 //! over its pairs. Tangentially q̂ = k P λ + c κ ε WS/A, with the weighted slip WS and the area A of the node, is compared
 //! with the bound that the law of friction sets under p̂: slips over areas are lengths, and states do not depend on units.
 //! A node that enters has no traction yet; there κ ε WS stands against p̂ = ε WG, both weighted.
-//! No tolerance is applied to p̂. A sliding node sticks again when its slip has turned against its traction and q̂, with the
-//! weight c of the deck or with c = 1, has fallen below the bound by a margin.
+//! No tolerance is applied to p̂. A sliding node sticks again when its slip has turned against its traction and q̂,
+//! with the weight c of the deck or with c = 1, has fallen below the bound by a margin.
 
 use crate::formulations::NodeState;
 use crate::friction_law::Bound;

@@ -2,8 +2,9 @@
 //!
 //! In the order of the data: [`interface`] makes facets of a deck's parts, [`search`] finds the pairs that may touch,
 //! [`mortar`] integrates a pair to D, M and the weighted gap, [`formulations`] state each method as the residual of one
-//! pair, [`pairs`] run them over blocks, [`interaction`] puts all of it into the Newton loop with the active set as a stage.
-//! `families` registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside them.
+//! pair, [`pairs`] run them over blocks, [`interaction`] puts all of it into the Newton loop with the active set as a
+//! stage. `families` registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside
+//! them.
 
 pub mod variables;
 pub mod interface;

@@ -12,7 +12,8 @@ use crate::registry::{self, Build, Kind};
 /// An engine for the settings of a deck.
 pub(super) type EngineFactory = fn(&Settings, Multipliers) -> Engine;
 
-/// The solver for `linear_solver_settings`, and a sentence saying which engine serves; iterative ones treat `multipliers` so.
+/// The solver for `linear_solver_settings`, and a sentence saying which engine serves; iterative ones treat
+/// `multipliers` so.
 ///
 /// # Errors
 /// An unknown name.

@@ -117,8 +117,8 @@ pub trait Interaction: Send + Sync {
         1.0
     }
 
-    /// What may be added to the tangent's diagonal of its unknowns where constraints are redundant, as by supports at the edge
-    /// of an interface; `None` where that must end the run.
+    /// What may be added to the tangent's diagonal of its unknowns where constraints are redundant, as by supports at
+    /// the edge of an interface; `None` where that must end the run.
     fn relaxation(&self) -> Option<f64> {
         None
     }

@@ -2,8 +2,8 @@
 //!
 //! v_{n+1} = Σ c_k u_{n+1−k}, a_{n+1} = Σ c_k v_{n+1−k}, k = 0 … order: the derivative at t_{n+1} of the polynomial through
 //! the last values, for steps of any lengths. M a_{n+1} + C v_{n+1} + f_int(u_{n+1}) = f_ext. The first
-//! steps, which have no such past, are of the order that theirs allows. Orders 1 and 2 are stable for every step; 3 to 5 are
-//! not for motion without damping.
+//! steps, which have no such past, are of the order that theirs allows. Orders 1 and 2 are stable for every step; 3 to
+//! 5 are not for motion without damping.
 
 use super::scheme::{Scheme, SchemeFactory, gather, predict_ballistic};
 use crate::assembly::Inertia;

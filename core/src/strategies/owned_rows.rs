@@ -60,7 +60,8 @@ impl OwnedRows {
     /// Solves `(bulk + coupling + loads) x = rhs` of all ranks, where `rhs` and the answer are whole; collective.
     ///
     /// # Errors
-    /// Those of [`DistributedSolver::solve`], with equations counted as in `rhs`; [`crate::Error::System`] when PETSc cannot start.
+    /// Those of [`DistributedSolver::solve`], with equations counted as in `rhs`; [`crate::Error::System`] when PETSc
+    /// cannot start.
     pub(super) fn solve(
         &mut self,
         assembler: &Assembler,

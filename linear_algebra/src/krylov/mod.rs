@@ -1,4 +1,5 @@
-//! Krylov engines: conjugate gradients and restarted GMRES with a preconditioner, on systems whose multipliers are condensed.
+//! Krylov engines: conjugate gradients and restarted GMRES with a preconditioner, on systems whose multipliers are
+//! condensed.
 
 mod conjugate_gradient;
 mod gmres;

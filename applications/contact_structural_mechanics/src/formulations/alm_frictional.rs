@@ -1,7 +1,8 @@
 //! Friction by the augmented Lagrangian with a vector multiplier.
 //!
 //! - inactive: p = 0, b_λ = −k²/ε (λ·n) n − k²/(κε) P λ;
-//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k²/ε (P λ − P q/k) with q = b(k λ·n + ε g̃) τ, b the bound of the law of friction;
+//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k²/ε (P λ − P q/k) with q = b(k λ·n + ε g̃) τ, b the bound of the law
+//!   of friction;
 //! - stick: p = f (k λ + ε g̃ n + κ ε s), b_λ = k g̃ n + k s.
 //!
 //! In space the direction τ of sliding turns with the trial traction, which the tangent knows.

@@ -9,8 +9,8 @@
 //! node by node, each with its components.
 //!
 //! Notation in the files of the families: k scale factor, ε nodal penalty, f dynamic factor, n nodal normal,
-//! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, b bound of the tangential traction, τ unit tangent.
-//! All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
+//! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, b bound of the tangential traction, τ
+//! unit tangent. All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
 
 pub mod alm_frictional;
 pub mod alm_frictionless;

@@ -1,7 +1,8 @@
 //! Friction by the penalty method.
 //!
-//! Normal part p = f ε g̃ n through D and M. Tangential part t = b(ε g̃) τ (slip, b the bound of the law) or κ ε s (stick) through the *changes* of
-//! the operators since the start of the step: b_slave −= f (D − D°)ᵀ P t, b_master += f (M − M°)ᵀ P t, with s objective.
+//! Normal part p = f ε g̃ n through D and M. Tangential part t = b(ε g̃) τ (slip, b the bound of the law) or κ ε s
+//! (stick) through the *changes* of the operators since the start of the step: b_slave −= f (D − D°)ᵀ P t, b_master +=
+//! f (M − M°)ᵀ P t, with s objective.
 
 use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
 use crate::mortar::{Operators, objective_slip, tangential};

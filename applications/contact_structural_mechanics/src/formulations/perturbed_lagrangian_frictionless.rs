@@ -1,8 +1,8 @@
 //! Frictionless contact by the perturbed Lagrangian with a scalar multiplier.
 //!
-//! ∫ k λ g − (k λ)²/(2ε): active: p = f k λ n and b_λ = k (g̃ − D_jj k λ/ε), so that the pressure is ε times the mean gap of
-//! the node. Inactive: p = 0 and b_λ = −k²/ε λ. Tends to the Lagrange multiplier method as ε grows, without its zero
-//! diagonal.
+//! ∫ k λ g − (k λ)²/(2ε): active: p = f k λ n and b_λ = k (g̃ − D_jj k λ/ε), so that the pressure is ε times the mean
+//! gap of the node. Inactive: p = 0 and b_λ = −k²/ε λ. Tends to the Lagrange multiplier method as ε grows, without its
+//! zero diagonal.
 
 use super::{Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use zelus_core::scalar::Real;

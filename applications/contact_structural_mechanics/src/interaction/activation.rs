@@ -53,9 +53,9 @@ pub(super) enum Start<'a> {
 
 /// Step start: which nodes are active. Gaps are weighted gaps over areas, so they are those of the mortar mapping.
 ///
-/// A node in `at_origin`, which faces the very origin of the coordinates, starts inactive unless it is active already: Kratos
-/// takes it as unmapped. Normals of the step are those after its first iteration, so the first guess decides a little of
-/// the answer and is the same here.
+/// A node in `at_origin`, which faces the very origin of the coordinates, starts inactive unless it is active already:
+/// Kratos takes it as unmapped. Normals of the step are those after its first iteration, so the first guess decides a
+/// little of the answer and is the same here.
 pub(super) fn start(
     part: &mut ModelPart,
     slaves: &[u32],

@@ -41,7 +41,8 @@ impl Default for FrictionSettings {
 }
 
 /// Writes the number of the law, the mean over the facets of a node, and says how stick and slip are told apart.
-/// Facets whose properties have none count with the pair's coefficient where the law takes one, else with what the node has. Without a number anywhere, contact always slides.
+/// Facets whose properties have none count with the pair's coefficient where the law takes one, else with what the node
+/// has. Without a number anywhere, contact always slides.
 pub(super) fn prepare(
     part: &mut ModelPart,
     interfaces: &[Interface],
@@ -88,8 +89,8 @@ pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRul
     }
 }
 
-/// The warning that friction pushes sliding nodes along the slip of the accepted step: it took its direction from the first,
-/// sticking iterate, and the normals have turned by more than the angle of friction since.
+/// The warning that friction pushes sliding nodes along the slip of the accepted step: it took its direction from the
+/// first, sticking iterate, and the normals have turned by more than the angle of friction since.
 pub(super) fn warn_of_pushing(
     part: &ModelPart,
     slaves: &[u32],

@@ -29,7 +29,8 @@ pub(super) struct Late {
 
 /// Facets that are in each other by more than `depth` now and are no pair.
 ///
-/// They are those that a search would find now, within `limit`, and, however deep, those that crossed in the step. Weighted gaps and areas of the nodes must be those of the present state.
+/// They are those that a search would find now, within `limit`, and, however deep, those that crossed in the step. Weighted
+/// gaps and areas of the nodes must be those of the present state.
 ///
 /// # Errors
 /// Those of making blocks.

@@ -16,9 +16,10 @@ use crate::variables::{
 /// Writes TANGENT_XI and TANGENT_ETA of the slave nodes, and how TANGENT_XI turns.
 ///
 /// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
-/// multipliers, it is that of the weighted slip. For sliding nodes in space, whose direction is more than a sign, it is that
-/// of the trial traction q̂. A node that has none of them above round-off keeps the direction it had: at step start that is a
-/// far better guess than any fixed tangent. `pair_counts` holds the number of overlapping pairs of every node.
+/// multipliers, it is that of the weighted slip. For sliding nodes in space, whose direction is more than a sign, it is
+/// that of the trial traction q̂. A node that has none of them above round-off keeps the direction it had: at step
+/// start that is a far better guess than any fixed tangent. `pair_counts` holds the number of overlapping pairs of
+/// every node.
 pub(super) fn write_tangents(
     part: &mut ModelPart,
     slaves: &[u32],

@@ -1,8 +1,8 @@
 //! What a pair goes on doing while a step is iterated, so that its operators stay continuous.
 //!
-//! The reference program's integration jumps: cells share the first vertex of the overlap by a rule on kinds of vertices, an
-//! overlap of one triangle takes plain functions for dual ones, a sliver counts for nothing. Where an equilibrium lies on
-//! such a jump no state is one, however short the step; a pair that keeps what it did last has one.
+//! The reference program's integration jumps: cells share the first vertex of the overlap by a rule on kinds of
+//! vertices, an overlap of one triangle takes plain functions for dual ones, a sliver counts for nothing. Where an
+//! equilibrium lies on such a jump no state is one, however short the step; a pair that keeps what it did last has one.
 
 use super::geometry::PairGeometry;
 use super::operators::Operators;

@@ -1,4 +1,5 @@
-//! Elements, conditions, laws, schemes and solvers of the reference program that are known and not there, and what to use instead.
+//! Elements, conditions, laws, schemes and solvers of the reference program that are known and not there, and what to
+//! use instead.
 
 use zelus_core::register_absent;
 

@@ -6,10 +6,10 @@
 //! displacements: ∫ N_i b − B_iᵀ (σ(ε) − κ τ₂ θ m) dV,
 //! volumetric strain: ∫ (1 − τ₂) κ N_i θ + κ τ₁ ∇N_i · (κ ∇e + b) dV.
 //!
-//! The terms with τ are algebraic subscales (ASGS; Cervera, Chiumenti and Codina 2010), so that displacements and strain can
-//! have the same shape functions: τ₁ = tr (Σ B_iᵀ D B_i)⁻¹ (length² over stress), τ₂ = min(0.01, 4 μ/κ), κ the sum of the
-//! normal block of D over d². D is the law's matrix without strain: the stabilisation does not change with plastic flow
-//! (in the reference program it follows the law's matrix), and inertia stays out of it.
+//! The terms with τ are algebraic subscales (ASGS; Cervera, Chiumenti and Codina 2010), so that displacements and
+//! strain can have the same shape functions: τ₁ = tr (Σ B_iᵀ D B_i)⁻¹ (length² over stress), τ₂ = min(0.01, 4 μ/κ), κ
+//! the sum of the normal block of D over d². D is the law's matrix without strain: the stabilisation does not change
+//! with plastic flow (in the reference program it follows the law's matrix), and inertia stays out of it.
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};

@@ -7,8 +7,8 @@
 //! Not compared, because ours differs on purpose: axisymmetric lumped mass (Kratos leaves out 2πr), forces of the
 //! axisymmetric total Lagrangian element (Kratos weighs with the present radius, so its tangent is no derivative), Cauchy
 //! stress of Kirchhoff–Saint-Venant under small strain (Kratos adds ½ ε² to ε there only), and the 15-node prism (Kratos'
-//! shape functions are linear in the triangle at half height, hence not quadratic), and the tangent of neo-Hooke under small
-//! strain (Kratos' is exact to first order only).
+//! shape functions are linear in the triangle at half height, hence not quadratic), and the tangent of neo-Hooke under
+//! small strain (Kratos' is exact to first order only).
 
 use zelus_core::registry::Kind;
 
@@ -92,10 +92,10 @@ fn agrees_with_the_reference_program() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// EXTERNAL: forces, tangent and Cauchy stress of the same cells with plastic laws and mean dilatation. The J2 laws agree to
-/// round-off; the generic ones stop their return at 1e-4 of the yield stress, and have a tangent by perturbation.
-/// Not compared: exponential hardening, whose yield stress Kratos takes from the beginning of the step, and the generic law
-/// of plane strain, whose von Mises stress there leaves out the stress across the plane.
+/// EXTERNAL: forces, tangent and Cauchy stress of the same cells with plastic laws and mean dilatation. The J2 laws
+/// agree to round-off; the generic ones stop their return at 1e-4 of the yield stress, and have a tangent by
+/// perturbation. Not compared: exponential hardening, whose yield stress Kratos takes from the beginning of the step,
+/// and the generic law of plane strain, whose von Mises stress there leaves out the stress across the plane.
 #[rustfmt::skip]
 const PLASTIC: &[(&str, &str, &[(&str, f64)], f64, [f64; 3])] = &[
     ("SmallDisplacementElement3D8N", "SmallStrainJ2Plasticity3DLaw", HARDENING, 1e-12, [3.896602914809094, 8.649056616293866, 19.211663937022077]),
