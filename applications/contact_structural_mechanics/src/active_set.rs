@@ -125,6 +125,9 @@ impl Decision {
     }
 }
 
+/// Share of the bound below which a multiplier gives no direction: what solving leaves of one that is zero.
+const LEAST_TRACTION: f64 = 1e-9;
+
 /// Decides for a node of the frictional augmented Lagrangian.
 pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let pressure = node.pressure();
@@ -161,7 +164,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let entered = !node.state.is_active();
     let direction = if sliding && rule != SlipRule::Pure {
         node.tangent
-    } else if norm(lambda_t) > 0.0 {
+    } else if node.scale_factor * norm(lambda_t) > LEAST_TRACTION * bound {
         lambda_t
     } else {
         q
