@@ -15,6 +15,10 @@ const TOLERANCE: f64 = 1e-9;
 /// reached on ways that depend on which node is taken first.
 const TOLERANCE_OF_SLIDING: f64 = 1e-5;
 
+/// The same for bodies that hang on one or two nodes under a light load: the forces that balance there are a difference of
+/// much larger ones in the stiff body, whose round-off is 2e-9 of the pressure.
+const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-8;
+
 /// Values below are zero but for round-off; the cases are of size one.
 const ZERO: f64 = 1e-18;
 
@@ -132,8 +136,12 @@ fn difference(folder: &Path) -> Result<(), String> {
     std::fs::write(other.path().join(&mesh), text).map_err(|e| e.to_string())?;
     run(one.path())?;
     run(other.path()).map_err(|said| format!("numbered otherwise: {said}"))?;
-    let sliding = folder.to_string_lossy().contains("slide");
-    let tolerance = if sliding { TOLERANCE_OF_SLIDING } else { TOLERANCE };
+    let name = folder.to_string_lossy();
+    let tolerance = match () {
+        () if name.contains("slide") => TOLERANCE_OF_SLIDING,
+        () if name.contains("spheres_light") => TOLERANCE_OF_LIGHT_LOADS,
+        () => TOLERANCE,
+    };
     let (one, other) = (histories(one.path()), histories(other.path()));
     if one.is_empty() {
         return Err("nothing is compared".into());
