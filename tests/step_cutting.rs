@@ -80,8 +80,8 @@ fn the_state_before_a_failed_attempt_comes_back_to_the_bit() {
 
 #[test]
 fn contact_with_friction_comes_back_to_the_bit() {
-    let folder = root().join("tests/cases/contact_2d/friction_tresca_slide");
-    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 5");
+    let folder = root().join("tests/cases/contact_3d/friction_tresca_slide");
+    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 4");
     let cut = run(&folder, &[few]);
     assert_eq!(cut.code, Some(0), "{}", cut.text);
     let (rules, end) = as_intervals(&cut.lengths);
