@@ -8,6 +8,8 @@ mod linear_solvers;
 mod mesh;
 mod orchestrator;
 mod report;
+mod saved;
+mod sharing;
 mod solver;
 mod stage;
 mod time_stepping;

@@ -146,7 +146,7 @@ impl ArcLength {
             interaction.begin_step(part)?;
         }
         self.newton.assembler.begin_step(part, interactions)?;
-        if self.newton.start(part, &[], false)?.iter().any(|d| *d != 0.0) {
+        if self.newton.start(part, None)?.iter().any(|d| *d != 0.0) {
             let fact = "arc length scales loads, but a prescribed displacement changes";
             return Err(Diagnostic::error("arc-length", fact)
                 .remedy("keep it constant, or use \"newton_raphson\"")

@@ -153,8 +153,8 @@ impl NewtonRaphson {
             self.scheme.keep(forces);
         }
         let begin = self.assembler.values(part);
-        let leads = self.leads(part, interactions);
-        let mut prescribed = self.start(part, interactions, leads)?;
+        let led = self.led_nodes(part, interactions);
+        let mut prescribed = self.start(part, led.as_deref())?;
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
         }
@@ -230,7 +230,8 @@ impl NewtonRaphson {
             let constraints = constraints_version(interactions);
             // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
             // serves for what the interactions take from it and nothing else.
-            let afresh = leads && iteration == 1 && self.overshoots(part, interactions, &references.start[0])?;
+            let afresh =
+                led.is_some() && iteration == 1 && self.overshoots(part, interactions, &references.start[0])?;
             let change = if afresh {
                 interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
                 SetChange::default()

@@ -10,17 +10,10 @@ impl NewtonRaphson {
     /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
     /// left at their old values: the first solve takes them on through the tangent.
     ///
-    /// A step that `leads` keeps them at their new values instead, ahead of the mesh.
-    pub(in crate::strategies) fn start(
-        &mut self,
-        part: &mut ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        leads: bool,
-    ) -> Result<Vec<f64>> {
+    /// With `led` nodes they stay at their new values instead, ahead of the mesh, which follows at those nodes only.
+    pub(in crate::strategies) fn start(&mut self, part: &mut ModelPart, led: Option<&[u32]>) -> Result<Vec<f64>> {
         let targets = self.assembler.values(part);
-        let led = interactions.iter().find_map(|interaction| interaction.led_nodes());
-        let constrained = part.constraints.iter().any(|c| c.active);
-        if let Some(led) = led.filter(|_| leads) {
+        if let Some(led) = led {
             led.iter().for_each(|&node| part.nodes.follow(node as usize));
             return Ok(vec![0.0; targets.len()]);
         }
@@ -38,7 +31,7 @@ impl NewtonRaphson {
         let mut increment: Vec<f64> = (0..start.len())
             .map(|n| if self.assembler.equations().is_fixed(n) { targets[n] - start[n] } else { 0.0 })
             .collect();
-        if constrained {
+        if part.constraints.iter().any(|c| c.active) {
             part.dofs.scatter_add(&increment, &mut part.nodes);
             let followed = self.constraint_increment(part);
             let back: Vec<f64> = increment.iter().map(|d| -d).collect();
@@ -52,13 +45,16 @@ impl NewtonRaphson {
         Ok(increment)
     }
 
-    /// Whether the step begins with prescribed values ahead of the mesh, because its first iterate decides on the answer.
+    /// The nodes at which the mesh follows prescribed values at once, because the first iterate of the step decides on the
+    /// answer; `None` where the step begins as others do.
     ///
     /// Not so after a failed attempt, since elements may turn inside out that way.
-    pub(super) fn leads(&self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> bool {
-        let led = interactions.iter().any(|interaction| interaction.led_nodes().is_some());
+    pub(super) fn led_nodes(&self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Option<Vec<u32>> {
         let free = !self.failed && self.settings.move_mesh && !part.constraints.iter().any(|c| c.active);
-        led && free && self.scheme.is_static()
+        if !free || !self.scheme.is_static() {
+            return None;
+        }
+        interactions.iter().find_map(|interaction| interaction.led_nodes())
     }
 
     /// Whether forces are farther out of balance after the first iteration than before it, in a step that prescribes motion.
@@ -92,7 +88,7 @@ impl NewtonRaphson {
         let fixed = |n: usize| self.assembler.equations().is_fixed(n);
         let back: Vec<f64> = (0..now.len()).map(|n| if fixed(n) { 0.0 } else { begin[n] - now[n] }).collect();
         part.dofs.scatter_add(&back, &mut part.nodes);
-        let prescribed = self.start(part, interactions, false)?;
+        let prescribed = self.start(part, None)?;
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
         }
