@@ -1,11 +1,12 @@
 //! What an element takes from its properties, read once.
 
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
-use zelus_core::entities::BlockRequest;
+use zelus_core::entities::{BlockRequest, StepView};
 use zelus_core::geometry::{MAX_ORDER, Shape, ShapeTable};
 use zelus_core::model::Properties;
 
 use crate::laws::{ConstitutiveLaw, law_of};
+use crate::variables::VOLUME_ACCELERATION;
 
 /// Law and constants of one set of properties for one shape.
 pub(super) struct Material<const S: usize> {
@@ -100,6 +101,13 @@ impl<const S: usize> Material<S> {
     pub(super) fn remembered<'a>(&self, g: usize, state: &'a [f64]) -> &'a [f64] {
         let size = self.law.history();
         &state[g * size..(g + 1) * size]
+    }
+
+    /// Whether elements of these materials weigh anything: they have mass, and an acceleration of volume acts somewhere.
+    pub(super) fn have_weight(materials: &[Self], view: &StepView<'_>) -> bool {
+        materials.iter().any(|m| m.density > 0.0)
+            && (materials.iter().any(|m| m.acceleration != [0.0; 3])
+                || view.nodes.history.values(&VOLUME_ACCELERATION, 0).iter().any(|v| *v != 0.0))
     }
 
     /// The material of the properties with that id.

@@ -268,9 +268,7 @@ impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Ke
     }
 
     fn has_external(&self, view: &StepView<'_>) -> bool {
-        self.materials.iter().any(|m| m.density > 0.0)
-            && (self.materials.iter().any(|m| m.acceleration != [0.0; 3])
-                || view.nodes.history.values(&VOLUME_ACCELERATION, 0).iter().any(|v| *v != 0.0))
+        Material::have_weight(&self.materials, view)
     }
 
     /// ∫ ρ N_i N_j on the displacements, its row sums when lumped.
@@ -325,22 +323,10 @@ impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Ke
         variable: &str,
     ) -> Option<Gauss> {
         let (material, values) = (self.material(entity), Self::values(entity, view));
-        let table = material.rule;
-        let mut out = Gauss::default();
-        for g in 0..table.len() {
+        results::gauss(material, StressMeasure::Pk2, false, variable, |g| {
             let point = Self::point(material, g, entity, &values, state).ok()?;
-            match variable {
-                "INTEGRATION_WEIGHT" => out.values.push(point.weight),
-                _ => {
-                    let law = material.law.as_ref();
-                    results::value(law, &point.state, StressMeasure::Pk2, false, variable, &mut out.values)?;
-                }
-            }
-            out.weights.push(point.weight / material.thickness);
-            out.shape.extend_from_slice(table.n_at(g));
-        }
-        out.components = out.values.len() / table.len();
-        Some(out)
+            Some((point.state, point.weight / material.thickness))
+        })
     }
 
     fn gauss_variables() -> &'static [&'static str] {

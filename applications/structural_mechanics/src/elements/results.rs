@@ -4,10 +4,9 @@
 //! the stress the formulation integrates; in the plane it takes in-plane components only, as in Kratos. Cauchy stress
 //! and strains of axisymmetric elements have two zeros appended, as in Kratos.
 
-use zelus_core::entities::{Gather, Gauss, StepView};
+use zelus_core::entities::Gauss;
 
-use super::formulation::Formulation;
-use super::solid::Solid;
+use super::material::Material;
 use crate::laws::{ConstitutiveLaw, StrainState, StressMeasure};
 use crate::tensor::{Tensor, strain_tensor, stress_tensor};
 
@@ -35,43 +34,32 @@ pub(super) const VARIABLES: &[&str] = &[
 ];
 
 /// A variable at all Gauss points of one element; `None` when unknown or when the element is turned inside out.
-pub(super) fn gauss<F: Formulation, const NODES: usize, const DIM: usize, const S: usize>(
-    solid: &Solid<F, NODES, DIM, S>,
-    entity: &Gather<'_, NODES>,
-    state: &[f64],
-    view: &StepView<'_>,
+///
+/// `point` gives the strain of a point and the initial volume it stands for, per thickness. `measure` is that of the stress
+/// the formulation integrates; the vectors of a `ring` end in two zeros.
+pub(super) fn gauss<'a, const S: usize>(
+    material: &Material<S>,
+    measure: StressMeasure,
+    ring: bool,
     variable: &str,
+    point: impl Fn(usize) -> Option<(StrainState<'a, S>, f64)>,
 ) -> Option<Gauss> {
-    let material = solid.material(entity);
-    let motion = solid.motion(entity, view);
-    let mean = Solid::<F, NODES, DIM, S>::mean_gradients(material, entity);
-    let [_, pressure] = Solid::<F, NODES, DIM, S>::pressure(material, entity, &motion, state).ok()?;
-    let table = material.rule;
     let mut out = Gauss::default();
-    for g in 0..table.len() {
-        let mut state = Solid::<F, NODES, DIM, S>::point(material, g, entity, &motion, &mean, state).ok()?.state;
-        state.pressure = pressure;
-        let weight = Solid::<F, NODES, DIM, S>::initial_weight(table, g, entity);
+    for g in 0..material.rule.len() {
+        let (state, weight) = point(g)?;
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
-            _ => value(
-                material.law.as_ref(),
-                &state,
-                F::MEASURE,
-                S == 4 && !F::MEAN_DILATATION,
-                variable,
-                &mut out.values,
-            )?,
+            _ => value(material.law.as_ref(), &state, measure, ring, variable, &mut out.values)?,
         }
         out.weights.push(weight);
-        out.shape.extend_from_slice(table.n_at(g));
+        out.shape.extend_from_slice(material.rule.n_at(g));
     }
-    out.components = out.values.len() / table.len();
+    out.components = out.values.len() / material.rule.len();
     Some(out)
 }
 
 /// Appends a variable of one Gauss point; `None` when unknown.
-pub(super) fn value<const S: usize>(
+fn value<const S: usize>(
     law: &dyn ConstitutiveLaw<S>,
     state: &StrainState<'_, S>,
     measure: StressMeasure,

@@ -118,12 +118,12 @@ pub(super) fn nodal_vectors<const NODES: usize>(
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
     const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
 
-    pub(super) fn material(&self, entity: &Gather<'_, NODES>) -> &Material<S> {
+    fn material(&self, entity: &Gather<'_, NODES>) -> &Material<S> {
         Material::find(&self.materials, entity.properties.id)
     }
 
     /// What the formulation reads of the motion of the nodes.
-    pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
+    fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
         if !F::FINITE {
             return Motion { u: displacement, ahead: None };
@@ -142,14 +142,14 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     }
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
-    pub(super) fn initial_weight(table: &ShapeTable, g: usize, entity: &Gather<'_, NODES>) -> f64 {
+    fn initial_weight(table: &ShapeTable, g: usize, entity: &Gather<'_, NODES>) -> f64 {
         let (_, det) = physical_gradients(&entity.initial, &table.dn::<NODES, DIM>()[g]);
         let turn = if Self::AXISYMMETRIC { 2.0 * PI * radius(&table.n()[g], &entity.initial) } else { 1.0 };
         table.weight(g) * det * turn
     }
 
     /// Mean over the element of the gradients of the shape functions; zero without mean dilatation.
-    pub(super) fn mean_gradients(material: &Material<S>, entity: &Gather<'_, NODES>) -> [[f64; DIM]; NODES] {
+    fn mean_gradients(material: &Material<S>, entity: &Gather<'_, NODES>) -> [[f64; DIM]; NODES] {
         let mut sum = [[0.0; DIM]; NODES];
         if F::MEAN_DILATATION {
             let mut volume = 0.0;
@@ -167,7 +167,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     }
 
     /// Kinematics at Gauss point `g` of a motion; `mean` are the mean gradients, `state` is the element's.
-    pub(super) fn point<'a>(
+    fn point<'a>(
         material: &Material<S>,
         g: usize,
         entity: &Gather<'_, NODES>,
@@ -259,7 +259,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     }
 
     /// Volume and pressure of an element that holds one, p = −κ (J̄ − 1); no pressure in others.
-    pub(super) fn pressure(
+    fn pressure(
         material: &Material<S>,
         entity: &Gather<'_, NODES>,
         motion: &Motion<NODES>,
@@ -469,9 +469,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
     }
 
     fn has_external(&self, view: &StepView<'_>) -> bool {
-        self.materials.iter().any(|m| m.density > 0.0)
-            && (self.materials.iter().any(|m| m.acceleration != [0.0; 3])
-                || view.nodes.history.values(&VOLUME_ACCELERATION, 0).iter().any(|v| *v != 0.0))
+        Material::have_weight(&self.materials, view)
     }
 
     /// Consistent: ∫ ρ N_i N_j on the initial configuration, one Gauss order above the element's.
@@ -537,7 +535,14 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         view: &StepView<'_>,
         variable: &str,
     ) -> Option<Gauss> {
-        results::gauss(self, entity, state, view, variable)
+        let material = self.material(entity);
+        let (motion, mean) = (self.motion(entity, view), Self::mean_gradients(material, entity));
+        let [_, pressure] = Self::pressure(material, entity, &motion, state).ok()?;
+        results::gauss(material, F::MEASURE, S == 4 && !F::MEAN_DILATATION, variable, |g| {
+            let point = Self::point(material, g, entity, &motion, &mean, state).ok()?;
+            let weight = Self::initial_weight(material.rule, g, entity);
+            Some((StrainState { pressure, ..point.state }, weight))
+        })
     }
 
     fn gauss_variables() -> &'static [&'static str] {
