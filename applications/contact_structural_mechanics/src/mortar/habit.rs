@@ -4,11 +4,6 @@
 //! vertices, an overlap of one triangle takes plain functions for dual ones, a sliver counts for nothing. Where an
 //! equilibrium lies on such a jump no state is one, however short the step; a pair that keeps what it did last has one.
 
-use super::geometry::PairGeometry;
-use super::operators::Operators;
-use super::segmentation_3d::Polygon;
-use super::settings::SegmentationSettings;
-
 /// The choices a pair keeps; none at first.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Habit {
@@ -20,29 +15,9 @@ pub struct Habit {
     pub slivers: bool,
 }
 
-impl Habit {
-    /// The choices that gave these operators.
-    pub fn of<const NS: usize, const NM: usize>(
-        pair: &PairGeometry<f64, NS, NM>,
-        settings: &SegmentationSettings,
-        found: &Operators<f64, NS, NM>,
-    ) -> Self {
-        let origin = || {
-            // Intervals of the plane have no such choice.
-            let polygon = if NS == 2 { None } else { Polygon::new(pair, settings) }?;
-            Some(polygon.local(polygon.vertices()[0]))
-        };
-        Self {
-            origin: pair.habit.origin.or_else(origin),
-            plain: pair.habit.plain || !found.is_diagonal(),
-            slivers: true,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::{Overlap, operators};
+    use super::super::{Overlap, PairGeometry, SegmentationSettings, habit_of, operators};
     use super::*;
 
     /// Two trapezoids; moved by `x`, a master node leaves the slave across its lower edge.
@@ -72,7 +47,7 @@ mod tests {
         let Overlap::Cells(found) = operators(&pair(1e-9, Habit::default()), &SegmentationSettings::default()) else {
             panic!("they overlap")
         };
-        let kept = Habit::of(&pair(1e-9, Habit::default()), &SegmentationSettings::default(), &found);
+        let kept = habit_of(&pair(1e-9, Habit::default()), &SegmentationSettings::default(), &found);
         assert!(kept.origin.is_some() && !kept.plain);
         assert!(jump(Habit::default()) > 1e-4, "{}", jump(Habit::default()));
         assert!(jump(kept) < 1e-7, "{}", jump(kept));

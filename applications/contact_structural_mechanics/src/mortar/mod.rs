@@ -38,7 +38,7 @@ pub mod slip;
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{PairGeometry, dimension};
 pub use habit::Habit;
-pub use operators::{Operators, Overlap, operators, operators_on_flat_master};
+pub use operators::{Operators, Overlap, habit_of, operators, operators_on_flat_master};
 pub use settings::{IntegrationOrder, SegmentationSettings};
 pub use slip::{incremental_slip, is_objective, objective_slip, tangent, tangential};
 

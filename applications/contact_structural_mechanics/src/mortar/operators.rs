@@ -8,6 +8,7 @@
 
 use super::flat_master::FlatMaster;
 use super::geometry::PairGeometry;
+use super::habit::Habit;
 use super::quadrature;
 use super::segmentation_2d;
 use super::segmentation_3d::{Polygon, Vertex};
@@ -72,6 +73,20 @@ pub fn operators_on_flat_master<T: Real, const NS: usize, const NM: usize>(
     settings: &SegmentationSettings,
 ) -> Overlap<Operators<T, NS, NM>> {
     integrated(Sums::new(pair, Some(FlatMaster::new(pair))), settings)
+}
+
+/// The choices that gave the operators `found` of a pair.
+pub fn habit_of<const NS: usize, const NM: usize>(
+    pair: &PairGeometry<f64, NS, NM>,
+    settings: &SegmentationSettings,
+    found: &Operators<f64, NS, NM>,
+) -> Habit {
+    let origin = || {
+        // Intervals of the plane have no such choice.
+        let polygon = if NS == 2 { None } else { Polygon::new(pair, settings) }?;
+        Some(polygon.local(polygon.vertices()[0]))
+    };
+    Habit { origin: pair.habit.origin.or_else(origin), plain: pair.habit.plain || !found.is_diagonal(), slivers: true }
 }
 
 fn integrated<T: Real, const NS: usize, const NM: usize>(

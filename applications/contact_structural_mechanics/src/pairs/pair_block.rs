@@ -15,7 +15,7 @@ use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
 use crate::interaction::{NormalVariation, StepParameters};
-use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, operators, weighted_gap};
+use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
     DYNAMIC_FACTOR, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
 };
@@ -319,7 +319,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
         let habit = |at: usize| {
             let geometry = self.geometry(at, view);
             let found = operators(&geometry, &self.parameters.segmentation).cells().filter(|_| own(self.nodes(at)));
-            found.map_or(geometry.habit, |found| Habit::of(&geometry, &self.parameters.segmentation, &found))
+            found.map_or(geometry.habit, |found| habit_of(&geometry, &self.parameters.segmentation, &found))
         };
         let habits: Vec<Habit> = (0..self.pairs.len()).map(habit).collect();
         self.pairs.iter_mut().zip(habits).for_each(|(pair, habit)| pair.habit = habit);
