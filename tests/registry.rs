@@ -62,7 +62,7 @@ fn known_names_that_are_not_there_say_what_to_use_instead() {
             "SmallDisplacementMixedVolumetricStrainOssElement2D3N",
             "SmallDisplacementMixedVolumetricStrainElement",
         ),
-        (Kind::Element, "TotalLagrangianMixedVolumetricStrainElement3D4N", "TotalLagrangianQ1P0MixedElement3D8N"),
+        (Kind::Element, "TotalLagrangianQ1P0MixedElement2D4N", "TotalLagrangianMixedVolumetricStrainElement2D3N"),
         (Kind::Condition, "PointMomentCondition3D1N", "PointLoadCondition"),
         (Kind::Condition, "DisplacementControlCondition3D1N", "arc_length"),
         (

@@ -124,10 +124,12 @@ impl Motion {
     }
 }
 
-/// Values of the unknowns for displacements of the nodes; `None` when there are other unknowns than displacements.
+/// Values of the unknowns for displacements of the nodes, volume kept; `None` when there are other unknowns.
 fn displacements(specimen: &Specimen, of_node: impl Fn(usize) -> Vec3) -> Option<Vec<f64>> {
-    let value = |(node, variable): (u32, zelus_core::model::ScalarVariable)| {
-        (variable.column == DISPLACEMENT.name()).then(|| of_node(node as usize)[variable.offset()])
+    let value = |(node, variable): (u32, zelus_core::model::ScalarVariable)| match variable.column {
+        column if column == DISPLACEMENT.name() => Some(of_node(node as usize)[variable.offset()]),
+        "VOLUMETRIC_STRAIN" => Some(0.0),
+        _ => None,
     };
     specimen.rows().into_iter().map(value).collect()
 }

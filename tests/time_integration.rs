@@ -209,6 +209,44 @@ fn rayleigh_damping_comes_from_the_solver_or_from_the_properties() {
     }
 }
 
+/// One element in uniform strain: with VOLUMETRIC_STRAIN at its nodes it swings as the one of displacements alone does.
+///
+/// Where damping goes with the stiffness, VOLUMETRIC_STRAIN is that of u + β v: its stress has the damping in it.
+#[test]
+fn volumetric_strain_at_the_nodes_moves_with_every_implicit_scheme() {
+    let mixed = [
+        ("mesh.mdpa", "SmallDisplacementElement2D4N", "SmallDisplacementMixedVolumetricStrainElement2D4N"),
+        (DECK, "\"time_stepping\"", "\"volumetric_strain_dofs\": true, \"time_stepping\""),
+        (DECK, "\"DISPLACEMENT\", \"VELOCITY\"", "\"VOLUMETRIC_STRAIN\", \"DISPLACEMENT\", \"VELOCITY\""),
+    ];
+    let damped =
+        (DECK, "\"rayleigh_alpha\": 0.0, \"rayleigh_beta\": 0.0", "\"rayleigh_alpha\": 0.2, \"rayleigh_beta\": 0.1");
+    let by_properties =
+        (MATERIAL, "\"DENSITY\": 3.0", "\"DENSITY\": 3.0, \"RAYLEIGH_ALPHA\": 0.2, \"RAYLEIGH_BETA\": 0.1");
+    let lumped = (MATERIAL, "\"DENSITY\": 3.0", "\"DENSITY\": 2.0, \"COMPUTE_LUMPED_MASS_MATRIX\": true");
+    let euler =
+        ["bdf1", "bdf2", "bdf3", "bdf4", "bdf5", "pseudo_static"].map(|name| format!("\"scheme_type\": \"{name}\""));
+    for text in [NEWMARK, BOSSAK, ALPHA].into_iter().chain(euler.iter().map(String::as_str)) {
+        for (more, beta) in [(None, 0.0), (Some(lumped), 0.0), (Some(damped), 0.1), (Some(by_properties), 0.1)] {
+            if text.contains("pseudo_static") && beta == 0.0 {
+                continue;
+            }
+            let plain: Vec<_> = std::iter::once((DECK, NEWMARK, text)).chain(more).collect();
+            let changes: Vec<_> = plain.iter().copied().chain(mixed).collect();
+            let [plain, found] = [plain, changes].map(|changes| oscillate(&changes, 0.1, 3.0));
+            for step in 0..plain.len() {
+                for quantity in ["DISPLACEMENT_X", "VELOCITY_X", "ACCELERATION_X", "REACTION_X"] {
+                    let [a, b] = [&plain, &found].map(|results| results.nodal(quantity, step)[&2]);
+                    assert!((a - b).abs() < 1e-9, "{text}, {more:?}, step {step}: {quantity} {b} instead of {a}");
+                }
+                let of = |quantity| found.nodal(quantity, step)[&2];
+                let strain = of("DISPLACEMENT_X") + beta * of("VELOCITY_X");
+                assert!((of("VOLUMETRIC_STRAIN") - strain).abs() < 1e-9, "{text}, {more:?}, step {step}: {strain}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_lumped_mass_comes_from_the_properties() {
     let lumped = (MATERIAL, "\"DENSITY\": 3.0", "\"DENSITY\": 2.0, \"COMPUTE_LUMPED_MASS_MATRIX\": true");

@@ -124,7 +124,7 @@ class Mesh:
     """Nodes, elements, conditions and sub model parts of one deck."""
 
     def __init__(self):
-        self.nodes, self.elements, self.condition_list, self.parts = {}, [], [], {}
+        self.nodes, self.elements, self.condition_list, self.parts, self.nodal_data = {}, [], [], {}, {}
 
     def add_node(self, at):
         self.nodes[len(self.nodes) + 1] = tuple(at) + (0.0,) * (3 - len(at))
@@ -174,6 +174,10 @@ class Mesh:
                 out.append(f"\nBegin {kind} {name}\n")
                 out += [f"{i} 0 {' '.join(map(str, nodes))}\n" for i, (_, nodes) in group]
                 out.append(f"End {kind}\n")
+        for name, values in self.nodal_data.items():
+            out.append(f"\nBegin NodalData {name}\n")
+            out += [f"{i} 0 {value:.12g}\n" for i, value in values.items()]
+            out.append("End NodalData\n")
         for name, lists in self.parts.items():
             out.append(f"\nBegin SubModelPart {name}\n")
             for kind, ids in zip(("Nodes", "Elements", "Conditions"), lists):

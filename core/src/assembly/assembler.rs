@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use zelus_linear_algebra::{Csr, Symmetry, System};
 
+use inertia::without_rates;
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
@@ -321,6 +322,8 @@ impl Assembler {
             self.traits.variable_bulk || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
         if stale {
             let mut values = self.stiffness(part)?;
+            // Damping acts on rates only, which takes the symmetry from unknowns without them.
+            let mut damped = false;
             if inertia.is_some() {
                 let [mass_factor, damping_factor, alpha, beta] = key;
                 let [mass_factor, stiffness_factor] = if single {
@@ -328,17 +331,23 @@ impl Assembler {
                 } else {
                     [mass_factor, 1.0]
                 };
-                let mass = self.mass(part)?;
-                for (value, m) in values.iter_mut().zip(mass) {
-                    *value = stiffness_factor * *value + mass_factor * m;
+                let still = without_rates(part);
+                let moves = |column: &u32| !still.get(*column as usize).copied().unwrap_or(false);
+                damped = !still.is_empty() && (!single || stiffness_factor != 1.0);
+                self.mass(part)?;
+                let mass = self.mass.as_ref().expect("just made");
+                for ((value, m), column) in values.iter_mut().zip(mass).zip(&self.pattern.zero.columns) {
+                    let factor = if moves(column) { stiffness_factor } else { 1.0 };
+                    *value = factor * *value + mass_factor * m;
                 }
                 if !single {
                     let damping = self.damping(part, [alpha, beta])?;
-                    values.iter_mut().zip(damping).for_each(|(value, c)| *value += damping_factor * c);
+                    let moving = values.iter_mut().zip(damping).zip(&self.pattern.zero.columns);
+                    moving.filter(|(_, column)| moves(column)).for_each(|((value, c), _)| *value += damping_factor * c);
                 }
             }
             self.bulk.values = values;
-            self.bulk_general = self.traits.general_elements;
+            self.bulk_general = self.traits.general_elements || damped;
             self.reduce_bulk(self.reduced_graph == self.stamps.bulk_graph);
             self.reduced_graph = self.stamps.bulk_graph;
             self.tangent_key = Some(key);

@@ -20,8 +20,8 @@ register_absent! { Element ["Bushing"] => "use SpringDamperElement3D2N for its d
 register_absent! { Element ["SmallDisplacementMixedStrain", "SmallDisplacementMixedVolumetricStrainOss"] =>
 "against volumetric locking use SmallDisplacementMixedVolumetricStrainElement, or SmallDisplacementBbarElement2D4N or 3D8N" }
 
-register_absent! { Element ["TotalLagrangianMixedVolumetric", "TotalLagrangianQ1P0"] =>
-"against volumetric locking at large strains use TotalLagrangianQ1P0MixedElement3D8N, or elements of second order" }
+register_absent! { Element ["TotalLagrangianQ1P0"] =>
+"in the plane use TotalLagrangianMixedVolumetricStrainElement2D3N: no planar law leaves the volume to the element" }
 
 register_absent! { ConstitutiveLaw ["SmallStrainKinematicPlasticity", "FiniteStrainKinematicPlasticity", "PlasticityIsotropicKinematic"] =>
 "kinematic hardening is not there: isotropic hardening is, SmallStrainJ2Plasticity3DLaw" }

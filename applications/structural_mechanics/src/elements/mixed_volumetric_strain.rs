@@ -1,70 +1,103 @@
-//! Small displacements with the volumetric strain as an unknown of the nodes, against volumetric locking.
+//! Elements with the volumetric strain as an unknown of the nodes, against volumetric locking: what they share.
 //!
-//! With e = Σ N_i e_i, θ = e − div u and m the unit strain of a change of volume, the stress is that of the strain
-//! ε = B u + m θ/d, d the number of dimensions, less κ τ₂ θ m. The forces are
-//!
-//! displacements: ∫ N_i b − B_iᵀ (σ(ε) − κ τ₂ θ m) dV,
-//! volumetric strain: ∫ (1 − τ₂) κ N_i θ + κ τ₁ ∇N_i · (κ ∇e + b) dV.
-//!
-//! The terms with τ are algebraic subscales (ASGS; Cervera, Chiumenti and Codina 2010), so that displacements and
-//! strain can have the same shape functions: τ₁ = tr (Σ B_iᵀ D B_i)⁻¹ (length² over stress), τ₂ = min(0.01, 4 μ/κ), κ
-//! the sum of the normal block of D over d². D is the law's matrix without strain: the stabilisation does not change
-//! with plastic flow (in the reference program it follows the law's matrix), and inertia stays out of it.
+//! The unknowns of a node are its displacements and θ_i, a change of volume per volume. A [`VolumetricForm`] says which
+//! strain they give the law at a Gauss point, and what the point adds to forces and stiffness. Mass is that of the
+//! displacements. Damping that goes with the stiffness acts on velocities, and θ has none: θ is then that of u + β v, so
+//! that its stress has the damping of volume in it.
+
+use std::marker::PhantomData;
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::model::variables::DISPLACEMENT;
-use zelus_core::registry::Build;
 
 use super::material::Material;
 use super::results;
-use super::solid::{gradient, nodal_vectors, padded, physical_gradients};
+use super::solid::{nodal_vectors, physical_gradients};
 use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
-use crate::tensor::{IDENTITY, determinant, inverse, pairs, strain_vector};
+use crate::tensor::IDENTITY;
 use crate::variables::{VOLUME_ACCELERATION, VOLUMETRIC_STRAIN};
 
 /// Order of the Gauss rule of every shape.
 const ORDER: usize = 2;
 
-/// Element of displacements and volumetric strain with `NODES` nodes in `DIM` dimensions and `S` strains.
-pub struct MixedVolumetricStrain<const NODES: usize, const DIM: usize, const S: usize> {
-    materials: Vec<Material<S>>,
-    tangent: Tangent,
+/// How displacements and nodal volumetric strain make strain and forces.
+pub trait VolumetricForm: Send + Sync + 'static {
+    /// Whether strains are finite; otherwise the tangent of a linear law is constant.
+    const FINITE: bool;
+
+    /// The strain that the law sees at a Gauss point.
+    ///
+    /// # Errors
+    /// Volume that is no longer positive.
+    fn state<'a, const NODES: usize, const DIM: usize, const S: usize>(
+        at: &Place<'_, NODES, DIM>,
+        values: &Values<NODES>,
+        law: &dyn ConstitutiveLaw<S>,
+        history: &'a [f64],
+    ) -> Result<StrainState<'a, S>, String>;
+
+    /// Adds what a Gauss point gives.
+    fn add<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize>(
+        at: &Place<'_, NODES, DIM>,
+        values: &Values<NODES>,
+        matter: &Matter<'_, DIM, S>,
+        state: &StrainState<'_, S>,
+        want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    );
 }
 
-/// One Gauss point of one element.
-struct Point<'a, const NODES: usize, const DIM: usize, const S: usize> {
-    n: &'a [f64; NODES],
-    dn: [[f64; DIM]; NODES],
+/// A Gauss point of an element in its initial configuration.
+pub struct Place<'a, const NODES: usize, const DIM: usize> {
+    /// Number of the point, from 0.
+    pub(super) g: usize,
+    /// Shape functions.
+    pub(super) n: &'a [f64; NODES],
+    /// Their gradients.
+    pub(super) dn: [[f64; DIM]; NODES],
     /// Volume that the point stands for.
-    weight: f64,
-    /// Nodal less kinematic volumetric strain, e − div u.
-    theta: f64,
-    /// ∇e.
-    gradient: [f64; DIM],
-    state: StrainState<'a, S>,
-}
-
-/// Constants of the stabilisation at a point.
-struct Stabilisation {
-    bulk: f64,
-    tau_1: f64,
-    tau_2: f64,
+    pub(super) weight: f64,
 }
 
 /// Nodal values of one element.
-struct Values<const NODES: usize> {
-    u: [[f64; 3]; NODES],
-    e: [f64; NODES],
+pub struct Values<const NODES: usize> {
+    /// Displacements.
+    pub(super) u: [[f64; 3]; NODES],
+    /// Volumetric strains.
+    pub(super) theta: [f64; NODES],
+}
+
+/// What a Gauss point is made of.
+pub struct Matter<'a, const DIM: usize, const S: usize> {
+    /// The law.
+    pub(super) law: &'a dyn ConstitutiveLaw<S>,
+    /// The law's matrix without strain.
+    pub(super) initial: &'a Matrix<S>,
+    /// Bulk modulus of that matrix, that of the plane in the plane.
+    pub(super) bulk: f64,
+    /// Its shear modulus.
+    pub(super) shear: f64,
+    /// Force per initial volume.
+    pub(super) body: [f64; DIM],
+    /// Length of an edge of a cube, or square, of the element's initial volume.
+    pub(super) size: f64,
+}
+
+/// Element of displacements and volumetric strain with `NODES` nodes in `DIM` dimensions and `S` strains.
+pub struct MixedVolumetricStrain<F, const NODES: usize, const DIM: usize, const S: usize> {
+    materials: Vec<Material<S>>,
+    tangent: Tangent,
+    form: PhantomData<fn() -> F>,
 }
 
 /// The law's matrix without strain.
-fn initial_matrix<const S: usize>(law: &dyn ConstitutiveLaw<S>) -> Matrix<S> {
+fn initial_matrix<const S: usize>(law: &dyn ConstitutiveLaw<S>, small: bool) -> Matrix<S> {
     let mut d = [[0.0; S]; S];
     let history = vec![0.0; law.history()];
-    let state =
-        StrainState { strain: [0.0; S], f: IDENTITY, det_f: 1.0, small: true, pressure: 0.0, history: &history };
+    let state = StrainState { strain: [0.0; S], f: IDENTITY, det_f: 1.0, small, pressure: 0.0, history: &history };
     law.stress(&state, StressMeasure::Pk2, Some(&mut d));
     d
 }
@@ -75,82 +108,36 @@ fn moduli<const S: usize>(d: &Matrix<S>, dim: usize) -> (f64, f64) {
     (bulk, d[dim][dim])
 }
 
-/// The rows of B that belong to one node.
-fn b_of<const DIM: usize, const S: usize>(dn: &[f64; DIM]) -> [[f64; DIM]; S] {
-    pairs::<S>().map(|(p, q)| {
-        let mut row = [0.0; DIM];
-        row[p] += if p == q { dn[p] } else { dn[q] };
-        if p != q {
-            row[q] += dn[p];
-        }
-        row
-    })
-}
-
-impl<const NODES: usize, const DIM: usize, const S: usize> MixedVolumetricStrain<NODES, DIM, S> {
+impl<F: VolumetricForm, const NODES: usize, const DIM: usize, const S: usize> MixedVolumetricStrain<F, NODES, DIM, S> {
     fn material(&self, entity: &Gather<'_, NODES>) -> &Material<S> {
         Material::find(&self.materials, entity.properties.id)
     }
 
     fn values(entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Values<NODES> {
-        let e = match view.nodes.history.values(&VOLUMETRIC_STRAIN, 0) {
+        let theta = match view.nodes.history.values(&VOLUMETRIC_STRAIN, 0) {
             [] => [0.0; NODES],
             column => entity.scalars(column),
         };
-        Values { u: nodal_vectors(entity, view, &DISPLACEMENT), e }
+        Values { u: nodal_vectors(entity, view, &DISPLACEMENT), theta }
     }
 
-    fn point<'a>(
+    fn place<'a>(material: &'a Material<S>, g: usize, entity: &Gather<'_, NODES>) -> Place<'a, NODES, DIM> {
+        let (dn, det) = physical_gradients(&entity.initial, &material.rule.dn::<NODES, DIM>()[g]);
+        Place { g, n: &material.rule.n()[g], dn, weight: material.rule.weight(g) * det * material.thickness }
+    }
+
+    fn state_at<'a>(
         material: &Material<S>,
-        g: usize,
-        entity: &Gather<'_, NODES>,
+        at: &Place<'_, NODES, DIM>,
         values: &Values<NODES>,
         state: &'a [f64],
-    ) -> Result<Point<'a, NODES, DIM, S>, String> {
-        let n = &material.rule.n::<NODES>()[g];
-        let (dn, det) = physical_gradients(&entity.initial, &material.rule.dn::<NODES, DIM>()[g]);
-        let grad_u = gradient(&values.u, &dn);
-        let mut theta = n.iter().zip(&values.e).map(|(n, e)| n * e).sum::<f64>();
-        let mut h = [[0.0; 3]; 3];
-        for a in 0..DIM {
-            theta -= grad_u[a][a];
-            for b in 0..DIM {
-                h[a][b] = 0.5 * (grad_u[a][b] + grad_u[b][a]);
-            }
-        }
-        (0..DIM).for_each(|a| h[a][a] += theta / DIM as f64);
-        let mut f = h;
-        (0..3).for_each(|a| f[a][a] += 1.0);
-        let det_f = determinant(&f);
-        if !material.law.is_linear() && (det_f <= 0.0 || det_f.is_nan()) {
-            return Err(format!("turned inside out at Gauss point {} (det F = {det_f:.3e})", g + 1));
-        }
-        let mut gradient = [0.0; DIM];
-        for (dn, e) in dn.iter().zip(&values.e) {
-            gradient.iter_mut().zip(dn).for_each(|(sum, dn)| *sum += dn * e);
-        }
-        let history = material.remembered(g, state);
-        let state = StrainState { strain: strain_vector(&h), f, det_f, small: true, pressure: 0.0, history };
-        Ok(Point { n, dn, weight: material.rule.weight(g) * det * material.thickness, theta, gradient, state })
-    }
-
-    fn stabilisation(d: &Matrix<S>, dn: &[[f64; DIM]; NODES]) -> Stabilisation {
-        let mut sum = [[0.0; DIM]; DIM];
-        for b in dn.iter().map(|dn| b_of::<DIM, S>(dn)) {
-            for (s, t) in (0..S).flat_map(|s| (0..S).map(move |t| (s, t))).filter(|&(s, t)| d[s][t] != 0.0) {
-                for (sum, x) in sum.iter_mut().zip(&b[s]) {
-                    sum.iter_mut().zip(&b[t]).for_each(|(sum, y)| *sum += x * d[s][t] * y);
-                }
-            }
-        }
-        let flexibility = inverse(&padded(&sum));
-        let (bulk, shear) = moduli(d, DIM);
-        Stabilisation { bulk, tau_1: (0..DIM).map(|a| flexibility[a][a]).sum(), tau_2: (4.0 * shear / bulk).min(0.01) }
+    ) -> Result<StrainState<'a, S>, String> {
+        F::state(at, values, material.law.as_ref(), material.remembered(at.g, state))
     }
 }
 
-impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Kernel<NODES, SIZE>
-    for MixedVolumetricStrain<NODES, DIM, S>
+impl<F: VolumetricForm, const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Kernel<NODES, SIZE>
+    for MixedVolumetricStrain<F, NODES, DIM, S>
 {
     type State = Box<[f64]>;
 
@@ -168,8 +155,9 @@ impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Ke
         let shape = Shape::of(DIM, NODES).expect("registered for known shapes only");
         let mut materials = Material::all(request, shape, DIM == 2, false)?;
         materials.iter_mut().for_each(|material| material.rule = ShapeTable::get(shape, ORDER));
-        let linear = materials.iter().all(|m| m.law.is_linear());
-        Ok(Self { materials, tangent: if linear { Tangent::Constant } else { Tangent::General } })
+        let constant = !F::FINITE && materials.iter().all(|m| m.law.is_linear());
+        let tangent = if constant { Tangent::Constant } else { Tangent::General };
+        Ok(Self { materials, tangent, form: PhantomData })
     }
 
     fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
@@ -199,70 +187,19 @@ impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Ke
         let material = self.material(entity);
         let values = Self::values(entity, view);
         let acceleration = nodal_vectors(entity, view, &VOLUME_ACCELERATION);
-        let initial = initial_matrix(material.law.as_ref());
-        let step = DIM + 1;
-        let mut d = [[0.0; S]; S];
+        let initial = initial_matrix(material.law.as_ref(), !F::FINITE);
+        let (bulk, shear) = moduli(&initial, DIM);
+        let volume: f64 = (0..material.rule.len()).map(|g| Self::place(material, g, entity).weight).sum();
+        let size = (volume / material.thickness).powf(1.0 / DIM as f64);
         for g in 0..material.rule.len() {
-            let point = Self::point(material, g, entity, &values, state)?;
-            let Stabilisation { bulk, tau_1, tau_2 } = Self::stabilisation(&initial, &point.dn);
-            let body: [f64; DIM] = std::array::from_fn(|a| {
-                let nodal: f64 = point.n.iter().zip(&acceleration).map(|(n, v)| n * v[a]).sum();
+            let at = Self::place(material, g, entity);
+            let body = std::array::from_fn(|a| {
+                let nodal: f64 = at.n.iter().zip(&acceleration).map(|(n, v)| n * v[a]).sum();
                 material.density * (material.acceleration[a] + nodal)
             });
-            for (i, dn) in point.dn.iter().enumerate() {
-                for a in 0..DIM {
-                    rhs[i * step + a] += point.weight * point.n[i] * body[a];
-                    rhs[i * step + DIM] += point.weight * bulk * tau_1 * dn[a] * body[a];
-                }
-            }
-            if want == Want::External {
-                continue;
-            }
-            let wanted = if lhs.is_empty() { None } else { Some(&mut d) };
-            let mut stress = material.law.stress(&point.state, StressMeasure::Pk2, wanted);
-            stress[..DIM].iter_mut().for_each(|s| *s -= bulk * tau_2 * point.theta);
-            let b = point.dn.map(|dn| b_of::<DIM, S>(&dn));
-            for i in 0..NODES {
-                for (row, s) in b[i].iter().zip(&stress) {
-                    row.iter().enumerate().for_each(|(a, b)| rhs[i * step + a] -= point.weight * b * s);
-                }
-                let slope: f64 = point.dn[i].iter().zip(&point.gradient).map(|(dn, e)| dn * e).sum();
-                rhs[i * step + DIM] +=
-                    point.weight * bulk * ((1.0 - tau_2) * point.n[i] * point.theta + bulk * tau_1 * slope);
-            }
-            if lhs.is_empty() {
-                continue;
-            }
-            // derivative of the stress with respect to θ
-            let across: [f64; S] = std::array::from_fn(|s| {
-                let normal = if s < DIM { bulk * tau_2 } else { 0.0 };
-                d[s][..DIM].iter().sum::<f64>() / DIM as f64 - normal
-            });
-            for j in 0..NODES {
-                // σ of a displacement of node j in each direction: D B_j less what θ takes away
-                let mut moved = [[0.0; DIM]; S];
-                for s in 0..S {
-                    for a in 0..DIM {
-                        let strained: f64 = (0..S).map(|t| d[s][t] * b[j][t][a]).sum();
-                        moved[s][a] = strained - across[s] * point.dn[j][a];
-                    }
-                }
-                for i in 0..NODES {
-                    for s in 0..S {
-                        for a in 0..DIM {
-                            let at = (i * step + a) * SIZE + j * step;
-                            let force = point.weight * b[i][s][a];
-                            (0..DIM).for_each(|c| lhs[at + c] += force * moved[s][c]);
-                            lhs[at + DIM] += force * across[s] * point.n[j];
-                        }
-                    }
-                    let at = (i * step + DIM) * SIZE + j * step;
-                    let mean = point.weight * (1.0 - tau_2) * bulk * point.n[i];
-                    (0..DIM).for_each(|c| lhs[at + c] += mean * point.dn[j][c]);
-                    let slopes: f64 = point.dn[i].iter().zip(&point.dn[j]).map(|(x, y)| x * y).sum();
-                    lhs[at + DIM] -= mean * point.n[j] + point.weight * bulk * bulk * tau_1 * slopes;
-                }
-            }
+            let matter = Matter { law: material.law.as_ref(), initial: &initial, bulk, shear, body, size };
+            let point = Self::state_at(material, &at, &values, state)?;
+            F::add(&at, &values, &matter, &point, want, lhs, rhs);
         }
         Ok(())
     }
@@ -303,7 +240,8 @@ impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Ke
         let (material, values) = (self.material(entity), Self::values(entity, view));
         let before = state.clone();
         for (g, history) in state.chunks_exact_mut(material.law.history()).enumerate() {
-            material.law.advance(&Self::point(material, g, entity, &values, &before)?.state, history);
+            let at = Self::place(material, g, entity);
+            material.law.advance(&Self::state_at(material, &at, &values, &before)?, history);
         }
         Ok(())
     }
@@ -324,8 +262,8 @@ impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Ke
     ) -> Option<Gauss> {
         let (material, values) = (self.material(entity), Self::values(entity, view));
         results::gauss(material, StressMeasure::Pk2, false, variable, |g| {
-            let point = Self::point(material, g, entity, &values, state).ok()?;
-            Some((point.state, point.weight / material.thickness))
+            let at = Self::place(material, g, entity);
+            Some((Self::state_at(material, &at, &values, state).ok()?, at.weight / material.thickness))
         })
     }
 
@@ -334,23 +272,23 @@ impl<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Ke
     }
 }
 
-/// Registers the element for shapes.
+/// Registers a form for shapes: `kind!("Name", Form, S, "about", "source"; DIM: "2D3N" 3, …)`.
 macro_rules! register_mixed {
-    ($about:literal, $strains:literal, $dim:literal: $($suffix:literal $nodes:literal),+) => {
-        $(zelus_core::register! { Element concat!("SmallDisplacementMixedVolumetricStrainElement", $suffix),
+    ($name:literal, $form:ty, $strains:literal, $about:literal, $source:literal;
+     $dim:literal: $($suffix:literal $nodes:literal),+) => {
+        $(zelus_core::register! { Element concat!($name, $suffix),
             about: $about,
-            source: "∫ δε : σ(ε + θ/d 1) dV, (1 − τ₂) κ ∫ δe θ dV, θ = e − div u; ASGS",
-            cell: Shape::of($dim, $nodes),
+            source: $source,
+            cell: zelus_core::geometry::Shape::of($dim, $nodes),
             space: $dim,
             nodal: &[("VOLUMETRIC_STRAIN", 1)],
-            build: Build::Block(
-                KernelBlock::<MixedVolumetricStrain<$nodes, $dim, $strains>, $nodes, { $nodes * ($dim + 1) }>::boxed),
+            build: zelus_core::registry::Build::Block(zelus_core::entities::KernelBlock::<
+                $crate::elements::MixedVolumetricStrain<$form, $nodes, $dim, $strains>,
+                $nodes,
+                { $nodes * ($dim + 1) },
+            >::boxed),
         })+
     };
 }
 
-register_mixed! { "Planar solid for small displacements with VOLUMETRIC_STRAIN at the nodes, against volumetric locking",
-3, 2: "2D3N" 3, "2D4N" 4 }
-
-register_mixed! { "Solid for small displacements with VOLUMETRIC_STRAIN at the nodes, against volumetric locking",
-6, 3: "3D4N" 4, "3D8N" 8 }
+pub(super) use register_mixed;

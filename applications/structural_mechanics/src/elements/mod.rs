@@ -7,6 +7,8 @@ mod absent;
 mod axisymmetric;
 mod formulation;
 mod material;
+mod mixed_small_displacement;
+mod mixed_total_lagrangian;
 mod mixed_volumetric_strain;
 mod nodal_concentrated;
 #[cfg(test)]
@@ -27,7 +29,9 @@ mod truss;
 mod updated_lagrangian;
 
 pub use formulation::Formulation;
-pub use mixed_volumetric_strain::MixedVolumetricStrain;
+pub use mixed_small_displacement::MixedSmallDisplacement;
+pub use mixed_total_lagrangian::MixedTotalLagrangian;
+pub use mixed_volumetric_strain::{MixedVolumetricStrain, VolumetricForm};
 pub use nodal_concentrated::NodalConcentrated;
 pub use small_displacement::SmallDisplacement;
 pub use small_displacement_bbar::SmallDisplacementBbar;

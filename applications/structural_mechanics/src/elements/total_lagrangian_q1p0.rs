@@ -20,4 +20,4 @@ impl Formulation for TotalLagrangianQ1P0 {
 register_solids! { "TotalLagrangianQ1P0MixedElement", TotalLagrangianQ1P0, 6,
 "Solid for finite deformations that hardly change the volume: one pressure an element, with an isochoric law",
 "∫ δE : S(E, p) dV, p = −κ (J̄ − 1)";
-3: "3D4N" 4, "3D8N" 8 }
+3: "3D4N" 4, "3D8N" 8, "3D10N" 10, "3D20N" 20 }

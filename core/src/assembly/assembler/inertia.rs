@@ -1,15 +1,18 @@
 //! What moves: mass and damping matrices on the pattern of the bulk, and the forces they take up.
 
 use super::{Assembler, is_variable};
+use crate::assembly::Dof;
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
+use crate::model::variables::DISPLACEMENT;
 use crate::model::{ModelPart, Nodes};
 use crate::registry::Kind;
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///
-/// Damping is Rayleigh's, C = alpha M + beta K; RAYLEIGH_ALPHA and RAYLEIGH_BETA of an element's properties go before.
+/// Damping is Rayleigh's, C = alpha M + beta K; RAYLEIGH_ALPHA and RAYLEIGH_BETA of an element's properties go before. It acts
+/// on the velocities of displacements; other unknowns of elements have no rate.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Inertia {
     /// Factor of M in the tangent, 1/time².
@@ -167,6 +170,17 @@ pub fn damped_by_properties(part: &ModelPart) -> bool {
     let names = ["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"];
     part.properties.values().any(|p| names.iter().any(|name| p.number(name).is_some()))
         || part.element_blocks.iter().any(|block| block.has_damping())
+}
+
+/// Which unknowns have no velocity for damping to act on, all but displacements; empty when elements have none of them.
+pub(super) fn without_rates(part: &ModelPart) -> Vec<bool> {
+    let rateless = |dof: &Dof| dof.variable.column != DISPLACEMENT.name();
+    let dofs = part.dofs.dofs();
+    if dofs.iter().any(|dof| !dof.multiplier && rateless(dof)) {
+        dofs.iter().map(rateless).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 /// The largest of Rayleigh's factors, those of the solver and of all properties.
