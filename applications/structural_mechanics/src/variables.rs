@@ -47,6 +47,16 @@ register_variable! {
     kind FRACTURE_ENERGY: Scalar = "Energy per area of softening; hardening curves do not use it.";
     kind MAXIMUM_STRESS: Scalar = "Peak of softening curves; hardening curves do not use it.";
     kind MAXIMUM_STRESS_POSITION: Scalar = "Place of the peak of softening curves; hardening curves do not use it.";
+    kind FRICTION_ANGLE: Scalar = "Without effect: angle of internal friction, which no law here has.";
+    kind DILATANCY_ANGLE: Scalar = "Without effect: angle of dilatancy, which no law here has.";
+    kind COHESION: Scalar = "Without effect: cohesion, which no law here has.";
+    kind SOFTENING_TYPE: Integer = "Without effect: form of softening, which no law here has.";
+    kind VISCOUS_PARAMETER: Scalar = "Without effect: viscosity of laws of Kelvin and Maxwell, which no law here has.";
+    kind DELAY_TIME: Scalar = "Without effect: time of relaxation, which no law here has.";
+    kind THERMAL_EXPANSION_COEFFICIENT: Scalar = "Without effect: strain per temperature, which no law here has.";
+    kind CONDUCTIVITY: Scalar = "Without effect: heat conductivity, which no law here has.";
+    kind SPECIFIC_HEAT: Scalar = "Without effect: heat capacity per mass, which no law here has.";
+    kind REFERENCE_TEMPERATURE: Scalar = "Without effect: temperature without thermal strain, which no law here has.";
     kind EQUIVALENT_PLASTIC_STRAIN: Scalar = "Equivalent plastic strain ∫ √(2/3) ‖dε_p‖.";
     kind ACCUMULATED_PLASTIC_STRAIN: Scalar = "The same number as EQUIVALENT_PLASTIC_STRAIN.";
     kind PLASTIC_STRAIN_VECTOR: Vector = "Plastic strain (logarithmic under finite strain), components as STRAIN.";

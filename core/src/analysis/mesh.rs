@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::older_decks::{complete_part_names, modernise};
 use super::orchestrator::{open, stages};
 use super::report::RunReport;
 use super::solver::SolverSettings;
@@ -21,12 +22,14 @@ pub fn read_deck_mesh(path: &Path) -> Result<(ModelPart, Vec<Surface>)> {
         Error::from(Diagnostic::error("no-stage", "the deck has no stage").at(deck.place()).remedy("list one to run"))
     })?;
     let mut problems = Report::new();
+    let mut stage = modernise(stage, &mut problems);
     let solver = SolverSettings::new(stage.require("solver_settings")?, &mut problems)?;
     let root = root_name(&solver.settings)?;
     let mut model = Model::default();
     import(&solver, &root, &folder, &mut model, &mut problems)?;
+    complete_part_names(&mut stage, &root, &model, &mut problems);
     problems.finish()?;
     let part = model.parts.remove(&root).ok_or_else(|| Error::System(format!("the stage has no model part {root}")))?;
-    let surfaces = surfaces(stage, &part);
+    let surfaces = surfaces(&stage, &part);
     Ok((part, surfaces))
 }

@@ -6,6 +6,7 @@
 mod cutting;
 mod linear_solvers;
 mod mesh;
+mod older_decks;
 mod orchestrator;
 mod report;
 mod saved;

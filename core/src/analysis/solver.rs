@@ -222,9 +222,17 @@ impl SolverSettings {
     /// # Errors
     /// A name that is not registered.
     pub fn criterion(&self, report: &mut Report) -> Result<Box<dyn ConvergenceCriterion>> {
-        let name = self.settings.get_str("convergence_criterion")?;
-        let entry = registry::require(Kind::ConvergenceCriterion, name)
-            .map_err(|d| d.at(self.settings.key_place("convergence_criterion")))?;
+        let place = self.settings.key_place("convergence_criterion");
+        let given = self.settings.get_str("convergence_criterion")?;
+        let mut name = given.to_lowercase();
+        if registry::find(Kind::ConvergenceCriterion, given).is_some() {
+            given.clone_into(&mut name);
+        } else if registry::find(Kind::ConvergenceCriterion, &name).is_some() {
+            let fact = format!("the convergence criterion {given:?} is now {name:?}");
+            let warning = Diagnostic::warning("old-deck", fact).at(place.clone());
+            report.push(warning.remedy(format!("write \"{name}\"")));
+        }
+        let entry = registry::require(Kind::ConvergenceCriterion, &name).map_err(|d| d.at(place))?;
         let Build::Factory(factory) = entry.build else { unreachable!("criteria register a factory") };
         let make = factory.downcast_ref::<CriterionFactory>().expect("a CriterionFactory");
         make(&mut CriterionRequest { settings: &self.settings, user: &self.user, report })
@@ -364,6 +372,23 @@ fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static 
         groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);
     }
     groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()
+}
+
+/// Replaces entities at points of space by those of the plane in a plane problem, where they are the same.
+pub fn flatten_points(part: &mut ModelPart, domain_size: usize, report: &mut Report) {
+    if domain_size != 2 {
+        return;
+    }
+    for table in [&mut part.elements, &mut part.conditions] {
+        for at in 0..table.len() {
+            let entry = table.kinds[at];
+            let Some(flat) = entry.name.strip_suffix("3D1N").map(|stem| format!("{stem}2D1N")) else { continue };
+            let Some(flat) = registry::find(entry.kind, &flat) else { continue };
+            table.kinds[at] = flat;
+            let fact = format!("{} in a plane problem is taken as {}", entry.name, flat.name);
+            report.push(Diagnostic::warning("wrong-dimension", fact).remedy(format!("write {}", flat.name)));
+        }
+    }
 }
 
 /// An element or condition kind of the wrong dimension for the problem.

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::cutting::{Cutting, Lengths};
+use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
 use super::sharing::distribute;
-use super::solver::{SolverSettings, check_dimensions, make_blocks};
+use super::solver::{SolverSettings, check_dimensions, flatten_points, make_blocks};
 use super::time_stepping::TimeStepping;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
@@ -47,9 +48,10 @@ impl Stage {
     ) -> Result<Self> {
         let start = Instant::now();
         let mut problems = Report::new();
+        let mut deck = modernise(deck, &mut problems);
         let known = ["problem_data", "solver_settings", "processes", "output_processes", "modelers", "analysis_stage"];
         for member in deck.object()?.iter() {
-            check_top_level(&member.key, &known, deck, &mut problems);
+            check_top_level(&member.key, &known, &deck, &mut problems);
         }
         let problem_data = problems.absorb(deck.require("problem_data").cloned());
         let times = problem_data.as_ref().and_then(|data| {
@@ -98,7 +100,8 @@ impl Stage {
         }
         report.add_seconds("read", start.elapsed().as_secs_f64());
         let start = Instant::now();
-        let mut processes = make_processes(deck, folder, model, &mut problems);
+        complete_part_names(&mut deck, &root, model, &mut problems);
+        let mut processes = make_processes(&deck, folder, model, &mut problems);
         if problems.has_errors() {
             return Err(finish(problems));
         }
@@ -109,7 +112,7 @@ impl Stage {
             return Err(finish(problems));
         }
         let part = model.root_mut(&root)?;
-        distribute(part, deck, monitor)?;
+        distribute(part, &deck, monitor)?;
         problems.absorb(world().agree(make_blocks(part)));
         if problems.has_errors() {
             return Err(finish(problems));
@@ -134,7 +137,8 @@ impl Stage {
             unknowns: part.dofs.len(),
         };
         for process in &processes {
-            problems.absorb(process.check(model));
+            let checked = process.check(model, &mut problems);
+            problems.absorb(checked);
         }
         for warning in problems.finish()? {
             report.warnings.push(warning.to_string());
@@ -336,26 +340,10 @@ pub(super) fn root_name(settings: &Settings) -> Result<String> {
 }
 
 fn check_top_level(key: &str, known: &[&str], deck: &Node, problems: &mut Report) {
-    const REFUSED: [&str; 8] = [
-        "constraints_process_list",
-        "loads_process_list",
-        "list_other_processes",
-        "json_output_process",
-        "json_check_process",
-        "check_analytic_results_process",
-        "contact_process_list",
-        "output_configuration",
-    ];
     if known.contains(&key) {
         return;
     }
-    if REFUSED.contains(&key) {
-        problems.push(
-            Diagnostic::error("old-deck", format!("\"{key}\" at the top level is an old form"))
-                .at(deck.key_place(key))
-                .remedy("put the list inside \"processes\" (or \"output_processes\")"),
-        );
-    } else if key.starts_with('_') {
+    if key.starts_with('_') {
         problems.push(
             Diagnostic::warning("disabled-key", format!("\"{key}\" starts with an underscore and is not read"))
                 .at(deck.key_place(key)),
@@ -421,6 +409,7 @@ pub(super) fn import(
         }
     }
     let part = model.root_mut(root)?;
+    flatten_points(part, solver.domain_size()?, warnings);
     solver.prepare(part)?;
     for kind in part.elements.kinds.iter().chain(&part.conditions.kinds).filter(|kind| !kind.nodal.is_empty()) {
         kind.nodal.iter().for_each(|&(name, components)| part.nodes.history.add_named(name, components));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::variables::{kind_of, last_of_path, law_name, unknown_variable};
+use super::variables::{composed_law, kind_of, last_of_path, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::model::{ModelPart, Properties, PropertyValue, Table, VariableKind};
 use crate::parameters::{Document, Node};
@@ -27,14 +27,20 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
     let mut report = Report::new();
     let mut seen: Vec<String> = Vec::new();
     for item in root.require("properties")?.array()? {
-        let Some((name, id)) = report.absorb(head(item)) else { continue };
+        let Some((mut name, id)) = report.absorb(head(item)) else { continue };
+        if !is_part_of(&name, &part.name)
+            && let Some((full, warning)) = part.named_without_root(&name)
+        {
+            report.push(warning.at(item.key_place("model_part_name")));
+            name = full;
+        }
         if let Some(problem) = misplaced(&name, &seen, part) {
             report.push(problem.at(item.key_place("model_part_name")));
         }
         seen.push(name.clone());
         let mut properties = part.properties.remove(&id).unwrap_or_else(|| Properties::new(id));
         properties.place = Some(item.place());
-        read_item(item, &mut properties, &mut report);
+        read_item(item, &mut properties, part.info.domain_size, &mut report);
         part.properties.insert(id, properties);
         if let Ok(selected) = part.part(&name) {
             let (elements, conditions) = (selected.elements.clone(), selected.conditions.clone());
@@ -47,16 +53,16 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
 }
 
 /// Material and sub-properties of one entry.
-fn read_item(item: &Node, properties: &mut Properties, report: &mut Report) {
+fn read_item(item: &Node, properties: &mut Properties, domain_size: usize, report: &mut Report) {
     if let Some(material) = item.get("Material") {
-        read_material(material, properties, report);
+        read_material(material, properties, domain_size, report);
     }
     let Some(subs) = item.get("sub_properties") else { return };
     for sub in report.absorb(subs.array()).unwrap_or_default() {
         let Some(id) = report.absorb(sub.require("properties_id").and_then(Node::usize)) else { continue };
         let mut own = Properties::new(id);
         own.place = Some(sub.place());
-        read_item(sub, &mut own, report);
+        read_item(sub, &mut own, domain_size, report);
         properties.parts.push(own);
     }
     if !properties.law.as_ref().is_some_and(|law| law.contains("Mixtures")) {
@@ -64,6 +70,11 @@ fn read_item(item: &Node, properties: &mut Properties, report: &mut Report) {
         let remedy = "laws of mixtures do: ParallelRuleOfMixturesLaw3D or 2D";
         report.push(Diagnostic::warning("unused-key", fact).at(subs.place()).remedy(remedy));
     }
+}
+
+/// Whether the path `name` is that of `parent` or of a part below it.
+fn is_part_of(name: &str, parent: &str) -> bool {
+    name.strip_prefix(parent).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 fn head(item: &Node) -> Result<(String, usize)> {
@@ -87,13 +98,9 @@ fn attach(part: &mut ModelPart, path: &str, id: usize) {
 
 /// Why the entry for the part `name` cannot stand after those for `seen`.
 fn misplaced(name: &str, seen: &[String], part: &ModelPart) -> Option<Diagnostic> {
-    let is_below = |child: &str, parent: &str| child.strip_prefix(parent).is_some_and(|rest| rest.starts_with('.'));
-    if name != part.name && !is_below(name, &part.name) {
+    if !is_part_of(name, &part.name) {
         let fact = format!("{name:?} does not begin with the root model part {:?}", part.name);
-        let remedy = match part.part(name) {
-            Ok(_) => format!("write the full path \"{}.{name}\"", part.name),
-            Err(_) => format!("parts are addressed by full path, as \"{}.Parts\"", part.name),
-        };
+        let remedy = format!("parts are addressed by full path, as \"{}.Parts\"", part.name);
         return Some(Diagnostic::error("unknown-model-part", fact).remedy(remedy));
     }
     if let Err(crate::Error::Input(mut problems)) = part.part(name) {
@@ -103,16 +110,22 @@ fn misplaced(name: &str, seen: &[String], part: &ModelPart) -> Option<Diagnostic
         let fact = format!("{name:?} has material properties already");
         return Some(Diagnostic::error("repeated-material", fact).remedy("keep one entry a model part"));
     }
-    let child = seen.iter().find(|other| is_below(other, name))?;
+    let child = seen.iter().find(|other| *other != name && is_part_of(other, name))?;
     let fact = format!("{name:?} comes after its sub part {child:?} and would override it");
     Some(Diagnostic::error("material-order", fact).remedy("put the entry of the parent first"))
 }
 
-fn read_material(material: &Node, properties: &mut Properties, report: &mut Report) {
-    if let Some(law) = material.get("constitutive_law").and_then(|law| law.get("name"))
+fn read_material(material: &Node, properties: &mut Properties, domain_size: usize, report: &mut Report) {
+    if let Some(given) = material.get("constitutive_law")
+        && let Some(law) = given.get("name")
         && let Some(name) = report.absorb(law.str())
     {
-        match law_name(name) {
+        let parts = ["yield_surface", "plastic_potential"].map(|key| given.get(key).and_then(Node::as_str));
+        let composed = match parts {
+            [Some(surface), Some(potential)] => composed_law(name, [surface, potential], domain_size),
+            _ => None,
+        };
+        match law_name(composed.as_deref().unwrap_or(name)) {
             Ok(name) => properties.law = Some(name),
             Err(problem) => report.push(problem.at(law.place())),
         }
@@ -132,6 +145,9 @@ fn read_material(material: &Node, properties: &mut Properties, report: &mut Repo
             report.push(unknown_variable(name).at(material.get("Variables").map(|v| v.key_place(&member.key))));
             continue;
         };
+        if let Some(warning) = without_effect(name) {
+            report.push(warning.at(material.get("Variables").map(|v| v.key_place(&member.key))));
+        }
         if let Some(value) = report.absorb(value(&member.node, kind).map_err(|error| about(&member.key, error))) {
             properties.values.insert(name.to_owned(), value);
         }

@@ -127,13 +127,23 @@ fn materials_complete_properties_and_are_given_to_parts() {
 }
 
 #[test]
+fn parts_without_root_are_found_where_they_are_one() {
+    let (mut part, _) = mesh(MESH).unwrap();
+    let text = r#"{"properties": [{"model_part_name": "Inner", "properties_id": 6}]}"#;
+    let warnings = materials(text, &mut part).unwrap();
+    assert!(warnings[0].to_string().contains("\"Structure.Outer.Inner\" is taken"), "{}", warnings[0]);
+    assert_eq!(part.part("Structure.Outer").unwrap().properties[..], [6]);
+    assert!(part.named_without_root("Inne").is_none());
+}
+
+#[test]
 fn problems_of_a_materials_file_are_gathered_with_places() {
     let (mut part, _) = mesh(MESH).unwrap();
     let text = r#"{"properties": [
         {"model_part_name": "Structure.Outer.Inner", "properties_id": 1,
          "Material": {"constitutive_law": {"name": "IoTestLow"}, "Variables": {"IO_TEST_MODULUS": "5"}}},
         {"model_part_name": "Structure.Outer", "properties_id": 1},
-        {"model_part_name": "Outer", "properties_id": 1},
+        {"model_part_name": "Outside", "properties_id": 1},
         {"model_part_name": "Structure.Outer", "properties_id": 1, "Material": {"Variables": {"NOPE": 1}}},
         {"properties_id": 1}]}"#;
     let found = codes(materials(text, &mut part));

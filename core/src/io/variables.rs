@@ -19,10 +19,25 @@ pub(crate) fn unknown_variable(name: &str) -> Diagnostic {
     Diagnostic::error("unknown-variable", format!("there is no variable {name}")).remedy(remedy)
 }
 
+/// The warning for a variable that is known and read by nothing; the caller adds the place.
+pub(crate) fn without_effect(name: &str) -> Option<Diagnostic> {
+    let entry = variables().get(name).filter(|entry| entry.about.starts_with("Without effect"))?;
+    let why = entry.about.trim_start_matches("Without effect: ");
+    let fact = format!("{name} is read and changes nothing: {why}");
+    Some(Diagnostic::warning("variable-without-effect", fact).remedy("remove it, if its effect is not expected"))
+}
+
 /// The registered name of a constitutive law that may be spelt with its application before a dot.
 pub(super) fn law_name(name: &str) -> Result<String, Diagnostic> {
     let last = last_of_path(name);
     registry::require(Kind::ConstitutiveLaw, last).map(|entry| entry.name.to_owned())
+}
+
+/// The name of the law that a factory of Kratos, `…Factory`, makes of a yield surface and a plastic potential.
+pub(super) fn composed_law(name: &str, parts: [&str; 2], domain_size: usize) -> Option<String> {
+    let stem = last_of_path(name).strip_suffix("Factory")?;
+    let space = if domain_size == 2 { "PlaneStrain" } else { "3D" };
+    Some(format!("{stem}{space}{}{}", parts[0], parts[1]))
 }
 
 /// The name without the dotted application before it.

@@ -88,6 +88,24 @@ impl ModelPart {
         self.tree.find_mut(&relative).ok_or(problem)
     }
 
+    /// The full path of the one part of this name, given without the root part, and the warning that says so.
+    ///
+    /// `None` where no part or several have it: below the root, or anywhere as decks of earlier versions name them.
+    pub fn named_without_root(&self, name: &str) -> Option<(String, Diagnostic)> {
+        let paths = self.tree.paths();
+        let below =
+            |path: &&String| path.strip_suffix(name).is_some_and(|above| above.is_empty() || above.ends_with('.'));
+        let mut found = paths.iter().filter(below);
+        let path = match paths.iter().find(|path| *path == name) {
+            Some(path) => path,
+            None => found.next().filter(|_| found.next().is_none())?,
+        };
+        let full = format!("{}.{path}", self.name);
+        let fact = format!("the model part {name:?} is named without its root part; {full:?} is taken");
+        let warning = Diagnostic::warning("old-deck", fact).remedy(format!("write \"{full}\""));
+        Some((full, warning))
+    }
+
     fn relative<'p>(&self, path: &'p str) -> &'p str {
         if path == self.name {
             return "";

@@ -125,7 +125,8 @@ impl Object {
         *self = Self::from_members(members);
     }
 
-    pub(super) fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+    /// The value of a key, to change.
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
         self.members.iter_mut().find(|m| m.key == key).map(|m| &mut m.node)
     }
 }

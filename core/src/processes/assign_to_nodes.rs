@@ -8,7 +8,7 @@ use super::local_axes::LocalAxes;
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
-use crate::diagnostics::{Diagnostic, Result};
+use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::model::{Model, ModelPart, ScalarVariable};
 use crate::parameters::SpaceTime;
 
@@ -92,18 +92,15 @@ impl AssignToNodes {
         Ok(())
     }
 
-    /// Fixing what is never solved for, e.g. a load, is a mistake of the deck.
-    fn check_unknowns(&self, part: &ModelPart) -> Result<()> {
+    /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.
+    fn fixed_in_vain(&self, part: &ModelPart) -> Option<Diagnostic> {
         let solved =
             |column: &str| MOTION.contains(&column) || part.dofs.dofs().iter().any(|dof| dof.variable.column == column);
-        match self.components.iter().find(|c| c.fixed && !solved(c.variable.column)) {
-            Some(component) if !part.dofs.is_empty() => {
-                let fact = format!("{} fixes {}, which is not an unknown", self.target.process, component.variable);
-                let problem = Diagnostic::error("not-an-unknown", fact).at(self.target.place.clone());
-                Err(problem.remedy("set \"constrained\": false to give it a value only").into())
-            }
-            _ => Ok(()),
-        }
+        let component = self.components.iter().find(|c| c.fixed && !solved(c.variable.column))?;
+        let Target { process, place, .. } = &self.target;
+        let fact = format!("{process} fixes {}, which is not an unknown: it gives a value only", component.variable);
+        let warning = Diagnostic::warning("not-an-unknown", fact).at(place.clone());
+        (!part.dofs.is_empty()).then(|| warning.remedy("set \"constrained\": false"))
     }
 }
 
@@ -119,8 +116,11 @@ impl Process for AssignToNodes {
         Ok(())
     }
 
-    fn check(&self, model: &Model) -> Result<()> {
-        self.check_unknowns(model.root(&self.target.path)?)
+    fn check(&self, model: &Model, warnings: &mut Report) -> Result<()> {
+        if let Some(warning) = self.fixed_in_vain(model.root(&self.target.path)?) {
+            warnings.push(warning);
+        }
+        Ok(())
     }
 
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {

@@ -42,3 +42,17 @@ register! { Process "assign_vector_by_direction_to_condition_process",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_to_condition_process.json")),
     build: Build::Process(|request| build(request, |_| Ok(vec![Container::Conditions]))),
 }
+
+register! { Process "assign_vector_by_direction_to_node_process",
+    aliases: &["AssignVectorByDirectionToNodeProcess"],
+    about: "gives the nodes of a part a vector value without history by modulus and direction",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_to_node_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Nodes]))),
+}
+
+register! { Process "assign_vector_by_direction_to_element_process",
+    aliases: &["AssignVectorByDirectionToElementProcess"],
+    about: "gives the elements of a part a vector value by modulus and direction",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_to_element_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Elements]))),
+}

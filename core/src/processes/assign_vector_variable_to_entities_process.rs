@@ -36,3 +36,17 @@ register! { Process "assign_vector_variable_to_conditions_process",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_conditions_process.json")),
     build: Build::Process(|request| build(request, |_| Ok(vec![Container::Conditions]))),
 }
+
+register! { Process "assign_vector_variable_to_nodes_process",
+    aliases: &["AssignVectorVariableToNodesProcess"],
+    about: "gives the nodes of a part a vector value without history",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_nodes_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Nodes]))),
+}
+
+register! { Process "assign_vector_variable_to_elements_process",
+    aliases: &["AssignVectorVariableToElementsProcess"],
+    about: "gives the elements of a part a vector value",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_elements_process.json")),
+    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Elements]))),
+}

@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use super::process::{Process, ProcessRequest};
-use crate::diagnostics::{Diagnostic, Place, Result};
+use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::entities::MasterSlaveConstraint;
 use crate::model::{Model, Named, ScalarVariable, SubPart, VariableKind, named};
 use crate::parameters::{Interval, Settings};
@@ -114,7 +114,7 @@ impl Process for ImposeRigidMovement {
         Ok(())
     }
 
-    fn check(&self, model: &Model) -> Result<()> {
+    fn check(&self, model: &Model, _warnings: &mut Report) -> Result<()> {
         let part = model.root(&self.root)?;
         let missing = self.variables.iter().flat_map(|&(slave, master)| {
             self.slaves.iter().map(move |&node| (node, slave)).chain([(self.master, master)])

@@ -26,7 +26,7 @@ pub trait Process: Send {
     ///
     /// # Errors
     /// As [`Process::initialize`].
-    fn check(&self, _model: &Model) -> Result<()> {
+    fn check(&self, _model: &Model, _warnings: &mut Report) -> Result<()> {
         Ok(())
     }
 

@@ -13,7 +13,7 @@ use zelus_core::registry::Build;
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
-use super::interface_settings::{check_positive, check_search};
+use super::interface_settings::{check_positive, check_search, without_computing_part};
 use crate::compatibility::{Refusal, Use, refusal};
 use crate::interaction::{
     AdaptationSettings, ContactInteraction, ContactSettings, ExplicitGap, FrictionSettings, NormalVariation,
@@ -91,7 +91,7 @@ struct FrictionKeys {
 /// # Errors
 /// Settings that do not fit.
 pub(super) fn of_families(request: &mut ProcessRequest<'_>, stem: &Stem) -> Result<Box<dyn Process>> {
-    let settings = request.settings()?;
+    let settings = request.settings_with(without_computing_part)?;
     let (root, interaction) = interaction(&settings, request, stem)?;
     Ok(InteractionProcess::boxed(root, interaction))
 }

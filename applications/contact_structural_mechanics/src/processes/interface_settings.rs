@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::did_you_mean;
-use zelus_core::parameters::Settings;
+use zelus_core::parameters::{Defaults, Settings};
 
 use crate::mortar::{IntegrationOrder, SegmentationSettings};
 
@@ -53,6 +53,11 @@ pub(super) fn check_search(settings: &Settings) -> Result<()> {
         .error("search_parameters.type_search", "unknown-search", fact)
         .remedy(did_you_mean(type_search, SEARCHES).unwrap_or_else(known))
         .into())
+}
+
+/// Accepts the name of a computed part, which decks of earlier Kratos versions give.
+pub(super) fn without_computing_part(defaults: Defaults) -> Defaults {
+    defaults.dropped("computing_model_part_name", "the whole root part is computed")
 }
 
 /// Every pair needs a slave side.

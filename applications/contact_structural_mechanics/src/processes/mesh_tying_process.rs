@@ -11,7 +11,7 @@ use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::interaction_process::InteractionProcess;
-use super::interface_settings::{check_search, check_slaves, segmentation};
+use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
 use crate::interaction::{TyingInteraction, TyingSettings};
 use crate::pairs::find_tying_family;
 use crate::search::{GapCheck, SearchSettings};
@@ -40,7 +40,7 @@ struct Whole {
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
-    let settings = request.settings()?;
+    let settings = request.settings_with(without_computing_part)?;
     let whole: Whole = settings.parse()?;
     check_search(&settings)?;
     check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;

@@ -12,7 +12,7 @@ use zelus_core::registry::Build;
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
-use super::interface_settings::{check_search, check_slaves, segmentation};
+use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
 use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings, Weights};
 use crate::search::{GapCheck, SearchSettings};
 
@@ -59,7 +59,7 @@ fn contact_type(settings: &Settings) -> Result<(MpcKind, bool)> {
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
-    let settings = request.settings()?;
+    let settings = request.settings_with(without_computing_part)?;
     let whole: Whole = settings.parse()?;
     let (kind, pure_slip) = contact_type(&settings)?;
     check_search(&settings)?;

@@ -11,7 +11,8 @@ use zelus_core::entities::{Gather, StepView};
 use zelus_core::geometry::ShapeTable;
 
 use super::load::{
-    Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, thickness, vector_load,
+    AtStart, Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, thickness,
+    vector_load,
 };
 use crate::variables::LINE_LOAD;
 
@@ -130,3 +131,11 @@ register_conditions! { "AxisymLineLoadCondition", 1, "Force per area (LINE_LOAD)
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ";
 "2D2N": Distributed<LineLoad<true>>, 2, 4;
 "2D3N": Distributed<LineLoad<true>>, 3, 6 }
+
+register_conditions! { "SmallDisplacementLineLoadCondition", 1,
+"Force per length (LINE_LOAD) and pressure on a line where it was at the start",
+"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ with t of the initial positions";
+"2D2N": AtStart<LineLoad<false>>, 2, 4;
+"2D3N": AtStart<LineLoad<false>>, 3, 6;
+"3D2N": AtStart<SpatialLineLoad>, 2, 6;
+"3D3N": AtStart<SpatialLineLoad>, 3, 9 }

@@ -61,6 +61,43 @@ impl<L: DistributedLoad<NODES, SIZE>, const NODES: usize, const SIZE: usize> Ker
     }
 }
 
+/// The kernel of a distributed load on the initial geometry, for small displacements: its forces do not follow the motion.
+pub struct AtStart<L>(Distributed<L>);
+
+impl<L: DistributedLoad<NODES, SIZE>, const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for AtStart<L> {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; SIZE] {
+        displacements(L::SPACE)
+    }
+
+    fn new(request: &BlockRequest<'_>) -> Result<Self> {
+        Ok(Self(<Distributed<L> as Kernel<NODES, SIZE>>::new(request)?))
+    }
+
+    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::Zero
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        _state: &(),
+        view: &StepView<'_>,
+        _want: Want,
+        _lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String> {
+        let still = Gather { current: entity.initial, ..*entity };
+        L::add(self.0.rule, &still, view, &mut [], rhs);
+        Ok(())
+    }
+}
+
 /// Displacements of all nodes in `dim` directions, node by node.
 pub(super) fn displacements<const SIZE: usize>(dim: usize) -> [LocalUnknown; SIZE] {
     std::array::from_fn(|row| LocalUnknown {

@@ -14,6 +14,6 @@ mod tests;
 
 pub use geometry_only::GeometryOnly;
 pub use line_load::{LineLoad, SpatialLineLoad};
-pub use load::{Distributed, DistributedLoad};
+pub use load::{AtStart, Distributed, DistributedLoad};
 pub use point_load::PointLoad;
 pub use surface_load::SurfaceLoad;

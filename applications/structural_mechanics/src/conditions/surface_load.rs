@@ -9,7 +9,7 @@ use zelus_core::geometry::ShapeTable;
 use zelus_core::vector3::{cross, norm, scale};
 
 use super::load::{
-    Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, vector_load,
+    AtStart, Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, vector_load,
 };
 use crate::variables::SURFACE_LOAD;
 
@@ -76,3 +76,12 @@ register_conditions! { "SurfaceLoadCondition", 2, "Force per area (SURFACE_LOAD)
 "3D6N": Distributed<SurfaceLoad>, 6, 18;
 "3D8N": Distributed<SurfaceLoad>, 8, 24;
 "3D9N": Distributed<SurfaceLoad>, 9, 27 }
+
+register_conditions! { "SmallDisplacementSurfaceLoadCondition", 2,
+"Force per area (SURFACE_LOAD) and pressure on a surface where it was at the start",
+"f_i = ∫ N_i (q |n| + p n) dξ dη with n of the initial positions";
+"3D3N": AtStart<SurfaceLoad>, 3, 9;
+"3D4N": AtStart<SurfaceLoad>, 4, 12;
+"3D6N": AtStart<SurfaceLoad>, 6, 18;
+"3D8N": AtStart<SurfaceLoad>, 8, 24;
+"3D9N": AtStart<SurfaceLoad>, 9, 27 }

@@ -40,6 +40,7 @@ fn adapt(defaults: Defaults) -> Defaults {
         .renamed("output_frequency", "output_interval")
         .renamed("folder_name", "output_path")
         .renamed("write_properties_id", "write_ids")
+        .renamed("gauss_point_variables", "gauss_point_variables_extrapolated_to_nodes")
 }
 
 fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Process>> {
