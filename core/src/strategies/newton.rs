@@ -1,5 +1,6 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
+mod iteration;
 mod start;
 
 #[cfg(feature = "petsc")]
@@ -11,14 +12,12 @@ use super::criterion::{ConvergenceCriterion, Measures, Verdict};
 use super::gathered::Gathered;
 use super::line_search::LineSearch;
 use super::linear_solve::{self, Failed, Solved};
-use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
-use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
+use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, impose_constraints};
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
-use crate::entities::{Interaction, Outer, SetChange};
+use crate::entities::Interaction;
 use crate::model::ModelPart;
 use crate::register;
 use crate::registry::Build;
@@ -135,182 +134,6 @@ impl NewtonRaphson {
     pub fn solve_by_petsc(&mut self, settings: zelus_petsc::PetscSettings, multipliers: Multipliers) {
         let condensing = if let Multipliers::Condense(settings) = multipliers { Some(settings) } else { None };
         self.gathered.petsc = Some(super::owned_rows::OwnedRows::new(settings, condensing));
-    }
-
-    fn iterate(
-        &mut self,
-        part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
-        monitor: &mut dyn Monitor,
-    ) -> Result<(Vec<IterationRecord>, Option<String>)> {
-        part.info.nl_iteration = 0;
-        for interaction in interactions.iter_mut() {
-            interaction.begin_step(part)?;
-        }
-        self.assembler.begin_step(part, interactions)?;
-        if let Some(past) = self.scheme.past_inertia(part) {
-            let forces = self.assembler.inertia_forces(part, &past)?;
-            self.scheme.keep(forces);
-        }
-        let begin = self.assembler.values(part);
-        let led = self.led_nodes(part, interactions);
-        let mut prescribed = self.start(part, led.as_deref())?;
-        for interaction in interactions.iter_mut() {
-            interaction.after_prediction(part)?;
-        }
-        let mut inertia = self.scheme.inertia(part);
-        let mut residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
-        let relaxation = interactions.iter().find_map(|interaction| interaction.relaxation());
-        let mut relaxed = None;
-        let mut references = References::default();
-        let mut records = Vec::new();
-        let mut last = if self.settings.linear { 1 } else { self.settings.max_iteration };
-        let mut iteration = 0;
-        let mut widened = None;
-        while iteration < last {
-            iteration += 1;
-            if !self.settings.linear {
-                part.info.nl_iteration = iteration;
-            }
-            self.assembler.tangents(part, interactions, inertia.as_ref())?;
-            if let Some(amount) = relaxed {
-                self.assembler.relax_multipliers(&part.dofs, amount);
-            }
-            if prescribed.iter().any(|d| *d != 0.0) {
-                self.assembler.subtract_product(&prescribed, &mut residual);
-            }
-            if iteration == 1 {
-                references.start.push(self.assembler.equations().balanced(&residual).into_owned());
-            }
-            let rhs = self.assembler.equations().reduce(&residual);
-            if iteration == 1 {
-                interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
-            }
-            let mut solved = self.solve(part, &rhs);
-            if let (Err(Failed::Singular(why)), None, Some(amount)) = (&solved, relaxed, relaxation) {
-                part.messages.extend(self.warn_of_redundancy(why));
-                relaxed = Some(amount);
-                self.assembler.relax_multipliers(&part.dofs, amount);
-                solved = self.solve(part, &rhs);
-            }
-            let solved = match solved {
-                Ok(solved) => solved,
-                // Interactions may have let a body go that a shorter step holds.
-                Err(Failed::Singular(why)) if !interactions.is_empty() => {
-                    self.singular = true;
-                    return Ok((records, Some(why)));
-                }
-                // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
-                Err(Failed::Singular(why))
-                    if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>
-                {
-                    let first = why.lines().next().unwrap_or_default();
-                    let limit = "at a limit load prescribe displacements, or use \"arc_length\"";
-                    return Ok((records, Some(format!("iteration {iteration}: {first}; {limit}"))));
-                }
-                Err(failed) => return Err(failed.into()),
-            };
-            if let Some(why) = &solved.fallback {
-                monitor.note(&format!("linear solver: {why}"));
-            }
-            let condition = if part.info.is(CONDITION_NUMBER) { self.condition_number(monitor) } else { None };
-            let mut increment = self.assembler.equations().expand(&solved.increment);
-            let searched = self.settings.line_search.filter(|_| prescribed.iter().all(|d| *d == 0.0));
-            increment.iter_mut().zip(&prescribed).for_each(|(sum, d)| *sum += d);
-            prescribed.fill(0.0);
-            match searched {
-                Some(search) => self.search(&search, part, interactions, &residual, &mut increment)?,
-                None => self.move_by(part, &increment),
-            }
-            inertia = self.scheme.inertia(part);
-            if interactions.iter().any(|interaction| interaction.needs_reactions()) {
-                residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
-                write_reactions(part, &residual);
-            }
-            let constraints = constraints_version(interactions);
-            // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
-            // serves for what the interactions take from it and nothing else.
-            let afresh =
-                led.is_some() && iteration == 1 && self.overshoots(part, interactions, &references.start[0])?;
-            let change = if afresh {
-                interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
-                SetChange::default()
-            } else {
-                update_interactions(part, interactions, iteration)?
-            };
-            if constraints != constraints_version(interactions) {
-                self.assembler.begin_step(part, interactions)?;
-                prescribed = self.constraint_increment(part);
-            }
-            residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
-            let balanced = self.assembler.equations().balanced(&residual);
-            if iteration == 1 {
-                references.start.push(balanced.to_vec());
-            }
-            if change.count() > 0 {
-                references.switched = Some(balanced.to_vec());
-            }
-            if !interactions.is_empty() {
-                let balance = self.assembler.equations().reduce(&residual);
-                interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
-            }
-            let verdict = self.judge(part, iteration, &balanced, &references, &increment);
-            let decided = (change.count() as u64) << 1 | u64::from(verdict.converged);
-            if !world().is_same(decided) {
-                let fact = format!("iteration {iteration}: the ranks have come to different decisions");
-                return Err(Error::System(format!("{fact}\n    run them on machines of one kind, or on fewer ranks")));
-            }
-            let record = IterationRecord {
-                condition_number: condition,
-                ..IterationRecord::new(iteration, verdict.checks, &change, &solved)
-            };
-            monitor.iteration(&record);
-            records.push(record);
-            if let Some(n) = self.first_infinite(part, &residual) {
-                let dof = &part.dofs.dofs()[n];
-                let node = part.nodes.ids[dof.node as usize];
-                let what = format!("{} of node {node} or its residual is no longer finite", dof.variable);
-                return Ok((records, Some(format!("diverged in iteration {iteration}: {what}"))));
-            }
-            if afresh {
-                prescribed = self.begin_again(part, interactions, &begin)?;
-                residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
-                continue;
-            }
-            let mut converged = self.settings.linear || (verdict.converged && change.count() == 0);
-            if converged && !self.settings.linear {
-                for interaction in interactions.iter_mut() {
-                    match interaction.after_convergence(part)? {
-                        Outer::Done => {}
-                        Outer::Again => converged = false,
-                        Outer::Widened(why) => {
-                            monitor.note(&format!("step {}: {why}; the iteration goes on with them", part.info.step));
-                            widened = Some(why);
-                            converged = false;
-                        }
-                        Outer::Failed(why) => return Ok((records, Some(why))),
-                    }
-                }
-                if !converged {
-                    self.assembler.begin_step(part, interactions)?;
-                    last = iteration + self.settings.max_iteration;
-                    residual = self.assembler.residual(part, interactions, inertia.as_ref())?;
-                    continue;
-                }
-            }
-            if converged {
-                if self.settings.compute_reactions {
-                    write_reactions(part, &residual);
-                }
-                return Ok((records, None));
-            }
-        }
-        let failure = self.explain(part, &records, &residual);
-        let failure = widened.into_iter().fold(failure, |failure, why: String| format!("{failure}; {why}"));
-        if self.settings.compute_reactions {
-            write_reactions(part, &residual);
-        }
-        Ok((records, Some(failure)))
     }
 
     /// Solves the present system; nothing out of balance needs no solver.
@@ -466,10 +289,6 @@ impl NewtonRaphson {
             cycling.unwrap_or_default()
         )
     }
-}
-
-fn constraints_version(interactions: &[Box<dyn Interaction>]) -> u64 {
-    interactions.iter().fold(0, |sum, interaction| sum.wrapping_mul(31).wrapping_add(interaction.constraints_version()))
 }
 
 register! { Strategy "newton_raphson",

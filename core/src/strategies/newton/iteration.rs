@@ -1,0 +1,332 @@
+//! The iterations of one step: solve, move, let the interactions decide, judge.
+
+use super::{NewtonRaphson, References};
+use crate::communication::world;
+use crate::diagnostics::{Error, Result};
+use crate::entities::{Interaction, Outer, SetChange};
+use crate::model::ModelPart;
+use crate::strategies::linear_solve::{Failed, Solved};
+use crate::strategies::reactions::write_reactions;
+use crate::strategies::records::{IterationRecord, Monitor};
+use crate::strategies::strategy::update_interactions;
+
+/// What the iterations of a step hand on to each other.
+struct Step {
+    /// Nodes that lead the mesh, see [`NewtonRaphson::led_nodes`].
+    led: Option<Vec<u32>>,
+    /// Unknowns at its start.
+    begin: Vec<f64>,
+    /// Increments that the next solve takes on through the tangent; zero where unknowns are free.
+    prescribed: Vec<f64>,
+    /// Out of balance in the present state, a number an unknown.
+    residual: Vec<f64>,
+    references: References,
+    records: Vec<IterationRecord>,
+    /// How multipliers may give way where constraints repeat each other, and how they do since one system was singular.
+    relaxation: Option<f64>,
+    relaxed: Option<f64>,
+    /// Why the last search in a converged state found more.
+    widened: Option<String>,
+    /// The last iteration it may take.
+    last: usize,
+}
+
+/// How an iteration ends.
+enum Turn {
+    /// Another is needed.
+    On,
+    /// The state is accepted.
+    Converged,
+    /// No further iteration would help.
+    Failed(String),
+}
+
+impl NewtonRaphson {
+    /// The iterations of the step, and why they failed if they did.
+    ///
+    /// # Errors
+    /// As [`SolutionStrategy::solve_step`](crate::strategies::SolutionStrategy::solve_step).
+    pub(super) fn iterate(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Vec<IterationRecord>, Option<String>)> {
+        let mut step = self.begin_step(part, interactions)?;
+        let mut iteration = 0;
+        while iteration < step.last {
+            iteration += 1;
+            match self.iteration(iteration, &mut step, part, interactions, monitor)? {
+                Turn::On => {}
+                Turn::Failed(why) => return Ok((step.records, Some(why))),
+                Turn::Converged => {
+                    self.keep_reactions(part, &step.residual);
+                    return Ok((step.records, None));
+                }
+            }
+        }
+        let failure = self.explain(part, &step.records, &step.residual);
+        let failure = step.widened.iter().fold(failure, |failure, why| format!("{failure}; {why}"));
+        self.keep_reactions(part, &step.residual);
+        Ok((step.records, Some(failure)))
+    }
+
+    fn begin_step(&mut self, part: &mut ModelPart, interactions: &mut [Box<dyn Interaction>]) -> Result<Step> {
+        part.info.nl_iteration = 0;
+        for interaction in interactions.iter_mut() {
+            interaction.begin_step(part)?;
+        }
+        self.assembler.begin_step(part, interactions)?;
+        if let Some(past) = self.scheme.past_inertia(part) {
+            let forces = self.assembler.inertia_forces(part, &past)?;
+            self.scheme.keep(forces);
+        }
+        let begin = self.assembler.values(part);
+        let led = self.led_nodes(part, interactions);
+        let prescribed = self.start(part, led.as_deref())?;
+        for interaction in interactions.iter_mut() {
+            interaction.after_prediction(part)?;
+        }
+        Ok(Step {
+            led,
+            begin,
+            prescribed,
+            residual: self.residual(part, interactions)?,
+            references: References::default(),
+            records: Vec::new(),
+            relaxation: interactions.iter().find_map(|interaction| interaction.relaxation()),
+            relaxed: None,
+            widened: None,
+            last: if self.settings.linear { 1 } else { self.settings.max_iteration },
+        })
+    }
+
+    fn iteration(
+        &mut self,
+        iteration: usize,
+        step: &mut Step,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Turn> {
+        if !self.settings.linear {
+            part.info.nl_iteration = iteration;
+        }
+        let solved = match self.solve_tangent(iteration, step, part, interactions) {
+            Ok(solved) => solved,
+            Err(failed) => return self.give_up(failed, iteration, part, interactions),
+        };
+        if let Some(why) = &solved.fallback {
+            monitor.note(&format!("linear solver: {why}"));
+        }
+        let condition = if part.info.is(super::CONDITION_NUMBER) { self.condition_number(monitor) } else { None };
+        let increment = self.take(&solved, step, part, interactions)?;
+        // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
+        // serves for what the interactions take from it and nothing else.
+        let afresh =
+            step.led.is_some() && iteration == 1 && self.overshoots(part, interactions, &step.references.start[0])?;
+        let change = self.let_decide(iteration, afresh, step, part, interactions)?;
+        let balanced = self.assembler.equations().balanced(&step.residual);
+        if iteration == 1 {
+            step.references.start.push(balanced.to_vec());
+        }
+        if change.count() > 0 {
+            step.references.switched = Some(balanced.to_vec());
+        }
+        if !interactions.is_empty() {
+            let balance = self.assembler.equations().reduce(&step.residual);
+            interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
+        }
+        let verdict = self.judge(part, iteration, &balanced, &step.references, &increment);
+        agree(iteration, &change, verdict.converged)?;
+        let record = IterationRecord {
+            condition_number: condition,
+            ..IterationRecord::new(iteration, verdict.checks, &change, &solved)
+        };
+        monitor.iteration(&record);
+        step.records.push(record);
+        if let Some(n) = self.first_infinite(part, &step.residual) {
+            let dof = &part.dofs.dofs()[n];
+            let node = part.nodes.ids[dof.node as usize];
+            let what = format!("{} of node {node} or its residual is no longer finite", dof.variable);
+            return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
+        }
+        if afresh {
+            step.prescribed = self.begin_again(part, interactions, &step.begin)?;
+            step.residual = self.residual(part, interactions)?;
+            return Ok(Turn::On);
+        }
+        match (self.settings.linear, verdict.converged && change.count() == 0) {
+            (true, _) => Ok(Turn::Converged),
+            (false, false) => Ok(Turn::On),
+            (false, true) => self.look_beyond(iteration, step, part, interactions, monitor),
+        }
+    }
+
+    /// Solves with the tangent of the present state, with multipliers relaxed once that has turned out to be needed.
+    fn solve_tangent(
+        &mut self,
+        iteration: usize,
+        step: &mut Step,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+    ) -> Result<Solved, Failed> {
+        let inertia = self.scheme.inertia(part);
+        self.assembler.tangents(part, interactions, inertia.as_ref())?;
+        if let Some(amount) = step.relaxed {
+            self.assembler.relax_multipliers(&part.dofs, amount);
+        }
+        if step.prescribed.iter().any(|d| *d != 0.0) {
+            self.assembler.subtract_product(&step.prescribed, &mut step.residual);
+        }
+        if iteration == 1 {
+            step.references.start.push(self.assembler.equations().balanced(&step.residual).into_owned());
+        }
+        let rhs = self.assembler.equations().reduce(&step.residual);
+        if iteration == 1 {
+            interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
+        }
+        let solved = self.solve(part, &rhs);
+        let (Err(Failed::Singular(why)), None, Some(amount)) = (&solved, step.relaxed, step.relaxation) else {
+            return solved;
+        };
+        part.messages.extend(self.warn_of_redundancy(why));
+        step.relaxed = Some(amount);
+        self.assembler.relax_multipliers(&part.dofs, amount);
+        self.solve(part, &rhs)
+    }
+
+    /// What a solve without a result means for the step.
+    ///
+    /// # Errors
+    /// One that no shorter step would mend.
+    fn give_up(
+        &mut self,
+        failed: Failed,
+        iteration: usize,
+        part: &ModelPart,
+        interactions: &[Box<dyn Interaction>],
+    ) -> Result<Turn> {
+        match failed {
+            // Interactions may have let a body go that a shorter step holds.
+            Failed::Singular(why) if !interactions.is_empty() => {
+                self.singular = true;
+                Ok(Turn::Failed(why))
+            }
+            // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
+            Failed::Singular(why)
+                if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>
+            {
+                let first = why.lines().next().unwrap_or_default();
+                let limit = "at a limit load prescribe displacements, or use \"arc_length\"";
+                Ok(Turn::Failed(format!("iteration {iteration}: {first}; {limit}")))
+            }
+            failed => Err(failed.into()),
+        }
+    }
+
+    /// Moves by what was solved for and what is prescribed; gives the increment of all unknowns.
+    fn take(
+        &mut self,
+        solved: &Solved,
+        step: &mut Step,
+        part: &mut ModelPart,
+        interactions: &[Box<dyn Interaction>],
+    ) -> Result<Vec<f64>> {
+        let mut increment = self.assembler.equations().expand(&solved.increment);
+        let searched = self.settings.line_search.filter(|_| step.prescribed.iter().all(|d| *d == 0.0));
+        increment.iter_mut().zip(&step.prescribed).for_each(|(sum, d)| *sum += d);
+        step.prescribed.fill(0.0);
+        match searched {
+            Some(search) => self.search(&search, part, interactions, &step.residual, &mut increment)?,
+            None => self.move_by(part, &increment),
+        }
+        Ok(increment)
+    }
+
+    /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `afresh` where they only
+    /// keep what the first iterate is for.
+    fn let_decide(
+        &mut self,
+        iteration: usize,
+        afresh: bool,
+        step: &mut Step,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+    ) -> Result<SetChange> {
+        if interactions.iter().any(|interaction| interaction.needs_reactions()) {
+            let residual = self.residual(part, interactions)?;
+            write_reactions(part, &residual);
+        }
+        let constraints = constraints_version(interactions);
+        let change = if afresh {
+            interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
+            SetChange::default()
+        } else {
+            update_interactions(part, interactions, iteration)?
+        };
+        if constraints != constraints_version(interactions) {
+            self.assembler.begin_step(part, interactions)?;
+            step.prescribed = self.constraint_increment(part);
+        }
+        step.residual = self.residual(part, interactions)?;
+        Ok(change)
+    }
+
+    /// Asks the interactions whether a converged state may be accepted; where it may not, the count of iterations begins anew.
+    fn look_beyond(
+        &mut self,
+        iteration: usize,
+        step: &mut Step,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Turn> {
+        let mut accepted = true;
+        for interaction in interactions.iter_mut() {
+            match interaction.after_convergence(part)? {
+                Outer::Done => {}
+                Outer::Again => accepted = false,
+                Outer::Widened(why) => {
+                    monitor.note(&format!("step {}: {why}; the iteration goes on with them", part.info.step));
+                    step.widened = Some(why);
+                    accepted = false;
+                }
+                Outer::Failed(why) => return Ok(Turn::Failed(why)),
+            }
+        }
+        if accepted {
+            return Ok(Turn::Converged);
+        }
+        self.assembler.begin_step(part, interactions)?;
+        step.last = iteration + self.settings.max_iteration;
+        step.residual = self.residual(part, interactions)?;
+        Ok(Turn::On)
+    }
+
+    fn residual(&mut self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {
+        let inertia = self.scheme.inertia(part);
+        self.assembler.residual(part, interactions, inertia.as_ref())
+    }
+
+    fn keep_reactions(&self, part: &mut ModelPart, residual: &[f64]) {
+        if self.settings.compute_reactions {
+            write_reactions(part, residual);
+        }
+    }
+}
+
+/// # Errors
+/// Ranks that hold different states and would go different ways.
+fn agree(iteration: usize, change: &SetChange, converged: bool) -> Result<()> {
+    let decided = (change.count() as u64) << 1 | u64::from(converged);
+    if world().is_same(decided) {
+        return Ok(());
+    }
+    let fact = format!("iteration {iteration}: the ranks have come to different decisions");
+    Err(Error::System(format!("{fact}\n    run them on machines of one kind, or on fewer ranks")))
+}
+
+fn constraints_version(interactions: &[Box<dyn Interaction>]) -> u64 {
+    interactions.iter().fold(0, |sum, interaction| sum.wrapping_mul(31).wrapping_add(interaction.constraints_version()))
+}
