@@ -15,7 +15,7 @@ use zelus_core::diagnostics::Result;
 use zelus_core::entities::Want;
 
 use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
-use super::solid::{gradient, padded};
+use super::gradients::{gradient, padded};
 use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
 use crate::tensor::{determinant, inverse, pairs, strain_vector};
 

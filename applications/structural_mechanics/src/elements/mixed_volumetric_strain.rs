@@ -14,7 +14,7 @@ use zelus_core::model::variables::DISPLACEMENT;
 
 use super::material::Material;
 use super::results;
-use super::solid::{nodal_vectors, physical_gradients};
+use super::gradients::{nodal_vectors, physical_gradients};
 use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
 use crate::tensor::IDENTITY;
 use crate::variables::{VOLUME_ACCELERATION, VOLUMETRIC_STRAIN};

@@ -6,6 +6,7 @@
 mod absent;
 mod axisymmetric;
 mod formulation;
+mod gradients;
 mod material;
 mod mixed_small_displacement;
 mod mixed_total_lagrangian;

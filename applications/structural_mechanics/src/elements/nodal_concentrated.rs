@@ -11,8 +11,8 @@ use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::register;
 use zelus_core::registry::Build;
 
+use super::gradients::nodal_vectors;
 use super::nodal_values::{refuse_rotations, scalar, vector};
-use super::solid::nodal_vectors;
 use crate::variables::{
     NODAL_DAMPING_RATIO, NODAL_DISPLACEMENT_STIFFNESS, NODAL_INITIAL_DISPLACEMENT, NODAL_MASS, VOLUME_ACCELERATION,
 };

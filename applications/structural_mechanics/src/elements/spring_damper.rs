@@ -10,8 +10,8 @@ use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::register;
 use zelus_core::registry::Build;
 
+use super::gradients::nodal_vectors;
 use super::nodal_values::{refuse_rotations, vector};
-use super::solid::nodal_vectors;
 use crate::variables::{NODAL_DAMPING_RATIO, NODAL_DISPLACEMENT_STIFFNESS};
 
 /// Springs and dampers between two nodes in `DIM` dimensions.

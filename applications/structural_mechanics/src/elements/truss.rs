@@ -12,7 +12,7 @@ use zelus_core::register;
 use zelus_core::registry::Build;
 use zelus_core::vector3::{dot, norm, sub};
 
-use super::solid::nodal_vectors;
+use super::gradients::nodal_vectors;
 use crate::variables::VOLUME_ACCELERATION;
 
 /// A bar in `DIM` dimensions; `LINEAR` for small displacements.

@@ -1,0 +1,60 @@
+//! Gradients of shape functions, and columns of the nodes of an entity, as elements read them.
+
+use zelus_core::entities::{Gather, StepView};
+use zelus_core::model::Variable;
+
+use crate::tensor::{IDENTITY, Tensor, determinant, inverse};
+
+/// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
+pub(super) fn gradient<const NODES: usize, const DIM: usize>(
+    x: &[[f64; 3]; NODES],
+    dn: &[[f64; DIM]; NODES],
+) -> [[f64; DIM]; DIM] {
+    let mut out = [[0.0; DIM]; DIM];
+    for (x, dn) in x.iter().zip(dn) {
+        for a in 0..DIM {
+            for b in 0..DIM {
+                out[a][b] += x[a] * dn[b];
+            }
+        }
+    }
+    out
+}
+
+/// A square matrix in the upper left of the unit tensor.
+pub(super) fn padded<const DIM: usize>(a: &[[f64; DIM]; DIM]) -> Tensor {
+    let mut out = IDENTITY;
+    for i in 0..DIM {
+        out[i][..DIM].copy_from_slice(&a[i]);
+    }
+    out
+}
+
+/// Gradients with respect to the positions `x`, and the determinant of the map from the reference cell.
+pub(super) fn physical_gradients<const NODES: usize, const DIM: usize>(
+    x: &[[f64; 3]; NODES],
+    local: &[[f64; DIM]; NODES],
+) -> ([[f64; DIM]; NODES], f64) {
+    let jacobian = padded(&gradient(x, local));
+    let inverse = inverse(&jacobian);
+    let dn = local.map(|dn| {
+        let mut out = [0.0; DIM];
+        for (a, out) in out.iter_mut().enumerate() {
+            *out = (0..DIM).map(|k| dn[k] * inverse[k][a]).sum();
+        }
+        out
+    });
+    (dn, determinant(&jacobian))
+}
+
+/// Three numbers a node of a column, zeros when nothing has added it.
+pub(super) fn nodal_vectors<const NODES: usize>(
+    entity: &Gather<'_, NODES>,
+    view: &StepView<'_>,
+    variable: &Variable<[f64; 3]>,
+) -> [[f64; 3]; NODES] {
+    match view.nodes.history.values(variable, 0) {
+        [] => [[0.0; 3]; NODES],
+        column => entity.vectors(column),
+    }
+}

@@ -1,0 +1,234 @@
+//! How a solid element's nodes move: strain, deformation gradient and the rows of B at a Gauss point.
+
+use std::f64::consts::PI;
+
+use zelus_core::diagnostics::Result;
+use zelus_core::entities::{Gather, StepView};
+use zelus_core::geometry::ShapeTable;
+use zelus_core::model::variables::DISPLACEMENT;
+
+use super::Solid;
+use crate::elements::formulation::Formulation;
+use crate::elements::gradients::{gradient, nodal_vectors, padded, physical_gradients};
+use crate::elements::material::Material;
+use crate::laws::StrainState;
+use crate::tensor::{IDENTITY, determinant, inverse, pairs, product, strain_vector, stress_tensor, transposed};
+
+/// One Gauss point of one element.
+pub(super) struct Point<'a, const NODES: usize, const DIM: usize, const S: usize> {
+    /// Gradients of the shape functions on the formulation's configuration.
+    pub(super) dn: [[f64; DIM]; NODES],
+    /// Shape functions over the radius of that configuration; zero without axial symmetry.
+    pub(super) hoop: [f64; NODES],
+    /// Mean gradients less those of the point, over 3; zero without mean dilatation.
+    pub(super) excess: [[f64; DIM]; NODES],
+    /// Volume on the formulation's configuration that the point stands for.
+    pub(super) weight: f64,
+    /// Strain, deformation gradient and what the law remembers.
+    pub(super) state: StrainState<'a, S>,
+}
+
+/// The motion of an element's nodes as a formulation reads it.
+pub(super) struct Motion<const NODES: usize> {
+    /// Displacements that strain the element (length).
+    u: [[f64; 3]; NODES],
+    /// Where DISPLACEMENT is ahead of the mesh: present displacements less those of the step, and those at its start.
+    ///
+    /// The deformation of the step is then the one from the first to `u`, as in the reference program, whose updated
+    /// Lagrangian elements take the start of the step from present positions and DISPLACEMENT.
+    ahead: Option<[[[f64; 3]; NODES]; 2]>,
+}
+
+/// Σ N_i x_i of the first coordinate.
+pub(super) fn radius<const NODES: usize>(n: &[f64; NODES], x: &[[f64; 3]; NODES]) -> f64 {
+    n.iter().zip(x).map(|(n, x)| n * x[0]).sum()
+}
+
+impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
+    pub(super) const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
+
+    /// What the formulation reads of the motion of the nodes.
+    pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
+        let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
+        if !F::FINITE {
+            return Motion { u: displacement, ahead: None };
+        }
+        let (x, initial) = (&entity.current, &entity.initial);
+        let nodes = |of: &dyn Fn(usize, usize) -> f64| std::array::from_fn(|i| std::array::from_fn(|c| of(i, c)));
+        let trails = (0..NODES).any(|i| (0..3).any(|c| x[i][c] != initial[i][c] + displacement[i][c]));
+        let ahead = (F::PRESENT && trails).then(|| {
+            let old: [[f64; 3]; NODES] = match view.nodes.history.values(&DISPLACEMENT, 1) {
+                [] => [[0.0; 3]; NODES],
+                column => entity.vectors(column),
+            };
+            [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
+        });
+        Motion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead }
+    }
+
+    /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
+    pub(super) fn initial_weight(table: &ShapeTable, g: usize, entity: &Gather<'_, NODES>) -> f64 {
+        let (_, det) = physical_gradients(&entity.initial, &table.dn::<NODES, DIM>()[g]);
+        let turn = if Self::AXISYMMETRIC { 2.0 * PI * radius(&table.n()[g], &entity.initial) } else { 1.0 };
+        table.weight(g) * det * turn
+    }
+
+    /// Mean over the element of the gradients of the shape functions; zero without mean dilatation.
+    pub(super) fn mean_gradients(material: &Material<S>, entity: &Gather<'_, NODES>) -> [[f64; DIM]; NODES] {
+        let mut sum = [[0.0; DIM]; NODES];
+        if F::MEAN_DILATATION {
+            let mut volume = 0.0;
+            for g in 0..material.rule.len() {
+                let (dn, det) = physical_gradients(&entity.initial, &material.rule.dn::<NODES, DIM>()[g]);
+                let weight = material.rule.weight(g) * det;
+                volume += weight;
+                for (sum, dn) in sum.iter_mut().zip(&dn) {
+                    sum.iter_mut().zip(dn).for_each(|(sum, d)| *sum += weight * d);
+                }
+            }
+            sum.as_flattened_mut().iter_mut().for_each(|d| *d /= volume);
+        }
+        sum
+    }
+
+    /// Kinematics at Gauss point `g` of a motion; `mean` are the mean gradients, `state` is the element's.
+    pub(super) fn point<'a>(
+        material: &Material<S>,
+        g: usize,
+        entity: &Gather<'_, NODES>,
+        motion: &Motion<NODES>,
+        mean: &[[f64; DIM]; NODES],
+        state: &'a [f64],
+    ) -> Result<Point<'a, NODES, DIM, S>, String> {
+        let table = material.rule;
+        let (n, local) = (&table.n::<NODES>()[g], &table.dn::<NODES, DIM>()[g]);
+        let (mut dn, mut det) = physical_gradients(&entity.initial, local);
+        let u = &motion.u;
+        let mut grad_u = gradient(u, &dn);
+        if let Some([reference, old]) = &motion.ahead {
+            let f = |u| {
+                let mut f = padded(&gradient(u, &dn));
+                (0..DIM).for_each(|a| f[a][a] += 1.0);
+                f
+            };
+            let since = product(&f(u), &inverse(&f(reference)));
+            let total = product(&since, &f(old));
+            for a in 0..DIM {
+                for b in 0..DIM {
+                    grad_u[a][b] = total[a][b] - IDENTITY[a][b];
+                }
+            }
+        }
+        let mut f = IDENTITY;
+        let mut h = [[0.0; 3]; 3];
+        for a in 0..DIM {
+            for b in 0..DIM {
+                h[a][b] = if F::FINITE { grad_u[a][b] } else { 0.5 * (grad_u[a][b] + grad_u[b][a]) };
+                f[a][b] += h[a][b];
+            }
+        }
+        let mut excess = [[0.0; DIM]; NODES];
+        if F::MEAN_DILATATION {
+            let mut more = 0.0;
+            for (((excess, mean), dn), u) in excess.iter_mut().zip(mean).zip(&dn).zip(u) {
+                for a in 0..DIM {
+                    excess[a] = (mean[a] - dn[a]) / 3.0;
+                    more += excess[a] * u[a];
+                }
+            }
+            (0..3).for_each(|a| {
+                h[a][a] += more;
+                f[a][a] += more;
+            });
+        }
+        let mut hoop = [0.0; NODES];
+        let mut turn = material.thickness;
+        if Self::AXISYMMETRIC {
+            let present = radius(n, &entity.current);
+            let strained = if F::FINITE { radius(n, &entity.initial) } else { present };
+            h[2][2] = radius(n, u) / strained;
+            f[2][2] += h[2][2];
+            let r = if F::FINITE && !F::PRESENT { strained } else { present };
+            if r <= 0.0 || r.is_nan() {
+                return Err(format!("the radius at Gauss point {} is {r}, not positive", g + 1));
+            }
+            hoop = n.map(|n| n / r);
+            turn = 2.0 * PI * r;
+        }
+        let mut strain = strain_vector(&h);
+        if F::FINITE {
+            let square = strain_vector::<S>(&product(&transposed(&h), &h));
+            strain.iter_mut().zip(square).for_each(|(e, q)| *e += 0.5 * q);
+        }
+        let det_f = determinant(&f);
+        if (F::FINITE || !material.law.is_linear()) && (det_f <= 0.0 || det_f.is_nan()) {
+            return Err(format!("turned inside out at Gauss point {} (det F = {det_f:.3e})", g + 1));
+        }
+        if F::PRESENT {
+            (dn, det) = physical_gradients(&entity.current, local);
+        }
+        Ok(Point {
+            dn,
+            hoop,
+            excess,
+            weight: table.weight(g) * det * turn,
+            state: StrainState {
+                strain,
+                f,
+                det_f,
+                small: !F::FINITE,
+                pressure: 0.0,
+                history: material.remembered(g, state),
+            },
+        })
+    }
+
+    /// Derivative of the strain with respect to the displacements, one row a Voigt component.
+    pub(super) fn b_matrix<const SIZE: usize>(point: &Point<'_, NODES, DIM, S>) -> [[f64; SIZE]; S] {
+        let total = F::FINITE && !F::PRESENT;
+        let mut b = [[0.0; SIZE]; S];
+        for (row, (p, q)) in b.iter_mut().zip(pairs::<S>()) {
+            for (i, dn) in point.dn.iter().enumerate() {
+                if p >= DIM {
+                    row[i * DIM] = if total { point.state.f[2][2] } else { 1.0 } * point.hoop[i];
+                } else if total {
+                    for a in 0..DIM {
+                        let f = &point.state.f[a];
+                        row[i * DIM + a] = if p == q { f[p] * dn[p] } else { f[p] * dn[q] + f[q] * dn[p] };
+                    }
+                } else if p == q {
+                    row[i * DIM + p] = dn[p];
+                } else {
+                    row[i * DIM + p] = dn[q];
+                    row[i * DIM + q] = dn[p];
+                }
+                if F::MEAN_DILATATION && p == q {
+                    (0..DIM).for_each(|a| row[i * DIM + a] += point.excess[i][a]);
+                }
+            }
+        }
+        b
+    }
+
+    /// ∇N_i · s · ∇N_j on the diagonal of each block of nodes, times the weight; upper triangle.
+    pub(super) fn add_geometric<const SIZE: usize>(
+        point: &Point<'_, NODES, DIM, S>,
+        stress: &[f64; S],
+        lhs: &mut [[f64; SIZE]; SIZE],
+    ) {
+        let s = stress_tensor(stress);
+        for i in 0..NODES {
+            let mut traction = [0.0; DIM];
+            for (b, t) in traction.iter_mut().enumerate() {
+                *t = point.weight * (0..DIM).map(|a| point.dn[i][a] * s[a][b]).sum::<f64>();
+            }
+            for j in i..NODES {
+                let k: f64 = (0..DIM).map(|b| traction[b] * point.dn[j][b]).sum();
+                for a in 0..DIM {
+                    lhs[i * DIM + a][j * DIM + a] += k;
+                }
+                lhs[i * DIM][j * DIM] += point.weight * s[2][2] * point.hoop[i] * point.hoop[j];
+            }
+        }
+    }
+}
