@@ -6,7 +6,7 @@ use super::older_decks::{complete_part_names, modernise};
 use super::orchestrator::{open, stages};
 use super::report::RunReport;
 use super::solver::SolverSettings;
-use super::stage::{import, root_name};
+use super::deck::{import, root_name};
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::model::{Model, ModelPart};
 use crate::partition::{Surface, surfaces};

@@ -4,6 +4,7 @@
 //! another on one model. [`check`] does everything that can be done without solving.
 
 mod cutting;
+mod deck;
 mod linear_solvers;
 mod mesh;
 mod older_decks;

@@ -5,17 +5,16 @@
 //! tangents of follower forces are small and not symmetric.
 
 mod inertia;
+mod tangents;
 
 use std::time::Instant;
 
 use zelus_linear_algebra::{Csr, Symmetry, System};
 
-use inertia::without_rates;
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::distribution::Distribution;
-use super::dof_table::DofTable;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use crate::communication::world;
@@ -194,11 +193,6 @@ impl Assembler {
         Ok(())
     }
 
-    fn reduce_bulk(&mut self, same_pattern: bool) {
-        self.equations.reduce_matrix(&self.bulk, &mut self.reduced_bulk, same_pattern);
-        self.stamps.bulk_values += 1;
-    }
-
     /// Present values of all unknowns.
     pub fn values(&self, part: &ModelPart) -> Vec<f64> {
         part.dofs.gather(&part.nodes, 0)
@@ -276,90 +270,6 @@ impl Assembler {
         Ok(out)
     }
 
-    /// Multiplies the tangents of follower loads, until they are assembled again.
-    pub fn scale_load_tangents(&mut self, factor: f64) {
-        self.loads.matrix.values.iter_mut().for_each(|v| *v *= factor);
-    }
-
-    /// Brings the tangents up to date with the state.
-    ///
-    /// # Errors
-    /// An entity that cannot be computed.
-    pub fn tangents(
-        &mut self,
-        part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        inertia: Option<&Inertia>,
-    ) -> Result<()> {
-        let own = self.own_tangents(part, interactions, inertia);
-        world().agree(own)?;
-        let start = Instant::now();
-        let acting = interactions.iter().filter(|i| !i.blocks().is_empty());
-        let diagonal = acting.map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
-        let mut in_use = self.coupling.lonely_rows_in_use();
-        world().any_of(&mut in_use);
-        let distribution = self.distribution.as_ref();
-        self.coupling.hold_lonely(&in_use, diagonal, |n| distribution.is_none_or(|d| d.is_own(n)));
-        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
-        self.stamps.coupling_values += 1;
-        self.seconds.coupling += start.elapsed().as_secs_f64();
-        Ok(())
-    }
-
-    fn own_tangents(
-        &mut self,
-        part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        inertia: Option<&Inertia>,
-    ) -> Result<()> {
-        self.ensure_constant(part)?;
-        self.stamps.tangents += 1;
-        let start = Instant::now();
-        let view = part.view();
-        let key = inertia.map_or([0.0; 4], |i| [i.mass_factor, i.damping_factor, i.alpha, i.beta]);
-        let single = !damped_by_properties(part);
-        let stale =
-            self.traits.variable_bulk || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
-        if stale {
-            let mut values = self.stiffness(part)?;
-            // Damping acts on rates only, which takes the symmetry from unknowns without them.
-            let mut damped = false;
-            if inertia.is_some() {
-                let [mass_factor, damping_factor, alpha, beta] = key;
-                let [mass_factor, stiffness_factor] = if single {
-                    [mass_factor + alpha * damping_factor, 1.0 + beta * damping_factor]
-                } else {
-                    [mass_factor, 1.0]
-                };
-                let still = without_rates(part);
-                let moves = |column: &u32| !still.get(*column as usize).copied().unwrap_or(false);
-                damped = !still.is_empty() && (!single || stiffness_factor != 1.0);
-                self.mass(part)?;
-                let mass = self.mass.as_ref().expect("just made");
-                for ((value, m), column) in values.iter_mut().zip(mass).zip(&self.pattern.zero.columns) {
-                    let factor = if moves(column) { stiffness_factor } else { 1.0 };
-                    *value = factor * *value + mass_factor * m;
-                }
-                if !single {
-                    let damping = self.damping(part, [alpha, beta])?;
-                    let moving = values.iter_mut().zip(damping).zip(&self.pattern.zero.columns);
-                    moving.filter(|(_, column)| moves(column)).for_each(|((value, c), _)| *value += damping_factor * c);
-                }
-            }
-            self.bulk.values = values;
-            self.bulk_general = self.traits.general_elements || damped;
-            self.reduce_bulk(self.reduced_graph == self.stamps.bulk_graph);
-            self.reduced_graph = self.stamps.bulk_graph;
-            self.tangent_key = Some(key);
-        }
-        self.loads.assemble(&load_blocks(part), &view)?;
-        self.seconds.bulk += start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        self.coupling.assemble(&blocks_of(interactions), &view)?;
-        self.seconds.coupling += start.elapsed().as_secs_f64();
-        Ok(())
-    }
-
     /// On several ranks: replaces what this rank has by the sum over all; collective.
     fn add_up(&self, values: &mut [f64]) {
         if let Some(distribution) = &self.distribution {
@@ -385,31 +295,6 @@ impl Assembler {
             coupling_values: self.stamps.coupling_values,
             coupling_symmetric: false,
         }
-    }
-
-    /// Adds `amount` to the diagonals of the multipliers' tangents, until these are computed anew.
-    pub fn relax_multipliers(&mut self, dofs: &DofTable, amount: f64) {
-        for (number, _) in dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.multiplier) {
-            self.coupling.matrix.add(number, number, amount);
-        }
-        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
-        self.stamps.coupling_values += 1;
-    }
-
-    /// Tangents of follower loads on the equations; `None` when there are none.
-    pub fn load_tangents(&mut self) -> Option<&Csr> {
-        if self.loads.matrix.values.iter().all(|v| *v == 0.0) {
-            return None;
-        }
-        self.equations.reduce_matrix(&self.loads.matrix, &mut self.reduced_loads, false);
-        Some(&self.reduced_loads)
-    }
-
-    /// Stamps of graph and values of the bulk with the load tangents merged into it.
-    ///
-    /// No bulk without them has the same, and the values count as new after each call of [`Assembler::tangents`].
-    pub fn merged_stamps(&self) -> [u64; 2] {
-        [u64::MAX - self.stamps.bulk_graph, u64::MAX - self.stamps.tangents]
     }
 
     /// Subtracts (all tangents) · `increment` from `rhs`, both over all unknowns.

@@ -14,8 +14,8 @@
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Want;
 
-use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use super::gradients::{gradient, padded};
+use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
 use crate::tensor::{determinant, inverse, pairs, strain_vector};
 

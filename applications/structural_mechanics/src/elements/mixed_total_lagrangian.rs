@@ -16,8 +16,8 @@
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Want;
 
-use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use super::gradients::{gradient, padded};
+use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use crate::laws::{ConstitutiveLaw, StrainState, StressMeasure};
 use crate::tensor::{Tensor, determinant, inverse, pairs, product, strain_vector, stress_tensor, transposed};
 

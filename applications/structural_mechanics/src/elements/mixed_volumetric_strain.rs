@@ -12,9 +12,9 @@ use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, LocalUnknown, St
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::model::variables::DISPLACEMENT;
 
+use super::gradients::{nodal_vectors, physical_gradients};
 use super::material::Material;
 use super::results;
-use super::gradients::{nodal_vectors, physical_gradients};
 use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
 use crate::tensor::IDENTITY;
 use crate::variables::{VOLUME_ACCELERATION, VOLUMETRIC_STRAIN};
