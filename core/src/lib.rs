@@ -17,6 +17,7 @@ pub mod io;
 pub mod assembly;
 pub mod strategies;
 pub mod processes;
+pub mod modelers;
 pub mod analysis;
 
 pub use diagnostics::{Error, Result};

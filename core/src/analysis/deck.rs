@@ -1,14 +1,114 @@
-//! What a stage reads of its deck: the keys at its top level, mesh and materials, processes.
+//! What a deck says: its stages, and of each the keys at its top level, mesh and materials, processes.
 
 use std::path::{Path, PathBuf};
 
+use super::report::RunReport;
 use super::solver::{SolverSettings, flatten_points};
-use crate::diagnostics::{Diagnostic, Error, Report, Result};
+use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
 use crate::io;
 use crate::model::{Model, ModelPart};
-use crate::parameters::{Node, Settings};
+use crate::parameters::{Document, Node, Settings, Value};
 use crate::processes::{Process, ProcessRequest};
 use crate::registry::{self, Build, Kind};
+
+/// The parsed deck and its folder.
+pub(super) fn open(path: &Path) -> Result<(Node, PathBuf)> {
+    let document = Document::read(path)?;
+    let folder = path.parent().map(Path::to_owned).unwrap_or_default();
+    Ok((document.root.clone(), folder))
+}
+
+/// What a deck says of one stage.
+pub(super) struct StageDeck {
+    /// Its name among the stages, or that of the problem where there is only one.
+    pub name: String,
+    /// Solver, processes and times.
+    pub settings: Node,
+    /// Modelers to run before it, in order.
+    pub modelers: Vec<Node>,
+}
+
+impl StageDeck {
+    /// # Errors
+    /// Lists of modelers that are no lists.
+    fn new(name: String, settings: &Node, before: Option<&Node>) -> Result<Self> {
+        let mut modelers = Vec::new();
+        for list in before.into_iter().chain(settings.get("modelers")) {
+            modelers.extend(list.array()?.iter().cloned());
+        }
+        Ok(Self { name, settings: settings.clone(), modelers })
+    }
+}
+
+/// The stages of a deck in order.
+///
+/// # Errors
+/// An orchestrator, stages or work between them that is not run.
+pub(super) fn stages(deck: &Node, report: &mut RunReport) -> Result<Vec<StageDeck>> {
+    let name_of = |deck: &Node| deck.get_path("problem_data.problem_name").and_then(|n| n.as_str().map(str::to_owned));
+    if deck.get("orchestrator").is_none() {
+        let name = name_of(deck).unwrap_or_default();
+        report.problem.clone_from(&name);
+        return Ok(vec![StageDeck::new(name, deck, None)?]);
+    }
+    refuse_other_orchestrators(deck)?;
+    let all = deck.require("stages")?.object()?;
+    let order: Vec<String> = match deck.get_path("orchestrator.settings.execution_list") {
+        Some(list) => list.array()?.iter().map(|n| n.str().map(str::to_owned)).collect::<Result<_>>()?,
+        None => all.keys().map(str::to_owned).collect(),
+    };
+    let mut out = Vec::new();
+    for name in order {
+        let stage = all.get(&name).ok_or_else(|| {
+            let hint = did_you_mean(&name, all.keys()).unwrap_or_else(|| "stages are the members of \"stages\"".into());
+            Error::from(
+                Diagnostic::error("unknown-stage", format!("there is no stage {name:?}")).at(deck.place()).remedy(hint),
+            )
+        })?;
+        for key in ["stage_preprocess", "stage_postprocess"] {
+            refuse_work_between_stages(stage, key)?;
+        }
+        let settings = stage.require("stage_settings")?;
+        report.problem = name_of(settings).unwrap_or_default();
+        out.push(StageDeck::new(name, settings, stage.get_path("stage_preprocess.modelers"))?);
+    }
+    Ok(out)
+}
+
+/// Stages run one after another, from the first.
+fn refuse_other_orchestrators(deck: &Node) -> Result<()> {
+    if let Some(name) = deck.get_path("orchestrator.name")
+        && !name.str()?.ends_with("SequentialOrchestrator")
+    {
+        let fact = format!("there is no orchestrator {:?}", name.str()?);
+        let remedy = "use \"Orchestrators.KratosMultiphysics.SequentialOrchestrator\"";
+        return Err(Diagnostic::error("orchestrator", fact).at(name.place()).remedy(remedy).into());
+    }
+    match deck.get_path("orchestrator.settings.load_from_checkpoint").filter(|from| !from.is_null()) {
+        None => Ok(()),
+        Some(from) => Err(Diagnostic::error("checkpoint", "checkpoints are not read")
+            .at(from.place())
+            .remedy("set \"load_from_checkpoint\" to null: all stages are run from the first")
+            .into()),
+    }
+}
+
+fn refuse_work_between_stages(stage: &Node, key: &str) -> Result<()> {
+    let Some(work) = stage.get(key).and_then(Node::as_object) else { return Ok(()) };
+    let is_empty = |node: &Node| match &node.value {
+        Value::Array(items) => items.is_empty(),
+        Value::Object(members) => members.iter().next().is_none(),
+        _ => false,
+    };
+    let runs = |name: &str| key == "stage_preprocess" && name == "modelers";
+    match work.in_source_order().iter().find(|member| !runs(&member.key) && !is_empty(&member.node)) {
+        None => Ok(()),
+        Some(member) => Err(Diagnostic::error("stage-work", format!("\"{}\" of \"{key}\" is not run", member.key))
+            .at(member.node.place())
+            .remedy("put processes into the \"processes\" of a stage's settings, and take this out")
+            .into()),
+    }
+}
 
 /// Name of the root part that the settings name.
 ///
@@ -35,7 +135,7 @@ pub(super) fn check_top_level(key: &str, known: &[&str], deck: &Node, problems: 
                 .at(deck.key_place(key)),
         );
     } else {
-        let hint = crate::diagnostics::did_you_mean(key, known.iter().copied());
+        let hint = did_you_mean(key, known.iter().copied());
         problems.push(
             Diagnostic::warning("unknown-key-ignored", format!("\"{key}\" at the top level is not read"))
                 .at(deck.key_place(key))
@@ -64,10 +164,10 @@ pub(super) fn import(
         "use_input_model_part" => {
             return Err(Diagnostic::error(
                 "no-model-part",
-                format!("there is no model part {root:?} from an earlier stage"),
+                format!("no earlier stage and no modeler has made a model part {root:?}"),
             )
             .at(import.key_place("input_type"))
-            .remedy("read it from a file with \"input_type\": \"mdpa\"")
+            .remedy("read it from a file with \"input_type\": \"mdpa\", or by an ImportMDPAModeler in \"modelers\"")
             .into());
         }
         "mdpa" => {
@@ -76,15 +176,9 @@ pub(super) fn import(
             }
             let mut part = ModelPart::new(root);
             let name = import.node().require("input_filename")?;
-            let path = with_extension(folder.join(name.str()?), "mdpa");
-            if !path.is_file() {
-                return Err(Diagnostic::error("missing-file", format!("there is no mesh file {}", path.display()))
-                    .at(name.place())
-                    .remedy("\"input_filename\" is relative to the deck and has no extension")
-                    .into());
-            }
             solver.prepare(&mut part)?;
-            io::read_mesh(&path, &mut part)?.into_iter().for_each(|w| warnings.push(w));
+            let path = folder.join(name.str()?);
+            io::read_mesh_of(&path, &name.place(), &mut part)?.into_iter().for_each(|w| warnings.push(w));
             model.parts.insert(root.to_owned(), part);
         }
         other => {
@@ -97,6 +191,11 @@ pub(super) fn import(
     let part = model.root_mut(root)?;
     flatten_points(part, solver.domain_size()?, warnings);
     solver.prepare(part)?;
+    if !part.geometries.is_empty() && !part.geometries.used {
+        let fact = "geometries without elements or conditions on them are not used";
+        let remedy = "CreateEntitiesFromGeometriesModeler in \"modelers\" makes elements and conditions on them";
+        warnings.push(Diagnostic::warning("unused-block", fact).at(part.geometries.place.clone()).remedy(remedy));
+    }
     for kind in part.elements.kinds.iter().chain(&part.conditions.kinds).filter(|kind| !kind.nodal.is_empty()) {
         kind.nodal.iter().for_each(|&(name, components)| part.nodes.history.add_named(name, components));
     }
@@ -113,15 +212,6 @@ pub(super) fn import(
         io::read_materials(&path, part)?.into_iter().for_each(|w| warnings.push(w));
     }
     Ok(())
-}
-
-fn with_extension(path: PathBuf, extension: &str) -> PathBuf {
-    let mut name = path.into_os_string();
-    if !PathBuf::from(&name).extension().is_some_and(|e| e == extension) {
-        name.push(".");
-        name.push(extension);
-    }
-    PathBuf::from(name)
 }
 
 /// The processes of `processes`, list by list in the order of their names, then those of `output_processes`.
@@ -154,7 +244,7 @@ fn make_process(item: &Node, folder: &Path, model: &mut Model, problems: &mut Re
     let name = module.str()?.rsplit('.').next().unwrap_or_default();
     let entry = registry::require(Kind::Process, name).map_err(|d| d.at(module.place()))?;
     let Build::Process(factory) = entry.build else { unreachable!("processes register a factory") };
-    let empty = Node::new(crate::parameters::Value::Object(Default::default()), &item.place());
+    let empty = Node::new(Value::Object(Default::default()), &item.place());
     let parameters = item.get("Parameters").unwrap_or(&empty);
     let place = parameters.place();
     factory(&mut ProcessRequest { entry, parameters, model, folder, report: problems }).map_err(|error| match error {

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use super::deck::{import, open, root_name, stages};
 use super::older_decks::{complete_part_names, modernise};
-use super::orchestrator::{open, stages};
 use super::report::RunReport;
 use super::solver::SolverSettings;
-use super::deck::{import, root_name};
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::model::{Model, ModelPart};
+use crate::modelers::run_modelers;
 use crate::partition::{Surface, surfaces};
 
 /// The model part that the first stage of a deck reads, and its surfaces that may touch.
@@ -18,18 +18,19 @@ use crate::partition::{Surface, surfaces};
 pub fn read_deck_mesh(path: &Path) -> Result<(ModelPart, Vec<Surface>)> {
     let (deck, folder) = open(path)?;
     let all = stages(&deck, &mut RunReport::default())?;
-    let (_, stage) = all.first().ok_or_else(|| {
+    let stage = all.first().ok_or_else(|| {
         Error::from(Diagnostic::error("no-stage", "the deck has no stage").at(deck.place()).remedy("list one to run"))
     })?;
     let mut problems = Report::new();
-    let mut stage = modernise(stage, &mut problems);
-    let solver = SolverSettings::new(stage.require("solver_settings")?, &mut problems)?;
+    let mut settings = modernise(&stage.settings, &mut problems);
+    let solver = SolverSettings::new(settings.require("solver_settings")?, &mut problems)?;
     let root = root_name(&solver.settings)?;
     let mut model = Model::default();
+    run_modelers(&stage.modelers, &folder, &mut model, &mut problems)?;
     import(&solver, &root, &folder, &mut model, &mut problems)?;
-    complete_part_names(&mut stage, &root, &model, &mut problems);
+    complete_part_names(&mut settings, &root, &model, &mut problems);
     problems.finish()?;
     let part = model.parts.remove(&root).ok_or_else(|| Error::System(format!("the stage has no model part {root}")))?;
-    let surfaces = surfaces(&stage, &part);
+    let surfaces = surfaces(&settings, &part);
     Ok((part, surfaces))
 }

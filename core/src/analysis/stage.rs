@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::cutting::{Cutting, Lengths};
-use super::deck::{check_top_level, import, make_processes, root_name};
+use super::deck::{StageDeck, check_top_level, import, make_processes, root_name};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
@@ -14,6 +14,7 @@ use super::time_stepping::TimeStepping;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::model::{Model, ModelPart};
+use crate::modelers::run_modelers;
 use crate::parameters::Node;
 use crate::processes::Process;
 use crate::strategies::{Monitor, SolutionStrategy, StepRecord};
@@ -38,8 +39,7 @@ impl Stage {
     /// # Errors
     /// Every problem of the deck that can be found, gathered.
     pub(super) fn prepare(
-        name: &str,
-        deck: &Node,
+        stage: &StageDeck,
         folder: &Path,
         model: &mut Model,
         report: &mut RunReport,
@@ -47,7 +47,7 @@ impl Stage {
     ) -> Result<Self> {
         let start = Instant::now();
         let mut problems = Report::new();
-        let mut deck = modernise(deck, &mut problems);
+        let mut deck = modernise(&stage.settings, &mut problems);
         let known = ["problem_data", "solver_settings", "processes", "output_processes", "modelers", "analysis_stage"];
         for member in deck.object()?.iter() {
             check_top_level(&member.key, &known, &deck, &mut problems);
@@ -88,6 +88,11 @@ impl Stage {
         problems.absorb(solver.scheme().map(|_| ()));
         problems.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
         let root = problems.absorb(root_name(&solver.settings)).unwrap_or_default();
+        let modelled = run_modelers(&stage.modelers, folder, model, &mut problems);
+        problems.absorb(modelled);
+        if problems.has_errors() {
+            return Err(finish(problems));
+        }
         let imported = import(&solver, &root, folder, model, &mut problems);
         let imported = problems.absorb(imported);
         if imported.is_none() || problems.has_errors() {
@@ -146,7 +151,7 @@ impl Stage {
         let (start_time, end_time) = times.expect("checked above");
         report.add_seconds("set up", start.elapsed().as_secs_f64());
         Ok(Self {
-            name: name.to_owned(),
+            name: stage.name.clone(),
             root,
             start_time,
             end_time,

@@ -9,6 +9,7 @@ use super::mdpa::{self, DataBlock, DataColumn, DataEntry, DataValue, EntityBlock
 use super::variables::{kind_of, law_name, unknown_variable};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::entities::MasterSlaveConstraint;
+use crate::geometry::Shape;
 use crate::model::flags::{FLAGS, flag};
 use crate::model::{
     EntityTable, Fields, Flags, ModelPart, Named, Nodes, Properties, PropertyValue, ScalarVariable, SubPart, Table,
@@ -24,7 +25,7 @@ pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
     let known: Vec<&str> = registry::names(Kind::Element).chain(registry::names(Kind::Condition)).collect();
     let nodes_of = |name: &str| {
         let entry = registry::find(Kind::Element, name).or_else(|| registry::find(Kind::Condition, name));
-        entry.map(|entry| entry.nodes()).or_else(|| geometry_nodes(name))
+        entry.map(|entry| entry.nodes()).or_else(|| geometry(name).map(|(cell, _)| cell.nodes()))
     };
     let names = EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| FLAGS.contains(&name) };
     let (document, mut warnings) = mdpa::read(path, &names)?;
@@ -32,12 +33,42 @@ pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
     Ok(warnings)
 }
 
-/// Number of nodes of a geometry by its name, as `Quadrilateral3D4`.
-fn geometry_nodes(name: &str) -> Option<usize> {
-    let kinds = ["Point", "Line", "Triangle", "Quadrilateral", "Tetrahedra", "Prism", "Hexahedra", "Pyramid", "Sphere"];
-    let rest = kinds.iter().find_map(|kind| name.strip_prefix(kind))?;
+/// Reads the mdpa file that a deck names at `place`, with or without ending, into `part`; gives the warnings.
+///
+/// # Errors
+/// No such file; as [`read_mesh`].
+pub fn read_mesh_of(path: &Path, place: &Place, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
+    let mut name = path.as_os_str().to_owned();
+    if path.extension().is_none_or(|ending| ending != "mdpa") {
+        name.push(".mdpa");
+    }
+    let path = Path::new(&name);
+    if !path.is_file() {
+        return Err(Diagnostic::error("missing-file", format!("there is no mesh file {}", path.display()))
+            .at(place.clone())
+            .remedy("\"input_filename\" is relative to the deck and has no extension")
+            .into());
+    }
+    read_mesh(path, part)
+}
+
+/// Reference cell and space of a geometry by its name, as `Quadrilateral3D4`.
+fn geometry(name: &str) -> Option<(Shape, usize)> {
+    let kinds = [
+        ("Point", 0),
+        ("Line", 1),
+        ("Triangle", 2),
+        ("Quadrilateral", 2),
+        ("Tetrahedra", 3),
+        ("Prism", 3),
+        ("Hexahedra", 3),
+    ];
+    let (kind, dimension) = kinds.iter().find(|(kind, _)| name.starts_with(kind))?;
+    let rest = &name[kind.len()..];
+    let space = if rest.starts_with("2D") { 2 } else { 3 };
     let nodes = rest.strip_prefix("2D").or_else(|| rest.strip_prefix("3D"))?;
-    if nodes.is_empty() { Some(1) } else { nodes.parse().ok() }
+    let cell = Shape::of(*dimension, if nodes.is_empty() { 1 } else { nodes.parse().ok()? })?;
+    Some((cell, space))
 }
 
 /// Puts the content of a document into `part`, sorted by id; gives the warnings.
@@ -51,6 +82,7 @@ pub fn import(document: &MdpaDocument, part: &mut ModelPart) -> Result<Vec<Diagn
     let mut import = Import { document, report: Report::new() };
     import.nodes(part);
     import.elements_and_conditions(part);
+    import.geometries(part);
     for entry in &document.model_part_data {
         import.entry(entry, &mut part.data);
     }
@@ -70,10 +102,6 @@ pub fn import(document: &MdpaDocument, part: &mut ModelPart) -> Result<Vec<Diagn
     }
     let constraints = import.constraints(part);
     import.sub_parts(part, &constraints);
-    if let Some(block) = document.geometries.first() {
-        let fact = "geometries without elements or conditions on them are not used";
-        import.push(block.line, Diagnostic::warning("unused-block", fact));
-    }
     import.report.finish()
 }
 
@@ -129,6 +157,20 @@ impl Import<'_> {
                 table.push(id as usize, entry, block.properties[at] as usize, &indices);
             }
             table.finish();
+        }
+    }
+
+    fn geometries(&self, part: &mut ModelPart) {
+        let mut rows: Vec<(u32, &EntityBlock, usize)> = Vec::new();
+        for block in &self.document.geometries {
+            rows.extend(block.ids.iter().enumerate().map(|(at, &id)| (id, block, at)));
+        }
+        rows.sort_by_key(|&(id, ..)| id);
+        part.geometries.place = self.document.geometries.first().map(|block| self.place(block.line));
+        for (id, block, at) in rows {
+            let Some((cell, space)) = geometry(&block.name) else { continue };
+            let nodes = block.nodes_of(at).iter().map(|&node| part.nodes.find(node as usize).expect("checked"));
+            part.geometries.push(id as usize, cell, space, nodes.collect());
         }
     }
 
@@ -318,6 +360,7 @@ impl Import<'_> {
         tree.nodes = (0..part.nodes.len() as u32).collect();
         tree.elements = (0..part.elements.len() as u32).collect();
         tree.conditions = (0..part.conditions.len() as u32).collect();
+        tree.geometries = (0..part.geometries.ids.len() as u32).collect();
         tree.constraints = (0..part.constraints.len() as u32).collect();
         tree.tables = part.tables.keys().copied().collect();
         tree.properties = part.properties.keys().copied().collect();
@@ -335,6 +378,7 @@ impl Import<'_> {
         out.nodes = source.nodes.iter().filter_map(|&id| part.nodes.find(id as usize)).collect();
         out.elements = source.elements.iter().filter_map(|&id| part.elements.find(id as usize)).collect();
         out.conditions = source.conditions.iter().filter_map(|&id| part.conditions.find(id as usize)).collect();
+        out.geometries = source.geometries.iter().filter_map(|&id| part.geometries.find(id as usize)).collect();
         out.constraints = source.constraints.iter().filter_map(|id| constraints.get(id).copied()).collect();
         out.tables = source.tables.iter().map(|&id| id as usize).collect();
         out.properties = source.properties.iter().map(|&id| id as usize).collect();
@@ -346,6 +390,7 @@ impl Import<'_> {
             out.nodes.extend(&child.nodes);
             out.elements.extend(&child.elements);
             out.conditions.extend(&child.conditions);
+            out.geometries.extend(&child.geometries);
             out.constraints.extend(&child.constraints);
             out.children.insert(child.name.clone(), child);
         }

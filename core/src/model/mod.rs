@@ -7,6 +7,7 @@
 mod entity_table;
 mod fields;
 pub mod flags;
+mod geometries;
 mod model_part;
 mod nodes;
 mod process_info;
@@ -21,6 +22,7 @@ use std::collections::BTreeMap;
 pub use entity_table::EntityTable;
 pub use fields::{Field, Fields};
 pub use flags::Flags;
+pub use geometries::Geometries;
 pub use model_part::ModelPart;
 pub use nodes::Nodes;
 pub use process_info::ProcessInfo;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::entity_table::EntityTable;
+use super::geometries::Geometries;
 use super::nodes::Nodes;
 use super::process_info::ProcessInfo;
 use super::properties::{Properties, PropertyValue};
@@ -26,6 +27,8 @@ pub struct ModelPart {
     pub elements: EntityTable,
     /// Conditions as the mesh gives them.
     pub conditions: EntityTable,
+    /// Cells that modelers may make elements and conditions of.
+    pub geometries: Geometries,
     /// Properties by id.
     pub properties: BTreeMap<usize, Properties>,
     /// Tables by id.
@@ -104,6 +107,20 @@ impl ModelPart {
         let fact = format!("the model part {name:?} is named without its root part; {full:?} is taken");
         let warning = Diagnostic::warning("old-deck", fact).remedy(format!("write \"{full}\""));
         Some((full, warning))
+    }
+
+    /// Adds elements or conditions to the sub part at `path` and to those above it.
+    pub fn select(&mut self, path: &str, elements: bool, indices: &[u32]) {
+        let relative = self.relative(path).to_owned();
+        let mut names = relative.split('.').filter(|name| !name.is_empty());
+        let mut at = Some(&mut self.tree);
+        while let Some(part) = at {
+            let list = if elements { &mut part.elements } else { &mut part.conditions };
+            list.extend(indices);
+            list.sort_unstable();
+            list.dedup();
+            at = names.next().and_then(|name| part.children.get_mut(name));
+        }
     }
 
     fn relative<'p>(&self, path: &'p str) -> &'p str {

@@ -15,6 +15,8 @@ pub struct SubPart {
     pub elements: Vec<u32>,
     /// Condition indices, ascending.
     pub conditions: Vec<u32>,
+    /// Geometry indices, ascending.
+    pub geometries: Vec<u32>,
     /// Constraint indices, ascending.
     pub constraints: Vec<u32>,
     /// Ids of tables attached to it.
@@ -63,7 +65,8 @@ impl SubPart {
 
     /// Sorts all lists and removes repetitions, here and below.
     pub fn normalise(&mut self) {
-        for list in [&mut self.nodes, &mut self.elements, &mut self.conditions, &mut self.constraints] {
+        let SubPart { nodes, elements, conditions, geometries, constraints, .. } = self;
+        for list in [nodes, elements, conditions, geometries, constraints] {
             list.sort_unstable();
             list.dedup();
         }

@@ -4,13 +4,17 @@
 //! [`crate::io::results`]; none of them changes the model.
 
 mod control;
+mod csv_points_output_process;
 mod from_json_check_result_process;
 mod gauss;
 mod gid_output_process;
 mod json_output_process;
+mod line_output_process;
+mod multiple_points_output_process;
 mod picture;
 mod place;
 mod point_output_process;
+mod points;
 mod quantity;
 #[cfg(test)]
 mod tests;

@@ -310,6 +310,38 @@ fn a_point_has_its_history() {
 }
 
 #[test]
+fn points_of_a_list_a_line_and_a_table_have_their_histories() {
+    let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
+    std::fs::write(folder.path().join("points.csv"), "y, x,z\n0.5,0.25,0.0\n\n0.5,1.25,0\n").unwrap();
+    let head = |x: f64| {
+        let name = format!("# Results for \"element\" at position: x: {x:?}; y: 0.5; z: 0.0");
+        format!("{name}\n# time DISPLACEMENT_X\n")
+    };
+    let ways = [
+        ("multiple_points_output_process", r#""positions": [[0.25, 0.5, 0.0], [1.25, 0.5, 0.0]]"#),
+        ("line_output_process", r#""start_point": [0.25, 0.5, 0], "end_point": [1.25, 0.5, 0], "sampling_points": 2"#),
+        ("csv_points_output_process", r#""csv_file_path": "points.csv""#),
+    ];
+    for (name, points) in ways {
+        let parameters = format!(
+            r#"{{"model_part_name": "Structure", {points}, "output_variables": ["DISPLACEMENT_X"],
+            "output_file_settings": {{"file_name": "{name}.dat"}}}}"#
+        );
+        let mut process = make(name, &parameters, &mut model, folder.path()).0.unwrap();
+        assert_eq!(process.outputs().len(), 2, "{name}");
+        run(process.as_mut(), &mut model, 1, 0.1).unwrap();
+        for (number, x, value) in [(1, 0.25, "2.5"), (2, 1.25, "7.5")] {
+            let text = std::fs::read_to_string(folder.path().join(format!("{name}_{number}.dat"))).unwrap();
+            assert_eq!(text, format!("{}0.1 {value}\n", head(x)), "{name}");
+        }
+    }
+    let wrong = r#"{"model_part_name": "Structure", "csv_file_path": "none.csv", "output_variables": ["DISPLACEMENT_X"],
+        "output_file_settings": {"file_name": "a"}}"#;
+    let error = make("csv_points_output_process", wrong, &mut model, folder.path()).0.err().unwrap();
+    assert!(error.to_string().contains("none.csv cannot be read"), "{error}");
+}
+
+#[test]
 fn what_a_deck_names_wrongly_is_said_with_its_place() {
     let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
     let mut said = |name: &str, parameters: &str| {

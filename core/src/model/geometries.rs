@@ -1,0 +1,46 @@
+//! Cells of the mesh that nothing computes on yet: modelers make elements and conditions of them.
+
+use rustc_hash::FxHashMap;
+
+use crate::diagnostics::Place;
+use crate::geometry::Shape;
+
+/// Geometries in flat arrays, ascending by id.
+#[derive(Debug, Default, Clone)]
+pub struct Geometries {
+    /// Ids.
+    pub ids: Vec<usize>,
+    /// Reference cell of each, and dimensions of the space it lives in: 2 or 3.
+    pub cells: Vec<(Shape, usize)>,
+    /// Where the mesh file has the first of them.
+    pub place: Option<Place>,
+    /// Whether anything has been made of them.
+    pub used: bool,
+    nodes: Vec<Vec<u32>>,
+    index: FxHashMap<usize, u32>,
+}
+
+impl Geometries {
+    /// Adds one; its nodes are node indices in the cell's order.
+    pub fn push(&mut self, id: usize, cell: Shape, space: usize, nodes: Vec<u32>) {
+        self.index.insert(id, self.ids.len() as u32);
+        self.ids.push(id);
+        self.cells.push((cell, space));
+        self.nodes.push(nodes);
+    }
+
+    /// Node indices of one geometry.
+    pub fn nodes(&self, index: u32) -> &[u32] {
+        &self.nodes[index as usize]
+    }
+
+    /// Index of the geometry with that id.
+    pub fn find(&self, id: usize) -> Option<u32> {
+        self.index.get(&id).copied()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+}

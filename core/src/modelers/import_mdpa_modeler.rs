@@ -1,0 +1,48 @@
+//! Reads an mdpa file into a new model part.
+
+use std::path::{Path, PathBuf};
+
+use super::modeler::{Modeler, ModelerFactory};
+use crate::diagnostics::{Diagnostic, Place, Report, Result};
+use crate::io::read_mesh_of;
+use crate::model::{Model, ModelPart};
+use crate::parameters::Settings;
+use crate::register;
+use crate::registry::Build;
+
+struct ImportMdpa {
+    part: String,
+    path: PathBuf,
+    place: Place,
+}
+
+fn build(settings: &Settings, folder: &Path) -> Result<Box<dyn Modeler>> {
+    let part = settings.get_str("model_part_name")?;
+    if part.is_empty() || part.contains('.') {
+        let fact = format!("\"model_part_name\" is {part:?}");
+        let remedy = "name the root part that is to hold the mesh, e.g. \"Structure\"";
+        return Err(settings.error("model_part_name", "model-part-name", fact).remedy(remedy).into());
+    }
+    let path = folder.join(settings.get_str("input_filename")?);
+    Ok(Box::new(ImportMdpa { part: part.to_owned(), path, place: settings.key_place("input_filename") }))
+}
+
+impl Modeler for ImportMdpa {
+    fn setup_geometry_model(&mut self, model: &mut Model, report: &mut Report) -> Result<()> {
+        if model.parts.contains_key(&self.part) {
+            let fact = format!("there is a model part {:?} already", self.part);
+            return Err(Diagnostic::error("repeated-part", fact).at(self.place.clone()).into());
+        }
+        let mut part = ModelPart::new(self.part.clone());
+        read_mesh_of(&self.path, &self.place, &mut part)?.into_iter().for_each(|warning| report.push(warning));
+        model.parts.insert(self.part.clone(), part);
+        Ok(())
+    }
+}
+
+register! { Modeler "ImportMDPAModeler",
+    aliases: &["import_mdpa_modeler"],
+    about: "reads an mdpa file into a new model part",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/modelers/ImportMDPAModeler.json")),
+    build: Build::Factory(&(build as ModelerFactory)),
+}

@@ -1,0 +1,8 @@
+//! Modelers: what prepares the model of a stage before its solver looks at it, found by name.
+
+mod create_entities_from_geometries_modeler;
+mod delete_model_parts_modeler;
+mod import_mdpa_modeler;
+mod modeler;
+
+pub use modeler::{Modeler, ModelerFactory, run_modelers};

@@ -1,0 +1,201 @@
+//! Histories of quantities at points of space, as text files of columns, one a point.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::json_output_process::fields;
+use super::place::{PartPath, one_of};
+use super::quantity::Quantity;
+use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::geometry::{mapping, shape_functions};
+use crate::io::{append_to_file, replace_file};
+use crate::model::{EntityTable, Model, ModelPart, SubPart};
+use crate::parameters::{Interval, Node, Settings};
+use crate::processes::{Process, ProcessRequest};
+
+/// Interpolates in the cells that hold the points; the cells are found once, before the first step.
+pub(super) struct PointsOutput {
+    part: PartPath,
+    interval: Interval,
+    place: Place,
+    entity: usize,
+    is_current: bool,
+    tolerance: f64,
+    history: bool,
+    quantities: Vec<Quantity>,
+    points: Vec<Point>,
+}
+
+struct Point {
+    position: [f64; 3],
+    file: PathBuf,
+    /// Nodes and their weights.
+    weights: Vec<(u32, f64)>,
+}
+
+/// Keys that every process of points must be given.
+pub(super) const REQUIRED: [&str; 3] = ["model_part_name", "output_variables", "output_file_settings"];
+
+const ENTITIES: [&str; 3] = ["node", "element", "condition"];
+
+/// One file for the one point of `key`, or with `_1`, `_2`, … in their names one for each of several.
+///
+/// # Errors
+/// Settings that do not fit.
+pub(super) fn points_output(
+    request: &mut ProcessRequest<'_>,
+    settings: &Settings,
+    key: &str,
+    positions: &[[f64; 3]],
+    several: bool,
+) -> Result<Box<dyn Process>> {
+    let folder = request.folder.join(settings.get_str("output_file_settings.output_path")?);
+    let name = settings.get_str("output_file_settings.file_name")?;
+    if name.is_empty() {
+        let fact = "\"file_name\" of \"output_file_settings\" must name a file";
+        return Err(settings.error("output_file_settings", "missing-key", fact).into());
+    }
+    let ending = settings.get_str("output_file_settings.file_extension")?;
+    let file = |at: usize| match (several, name.contains('.')) {
+        (true, _) => folder.join(format!("{}_{}.{ending}", name.strip_suffix(".dat").unwrap_or(name), at + 1)),
+        (false, true) => folder.join(name),
+        (false, false) => folder.join(format!("{name}.{ending}")),
+    };
+    let point = |(at, &position)| Point { position, file: file(at), weights: Vec::new() };
+    Ok(Box::new(PointsOutput {
+        part: PartPath::new(settings)?,
+        interval: Interval::from_node(settings.get("interval")?)?,
+        place: settings.key_place(key),
+        entity: one_of(settings, "entity_type", &ENTITIES)?,
+        is_current: one_of(settings, "search_configuration", &["initial", "current"])? == 1,
+        tolerance: settings.get_f64("search_tolerance")?,
+        history: settings.get_bool("historical_value")?,
+        quantities: Quantity::list(settings, "output_variables", request.report)?,
+        points: positions.iter().enumerate().map(point).collect(),
+    }))
+}
+
+/// Three numbers.
+///
+/// # Errors
+/// Anything else.
+pub(super) fn position(settings: &Settings, key: &str, node: &Node) -> Result<[f64; 3]> {
+    let numbers = node.array()?.iter().map(Node::f64).collect::<Result<Vec<f64>>>()?;
+    numbers.try_into().map_err(|_| {
+        let fact = format!("a point of \"{key}\" is not three numbers");
+        settings.error(key, "wrong-size", fact).remedy("write [x, y, z]").into()
+    })
+}
+
+impl PointsOutput {
+    /// The nodes whose values are mixed, with their weights; `None` when the point is nowhere.
+    fn find(&self, part: &ModelPart, selection: &SubPart, point: [f64; 3]) -> Option<Vec<(u32, f64)>> {
+        let positions = if self.is_current { &part.nodes.current } else { &part.nodes.initial };
+        match self.entity {
+            0 => {
+                let distance = |node: u32| {
+                    let x = positions[node as usize];
+                    x.iter().zip(&point).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+                };
+                let found = selection.nodes.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+                (distance(found) <= self.tolerance).then(|| vec![(found, 1.0)])
+            }
+            1 => self.in_cells(positions, &part.elements, &selection.elements, point),
+            _ => self.in_cells(positions, &part.conditions, &selection.conditions, point),
+        }
+    }
+
+    fn in_cells(
+        &self,
+        positions: &[[f64; 3]],
+        table: &EntityTable,
+        cells: &[u32],
+        point: [f64; 3],
+    ) -> Option<Vec<(u32, f64)>> {
+        cells.iter().find_map(|&cell| {
+            let shape = table.kinds[cell as usize].cell?;
+            let nodes = table.nodes(cell);
+            let x: Vec<[f64; 3]> = nodes.iter().map(|&node| positions[node as usize]).collect();
+            let is_near = (0..3).all(|axis| {
+                let (low, high) = x.iter().fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x[axis]), h.max(x[axis])));
+                let slack = self.tolerance + 0.1 * (high - low);
+                (low - slack..=high + slack).contains(&point[axis])
+            });
+            let found = is_near.then(|| mapping::local_coordinates(shape, &x, point)).flatten()?;
+            if found.distance > self.tolerance || !shape.cell().contains(found.xi, self.tolerance) {
+                return None;
+            }
+            let mut values = [0.0; 27];
+            shape_functions(shape, found.xi, &mut values);
+            Some(nodes.iter().copied().zip(values).collect())
+        })
+    }
+
+    fn line(&self, part: &ModelPart, point: &Point) -> String {
+        let fields = fields(part, self.history);
+        let mut line = format!("{:?}", part.info.time);
+        for quantity in &self.quantities {
+            let mut sum = vec![0.0; quantity.components(fields)];
+            let mut value = sum.clone();
+            for &(node, weight) in &point.weights {
+                quantity.read(fields, node, &mut value);
+                sum.iter_mut().zip(&value).for_each(|(sum, value)| *sum += weight * value);
+            }
+            sum.iter().for_each(|number| line.push_str(&format!(" {number:?}")));
+        }
+        line
+    }
+
+    fn head(&self, part: &ModelPart, point: &Point) -> String {
+        let [x, y, z] = point.position;
+        let mut head =
+            format!("# Results for \"{}\" at position: x: {x:?}; y: {y:?}; z: {z:?}\n# time", ENTITIES[self.entity]);
+        let fields = fields(part, self.history);
+        for quantity in &self.quantities {
+            match quantity.components(fields) {
+                1 => head.push_str(&format!(" {}", quantity.name)),
+                3 => ["X", "Y", "Z"].iter().for_each(|c| head.push_str(&format!(" {}_{c}", quantity.name))),
+                n => (0..n).for_each(|c| head.push_str(&format!(" {}_{c}", quantity.name))),
+            }
+        }
+        head
+    }
+}
+
+impl Process for PointsOutput {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let (part, selection) = self.part.find(model)?;
+        let find = |point: &Point| {
+            self.find(part, selection, point.position).ok_or_else(|| {
+                let [x, y, z] = point.position;
+                let fact =
+                    format!("no {} of {:?} holds the point ({x}, {y}, {z})", ENTITIES[self.entity], self.part.path);
+                let remedy = "move the point into the part, or enlarge \"search_tolerance\"";
+                Error::from(Diagnostic::error("point-outside", fact).at(self.place.clone()).remedy(remedy))
+            })
+        };
+        let found = self.points.iter().map(find).collect::<Result<Vec<_>>>()?;
+        self.points.iter_mut().zip(found).for_each(|(point, weights)| point.weights = weights);
+        Ok(())
+    }
+
+    fn before_loop(&mut self, model: &mut Model) -> Result<()> {
+        let (part, _) = self.part.find(model)?;
+        self.points
+            .iter()
+            .try_for_each(|point| replace_file(&point.file, |out| writeln!(out, "{}", self.head(part, point))))
+    }
+
+    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+        let (part, _) = self.part.find(model)?;
+        if !self.interval.contains(part.info.time) {
+            return Ok(());
+        }
+        let append = |point: &Point| append_to_file(&point.file, |out| writeln!(out, "{}", self.line(part, point)));
+        self.points.iter().try_for_each(append)
+    }
+
+    fn outputs(&self) -> Vec<PathBuf> {
+        self.points.iter().map(|point| point.file.clone()).collect()
+    }
+}
