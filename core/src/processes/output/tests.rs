@@ -330,7 +330,7 @@ fn points_of_a_list_a_line_and_a_table_have_their_histories() {
         let mut process = make(name, &parameters, &mut model, folder.path()).0.unwrap();
         assert_eq!(process.outputs().len(), 2, "{name}");
         run(process.as_mut(), &mut model, 1, 0.1).unwrap();
-        for (number, x, value) in [(1, 0.25, "2.5"), (2, 1.25, "7.5")] {
+        for (number, x, value) in [(1, 0.25, "5.5"), (2, 1.25, "7.5")] {
             let text = std::fs::read_to_string(folder.path().join(format!("{name}_{number}.dat"))).unwrap();
             assert_eq!(text, format!("{}0.1 {value}\n", head(x)), "{name}");
         }
