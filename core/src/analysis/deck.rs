@@ -215,7 +215,12 @@ pub(super) fn import(
 }
 
 /// The processes of `processes`, list by list in the order of their names, then those of `output_processes`.
-pub(super) fn make_processes(deck: &Node, folder: &Path, model: &mut Model, problems: &mut Report) -> Vec<Box<dyn Process>> {
+pub(super) fn make_processes(
+    deck: &Node,
+    folder: &Path,
+    model: &mut Model,
+    problems: &mut Report,
+) -> Vec<Box<dyn Process>> {
     let mut out = Vec::new();
     for section in ["processes", "output_processes"] {
         let Some(lists) = deck.get(section) else { continue };
