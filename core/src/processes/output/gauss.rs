@@ -128,13 +128,23 @@ pub(super) fn means(part: &ModelPart, kind: Kind, selected: &[u32], quantity: &G
     Column::real(&quantity.name, components, values)
 }
 
-/// One value a node: Σ w J |N_i| v / Σ w J |N_i| over the Gauss points of the active entities around it.
+/// What a Gauss point counts by in means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Share {
+    /// The volume it stands for.
+    Volume,
+    /// Alike.
+    Point,
+}
+
+/// One value a node: Σ w J |N_i| v / Σ w J |N_i| over the Gauss points of the active entities around it, or without w J.
 pub(super) fn at_nodes(
     part: &ModelPart,
     kind: Kind,
     selected: &[u32],
     nodes: &[u32],
     quantity: &GaussQuantity,
+    share: Share,
 ) -> Column {
     let mut components = 0;
     let mut sums: Vec<f64> = Vec::new();
@@ -151,7 +161,7 @@ pub(super) fn at_nodes(
         for (point, weight) in gauss.weights.iter().enumerate() {
             let values = &gauss.values[point * gauss.components..][..gauss.components];
             for (&node, shape) in own.iter().zip(&gauss.shape[point * own.len()..]) {
-                let share = weight * shape.abs();
+                let share = if share == Share::Volume { weight * shape.abs() } else { shape.abs() };
                 weights[node as usize] += share;
                 let sum = &mut sums[node as usize * components..][..gauss.components];
                 sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);

@@ -1,6 +1,6 @@
 //! What a picture of a model part shows: settings shared by the VTK and VTU processes, and the data they ask for.
 
-use super::gauss;
+use super::gauss::{self, Share};
 use super::place::one_of;
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::diagnostics::{Report, Result};
@@ -140,7 +140,7 @@ impl Picture {
         out.extend(self.history.iter().map(|q| q.gather(&part.nodes.history, &mesh.nodes)));
         out.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, &mesh.nodes)));
         for quantity in &self.extrapolated {
-            out.push(gauss::at_nodes(part, Kind::Element, &selection.elements, &mesh.nodes, quantity));
+            out.push(gauss::at_nodes(part, Kind::Element, &selection.elements, &mesh.nodes, quantity, Share::Volume));
         }
         out.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, &mesh.nodes)));
         out.extend(self.ids.then(|| Column::ids("KRATOS_NODE_ID", &mesh.data.point_ids)));

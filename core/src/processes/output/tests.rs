@@ -309,6 +309,55 @@ fn a_point_has_its_history() {
     assert!(error.to_string().contains("point-outside"), "{error}");
 }
 
+/// Node 2 sees e = 0, node 4 both elements; nodes above e + 1 in the second component.
+#[test]
+fn gauss_values_become_fields_of_the_nodes() {
+    let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
+    let name = "integration_values_extrapolation_to_nodes_process";
+    for (history, area) in [(true, true), (false, false)] {
+        let parameters = format!(
+            r#"{{"model_part_name": "Structure", "list_of_variables": ["OUTPUT_TEST_VECTOR"],
+            "extrapolate_non_historical": {}, "area_average": {area}}}"#,
+            !history
+        );
+        run(make(name, &parameters, &mut model, folder.path()).0.unwrap().as_mut(), &mut model, 1, 0.1).unwrap();
+        let nodes = &model.parts["Structure"].nodes;
+        let field = if history { &nodes.history } else { &nodes.values }.get("OUTPUT_TEST_VECTOR").unwrap();
+        assert_eq!(field.levels[0], [0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 0.0, 1.0, 0.5, 1.5, 1.0, 2.0]);
+    }
+}
+
+#[test]
+fn two_files_are_compared() {
+    let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("a.dat"), "# run 1\n0.1 2.0e0, x\n\n0.2 -0\n").unwrap();
+    let mut compare = |content: &str, way: &str| {
+        std::fs::write(path("b.dat"), content).unwrap();
+        let parameters = format!(
+            r#"{{"reference_file_name": "a.dat", "output_file_name": "b.dat", "comparison_type": "{way}",
+            "tolerance": 1e-9, "relative_tolerance": 1e-6}}"#
+        );
+        let mut process = make("compare_two_files_check_process", &parameters, &mut model, folder.path()).0?;
+        process.finalize(&mut model)
+    };
+    assert!(compare("# run 2\n0.1 2.000001 x\n0.2 1e-10\n", "dat_file").is_ok());
+    assert!(!path("b.dat").exists(), "removed when it is the same");
+    let refused = [
+        ("0.1 2.00001 x\n0.2 0\n", "dat_file", "line 2 of the reference is \"0.1 2.0e0, x\""),
+        ("0.1 2 y\n0.2 0\n", "dat_file", "line 2"),
+        ("0.1 2 x\n", "csv_file", "line 4 of the reference is missing"),
+        ("0.1 2 x\n0.2 0\n0.3 0\n", "vtk", "line 3 is not in the reference"),
+        ("# run 2\n", "deterministic", "byte 7 differs"),
+        ("", "xml", "\"comparison_type\" is \"xml\""),
+    ];
+    for (content, way, words) in refused {
+        let error = compare(content, way).unwrap_err().to_string();
+        assert!(error.contains(words), "no {words:?} in {error}");
+        assert!(path("b.dat").exists());
+    }
+}
+
 #[test]
 fn points_of_a_list_a_line_and_a_table_have_their_histories() {
     let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
