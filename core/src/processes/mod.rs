@@ -12,6 +12,7 @@ mod target;
 mod direction;
 mod assign_to_nodes;
 mod assign_to_entities;
+mod assign_scalar_input_to_entities_process;
 mod assign_scalar_variable_process;
 mod assign_vector_variable_process;
 mod assign_vector_by_direction_process;

@@ -407,3 +407,52 @@ fn checks_of_nodes_count_decimals() {
     let said = said.unwrap_err();
     assert!(said.contains("node 4: DISPLACEMENT_Y is 2e-2, expected 2.06e-2"), "{said}");
 }
+
+/// Three nodes at x = 0, 1, 3; sites at x = 0.4 and at node 9 (x = 3): the first two nodes are nearer to the first.
+#[test]
+fn sites_of_a_file_give_their_series_to_what_is_nearest() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        serde_json::to_string(path.to_str().unwrap()).unwrap()
+    };
+    let json = write(
+        "sites.json",
+        r#"{"TIME": [0.0, 1.0], "1": {"COORDINATES": [0.4, 0.0, 0.0], "VALUES": {"TEST_PRESSURE": [1.0, 3.0]}},
+        "2": {"COORDINATES": [3.0, 0.0, 0.0], "VALUES": {"TEST_PRESSURE": [-1.0, -1.0]}}}"#,
+    );
+    let text = write("sites.txt", "Time\t4\t9\n0.0\t1.0\t-1.0\n\n1.0\t3.0\t-1.0\n");
+    let parameters = |file: &str, more: &str| {
+        format!(r#"{{"model_part_name": "Structure", "variable_name": "TEST_PRESSURE", "file": {file} {more}}}"#)
+    };
+    let module = |what: &str| format!("assign_scalar_input_to_{what}_process");
+    for file in [&json, &text] {
+        let mut model = model();
+        let given = parameters(file, r#", "historical": true"#);
+        let mut process = make(&module("nodes"), &given, &mut model).unwrap();
+        process.initialize(&mut model).unwrap();
+        step(&mut *process, &mut model, 0.5).unwrap();
+        assert_eq!([0, 1, 2].map(|node| value(&mut model, "TEST_PRESSURE", node)), [2.0, 2.0, -1.0]);
+    }
+    let mut model = model();
+    let given = parameters(&json, r#", "entities": ["conditions"], "interval": [0.0, 2.0]"#);
+    let mut process = make(&module("entities"), &given, &mut model).unwrap();
+    process.initialize(&mut model).unwrap();
+    for time in [0.25, 3.0] {
+        step(&mut *process, &mut model, time).unwrap();
+        let field = part(&mut model).conditions.data.get("TEST_PRESSURE").unwrap();
+        assert_eq!(field.levels[0], [1.5, -1.0], "centres at 0.5 and 2; the last value stays");
+    }
+    let wrong = [
+        (write("a.txt", "Time\t4\n0.0\n"), "1 numbers for a time and 1 sites"),
+        (write("b.txt", "0.0 1.0\n"), "does not name sites"),
+        (write("c.txt", "Time\t77\n0.0\t1.0\n"), "names 77"),
+        (write("d.csv", ""), "neither JSON nor text"),
+        (write("e.json", r#"{"TIME": []}"#), "no site"),
+    ];
+    for (file, words) in wrong {
+        let said = refused(&module("nodes"), &parameters(&file, ""));
+        assert!(said.contains(words), "no {words:?} in {said}");
+    }
+}
