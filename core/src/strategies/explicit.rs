@@ -232,8 +232,7 @@ impl ExplicitStrategy {
             let node = part.nodes.ids[dof.node as usize];
             let fact =
                 format!("{} of node {node} is fixed and given another value: it stays where it is", dof.variable);
-            let remedy = "explicit integration holds fixed unknowns, as Kratos does; \"follow_prescribed_motion\": true \
-                          in the solver settings moves them";
+            let remedy = "\"follow_prescribed_motion\" of the solver settings is false: true moves fixed unknowns";
             part.messages.push(Diagnostic::warning("prescribed-motion", fact).remedy(remedy));
         }
     }

@@ -6,7 +6,7 @@ use zelus_core::registry::Build;
 use super::alm_contact_process::{Stem, of_families};
 
 /// A spring stiff enough to hold surfaces apart alone.
-pub(super) const PENALTY: Stem = Stem { name: "PenaltyContact", penalty_factor: 1e4, least_penalty: 1e16 };
+const PENALTY: Stem = Stem { name: "PenaltyContact", penalty_factor: 1e4, least_penalty: 1e16 };
 
 register! { Process "penalty_contact_process",
     aliases: &["PenaltyContactProcess"],
