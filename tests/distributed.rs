@@ -114,6 +114,16 @@ fn equals_serial(case: &str, changes: &[(&str, &str)], tolerance: f64, same_iter
     }
 }
 
+/// METIS leaves most facets of a sphere's small contact to few ranks: their pairs are shared out, and nothing else changes.
+#[test]
+fn pairs_of_full_ranks_are_evaluated_by_others() {
+    let deck = root().join("examples/hertz_sphere");
+    equals_serial(&deck.to_string_lossy(), &[], EQUAL, true);
+    let folder = scratch_copy(&deck);
+    let Some(output) = distributed(folder.path(), 2, &["run", DECK]) else { return };
+    assert!(said(&output).contains("pairs moved to other ranks"), "{}", said(&output));
+}
+
 /// A tolerance for what has a closed form, which `tests/cases.rs` holds the serial run to.
 const EXACT: f64 = 1e-10;
 /// A tolerance for what has none.

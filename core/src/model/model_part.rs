@@ -139,11 +139,11 @@ impl ModelPart {
         Diagnostic::error("unknown-model-part", format!("there is no model part {path:?}")).remedy(remedy).into()
     }
 
-    /// Whether this rank evaluates an entity between bodies with these nodes: the owner of the last one does, which is one
-    /// of the slave's.
+    /// Whether this rank evaluates an entity between bodies with these nodes: who has the pairs of the last one does, which
+    /// is one of the slave's.
     pub fn evaluates_pair(&self, nodes: &[u32]) -> bool {
-        let owner = |partition: &Partition| nodes.last().map_or(0, |&node| partition.nodes[node as usize]);
-        self.partition.as_ref().is_none_or(|partition| owner(partition) as usize == world().rank())
+        let rank = |partition: &Partition| nodes.last().map_or(0, |&node| partition.pairs[node as usize]);
+        self.partition.as_ref().is_none_or(|partition| rank(partition) as usize == world().rank())
     }
 
     /// Whether this rank owns a node with its unknowns.

@@ -169,3 +169,24 @@ fn counts_of_a_halved_bar_are_those_of_its_section() {
     // rows of the section as the right half sees them: 13 · 13 pairs along it, 2 columns across
     assert_eq!(right.ghost_entries, 13 * 13 * 2);
 }
+
+/// Two ranks with the node pairs (7, 100, 100) and (3): everything above the mean of 105 goes over, node by node.
+#[test]
+fn pairs_of_a_full_rank_go_to_an_empty_one() {
+    let mut cut = partition(&two_blocks(2), &[], 2).unwrap();
+    let home = cut.nodes.clone();
+    let of = |rank: u32| home.iter().enumerate().filter(move |(_, r)| **r == rank).map(|(node, _)| node as u32);
+    let full: Vec<u32> = of(0).take(3).collect();
+    let empty = of(1).next().unwrap();
+    let pairs = |counts: [usize; 4]| {
+        let nodes = [full[0], full[1], full[2], empty];
+        nodes.into_iter().zip(counts).flat_map(|(node, count)| std::iter::repeat_n(node, count)).collect::<Vec<u32>>()
+    };
+    assert_eq!(cut.balance_pairs(pairs([7, 100, 100, 3]).into_iter()), 107);
+    assert_eq!(full.iter().map(|&node| cut.pairs[node as usize]).collect::<Vec<_>>(), [1, 1, 0]);
+    assert_eq!(cut.pairs[empty as usize], 1);
+    for balanced in [[7, 100, 0, 90], [10, 10, 10, 3]] {
+        assert_eq!(cut.balance_pairs(pairs(balanced).into_iter()), 0, "not worth it: {balanced:?}");
+        assert_eq!(cut.pairs, home, "pairs come home");
+    }
+}

@@ -541,6 +541,9 @@ impl Interaction for ContactInteraction {
             ("active nodes", active as f64),
             ("deepest penetration", -deepest),
         ];
+        if self.pairing.moved > 0 {
+            out.push(("pairs moved to other ranks", self.pairing.moved as f64));
+        }
         if matches!(self.settings.family.multiplier, Multiplier::Outer(_)) {
             out.extend([("multiplier updates", self.uzawa.updates as f64), ("rate", self.uzawa.rate)]);
         }

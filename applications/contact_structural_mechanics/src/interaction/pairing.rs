@@ -28,6 +28,8 @@ pub(super) struct Pairing {
     pub touching: BTreeSet<u32>,
     /// Number of the present set of pairs.
     pub graph: u64,
+    /// Pairs that another rank evaluates than the owner of their slave.
+    pub moved: usize,
     saved: Vec<Pair>,
     warned_of_reach: bool,
 }
@@ -49,6 +51,7 @@ impl Pairing {
             blocks: Vec::new(),
             touching: BTreeSet::new(),
             graph: 1,
+            moved: 0,
             saved: Vec::new(),
             warned_of_reach: false,
         }
@@ -150,8 +153,22 @@ impl Pairing {
         if before != self.keys() {
             self.graph += 1;
         }
+        self.share_out(part);
         self.touching = touching;
         Ok(())
+    }
+
+    /// On several ranks: lets ranks with few pairs evaluate some of those with many.
+    fn share_out(&mut self, part: &mut ModelPart) {
+        let Some(mut partition) = part.partition.take() else { return };
+        let before = partition.pairs.clone();
+        let blocks = self.as_entities();
+        let last = blocks.iter().flat_map(|block| (0..block.len()).filter_map(|at| block.nodes(at).last().copied()));
+        self.moved = partition.balance_pairs(last);
+        if before != partition.pairs {
+            self.graph += 1;
+        }
+        part.partition = Some(partition);
     }
 
     /// Pairs that are near each other, and whether their centres are within reach.

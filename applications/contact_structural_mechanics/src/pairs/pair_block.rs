@@ -318,10 +318,11 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
     fn keep_habits(&mut self, view: &StepView<'_>, own: Own<'_>) {
         let habit = |at: usize| {
             let geometry = self.geometry(at, view);
-            let found = operators(&geometry, &self.parameters.segmentation).cells().filter(|_| own(self.nodes(at)));
+            let found = own(self.nodes(at)).then(|| operators(&geometry, &self.parameters.segmentation).cells());
+            let found = found.flatten();
             found.map_or(geometry.habit, |found| habit_of(&geometry, &self.parameters.segmentation, &found))
         };
-        let habits: Vec<Habit> = (0..self.pairs.len()).map(habit).collect();
+        let habits: Vec<Habit> = (0..self.pairs.len()).into_par_iter().map(habit).collect();
         self.pairs.iter_mut().zip(habits).for_each(|(pair, habit)| pair.habit = habit);
     }
 
