@@ -147,16 +147,18 @@ fn frictionless_contact_in_space() {
     equals_serial("contact_3d/tetrahedra_on_hexahedra", &[], EXACT, true);
 }
 
-/// Slips of sticking nodes are round-off and left out. Which nodes of the sliding blocks stick at first is a tie of
-/// round-off; in space the answer then differs by what the criterion leaves, and both agree with the closed form.
+/// Slips of sticking nodes are round-off and left out.
 #[test]
 fn frictional_contact() {
     equals_serial("contact_2d/friction_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")], EXACT, true);
     equals_serial("contact_3d/friction_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")], EXACT, true);
     equals_serial("contact_2d/friction_pure_slip", &[], EXACT, true);
     equals_serial("contact_2d/friction_arc", &[], EQUAL, true);
-    equals_serial("contact_2d/friction_slide", &[], EXACT, false);
-    equals_serial("contact_3d/friction_slide", &[], 1e-5, false);
+    equals_serial("contact_2d/friction_slide", &[], EXACT, true);
+    equals_serial("contact_2d/friction_tresca_slide", &[], EXACT, true);
+    equals_serial("contact_2d/friction_by_pair", &[], EXACT, true);
+    equals_serial("contact_3d/friction_slide", &[], EXACT, true);
+    equals_serial("contact_3d/friction_tresca_slide", &[], EXACT, true);
 }
 
 #[test]

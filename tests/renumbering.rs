@@ -11,10 +11,6 @@ use support::{cases, read_json, said, scratch_copy, zelus};
 /// Decks stop at relative residuals of 1e-9 and below; sums in another order differ by round-off.
 const TOLERANCE: f64 = 1e-9;
 
-/// The same for decks that slide. Their directions of sliding are known within the tolerance of the criterion only, and are
-/// reached on ways that depend on which node is taken first.
-const TOLERANCE_OF_SLIDING: f64 = 1e-5;
-
 /// The same for bodies that hang on one or two nodes under a light load: the forces that balance there are a difference of
 /// much larger ones in the stiff body, whose round-off is 2e-9 of the pressure.
 const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-8;
@@ -138,7 +134,6 @@ fn difference(folder: &Path) -> Result<(), String> {
     run(other.path()).map_err(|said| format!("numbered otherwise: {said}"))?;
     let name = folder.to_string_lossy();
     let tolerance = match () {
-        () if name.contains("slide") => TOLERANCE_OF_SLIDING,
         () if name.contains("spheres_light") => TOLERANCE_OF_LIGHT_LOADS,
         () => TOLERANCE,
     };

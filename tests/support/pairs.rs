@@ -185,6 +185,7 @@ impl Setting {
         let parameters = StepParameters {
             segmentation,
             scale_factor: 1.7,
+            stiffness: 20.0,
             tangent_factor: 0.3,
             operator_threshold: self.operator_threshold,
             normal_variation: NormalVariation::Update,

@@ -1,30 +1,23 @@
 //! The rules by which slave nodes enter and leave contact, stick and slide: pure functions of nodal numbers.
 //!
-//! The augmented normal pressure p̂ = k λ_n + ε WG decides: active if p̂ < 0. WG is the weighted gap of the node summed
-//! over its pairs. Tangentially q̂ = k P λ + c κ ε WS/A, with the weighted slip WS and the area A of the node, is compared
-//! with the bound that the law of friction sets under p̂: slips over areas are lengths, and states do not depend on units.
-//! A node that enters has no traction yet; there κ ε WS stands against p̂ = ε WG, both weighted.
-//! No tolerance is applied to p̂. A sliding node sticks again when its slip has turned against its traction and q̂,
-//! with the weight c of the deck or with c = 1, has fallen below the bound by a margin.
+//! The augmented normal pressure p̂ = k λ_n + c g decides: active if p̂ < 0. g is the gap of the node, WG/A with its weighted
+//! gap and its area over all pairs, and c a stiffness by length. Tangentially q̂ = k P λ + κ c s with the slip s = WS/A is
+//! compared with the bound that the law of friction sets under p̂. A sliding node sticks again when its slip has turned
+//! against its traction and q̂, with the weight of the slip that the deck gives or with 1, has fallen below the bound by a
+//! margin. What is too small to decide on, [`crate::resolution`] says.
 
 use crate::formulations::NodeState;
 use crate::friction_law::Bound;
 use crate::mortar::tangential;
+use crate::resolution::{Resolution, is_more};
 use zelus_core::vector3::{add, dot, norm, scale};
-
-/// k λ_n + ε WG: the normal pressure, weighted, augmented by the gap; compression is negative.
-/// Without multipliers pass `multiplier` = 0.
-#[inline]
-pub fn augmented_pressure(scale_factor: f64, multiplier: f64, penalty: f64, weighted_gap: f64) -> f64 {
-    scale_factor * multiplier + penalty * weighted_gap
-}
 
 /// Decides for a frictionless node, whose active state is [`NodeState::Slip`].
 ///
 /// A scalar multiplier enters along the normal, `multiplier` = λ n; penalty methods take none from the decision.
 pub fn frictionless(node: &SlaveNumbers) -> Decision {
     let pressure = node.pressure();
-    if pressure >= 0.0 {
+    if !node.presses(pressure) {
         return inactive(node, pressure);
     }
     let entered = !node.state.is_active();
@@ -61,34 +54,37 @@ pub struct SlaveNumbers {
     pub normal: [f64; 3],
     /// Multiplier λ, a scalar one times the normal; zero for penalty methods.
     pub multiplier: [f64; 3],
-    /// Weighted gap WG, negative in penetration.
-    pub weighted_gap: f64,
-    /// Weighted slip WS.
-    pub weighted_slip: [f64; 3],
-    /// Area A that weighs gap and slip.
-    pub area: f64,
+    /// Gap g, negative in penetration (length).
+    pub gap: f64,
+    /// Slip s of the step (length).
+    pub slip: [f64; 3],
     /// Unit tangent τ in which the last solve took a sliding node to slide.
     pub tangent: [f64; 3],
-    /// Penalty ε.
-    pub penalty: f64,
+    /// Stiffness c: what a gap counts with against tractions (stress by length).
+    pub stiffness: f64,
     /// Limit of the tangential traction.
     pub friction: Bound,
     /// Scale factor k.
     pub scale_factor: f64,
-    /// Ratio κ of tangential to normal penalty.
+    /// Ratio κ of tangential to normal stiffness.
     pub tangent_factor: f64,
+    /// What is too small to decide on; gaps and slips below it are zero already.
+    pub resolution: Resolution,
 }
 
 impl SlaveNumbers {
-    /// Augmented normal pressure p̂.
+    /// Augmented normal pressure p̂ = k λ_n + c g; compression is negative.
     pub fn pressure(&self) -> f64 {
-        augmented_pressure(self.scale_factor, dot(self.multiplier, self.normal), self.penalty, self.weighted_gap)
+        self.scale_factor * dot(self.multiplier, self.normal) + self.stiffness * self.gap
     }
 
-    /// Traction κ ε WS/A that the slip of a node in contact adds to its multiplier's.
+    fn presses(&self, pressure: f64) -> bool {
+        self.resolution.exceeds(-pressure, 0.0, self.state.is_active())
+    }
+
+    /// Traction κ c s that the slip adds to the multiplier's.
     fn slip_traction(&self) -> [f64; 3] {
-        let area = if self.area > 0.0 { self.area } else { 1.0 };
-        scale(self.weighted_slip, self.tangent_factor * self.penalty / area)
+        scale(self.slip, self.tangent_factor * self.stiffness)
     }
 }
 
@@ -125,21 +121,15 @@ impl Decision {
     }
 }
 
-/// Share of the bound below which a multiplier gives no direction: what solving leaves of one that is zero.
-const LEAST_TRACTION: f64 = 1e-9;
-
 /// Decides for a node of the frictional augmented Lagrangian.
 pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let pressure = node.pressure();
-    if pressure >= 0.0 {
+    if !node.presses(pressure) {
         return inactive(node, pressure);
     }
     let sliding = node.state == NodeState::Slip;
     let lambda_t = tangential(node.multiplier, node.normal);
-    let of_slip = match node.state.is_active() {
-        true => node.slip_traction(),
-        false => scale(node.weighted_slip, node.tangent_factor * node.penalty),
-    };
+    let of_slip = node.slip_traction();
     let augmented = |coefficient: f64| add(scale(lambda_t, node.scale_factor), scale(of_slip, coefficient));
     let bound = node.friction.at(pressure);
     let (q, over) = match rule {
@@ -148,15 +138,15 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         SlipRule::Bounded { augmentation, threshold } if sliding => {
             let q = augmented(augmentation);
             let least = norm(q).min(norm(augmented(1.0)));
-            (q, dot(node.tangent, node.weighted_slip) > 0.0 || least > (1.0 - threshold) * bound)
+            (q, dot(node.tangent, node.slip) > node.resolution.length || least > (1.0 - threshold) * bound)
         }
         _ => {
             // A node that enters while it moves more along the surface than into it was not held: holding it at once would
             // tear it off again. Rough surfaces hold up to their own slope.
-            let least = node.friction.coefficient.max(1.0) * node.weighted_gap.abs();
-            let dragged = !node.state.is_active() && norm(node.weighted_slip) > least;
+            let least = node.friction.coefficient.max(1.0) * node.gap.abs();
+            let dragged = !node.state.is_active() && is_more(norm(node.slip), least);
             let q = augmented(1.0);
-            (q, dragged || norm(q) > bound)
+            (q, dragged || node.resolution.exceeds(norm(q), bound, false))
         }
     };
     let slips = rule == SlipRule::Pure || node.friction.is_smooth() || over;
@@ -164,7 +154,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let entered = !node.state.is_active();
     let direction = if sliding && rule != SlipRule::Pure {
         node.tangent
-    } else if node.scale_factor * norm(lambda_t) > LEAST_TRACTION * bound {
+    } else if node.resolution.exceeds(node.scale_factor * norm(lambda_t), 0.0, false) {
         lambda_t
     } else {
         q
@@ -196,22 +186,24 @@ pub fn is_pushed(node: &SlaveNumbers, rule: SlipRule) -> bool {
         && along < -LEAST_PUSH * node.friction.at(node.pressure())
 }
 
-/// Decides for a node of the frictional penalty method: it sticks while |κ ε WS| ≤ −μ p̂.
+/// Decides for a node of the frictional penalty method: it sticks while |κ c s| ≤ −μ p̂.
 pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let pressure = node.pressure();
-    if pressure >= 0.0 {
+    if !node.presses(pressure) {
         return inactive(node, pressure);
     }
-    let q = scale(node.weighted_slip, node.tangent_factor * node.penalty);
+    let q = node.slip_traction();
     let (bound, length) = (node.friction.at(pressure), norm(q));
-    let slips = rule == SlipRule::Pure || node.friction.is_smooth() || length > bound;
+    let sliding = node.state == NodeState::Slip;
+    let over = node.resolution.exceeds(length, bound, sliding);
+    let slips = rule == SlipRule::Pure || node.friction.is_smooth() || over;
     let entered = !node.state.is_active();
     Decision {
         pressure,
         traction: if slips && length > 0.0 { scale(q, bound / length) } else { q },
         state: if slips { NodeState::Slip } else { NodeState::Stick },
         changed: entered,
-        slip_changed: !entered && rule != SlipRule::Pure && slips != (node.state == NodeState::Slip),
+        slip_changed: !entered && rule != SlipRule::Pure && slips != sliding,
         multiplier: None,
     }
 }
@@ -239,23 +231,37 @@ mod tests {
             state,
             normal: [0.0, 0.0, 1.0],
             multiplier,
-            weighted_gap: -0.5,
-            weighted_slip: [0.1, 0.0, 0.0],
-            area: 1.0,
+            gap: -0.5,
+            slip: [0.1, 0.0, 0.0],
             tangent: [1.0, 0.0, 0.0],
-            penalty: 2.0,
+            stiffness: 2.0,
             friction: Bound { coefficient: 0.3, threshold: 0.0 },
             scale_factor: 4.0,
             tangent_factor: 0.5,
+            resolution: Resolution::of(1.0, 4.0, 0.0),
         }
     }
 
     #[test]
-    fn zero_pressure_is_open() {
-        let open = |state| SlaveNumbers { weighted_gap: 0.0, ..node(state, [0.0; 3]) };
-        assert_eq!(frictionless(&open(NodeState::Slip)).state, NodeState::Inactive);
-        assert!(frictionless(&open(NodeState::Slip)).changed);
-        assert!(!frictionless(&open(NodeState::Inactive)).changed);
+    fn zero_pressure_changes_nothing() {
+        for round_off in [-1e-16, 0.0, 1e-16] {
+            let touching = |state| SlaveNumbers { gap: 0.0, ..node(state, [0.0, 0.0, round_off]) };
+            assert_eq!(frictionless(&touching(NodeState::Slip)).state, NodeState::Slip);
+            assert_eq!(frictionless(&touching(NodeState::Inactive)).state, NodeState::Inactive);
+        }
+        let pulled = SlaveNumbers { gap: 0.0, ..node(NodeState::Slip, [0.0, 0.0, 1e-6]) };
+        assert!(frictionless(&pulled).changed);
+    }
+
+    #[test]
+    fn at_the_bound_nodes_stay() {
+        // p̂ = −4, bound 1.2 and q̂ = 4 λ_t.
+        for round_off in [-1e-15, 0.0, 1e-15] {
+            let at = |state| SlaveNumbers { gap: 0.0, slip: [0.0; 3], ..node(state, [0.3 + round_off, 0.0, -1.0]) };
+            for state in [NodeState::Stick, NodeState::Slip] {
+                assert_eq!(alm_frictional(&at(state), COULOMB).state, state);
+            }
+        }
     }
 
     #[test]
@@ -264,12 +270,12 @@ mod tests {
         assert_eq!((decision.pressure, decision.state, decision.changed), (-1.0, NodeState::Slip, true));
         assert_eq!(decision.multiplier, Some([0.0, 0.0, -0.25]));
         assert_eq!(frictionless(&node(NodeState::Slip, [0.0; 3])).multiplier, None);
-        // With friction the tangential part comes along: q̂ = κ ε WS = 0.1.
+        // With friction the tangential part comes along: q̂ = κ c s = 0.1.
         let decision = alm_frictional(&node(NodeState::Inactive, [0.0; 3]), COULOMB);
         assert_eq!(decision.multiplier, Some([0.025, 0.0, -0.25]));
         assert_eq!((decision.state, decision.changed, decision.slip_changed), (NodeState::Stick, true, false));
         // One that is dragged along more than pressed in enters sliding, with the traction of the bound.
-        let dragged = SlaveNumbers { weighted_slip: [0.6, 0.0, 0.0], ..node(NodeState::Inactive, [0.0; 3]) };
+        let dragged = SlaveNumbers { slip: [0.6, 0.0, 0.0], ..node(NodeState::Inactive, [0.0; 3]) };
         let decision = alm_frictional(&dragged, COULOMB);
         assert_eq!((decision.state, decision.traction), (NodeState::Slip, [0.3, 0.0, 0.0]));
         assert_eq!(decision.multiplier, Some([0.075, 0.0, -0.25]));
@@ -287,7 +293,7 @@ mod tests {
         assert_eq!(decide(NodeState::Slip, 0.1).state, NodeState::Slip);
         let turned = |lambda_t: f64| {
             let node = node(NodeState::Slip, [lambda_t, 0.0, -1.0]);
-            alm_frictional(&SlaveNumbers { weighted_slip: [-0.1, 0.0, 0.0], ..node }, COULOMB)
+            alm_frictional(&SlaveNumbers { slip: [-0.1, 0.0, 0.0], ..node }, COULOMB)
         };
         assert_eq!(turned(0.4).state, NodeState::Slip);
         assert_eq!(turned(0.39).state, NodeState::Stick);
@@ -296,40 +302,17 @@ mod tests {
     }
 
     #[test]
-    fn units_change_no_state() {
-        // Lengths in another unit: areas in the plane are lengths, k and ε stiffnesses over lengths.
-        let with = |length: f64, lambda_t: f64, slip: f64| {
-            let node = SlaveNumbers {
-                multiplier: [lambda_t * length, 0.0, -length],
-                weighted_gap: 0.0,
-                weighted_slip: [slip * length * length, 0.0, 0.0],
-                area: 0.2 * length,
-                penalty: 2.0 / length,
-                scale_factor: 4.0 / length,
-                ..node(NodeState::Slip, [0.0; 3])
-            };
-            alm_frictional(&node, COULOMB)
-        };
-        for (lambda_t, slip, state) in [(0.3, -0.01, NodeState::Stick), (0.3, -0.001, NodeState::Slip)] {
-            for length in [1.0, 1e3, 1e-3] {
-                let decision = with(length, lambda_t, slip);
-                assert_eq!(decision.state, state, "lengths x {length}");
-            }
-        }
-    }
-
-    #[test]
     fn leaving_contact_keeps_the_multiplier() {
-        let open = SlaveNumbers { weighted_gap: 5.0, ..node(NodeState::Stick, [0.1, 0.0, -1.0]) };
+        let open = SlaveNumbers { gap: 5.0, ..node(NodeState::Stick, [0.1, 0.0, -1.0]) };
         let decision = alm_frictional(&open, COULOMB);
         assert_eq!((decision.state, decision.changed, decision.multiplier), (NodeState::Inactive, true, None));
     }
 
     #[test]
     fn penalty_sticks_up_to_the_bound() {
-        // p̂ = −1, bound 0.3, |q̂| = |WS|.
+        // p̂ = −1, bound 0.3, |q̂| = |s|.
         let decide = |slip| {
-            let node = SlaveNumbers { weighted_slip: [0.0, slip, 0.0], ..node(NodeState::Stick, [0.0; 3]) };
+            let node = SlaveNumbers { slip: [0.0, slip, 0.0], ..node(NodeState::Stick, [0.0; 3]) };
             penalty_frictional(&node, COULOMB)
         };
         assert_eq!(decide(0.3).state, NodeState::Stick);

@@ -11,7 +11,7 @@ use zelus_core::scalar::Real;
 
 use crate::variables::{FRICTION_COEFFICIENT, TRESCA_FRICTION_THRESHOLD};
 
-/// Coefficients and thresholds below this count as none.
+/// Coefficients below this count as none.
 const NOTHING: f64 = f64::EPSILON;
 
 /// Limit c − μ p of a node's tangential traction (force per area).
@@ -32,7 +32,7 @@ impl Bound {
 
     /// Whether there is no friction at all.
     pub fn is_smooth(self) -> bool {
-        self.coefficient < NOTHING && self.threshold < NOTHING
+        self.coefficient < NOTHING && self.threshold <= 0.0
     }
 }
 

@@ -12,6 +12,7 @@ pub mod search;
 pub mod mortar;
 pub mod formulations;
 pub mod friction_law;
+pub mod resolution;
 pub mod active_set;
 pub mod penalty_adaptation;
 pub mod pairs;

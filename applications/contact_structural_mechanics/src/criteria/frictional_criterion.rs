@@ -6,13 +6,12 @@
 use zelus_core::Result;
 use zelus_core::model::variables::NORMAL;
 use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_round_off};
-use zelus_core::vector3::{dot, scale, sub};
+use zelus_core::vector3::{dot, sub};
 
 use super::measure::{Form, Tolerance, check};
 use crate::formulations::NodeState;
 use crate::friction_law::smooth_nodes;
 use crate::mortar::tangential;
-use crate::variables::NODAL_AREA;
 
 /// The criterion of the families with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,20 +65,9 @@ impl Sizes {
     }
 }
 
-/// What a vector over all unknowns holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Entries {
-    /// Values of unknowns.
-    Values,
-    /// Residuals. Rows that state a gap or a slip hold it times an area, rows that state a multiplier do not.
-    Residuals,
-    /// Sizes of the round-off of residuals; they have no sign.
-    RoundOff,
-}
-
-/// Splits the multiplier entries of a vector over all unknowns. Rows that state a multiplier count with the area of their
-/// node, so that sums do not depend on units; sizes of round-off count in full in all parts of a node.
-fn split(measures: &Measures<'_>, vector: &[f64], holds: Entries) -> Sizes {
+/// Splits the multiplier entries of a vector over all unknowns. Sizes of round-off, which have no sign, count in full in all
+/// parts of a node.
+fn split(measures: &Measures<'_>, vector: &[f64], signed: bool) -> Sizes {
     let nodes = measures.nodes;
     let mut entries = vec![([0.0; 3], 0_usize); nodes.len()];
     for &unknown in measures.equations.unknowns() {
@@ -92,22 +80,17 @@ fn split(measures: &Measures<'_>, vector: &[f64], holds: Entries) -> Sizes {
     }
     let normals = nodes.history.get(NORMAL.name());
     let is_smooth = smooth_nodes(nodes);
-    let areas = nodes.values.values(&NODAL_AREA, 0);
     let mut sizes = Sizes::default();
     for (at, (values, count)) in entries.into_iter().enumerate().filter(|(_, (_, count))| *count > 0) {
-        let area = areas.get(at).copied().filter(|area| *area > 0.0 && holds != Entries::Values).unwrap_or(1.0);
         let state = NodeState::of_flags(&nodes.flags, at);
         if state == NodeState::Inactive {
-            sizes.add(0, scale(values, area), count);
+            sizes.add(0, values, count);
             continue;
         }
         let smooth = is_smooth(at);
         let normal = normals.map_or([0.0; 3], |n| n.vector(0, at));
-        let (across, along) = match holds {
-            Entries::RoundOff => (values, values),
-            _ => (sub(values, tangential(values, normal)), tangential(values, normal)),
-        };
-        let along = if state == NodeState::Slip { scale(along, area) } else { along };
+        let along = if signed { tangential(values, normal) } else { values };
+        let across = if signed { sub(values, along) } else { values };
         let part = match state {
             _ if smooth => 0,
             NodeState::Stick => 1,
@@ -123,7 +106,7 @@ fn split(measures: &Measures<'_>, vector: &[f64], holds: Entries) -> Sizes {
 /// of the step, so what it left when states last changed counts too.
 fn references(measures: &Measures<'_>) -> Vec<Sizes> {
     let start = measures.references.iter().map(Vec::as_slice);
-    start.chain(measures.switched).map(|r| split(measures, r, Entries::Residuals)).collect()
+    start.chain(measures.switched).map(|r| split(measures, r, true)).collect()
 }
 
 impl ConvergenceCriterion for FrictionalCriterion {
@@ -131,15 +114,13 @@ impl ConvergenceCriterion for FrictionalCriterion {
         let mut checks = vec![check(measures, Block::Primary, self.primary)];
         let (sizes, references, round_off) = match self.multiplier {
             Form::Residual => (
-                split(measures, measures.residual, Entries::Residuals),
+                split(measures, measures.residual, true),
                 references(measures),
-                Some(split(measures, measures.round_off, Entries::RoundOff)),
+                Some(split(measures, measures.round_off, false)),
             ),
-            Form::Increment => (
-                split(measures, measures.increment, Entries::Values),
-                vec![split(measures, measures.values, Entries::Values)],
-                None,
-            ),
+            Form::Increment => {
+                (split(measures, measures.increment, true), vec![split(measures, measures.values, true)], None)
+            }
         };
         let normal = sizes.norm(0) / (sizes.counts[0].max(1) as f64).sqrt();
         for part in 0..3 {

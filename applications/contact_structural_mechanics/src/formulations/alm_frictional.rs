@@ -1,7 +1,7 @@
 //! Friction by the augmented Lagrangian with a vector multiplier.
 //!
-//! - inactive: p = 0, b_λ = −k²/ε (λ·n) n − k²/(κε) P λ;
-//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k²/ε (P λ − P q/k) with q = b(k λ·n + ε g̃) τ, b the bound of the law
+//! - inactive: p = 0, b_λ = −k² (A/c) [(λ·n) n + P λ/κ];
+//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k² (A/c) (P λ − P q/k) with q = b(k λ·n + ε g̃) τ, b the bound of the law
 //!   of friction;
 //! - stick: p = f (k λ + ε g̃ n + κ ε s), b_λ = k g̃ n + k s.
 //!
@@ -88,7 +88,8 @@ impl Formulation for AlmFrictional {
             let augmentation = gap[j] * penalty;
             let held = match node.state {
                 NodeState::Inactive => {
-                    let (normal, tangent) = (-k * k / penalty, -k * k / (self.tangent_factor * penalty));
+                    let normal = -k * k * node.softness;
+                    let tangent = normal / self.tangent_factor;
                     out.multipliers[j] = std::array::from_fn(|c| n[c] * lambda_n * normal + lambda_t[c] * tangent);
                     continue;
                 }
@@ -97,7 +98,7 @@ impl Formulation for AlmFrictional {
                     let turning = turned(node, lambda_t, slip[j], bound.value());
                     let q = tangential(std::array::from_fn(|c| bound * node.tangent[c] + turning[c]), n);
                     out.multipliers[j] =
-                        std::array::from_fn(|c| n[c] * gap[j] * k - (lambda_t[c] * k - q[c]) * (k / penalty));
+                        std::array::from_fn(|c| n[c] * gap[j] * k - (lambda_t[c] * k - q[c]) * (k * node.softness));
                     0.0
                 }
                 NodeState::Stick => {

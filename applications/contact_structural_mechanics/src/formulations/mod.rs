@@ -8,7 +8,8 @@
 //! Order of local unknowns: displacements of master nodes, displacements of slave nodes, multipliers of slave nodes;
 //! node by node, each with its components.
 //!
-//! Notation in the files of the families: k scale factor, ε nodal penalty, f dynamic factor, n nodal normal,
+//! Notation in the files of the families: k scale factor, ε nodal penalty, A area of the node, c
+//! stiffness by length, f dynamic factor, n nodal normal,
 //! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, b bound of the tangential traction, τ
 //! unit tangent. All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
 

@@ -42,6 +42,8 @@ pub struct SlaveNode {
     pub state: NodeState,
     /// Penalty ε > 0.
     pub penalty: f64,
+    /// A/c > 0: weighted gap by traction, for rows that state tractions beside others that state gaps and slips.
+    pub softness: f64,
     /// Factor f on nodal forces, 1 unless the dynamic factor is in use.
     pub dynamic_factor: f64,
     /// Limit of the tangential traction.
@@ -52,13 +54,13 @@ pub struct SlaveNode {
     pub turning: Turning,
 }
 
-/// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ ε WS/A, τ = q̂/|q̂|.
+/// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ c WS/A, τ = q̂/|q̂|.
 ///
 /// Zero where the direction is a sign, as in the plane. It enters the tangent only; without it a body that slides is free
 /// across its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turning {
-    /// κ ε B/(A |q̂|) with the bounds B of all pairs of the node together: traction by weighted slip across τ.
+    /// κ c B/(A |q̂|) with the bounds B of all pairs of the node together: traction by weighted slip across τ.
     pub by_slip: f64,
     /// k/|q̂|: traction by multiplier across τ, in shares of the pair's bound.
     pub by_multiplier: f64,

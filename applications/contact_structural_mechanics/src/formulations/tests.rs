@@ -16,6 +16,7 @@ fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, stat
     std::array::from_fn(|j| SlaveNode {
         state: states[j % 3],
         penalty: 20.0 + 5.0 * noise.next(),
+        softness: 0.05,
         dynamic_factor: 0.8 + 0.1 * noise.next(),
         friction: Bound { coefficient: 0.4, threshold: 0.0 },
         tangent: normalised(tangential(
@@ -146,6 +147,7 @@ fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec
         let nodes = std::array::from_fn(|j| SlaveNode {
             state: [NodeState::Inactive, NodeState::Stick, NodeState::Slip][line[30 + j] as usize],
             penalty: line[32 + j],
+            softness: line[32 + j].recip(),
             dynamic_factor: line[34 + j],
             friction: Bound { coefficient: 0.4, threshold: 0.0 },
             tangent: vector(8 + j),
@@ -239,6 +241,7 @@ fn sign_of_the_contact_force() {
     let node = SlaveNode {
         state: NodeState::Slip,
         penalty: 50.0,
+        softness: 0.02,
         dynamic_factor: 1.0,
         friction: Bound::default(),
         tangent: [1.0, 0.0, 0.0],

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use zelus_core::entities::SetChange;
 use zelus_core::model::flags::{ACTIVE, ISOLATED, SLIP};
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::scale;
+use zelus_core::vector3::{norm, scale, sub};
 
 use super::step_parameters::StepParameters;
 use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
@@ -13,6 +13,7 @@ use crate::formulations::NodeState;
 use crate::friction_law::FrictionLaw;
 use crate::mortar::tangent;
 use crate::pairs::{Family, Friction, Multiplier};
+use crate::resolution::Resolution;
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
     NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -110,6 +111,7 @@ pub(super) fn decide(
     slaves: &[u32],
     family: &Family,
     parameters: &StepParameters,
+    resolution: Resolution,
     released: &mut BTreeSet<u32>,
 ) -> (Vec<(u32, Decision)>, Vec<NodeState>) {
     let mut decisions = Vec::with_capacity(slaves.len());
@@ -117,7 +119,7 @@ pub(super) fn decide(
     let mut pushed = Vec::new();
     for &node in slaves {
         let at = node as usize;
-        let numbers = numbers(part, at, family, parameters);
+        let numbers = numbers(part, at, family, parameters, resolution);
         let mut decision = match (family.friction, family.penalty) {
             (Friction::None, _) => active_set::frictionless(&numbers),
             (_, false) => active_set::alm_frictional(&numbers, parameters.slip_rule),
@@ -205,7 +207,15 @@ pub(super) fn apply(
 }
 
 /// What the rules look at, of one slave node.
-fn numbers(part: &ModelPart, at: usize, family: &Family, parameters: &StepParameters) -> SlaveNumbers {
+///
+/// The penalty method states tractions ε WG, those of all others are multipliers.
+fn numbers(
+    part: &ModelPart,
+    at: usize,
+    family: &Family,
+    parameters: &StepParameters,
+    resolution: Resolution,
+) -> SlaveNumbers {
     let history = &part.nodes.history;
     let vector_of = |name: &str| history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
     let normal = vector_of(NORMAL.name());
@@ -214,22 +224,67 @@ fn numbers(part: &ModelPart, at: usize, family: &Family, parameters: &StepParame
         Multiplier::Scalar(variable) | Multiplier::Outer(variable) => scale(normal, history.values(variable, 0)[at]),
         Multiplier::Vector(variable) => vector_of(variable.name()),
     };
+    let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
+    let by_area = if area > 0.0 { area.recip() } else { 0.0 };
+    let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
     SlaveNumbers {
         state: NodeState::of_flags(&part.nodes.flags, at),
         normal,
         multiplier,
-        weighted_gap: history.values(&WEIGHTED_GAP, 0)[at],
-        weighted_slip: vector_of(WEIGHTED_SLIP.name()),
+        gap: resolution.length_of(history.values(&WEIGHTED_GAP, 0)[at] * by_area),
+        slip: resolution.vector_of(scale(vector_of(WEIGHTED_SLIP.name()), by_area)),
         tangent: part
             .nodes
             .values
             .values(&TANGENT_XI, 0)
             .get(3 * at..3 * at + 3)
             .map_or([0.0; 3], |t| [t[0], t[1], t[2]]),
-        area: part.nodes.values.values(&NODAL_AREA, 0)[at],
-        penalty: part.nodes.values.values(&INITIAL_PENALTY, 0)[at],
+        stiffness: match family.multiplier.is_unknown() {
+            true => parameters.nodal_stiffness(penalty, area),
+            false => penalty * area,
+        },
         friction: parameters.friction_law.bound_at(&part.nodes, at),
         scale_factor: parameters.scale_factor,
         tangent_factor: parameters.tangent_factor,
+        resolution,
     }
+}
+
+/// What is too small to decide on at these interface nodes: `nodes` all of them, `slaves` those with multipliers.
+///
+/// Tractions are known as well as a solve leaves multipliers, and as the round-off of displacements leaves forces.
+pub(super) fn resolution(
+    part: &ModelPart,
+    nodes: &[u32],
+    slaves: &[u32],
+    family: &Family,
+    parameters: &StepParameters,
+) -> Resolution {
+    let motion = farthest(nodes, |at| norm(sub(part.nodes.current[at], part.nodes.initial[at])));
+    let history = &part.nodes.history;
+    let traction = |at: usize| match family.multiplier {
+        Multiplier::None => {
+            part.nodes.values.values(&INITIAL_PENALTY, 0)[at] * history.values(&WEIGHTED_GAP, 0)[at].min(0.0).abs()
+        }
+        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
+            parameters.scale_factor * history.values(variable, 0)[at].abs()
+        }
+        Multiplier::Vector(variable) => {
+            parameters.scale_factor * history.get(variable.name()).map_or(0.0, |field| norm(field.vector(0, at)))
+        }
+    };
+    Resolution::of(extent(part, nodes), farthest(slaves, traction), parameters.stiffness * motion)
+}
+
+/// Lengths at these nodes up to this are none.
+pub(super) fn resolved_length(part: &ModelPart, nodes: &[u32]) -> f64 {
+    Resolution::of(extent(part, nodes), 0.0, 0.0).length
+}
+
+fn extent(part: &ModelPart, nodes: &[u32]) -> f64 {
+    farthest(nodes, |at| norm(part.nodes.current[at]).max(norm(part.nodes.initial[at])))
+}
+
+fn farthest(nodes: &[u32], reach: impl Fn(usize) -> f64) -> f64 {
+    nodes.iter().map(|&n| reach(n as usize)).fold(0.0, f64::max)
 }

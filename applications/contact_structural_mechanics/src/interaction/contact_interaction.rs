@@ -25,6 +25,7 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
+use crate::resolution::Resolution;
 use crate::search::{GapCheck, assign_roles, warn_of_late_pairs};
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
@@ -47,6 +48,8 @@ pub struct ContactInteraction {
     at_origin: BTreeSet<u32>,
     /// Weighted gaps averaged over the pairs of a node by area.
     mean_gaps: Vec<f64>,
+    /// What is too small to decide on in the present state.
+    resolution: Resolution,
     uzawa: Uzawa,
     /// Gap at which explicit steps stiffen the penalty; 0 in implicit ones (length).
     max_gap: f64,
@@ -73,6 +76,7 @@ impl ContactInteraction {
         let parameters = Arc::new(StepParameters {
             segmentation: SegmentationSettings::default(),
             scale_factor: 1.0,
+            stiffness: 1.0,
             tangent_factor: settings.tangent_factor,
             operator_threshold: settings.operator_threshold,
             friction_law: settings.friction.law,
@@ -90,6 +94,7 @@ impl ContactInteraction {
             warned_of_friction: false,
             at_origin: BTreeSet::new(),
             mean_gaps: Vec::new(),
+            resolution: Resolution::default(),
             uzawa: Uzawa::default(),
             max_gap: 0.0,
             pair_counts: Vec::new(),
@@ -181,13 +186,15 @@ impl ContactInteraction {
         self.pair_counts = pairs;
         mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
         self.mean_gaps = mean;
-        let at_origin = |&node: &u32| norm(mapped[node as usize]) <= f64::EPSILON * area[node as usize];
-        self.at_origin = self.slaves.iter().copied().filter(at_origin).collect();
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
         part.nodes.values.values_mut(&NODAL_AREA, 0).copy_from_slice(&area);
         if self.settings.family.frictional() {
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slip.as_flattened());
         }
+        let family = self.settings.family;
+        self.resolution = activation::resolution(part, &self.pairing.nodes(), &self.slaves, family, &self.parameters);
+        let at_origin = |&node: &u32| norm(mapped[node as usize]) <= self.resolution.length * area[node as usize];
+        self.at_origin = self.slaves.iter().copied().filter(at_origin).collect();
     }
 
     /// Distance within which nodes start in contact, and depth beyond which facets are in each other (length).
@@ -204,7 +211,7 @@ impl ContactInteraction {
     fn update_active_set(&mut self, part: &mut ModelPart) -> SetChange {
         let family = self.settings.family;
         let (mut decisions, before) =
-            activation::decide(part, &self.slaves, family, &self.parameters, &mut self.released);
+            activation::decide(part, &self.slaves, family, &self.parameters, self.resolution, &mut self.released);
         self.cycles.restrict(&mut decisions, &before, &part.nodes.initial);
         part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
         activation::apply(part, &decisions, &before, family, &self.parameters)
@@ -254,8 +261,8 @@ impl ContactInteraction {
 
     fn write_tangents(&self, part: &mut ModelPart) {
         if self.settings.family.frictional() {
-            let counts = &self.pair_counts;
-            sliding::write_tangents(part, &self.slaves, self.settings.family, &self.parameters, counts);
+            let (family, counts) = (self.settings.family, &self.pair_counts);
+            sliding::write_tangents(part, &self.slaves, family, &self.parameters, self.resolution, counts);
         }
     }
 
@@ -266,14 +273,16 @@ impl ContactInteraction {
             penalty: estimate.penalty * settings.penalty_factor,
             scale_factor: estimate.scale_factor,
         });
-        if chosen.penalty < f64::EPSILON {
+        if chosen.penalty <= 0.0 {
             chosen.penalty = settings.least_penalty;
         }
         // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.
         let open = self.pairing.interfaces.iter().all(|interface| interface.open);
-        if !settings.use_scale_factor || chosen.scale_factor < f64::EPSILON || (open && settings.manual.is_none()) {
+        if !settings.use_scale_factor || chosen.scale_factor <= 0.0 || (open && settings.manual.is_none()) {
             chosen.scale_factor = 1.0;
         }
+        // Without factors, which a deck may have chosen for what else they do.
+        let of_bodies = alm_parameters(part, &self.pairing.interfaces, 1.0, 1.0).penalty;
         part.info.values.insert(INITIAL_PENALTY.name(), chosen.penalty);
         part.info.values.insert("SCALE_FACTOR", chosen.scale_factor);
         part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(chosen.penalty);
@@ -302,6 +311,7 @@ impl ContactInteraction {
                 axisymmetric: settings.axisymmetric.then(thickness),
             },
             scale_factor: chosen.scale_factor,
+            stiffness: if of_bodies > 0.0 { of_bodies } else { chosen.penalty },
             slip_rule: friction::prepare(
                 part,
                 &self.pairing.interfaces,

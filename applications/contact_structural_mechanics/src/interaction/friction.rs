@@ -71,7 +71,7 @@ pub(super) fn prepare(
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {
         *slot = sum / count.max(1) as f64;
     }
-    if friction == Friction::PureSlip || largest < f64::EPSILON {
+    if friction == Friction::PureSlip || largest <= 0.0 {
         SlipRule::Pure
     } else {
         SlipRule::Bounded { augmentation: settings.slip_augmentation, threshold: settings.slip_threshold }

@@ -23,6 +23,7 @@ use crate::active_set::SlipRule;
 use crate::interface::{Interface, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{FacetPair, Friction, PairKey, condition_name, facet_operators, overlapping_pairs};
+use crate::resolution::is_more;
 use crate::search::{SearchSettings, warn_of_reach};
 use crate::solver::UPDATE_EACH_ITERATION;
 use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
@@ -257,6 +258,7 @@ impl MpcInteraction {
         let Some(forces) = &mut self.friction else { return };
         let before = std::mem::replace(&mut forces.forces, vec![[0.0; 3]; part.nodes.len()]);
         let mut slips = vec![[0.0; 3]; part.nodes.len()];
+        let resolved = activation::resolved_length(part, &self.slaves);
         for (&node, relation) in &self.nodes {
             let at = node as usize;
             if !part.nodes.flags.is(ACTIVE, at) {
@@ -282,16 +284,15 @@ impl MpcInteraction {
             let slides = if self.slip_rule == SlipRule::Pure {
                 true
             } else if sliding {
-                bound < f64::EPSILON || dot(moved, before[at]) <= 0.0
+                bound <= 0.0 || dot(moved, before[at]) <= resolved * norm(before[at])
             } else {
-                norm(wanted) > bound
+                is_more(norm(wanted), bound)
             };
             if slides != sliding {
                 part.nodes.flags.set(SLIP, at, slides);
                 change.stick_slip.push(part.nodes.ids[at]);
             }
             let size = norm(wanted);
-            let resolved = f64::EPSILON * part.nodes.values.values(&NODAL_H, 0)[at];
             if !slides || size == 0.0 || (sliding && !kept && size <= resolved) {
                 continue;
             }

@@ -8,9 +8,10 @@ use crate::active_set::SlipRule;
 use crate::formulations::{NodeState, Turning};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Multiplier};
+use crate::resolution::Resolution;
 use crate::variables::{
-    INITIAL_PENALTY, NODAL_AREA, NODAL_H, TANGENT_ETA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
-    WEIGHTED_GAP, WEIGHTED_SLIP,
+    INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_GAP,
+    WEIGHTED_SLIP,
 };
 
 /// Writes TANGENT_XI and TANGENT_ETA of the slave nodes, and how TANGENT_XI turns.
@@ -25,6 +26,7 @@ pub(super) fn write_tangents(
     slaves: &[u32],
     family: &Family,
     parameters: &StepParameters,
+    resolution: Resolution,
     pair_counts: &[u32],
 ) {
     let dimension = part.info.domain_size;
@@ -40,11 +42,12 @@ pub(super) fn write_tangents(
         let state = NodeState::of_flags(&part.nodes.flags, at);
         let normal = vector_of(NORMAL.name());
         let by_slip = || {
-            let (area, size) =
-                (part.nodes.values.values(&NODAL_AREA, 0)[at], part.nodes.values.values(&NODAL_H, 0)[at]);
+            let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             let slip = vector_of(WEIGHTED_SLIP.name());
-            if norm(slip) > f64::EPSILON * size * area { scale(slip, area.recip()) } else { [0.0; 3] }
+            if area > 0.0 { resolution.vector_of(scale(slip, area.recip())) } else { [0.0; 3] }
         };
+        let decided =
+            |traction: [f64; 3]| if resolution.exceeds(norm(traction), 0.0, false) { traction } else { [0.0; 3] };
         let direction = match family.multiplier {
             Multiplier::Vector(variable) => {
                 let multiplier = vector_of(variable.name());
@@ -52,10 +55,12 @@ pub(super) fn write_tangents(
                     NodeState::Slip if dimension == 3 => {
                         let trial = Trial::new(part, at, parameters, multiplier, normal);
                         turnings[position] = trial.turning(pair_counts[at], pure, parameters);
-                        if pure { by_slip() } else { trial.traction }
+                        if pure { by_slip() } else { decided(trial.traction) }
                     }
                     NodeState::Inactive if !pure => [0.0; 3],
-                    NodeState::Stick | NodeState::Slip if !pure => multiplier,
+                    NodeState::Stick | NodeState::Slip if !pure => {
+                        decided(scale(tangential(multiplier, normal), parameters.scale_factor))
+                    }
                     _ => by_slip(),
                 }
             }
@@ -83,11 +88,11 @@ pub(super) fn write_tangents(
     }
 }
 
-/// Trial traction q̂ = k P λ + κ ε WS/A of a node of area A, and what bounds it.
+/// Trial traction q̂ = k P λ + κ c WS/A of a node of area A, and what bounds it.
 struct Trial {
     traction: [f64; 3],
     of_slip: [f64; 3],
-    /// κ ε/A: traction by weighted slip.
+    /// κ c/A: traction by weighted slip.
     by_slip: f64,
     pressure: f64,
     multiplier_pressure: f64,
@@ -97,16 +102,17 @@ struct Trial {
 impl Trial {
     fn new(part: &ModelPart, at: usize, parameters: &StepParameters, multiplier: [f64; 3], normal: [f64; 3]) -> Self {
         let slip = part.nodes.history.get(WEIGHTED_SLIP.name()).map_or([0.0; 3], |field| field.vector(0, at));
-        let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
         let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
-        let by_slip = parameters.tangent_factor * penalty / if area > 0.0 { area } else { 1.0 };
+        let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
+        let by_gap = parameters.nodal_stiffness(penalty, area) / if area > 0.0 { area } else { 1.0 };
+        let by_slip = parameters.tangent_factor * by_gap;
         let of_slip = scale(slip, by_slip);
         let multiplier_pressure = parameters.scale_factor * dot(multiplier, normal);
         Self {
             traction: add(scale(tangential(multiplier, normal), parameters.scale_factor), of_slip),
             of_slip,
             by_slip,
-            pressure: multiplier_pressure + penalty * part.nodes.history.values(&WEIGHTED_GAP, 0)[at],
+            pressure: multiplier_pressure + by_gap * part.nodes.history.values(&WEIGHTED_GAP, 0)[at],
             multiplier_pressure,
             bound: parameters.friction_law.bound_at(&part.nodes, at),
         }

@@ -31,9 +31,11 @@ pub struct StepParameters {
     pub segmentation: SegmentationSettings,
     /// k: multipliers times k are tractions.
     pub scale_factor: f64,
+    /// E/h: the least that gaps and slips count with where they stand against tractions (stress by length).
+    pub stiffness: f64,
     /// Ratio κ of tangential and normal penalty.
     pub tangent_factor: f64,
-    /// Change of the operators beyond which slip is measured objectively.
+    /// Change of the operators beyond which slip is measured objectively (area; in the plane a length).
     pub operator_threshold: f64,
     /// What limits tangential tractions.
     pub friction_law: &'static FrictionLaw,
@@ -41,4 +43,13 @@ pub struct StepParameters {
     pub slip_rule: SlipRule,
     /// When normals follow the iteration.
     pub normal_variation: NormalVariation,
+}
+
+impl StepParameters {
+    /// c: what gaps and slips of a node of this penalty and area count with against tractions (stress by length).
+    ///
+    /// Weighted gaps enter forces with the penalty, which is the larger part where areas are large numbers.
+    pub fn nodal_stiffness(&self, penalty: f64, area: f64) -> f64 {
+        self.stiffness.max(penalty * area)
+    }
 }

@@ -141,7 +141,7 @@ impl Interaction for TyingInteraction {
         part.info.marks.insert(CONTACT, true);
         let estimate = alm_parameters(part, &self.interfaces, self.settings.stiffness_factor, 1.0).scale_factor;
         let chosen = self.settings.manual.unwrap_or(estimate);
-        self.scale_factor = if chosen < f64::EPSILON { 1.0 } else { chosen };
+        self.scale_factor = if chosen <= 0.0 { 1.0 } else { chosen };
         part.info.values.insert("SCALE_FACTOR", self.scale_factor);
         debug_assert!(self.interfaces.iter().all(|i| i.facets.iter().all(|f| f.role != Roles::Open)));
         nodal_normals(part, &self.interfaces);

@@ -41,7 +41,7 @@ pub fn alm_parameters(
         if area > 0.0 && length > 0.0 { (stiffness / area, stiffness_factor * stiffness / length) } else { (0.0, 0.0) }
     };
     let ((young, slave), (_, master)) = (side(Roles::Slave), side(Roles::Master));
-    let slave = if young <= f64::EPSILON { master } else { slave };
+    let slave = if young <= 0.0 { master } else { slave };
     let penalty = slave.min(master);
     AlmParameters { penalty, scale_factor: penalty_scale_factor * penalty }
 }

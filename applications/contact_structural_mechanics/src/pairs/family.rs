@@ -26,6 +26,11 @@ pub enum Multiplier {
 }
 
 impl Multiplier {
+    /// Whether it is solved for.
+    pub fn is_unknown(self) -> bool {
+        matches!(self, Self::Scalar(_) | Self::Vector(_))
+    }
+
     /// The unknowns in `dimension` dimensions.
     pub fn unknowns(self, dimension: usize) -> Vec<ScalarVariable> {
         match self {

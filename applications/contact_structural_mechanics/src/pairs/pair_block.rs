@@ -17,7 +17,7 @@ use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNo
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
-    DYNAMIC_FACTOR, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+    DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NORMAL_LENGTH, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
 };
 
 /// A formulation as the blocks use it.
@@ -147,6 +147,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
     fn slave_states(&self, at: usize, view: &StepView<'_>) -> [SlaveNode; NS] {
         let penalty = view.nodes.values.values(&INITIAL_PENALTY, 0);
         let factor = view.nodes.values.values(&DYNAMIC_FACTOR, 0);
+        let areas = view.nodes.values.values(&NODAL_AREA, 0);
+        let area = |node: usize| areas.get(node).copied().filter(|area| *area > 0.0).unwrap_or(1.0);
         let tangent = view.nodes.values.values(&TANGENT_XI, 0);
         let by_slip = view.nodes.values.values(&TURNING_BY_SLIP, 0);
         let by_multiplier = view.nodes.values.values(&TURNING_BY_MULTIPLIER, 0);
@@ -155,6 +157,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
             SlaveNode {
                 state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
+                softness: area(node) / self.parameters.nodal_stiffness(penalty[node], area(node)),
                 dynamic_factor: factor[node],
                 friction: self.parameters.friction_law.bound_at(view.nodes, node),
                 tangent: if tangent.is_empty() { [0.0; 3] } else { vector(tangent, n) },
