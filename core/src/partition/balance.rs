@@ -24,11 +24,13 @@ impl Partition {
         if f64::from(fullest) <= IMBALANCE * mean || fullest < target + LEAST {
             return 0;
         }
+        // What has been given to a rank does not push out its own.
+        let gives: Vec<bool> = load.iter().map(|&pairs| pairs > target).collect();
         let mut moved = 0;
         for node in 0..count.len() {
             let (pairs, from) = (count[node], self.nodes[node] as usize);
             let to = (0..self.ranks).min_by_key(|&rank| load[rank]).unwrap_or(from);
-            if pairs > 0 && load[from] > target && load[to] + pairs < load[from] {
+            if pairs > 0 && gives[from] && load[from] > target && load[to] + pairs < load[from] {
                 self.pairs[node] = to as u32;
                 load[from] -= pairs;
                 load[to] += pairs;
