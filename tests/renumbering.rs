@@ -68,7 +68,7 @@ fn reversed(text: &str) -> (Ids, String) {
                         ("Conditions" | "ConditionalData", 0) | ("SubModelPartConditions", _) => {
                             renumber(&conditions, word)
                         }
-                        ("Elements" | "Conditions", 2..) => renumber(&nodes, word),
+                        ("Elements" | "Conditions", 2..) | ("Geometries", 1..) => renumber(&nodes, word),
                         ("Constraints", 3..) if words.len() == 5 => renumber(&nodes, word),
                         _ => (*word).to_owned(),
                     })

@@ -153,6 +153,12 @@ pub const BAD_DECKS: &[BadDeck] = &[
         "\"variable_name\": \"NEGATIVE_FACE_PRESSURE\"",
         &["NEGATIVE_FACE_PRESSURE"],
     ),
+    deck(
+        "unknown modeler",
+        "\"problem_data\"",
+        "\"modelers\": [{\"name\": \"Modelers.KratosMultiphysics.CombineModelPartModeler\", \"parameters\": {}}],\n  \"problem_data\"",
+        &["CombineModelPartModeler"],
+    ),
     deck("plane deck in space", "\"domain_size\": 2", "\"domain_size\": 3", &["domain_size"]),
     // expressions and intervals
     deck("half an expression", "1.0e6*t", "1.0e6*", &["1.0e6*"]),

@@ -47,13 +47,14 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
 
 /// Properties of every specimen. Yielding begins far below the strains that are looked at: differences taken across its
 /// beginning are no derivatives.
-const USUAL: [(&str, f64); 6] = [
+const USUAL: [(&str, f64); 7] = [
     ("YOUNG_MODULUS", 100.0),
     ("POISSON_RATIO", 0.3),
     ("THICKNESS", 0.5),
     ("DENSITY", 3.0),
     ("YIELD_STRESS", 0.01),
     ("ISOTROPIC_HARDENING_MODULUS", 10.0),
+    ("HARDENING_MODULUS_1D", 10.0),
 ];
 
 /// Which loads a specimen carries.

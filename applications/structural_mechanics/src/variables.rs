@@ -36,6 +36,7 @@ register_variable! {
     kind YIELD_STRESS_COMPRESSION: Scalar = "Yield stress in compression; that of tension holds for both.";
     kind ISOTROPIC_HARDENING_MODULUS: Scalar = "Slope of the yield stress over equivalent plastic strain.";
     kind EXPONENTIAL_SATURATION_YIELD_STRESS: Scalar = "Yield stress that exponential hardening tends to.";
+    kind HARDENING_MODULUS_1D: Scalar = "Slope of the yield stress of a bar over its plastic strain (force per area).";
     kind HARDENING_EXPONENT: Scalar = "Rate of exponential hardening over equivalent plastic strain.";
     kind HARDENING_CURVE: Integer = "Form of the yield stress: 3 constant, 4 polynomial, 6 through points.";
     kind CURVE_FITTING_PARAMETERS: Vector = "Coefficients of the polynomial of HARDENING_CURVE 4, constant first.";
@@ -57,6 +58,13 @@ register_variable! {
     kind CONDUCTIVITY: Scalar = "Without effect: heat conductivity, which no law here has.";
     kind SPECIFIC_HEAT: Scalar = "Without effect: heat capacity per mass, which no law here has.";
     kind REFERENCE_TEMPERATURE: Scalar = "Without effect: temperature without thermal strain, which no law here has.";
+    kind ROTATION: Vector3 = "Not computed: nodes have no rotations.";
+    kind REACTION_MOMENT: Vector3 = "Not computed: nodes have no rotations.";
+    kind ANGULAR_VELOCITY: Vector3 = "Not computed: nodes have no rotations.";
+    kind ANGULAR_ACCELERATION: Vector3 = "Not computed: nodes have no rotations.";
+    kind PLASTIC_DISSIPATION: Scalar = "Not computed: no law here measures it; EQUIVALENT_PLASTIC_STRAIN grows with it.";
+    kind DAMAGE: Scalar = "Not computed: no law here has damage.";
+    kind THRESHOLD: Scalar = "Not computed: no law here has it; UNIAXIAL_STRESS is what yielding compares.";
     kind EQUIVALENT_PLASTIC_STRAIN: Scalar = "Equivalent plastic strain ∫ √(2/3) ‖dε_p‖.";
     kind ACCUMULATED_PLASTIC_STRAIN: Scalar = "The same number as EQUIVALENT_PLASTIC_STRAIN.";
     kind PLASTIC_STRAIN_VECTOR: Vector = "Plastic strain (logarithmic under finite strain), components as STRAIN.";

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::report::RunReport;
-use super::solver::{SolverSettings, flatten_points};
+use super::solver::{SolverSettings, flatten_bars};
 use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
 use crate::io;
 use crate::model::{Model, ModelPart};
@@ -189,7 +189,7 @@ pub(super) fn import(
         }
     }
     let part = model.root_mut(root)?;
-    flatten_points(part, solver.domain_size()?, warnings);
+    flatten_bars(part, solver.domain_size()?, warnings);
     solver.prepare(part)?;
     if !part.geometries.is_empty() && !part.geometries.used {
         let fact = "geometries without elements or conditions on them are not used";

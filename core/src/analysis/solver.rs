@@ -374,15 +374,17 @@ fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static 
     groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()
 }
 
-/// Replaces entities at points of space by those of the plane in a plane problem, where they are the same.
-pub fn flatten_points(part: &mut ModelPart, domain_size: usize, report: &mut Report) {
+/// Replaces points and bars of space by those of the plane in a plane problem, where they are the same.
+pub fn flatten_bars(part: &mut ModelPart, domain_size: usize, report: &mut Report) {
     if domain_size != 2 {
         return;
     }
     for table in [&mut part.elements, &mut part.conditions] {
         for at in 0..table.len() {
             let entry = table.kinds[at];
-            let Some(flat) = entry.name.strip_suffix("3D1N").map(|stem| format!("{stem}2D1N")) else { continue };
+            let dim = entry.cell.map_or(3, |cell| cell.cell().dim);
+            let is_same = entry.space == 3 && (dim == 0 || dim == 1 && entry.kind == Kind::Element);
+            let Some(flat) = is_same.then(|| entry.name.replacen("3D", "2D", 1)) else { continue };
             let Some(flat) = registry::find(entry.kind, &flat) else { continue };
             table.kinds[at] = flat;
             let fact = format!("{} in a plane problem is taken as {}", entry.name, flat.name);

@@ -6,7 +6,7 @@ use std::path::Path;
 use rustc_hash::FxHashMap;
 
 use super::mdpa::{self, DataBlock, DataColumn, DataEntry, DataValue, EntityBlock, EntityNames, Line, MdpaDocument};
-use super::variables::{kind_of, law_name, unknown_variable};
+use super::variables::{kind_of, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::entities::MasterSlaveConstraint;
 use crate::geometry::Shape;
@@ -281,6 +281,9 @@ impl Import<'_> {
             self.push(block.line, unknown_variable(&block.variable));
             return None;
         };
+        if let Some(warning) = without_effect(&block.variable) {
+            self.push(block.line, warning);
+        }
         let (name, offset, size) = variable.column();
         let (values, given) = match &block.values {
             DataColumn::Scalar { values, .. } => (values, 1),

@@ -19,10 +19,14 @@ pub(crate) fn unknown_variable(name: &str) -> Diagnostic {
     Diagnostic::error("unknown-variable", format!("there is no variable {name}")).remedy(remedy)
 }
 
+/// Why a variable that decks name has no values here; `None` when it has.
+pub(crate) fn not_computed(name: &str) -> Option<&'static str> {
+    variables().get(name)?.about.strip_prefix("Not computed: ")
+}
+
 /// The warning for a variable that is known and read by nothing; the caller adds the place.
 pub(crate) fn without_effect(name: &str) -> Option<Diagnostic> {
-    let entry = variables().get(name).filter(|entry| entry.about.starts_with("Without effect"))?;
-    let why = entry.about.trim_start_matches("Without effect: ");
+    let why = variables().get(name)?.about.strip_prefix("Without effect: ").or_else(|| not_computed(name))?;
     let fact = format!("{name} is read and changes nothing: {why}");
     Some(Diagnostic::warning("variable-without-effect", fact).remedy("remove it, if its effect is not expected"))
 }

@@ -55,3 +55,15 @@ register_absent! { Condition ["PointMoment"] =>
 
 register_absent! { Condition ["MovingLoad"] =>
 "use LineLoadCondition with a load that is a function of x and t" }
+
+register_absent! { Process ["contact_remesh", "mmg_process", "metric_", "hessian_"] =>
+"meshes are not changed during a run: refine the mesh file, or where contact is expected" }
+
+register_absent! { Process ["save_restart", "load_restart"] =>
+"states are not saved: run stages one after another in one deck (\"orchestrator\" and \"stages\")" }
+
+register_absent! { Process ["set_moving_load"] =>
+"use LineLoadCondition with a load that is a function of x and t" }
+
+register_absent! { Process ["set_initial_state", "set_automated_initial_variable"] =>
+"initial strains and stresses are not there: prescribe displacements that make them" }

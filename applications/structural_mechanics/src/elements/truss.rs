@@ -3,6 +3,8 @@
 //! With l_0, l the initial and present length, A CROSS_AREA, S_0 TRUSS_PRESTRESS_PK2 and x_21 = x_2 − x_1:
 //! E_gl = (l² − l_0²)/2l_0², f = A l_0 S x_21/l_0², S = E E_gl + S_0 on the first node, the opposite on the second.
 //! The linear bar has ε = (u_2 − u_1)·t/l_0 along its initial direction t. Mass: A l_0 DENSITY, half a node when lumped.
+//! Plastic bars yield at |S| = YIELD_STRESS + HARDENING_MODULUS_1D α, α the accumulated plastic strain: from the trial
+//! stress E (ε − ε_p) + S_0 the return is Δα = (|S| − yield)/(E + H), the tangent E H/(E + H).
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
@@ -18,6 +20,8 @@ use crate::variables::VOLUME_ACCELERATION;
 /// A bar in `DIM` dimensions; `LINEAR` for small displacements.
 pub struct Truss<const DIM: usize, const LINEAR: bool> {
     young: f64,
+    /// Yield stress and hardening modulus; `None` for elastic bars.
+    plastic: Option<[f64; 2]>,
     area: f64,
     density: f64,
     prestress: f64,
@@ -32,10 +36,34 @@ impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
         let length = norm(along);
         (along.map(|x| x / length), length)
     }
+
+    /// Axial strain: of Green and Lagrange, or the small one.
+    fn strain(entity: &Gather<'_, 2>, view: &StepView<'_>) -> f64 {
+        let (direction, length) = Self::axis(entity);
+        if LINEAR {
+            let [first, second] = nodal_vectors(entity, view, &DISPLACEMENT);
+            return dot(sub(second, first), direction) / length;
+        }
+        let now = sub(entity.current[1], entity.current[0]);
+        0.5 * (dot(now, now) / (length * length) - 1.0)
+    }
+
+    /// Stress with its derivative, and what is remembered after a step that ends so: plastic strain and its sum.
+    fn response(&self, strain: f64, [plastic, sum]: [f64; 2]) -> (f64, f64, [f64; 2]) {
+        let trial = self.young * (strain - plastic) + self.prestress;
+        let Some([yield_stress, hardening]) = self.plastic else { return (trial, self.young, [plastic, sum]) };
+        let over = trial.abs() - (yield_stress + hardening * sum);
+        if over <= 0.0 {
+            return (trial, self.young, [plastic, sum]);
+        }
+        let both = self.young + hardening;
+        let (step, sign) = (over / both, trial.signum());
+        (trial - sign * self.young * step, self.young * hardening / both, [plastic + sign * step, sum + step])
+    }
 }
 
 impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> for Truss<DIM, LINEAR> {
-    type State = ();
+    type State = [f64; 2];
 
     fn unknowns() -> [LocalUnknown; SIZE] {
         std::array::from_fn(|row| LocalUnknown {
@@ -51,15 +79,23 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
             let remedy = "define them in the mesh file or the materials file";
             return Err(Diagnostic::error("missing-properties", fact).remedy(remedy).into());
         };
-        if properties.law.as_deref() != Some("TrussConstitutiveLaw") {
-            let law = properties.law.as_deref().unwrap_or("none");
-            let fact = format!("the law of properties {id}, {law}, does not fit trusses");
-            let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
-            return Err(problem.remedy("use TrussConstitutiveLaw").into());
-        }
+        let plastic = match properties.law.as_deref() {
+            Some("TrussConstitutiveLaw") => None,
+            Some("TrussPlasticityConstitutiveLaw") => {
+                Some([properties.require("YIELD_STRESS")?, properties.number("HARDENING_MODULUS_1D").unwrap_or(0.0)])
+            }
+            law => {
+                let fact = format!("the law of properties {id}, {}, does not fit trusses", law.unwrap_or("none"));
+                let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
+                return Err(problem.remedy("use TrussConstitutiveLaw or TrussPlasticityConstitutiveLaw").into());
+            }
+        };
         let number = |name: &str| properties.number(name).unwrap_or(0.0);
         let (young, area) = (properties.require("YOUNG_MODULUS")?, properties.require("CROSS_AREA")?);
-        for (name, value) in [("YOUNG_MODULUS", young), ("CROSS_AREA", area)] {
+        let [yield_stress, hardening] = plastic.unwrap_or([1.0, 0.0]);
+        let positive = [("YOUNG_MODULUS", young), ("CROSS_AREA", area), ("YIELD_STRESS", yield_stress)];
+        let known = positive.into_iter().chain([("HARDENING_MODULUS_1D + YOUNG_MODULUS", hardening + young)]);
+        for (name, value) in known {
             if !(value > 0.0 && value.is_finite()) {
                 let fact = format!("{name} of properties {id} is {value}");
                 let problem = Diagnostic::error("material-out-of-range", fact).at(properties.place.clone());
@@ -68,6 +104,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
         }
         Ok(Self {
             young,
+            plastic,
             area,
             density: number("DENSITY"),
             prestress: number("TRUSS_PRESTRESS_PK2"),
@@ -76,19 +113,19 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
         })
     }
 
-    fn state(&self, entity: &Gather<'_, 2>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, entity: &Gather<'_, 2>, _view: &StepView<'_>) -> Result<[f64; 2], String> {
         let (_, length) = Self::axis(entity);
-        if length > 0.0 { Ok(()) } else { Err("both ends are at the same place".into()) }
+        if length > 0.0 { Ok([0.0; 2]) } else { Err("both ends are at the same place".into()) }
     }
 
     fn tangent(&self) -> Tangent {
-        if LINEAR { Tangent::Constant } else { Tangent::Symmetric }
+        if LINEAR && self.plastic.is_none() { Tangent::Constant } else { Tangent::Symmetric }
     }
 
     fn local_system(
         &self,
         entity: &Gather<'_, 2>,
-        _state: &(),
+        state: &[f64; 2],
         view: &StepView<'_>,
         want: Want,
         lhs: &mut [f64],
@@ -102,15 +139,18 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
             rhs[a] += sixth * (2.0 * of[0] + of[1]);
             rhs[DIM + a] += sixth * (of[0] + 2.0 * of[1]);
         }
-        // stress without the part that the linear bar has as an external force, and the derivative of strain along x_2
-        let (stress, along) = if LINEAR {
-            let [first, second] = nodal_vectors(entity, view, &DISPLACEMENT);
-            let strain = if want == Want::External { 0.0 } else { dot(sub(second, first), direction) / length };
-            (self.young * strain + self.prestress, direction.map(|t| t / length))
-        } else {
-            let now = sub(entity.current[1], entity.current[0]);
-            let strain = 0.5 * (dot(now, now) / (length * length) - 1.0);
-            (self.young * strain + self.prestress, now.map(|x| x / (length * length)))
+        // a linear elastic bar has its external forces, the prestress among them, apart from those of the strain
+        let (stress, modulus) = match want {
+            Want::External => (self.prestress, self.young),
+            _ => {
+                let (stress, modulus, _) = self.response(Self::strain(entity, view), *state);
+                (stress, modulus)
+            }
+        };
+        // derivative of the strain along x_2
+        let along = match LINEAR {
+            true => direction.map(|t| t / length),
+            false => sub(entity.current[1], entity.current[0]).map(|x| x / (length * length)),
         };
         let volume = self.area * length;
         for a in 0..DIM {
@@ -123,7 +163,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
         for a in 0..DIM {
             for b in 0..DIM {
                 let geometric = if !LINEAR && a == b { stress / (length * length) } else { 0.0 };
-                let k = volume * (self.young * along[a] * along[b] + geometric);
+                let k = volume * (modulus * along[a] * along[b] + geometric);
                 for (i, j, sign) in [(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)] {
                     lhs[(i * DIM + a) * SIZE + j * DIM + b] += sign * k;
                 }
@@ -138,7 +178,23 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
         self.prestress != 0.0 || (self.density > 0.0 && gravity)
     }
 
-    fn mass(&self, entity: &Gather<'_, 2>, _state: &(), _view: &StepView<'_>, lumped: bool, out: &mut [f64]) -> bool {
+    fn accept(&self, entity: &Gather<'_, 2>, state: &mut [f64; 2], view: &StepView<'_>) -> Result<(), String> {
+        *state = self.response(Self::strain(entity, view), *state).2;
+        Ok(())
+    }
+
+    fn inherit(&self, state: &mut [f64; 2], earlier: &[f64; 2]) {
+        *state = *earlier;
+    }
+
+    fn mass(
+        &self,
+        entity: &Gather<'_, 2>,
+        _state: &[f64; 2],
+        _view: &StepView<'_>,
+        lumped: bool,
+        out: &mut [f64],
+    ) -> bool {
         let whole = self.density * self.area * Self::axis(entity).1;
         let [same, other] = if lumped || self.lumped { [0.5, 0.0] } else { [1.0 / 3.0, 1.0 / 6.0] };
         for a in 0..DIM {
@@ -159,7 +215,14 @@ register! { ConstitutiveLaw "TrussConstitutiveLaw",
     build: Build::Factory(&Uniaxial),
 }
 
+register! { ConstitutiveLaw "TrussPlasticityConstitutiveLaw",
+    about: "Yielding along a bar, with linear hardening, for trusses; needs YOUNG_MODULUS, YIELD_STRESS, HARDENING_MODULUS_1D",
+    source: "|S| ≤ YIELD_STRESS + H α",
+    build: Build::Factory(&Uniaxial),
+}
+
 register! { Element "TrussElement3D2N",
+    aliases: &["TotalLagrangianTrussElement3D2N"],
     about: "Bar under finite displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
     source: "f = A S x_21/l_0, S = E (l² − l_0²)/2l_0² + S_0",
     cell: Shape::of(1, 2),
@@ -176,7 +239,17 @@ register! { Element "TrussLinearElement3D2N",
     build: Build::Block(KernelBlock::<Truss<3, true>, 2, 6>::boxed),
 }
 
+register! { Element "TotalLagrangianTrussElement2D2N",
+    aliases: &["TrussElement2D2N"],
+    about: "Bar of the plane under finite displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
+    source: "f = A S x_21/l_0, S = E (l² − l_0²)/2l_0² + S_0",
+    cell: Shape::of(1, 2),
+    space: 2,
+    build: Build::Block(KernelBlock::<Truss<2, false>, 2, 4>::boxed),
+}
+
 register! { Element "LinearTrussElement2D2N",
+    aliases: &["TrussLinearElement2D2N"],
     about: "Bar of the plane under small displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
     source: "f = A (E (u_2 − u_1)·t/l_0 + S_0) t",
     cell: Shape::of(1, 2),

@@ -65,10 +65,10 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         elements: cells != 2,
         conditions: cells != 0,
         body: settings.get_bool(&key("body_output"))?,
-        history: Quantity::list(settings, &key("nodal_results"), request.report)?,
-        values: Quantity::list(settings, &key("nodal_nonhistorical_results"), request.report)?,
+        history: Quantity::shown(settings, &key("nodal_results"), request.report)?,
+        values: Quantity::shown(settings, &key("nodal_nonhistorical_results"), request.report)?,
         flags: flag_list(settings, &key("nodal_flags_results"), request.report)?,
-        gauss: GaussQuantity::list(settings, &key("gauss_point_results"), request.report)?,
+        gauss: GaussQuantity::shown(settings, &key("gauss_point_results"), request.report)?,
         written: Vec::new(),
     }))
 }

@@ -115,15 +115,15 @@ impl Picture {
             choice,
             deformed: settings.get_bool("write_deformed_configuration")?,
             ids: settings.get_bool("write_ids")?,
-            history: Quantity::list(settings, "nodal_solution_step_data_variables", report)?,
-            values: Quantity::list(settings, "nodal_data_value_variables", report)?,
+            history: Quantity::shown(settings, "nodal_solution_step_data_variables", report)?,
+            values: Quantity::shown(settings, "nodal_data_value_variables", report)?,
             flags: flag_list(settings, "nodal_flags", report)?,
-            extrapolated: GaussQuantity::list(settings, "gauss_point_variables_extrapolated_to_nodes", report)?,
-            element_values: Quantity::list(settings, "element_data_value_variables", report)?,
+            extrapolated: GaussQuantity::shown(settings, "gauss_point_variables_extrapolated_to_nodes", report)?,
+            element_values: Quantity::shown(settings, "element_data_value_variables", report)?,
             element_flags: flag_list(settings, "element_flags", report)?,
-            condition_values: Quantity::list(settings, "condition_data_value_variables", report)?,
+            condition_values: Quantity::shown(settings, "condition_data_value_variables", report)?,
             condition_flags: flag_list(settings, "condition_flags", report)?,
-            gauss: GaussQuantity::list(settings, "gauss_point_variables_in_elements", report)?,
+            gauss: GaussQuantity::shown(settings, "gauss_point_variables_in_elements", report)?,
         })
     }
 

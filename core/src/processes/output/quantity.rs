@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::io::results::Column;
-use crate::io::variables::unknown_variable;
+use crate::io::variables::{not_computed, unknown_variable};
 use crate::model::flags::flag;
 use crate::model::{Field, Fields, Flags, Named, VariableKind, named, variables};
 use crate::parameters::Settings;
@@ -18,7 +18,13 @@ pub(super) struct Quantity {
 impl Quantity {
     pub(super) fn new(name: &str) -> Result<Self, Diagnostic> {
         let variable = named(name).ok_or_else(|| unknown_variable(name))?;
+        computed(name)?;
         Ok(Self { name: name.to_owned(), variable })
+    }
+
+    /// As [`Quantity::list`] for pictures, which leave out what is known and has no values here, with a warning.
+    pub(super) fn shown(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
+        leave_out(settings, key, report, Self::new)
     }
 
     /// The quantities a list of the deck names; problems go to `report`.
@@ -76,7 +82,13 @@ impl GaussQuantity {
         if !known(name) && !vector.as_deref().is_some_and(known) {
             return Err(unknown_variable(name));
         }
+        computed(name)?;
         Ok(Self { name: name.to_owned(), vector })
+    }
+
+    /// As [`Quantity::shown`].
+    pub(super) fn shown(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
+        leave_out(settings, key, report, Self::new)
     }
 
     /// As [`Quantity::list`].
@@ -104,6 +116,36 @@ pub(super) fn flag_setting(settings: &Settings, key: &str) -> Result<Option<&'st
 
 fn known_flag(name: &str) -> Result<&'static str, Diagnostic> {
     flag(name).map_err(|hint| Diagnostic::error("unknown-flag", format!("there is no flag {name}")).remedy(hint))
+}
+
+/// An error for a variable that is known and has no values here.
+fn computed(name: &str) -> Result<(), Diagnostic> {
+    let Some(why) = not_computed(name) else { return Ok(()) };
+    let fact = format!("{name} has no values: {}", why.trim_end_matches('.'));
+    Err(Diagnostic::error(NOT_COMPUTED, fact).remedy("take it out of the list"))
+}
+
+const NOT_COMPUTED: &str = "not-computed";
+
+/// As [`each`], where what is known and has no values is left out with a warning.
+fn leave_out<T>(
+    settings: &Settings,
+    key: &str,
+    report: &mut Report,
+    make: impl Fn(&str) -> Result<T, Diagnostic>,
+) -> Result<Vec<T>> {
+    let mut kept = Vec::new();
+    for item in settings.items(key)? {
+        match make(item.str()?) {
+            Ok(made) => kept.push(made),
+            Err(problem) if problem.code == NOT_COMPUTED => {
+                let warning = Diagnostic::warning(NOT_COMPUTED, format!("{}; it is left out", problem.fact));
+                report.push(warning.at(item.place()));
+            }
+            Err(problem) => report.push(problem.at(item.place())),
+        }
+    }
+    Ok(kept)
 }
 
 fn each<T>(
