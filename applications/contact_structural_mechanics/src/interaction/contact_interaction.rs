@@ -11,6 +11,7 @@ use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables:
 use zelus_core::vector3::norm;
 
 use super::activation::{self, Start};
+use super::calibration::{calibrate, limit};
 use super::contact_settings::ContactSettings;
 use super::cycling::CycleGuard;
 use super::friction;
@@ -20,17 +21,15 @@ use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
 use crate::active_set::SlipRule;
-use crate::interface::{
-    AlmParameters, Interface, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals,
-};
+use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
 use crate::resolution::Resolution;
 use crate::search::{GapCheck, assign_roles, warn_of_late_pairs};
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA,
-    NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
+    WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Contact in a model part.
@@ -202,11 +201,6 @@ impl ContactInteraction {
         self.settings.active_check_factor * self.threshold
     }
 
-    /// Distance beyond which a search takes no facets for a pair (length).
-    fn limit(&self) -> f64 {
-        if self.settings.search.check == GapCheck::CheckMapping { self.threshold } else { FAR }
-    }
-
     /// Lets the rules of the active set decide in the present state.
     fn update_active_set(&mut self, part: &mut ModelPart) -> SetChange {
         let family = self.settings.family;
@@ -229,7 +223,15 @@ impl ContactInteraction {
         }
         // Where the first of them found nodes in the depth, the next finds all their pairs.
         let all = self.searches > 0;
-        late_pairs(part, &self.pairing, &self.settings, &self.parameters, self.limit(), self.near(), all)
+        late_pairs(
+            part,
+            &self.pairing,
+            &self.settings,
+            &self.parameters,
+            limit(&self.settings, self.threshold),
+            self.near(),
+            all,
+        )
     }
 
     /// Looks at a converged state: nodes that came through facets they had no pair with get one, and the iteration goes on.
@@ -266,62 +268,6 @@ impl ContactInteraction {
         }
     }
 
-    fn set_parameters(&mut self, part: &mut ModelPart) {
-        let settings = &self.settings;
-        let estimate = alm_parameters(part, &self.pairing.interfaces, settings.estimate[0], settings.estimate[1]);
-        let mut chosen = settings.manual.unwrap_or(AlmParameters {
-            penalty: estimate.penalty * settings.penalty_factor,
-            scale_factor: estimate.scale_factor,
-        });
-        if chosen.penalty <= 0.0 {
-            chosen.penalty = settings.least_penalty;
-        }
-        // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.
-        let open = self.pairing.interfaces.iter().all(|interface| interface.open);
-        if !settings.use_scale_factor || chosen.scale_factor <= 0.0 || (open && settings.manual.is_none()) {
-            chosen.scale_factor = 1.0;
-        }
-        // Without factors, which a deck may have chosen for what else they do.
-        let of_bodies = alm_parameters(part, &self.pairing.interfaces, 1.0, 1.0).penalty;
-        part.info.values.insert(INITIAL_PENALTY.name(), chosen.penalty);
-        part.info.values.insert("SCALE_FACTOR", chosen.scale_factor);
-        part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(chosen.penalty);
-        part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(1.0);
-        let sizes = part.nodes.values.values(&NODAL_H, 0);
-        let mean = |role: Roles| {
-            let of = |i: &Interface| if i.open { i.nodes.clone() } else { i.nodes_of(role) };
-            let nodes: Vec<u32> = self.pairing.interfaces.iter().flat_map(of).collect();
-            nodes.iter().map(|&n| sizes[n as usize]).sum::<f64>() / nodes.len().max(1) as f64
-        };
-        self.threshold = mean(Roles::Slave).max(mean(Roles::Master));
-        let thickness = || {
-            let found = self
-                .pairing
-                .interfaces
-                .iter()
-                .flat_map(|i| &i.facets)
-                .find_map(|f| part.properties.get(&f.properties)?.number("THICKNESS"));
-            found.unwrap_or(1.0)
-        };
-        self.parameters = Arc::new(StepParameters {
-            segmentation: SegmentationSettings {
-                distance_threshold: if part.info.domain_size == 2 { FAR } else { self.limit() },
-                zero_tolerance_factor: settings.zero_tolerance_factor,
-                integration_order: settings.integration_order,
-                axisymmetric: settings.axisymmetric.then(thickness),
-            },
-            scale_factor: chosen.scale_factor,
-            stiffness: if of_bodies > 0.0 { of_bodies } else { chosen.penalty },
-            slip_rule: friction::prepare(
-                part,
-                &self.pairing.interfaces,
-                &self.settings.friction,
-                self.settings.family.friction,
-            ),
-            ..(*self.parameters).clone()
-        });
-    }
-
     fn switch_off(&mut self, part: &mut ModelPart) {
         for &node in self.pairing.interfaces.iter().flat_map(|i| &i.nodes) {
             part.nodes.flags.set(ACTIVE, node as usize, false);
@@ -338,8 +284,6 @@ const RELAXATION: f64 = 1e-8;
 
 /// Searches in converged states of a step after which it counts as not converged.
 const MOST_SEARCHES: usize = 5;
-/// A distance beyond everything.
-const FAR: f64 = 1e24;
 
 impl Interaction for ContactInteraction {
     fn name(&self) -> &str {
@@ -368,7 +312,8 @@ impl Interaction for ContactInteraction {
                     .remedy("nothing to do: the converged state is the same; leave the setting out to silence this"),
             );
         }
-        self.set_parameters(part);
+        let (threshold, parameters) = calibrate(part, &self.pairing.interfaces, &self.settings, &self.parameters);
+        (self.threshold, self.parameters) = (threshold, Arc::new(parameters));
         self.max_gap = self.settings.explicit.map_or(0.0, |explicit| explicit.threshold(part));
         self.slaves = self.pairing.slaves();
         for node in self.pairing.carriers() {
@@ -399,7 +344,7 @@ impl Interaction for ContactInteraction {
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.settings.database_step_update {
             self.assign_open_roles(part);
-            self.pairing.search(part, &self.settings, &self.parameters, self.limit())?;
+            self.pairing.search(part, &self.settings, &self.parameters, limit(&self.settings, self.threshold))?;
             self.steps_since_search = 0;
         }
         self.integrate(part);
