@@ -47,7 +47,12 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
             elements.iter().for_each(|&at| part.elements.properties[at as usize] = id);
             conditions.iter().for_each(|&at| part.conditions.properties[at as usize] = id);
         }
-        attach(part, &name, id);
+        part.along(&name, |part| {
+            if !part.properties.contains(&id) {
+                part.properties.push(id);
+                part.properties.sort_unstable();
+            }
+        });
     }
     report.finish()
 }
@@ -79,21 +84,6 @@ fn is_part_of(name: &str, parent: &str) -> bool {
 
 fn head(item: &Node) -> Result<(String, usize)> {
     Ok((item.require("model_part_name")?.str()?.to_owned(), item.require("properties_id")?.usize()?))
-}
-
-/// Notes the properties with the part and those above it.
-fn attach(part: &mut ModelPart, path: &str, id: usize) {
-    let mut names = path.split('.');
-    names.next();
-    let mut at = &mut part.tree;
-    loop {
-        if !at.properties.contains(&id) {
-            at.properties.push(id);
-            at.properties.sort_unstable();
-        }
-        let Some(next) = names.next().and_then(|name| at.children.get_mut(name)) else { break };
-        at = next;
-    }
 }
 
 /// Why the entry for the part `name` cannot stand after those for `seen`.

@@ -1,7 +1,5 @@
 //! Cells of the mesh that nothing computes on yet: modelers make elements and conditions of them.
 
-use rustc_hash::FxHashMap;
-
 use crate::diagnostics::Place;
 use crate::geometry::Shape;
 
@@ -17,13 +15,11 @@ pub struct Geometries {
     /// Whether anything has been made of them.
     pub used: bool,
     nodes: Vec<Vec<u32>>,
-    index: FxHashMap<usize, u32>,
 }
 
 impl Geometries {
-    /// Adds one; its nodes are node indices in the cell's order.
+    /// Adds one, of a larger id than those before; its nodes are node indices in the cell's order.
     pub fn push(&mut self, id: usize, cell: Shape, space: usize, nodes: Vec<u32>) {
-        self.index.insert(id, self.ids.len() as u32);
         self.ids.push(id);
         self.cells.push((cell, space));
         self.nodes.push(nodes);
@@ -36,7 +32,7 @@ impl Geometries {
 
     /// Index of the geometry with that id.
     pub fn find(&self, id: usize) -> Option<u32> {
-        self.index.get(&id).copied()
+        self.ids.binary_search(&id).ok().map(|at| at as u32)
     }
 
     /// Whether there are none.

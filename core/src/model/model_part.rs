@@ -109,16 +109,13 @@ impl ModelPart {
         Some((full, warning))
     }
 
-    /// Adds elements or conditions to the sub part at `path` and to those above it.
-    pub fn select(&mut self, path: &str, elements: bool, indices: &[u32]) {
+    /// Changes the root of the tree and every sub part on the way down to `path`, which is changed last.
+    pub fn along(&mut self, path: &str, mut change: impl FnMut(&mut SubPart)) {
         let relative = self.relative(path).to_owned();
-        let mut names = relative.split('.').filter(|name| !name.is_empty());
+        let mut names = relative.split('.');
         let mut at = Some(&mut self.tree);
         while let Some(part) = at {
-            let list = if elements { &mut part.elements } else { &mut part.conditions };
-            list.extend(indices);
-            list.sort_unstable();
-            list.dedup();
+            change(part);
             at = names.next().and_then(|name| part.children.get_mut(name));
         }
     }

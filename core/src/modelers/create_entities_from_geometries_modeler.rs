@@ -100,7 +100,11 @@ impl Wanted {
             };
             report.push(Diagnostic::warning("other-geometry", fact).at(self.place.clone()));
         }
-        root.select(&self.part, self.kind == Kind::Element, &made);
+        root.along(&self.part, |part| {
+            let list = if self.kind == Kind::Element { &mut part.elements } else { &mut part.conditions };
+            list.extend(&made);
+            list.sort_unstable();
+        });
         Ok(())
     }
 }

@@ -6,15 +6,15 @@
 
 use std::path::Path;
 
-use super::assign_to_entities::Container;
+use super::assign_to_entities::{Container, centre};
 use super::process::{Process, ProcessRequest};
-use super::target::{Target, scalar_variable};
+use super::target::{Target, read_text, scalar_variable};
 use crate::diagnostics::{Diagnostic, Place, Result};
-use crate::model::{EntityTable, Fields, Model, ModelPart, ScalarVariable, SubPart, Table};
+use crate::model::{Fields, Model, ModelPart, ScalarVariable, SubPart, Table};
 use crate::parameters::{Document, Node, Settings};
 use crate::register;
 use crate::registry::Build;
-use crate::vector3::{add, norm, scale, sub};
+use crate::vector3::{norm, sub};
 
 /// Where a site is.
 enum Site {
@@ -105,10 +105,7 @@ fn json_sites(path: &Path, variable: &str) -> Result<Vec<(Site, Table)>> {
 }
 
 fn text_sites(path: &Path, settings: &Settings) -> Result<Vec<(Site, Table)>> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        let fact = format!("{} cannot be read: {error}", path.display());
-        settings.error("file", "missing-file", fact).remedy("the path is relative to the deck")
-    })?;
+    let text = read_text(settings, "file", path)?;
     let wrong = |line: usize, fact: String| {
         let remedy = "a line is a time and a value for each site, with tabs between";
         Diagnostic::error("bad-number", fact).at(Place::at(path, line as u32 + 1, 1)).remedy(remedy)
@@ -137,20 +134,13 @@ fn text_sites(path: &Path, settings: &Settings) -> Result<Vec<(Site, Table)>> {
     Ok(sites.into_iter().zip(series.into_iter().map(Table::new)).collect())
 }
 
-/// Mean of the initial positions of an entity's nodes.
-fn centre(part: &ModelPart, table: &EntityTable, at: u32) -> [f64; 3] {
-    let nodes = table.nodes(at);
-    let sum = nodes.iter().fold([0.0; 3], |sum, &n| add(sum, part.nodes.initial[n as usize]));
-    scale(sum, 1.0 / nodes.len() as f64)
-}
-
 impl AssignScalarInput {
     /// The members of a container with the site that is nearest to each, of equal ones the first.
     fn nearest(&self, part: &ModelPart, selection: &SubPart, container: Container) -> Result<Vec<(u32, usize)>> {
         let position = |at: u32| match container {
             Container::Nodes => part.nodes.initial[at as usize],
-            Container::Conditions => centre(part, &part.conditions, at),
-            Container::Elements => centre(part, &part.elements, at),
+            Container::Conditions => centre(part.conditions.nodes(at), &part.nodes.initial),
+            Container::Elements => centre(part.elements.nodes(at), &part.nodes.initial),
         };
         let of_id = |id: usize| match container {
             Container::Nodes => part.nodes.find(id),

@@ -97,7 +97,8 @@ impl AssignToEntities {
 
     fn set_table(&self, table: &mut EntityTable, selected: &[u32], nodes: &Nodes, time: f64, word: &str) -> Result<()> {
         let mut data = std::mem::take(&mut table.data);
-        let at = |n: usize| SpaceTime { current: centre(table.nodes(n as u32), nodes), initial: [0.0; 3], time };
+        let at =
+            |n: usize| SpaceTime { current: centre(table.nodes(n as u32), &nodes.current), initial: [0.0; 3], time };
         let done = self.set(&mut data, selected, time, at, |n| format!("{word} {}", table.ids[n]));
         table.data = data;
         done
@@ -132,9 +133,9 @@ impl AssignToEntities {
     }
 }
 
-/// Mean of the present positions of the nodes.
-fn centre(nodes: &[u32], all: &Nodes) -> [f64; 3] {
-    let sum = nodes.iter().fold([0.0; 3], |sum, &n| crate::vector3::add(sum, all.current[n as usize]));
+/// Mean of the positions of the nodes.
+pub(super) fn centre(nodes: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
+    let sum = nodes.iter().fold([0.0; 3], |sum, &n| crate::vector3::add(sum, positions[n as usize]));
     crate::vector3::scale(sum, 1.0 / nodes.len() as f64)
 }
 

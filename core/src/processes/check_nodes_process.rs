@@ -2,6 +2,7 @@
 
 use super::assign_scalar_variable_process::optional_value;
 use super::assign_vector_variable_process::component_values;
+use super::comparison::told;
 use super::local_axes::LocalAxes;
 use super::process::{Process, ProcessRequest};
 use super::scalar_value::ScalarValue;
@@ -91,14 +92,12 @@ impl Process for CheckNodes {
         if found.is_empty() {
             return Ok(());
         }
-        let told = found.iter().take(TOLD).cloned().collect::<Vec<_>>().join("\n    ");
-        let more = found.len().saturating_sub(TOLD);
-        let more = if more > 0 { format!("\n    and {more} more") } else { String::new() };
         let Target { place, process, .. } = &self.target;
         Err(Error::System(format!(
-            "{place}: {process} at time {time} finds {} values that differ by more than {:e}:\n    {told}{more}",
+            "{place}: {process} at time {time} finds {} values that differ by more than {:e}:\n    {}",
             found.len(),
-            self.tolerance
+            self.tolerance,
+            told(&found, TOLD)
         )))
     }
 }

@@ -22,6 +22,7 @@ mod assign_vector_variable_to_entities_process;
 mod assign_vector_by_direction_to_entity_process;
 mod assign_flag_process;
 mod check_nodes_process;
+mod comparison;
 mod impose_rigid_movement_process;
 mod sprism_process;
 #[cfg(test)]

@@ -1,4 +1,6 @@
-//! The model part that a process works on, and the variable it works with.
+//! What the settings of a process name: its model part, its variable, a file.
+
+use std::path::Path;
 
 use crate::diagnostics::{Diagnostic, Place, Result, did_you_mean};
 use crate::model::{Model, Named, ScalarVariable, SubPart, VariableKind, named, variables};
@@ -67,6 +69,17 @@ fn unknown_variable(settings: &Settings, name: &str, wanted: &str) -> Diagnostic
         Some(near) => problem.remedy(near),
         None => problem.remedy("`zelus list variable` shows what there is"),
     }
+}
+
+/// The content of the text file that `key` names.
+///
+/// # Errors
+/// `missing-file`, at the key.
+pub(super) fn read_text(settings: &Settings, key: &str, path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|error| {
+        let fact = format!("{} cannot be read: {error}", path.display());
+        settings.error(key, "missing-file", fact).remedy("the path is relative to the deck").into()
+    })
 }
 
 /// The scalar or component that `"variable_name"` names.

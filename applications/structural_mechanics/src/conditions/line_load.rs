@@ -11,7 +11,7 @@ use zelus_core::entities::{Gather, StepView};
 use zelus_core::geometry::ShapeTable;
 
 use super::load::{
-    AtStart, Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, thickness,
+    AtStart, DistributedLoad, Following, counts_stretch, interpolate, pressure, register_conditions, thickness,
     vector_load,
 };
 use crate::variables::LINE_LOAD;
@@ -122,15 +122,15 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Spa
 
 register_conditions! { "LineLoadCondition", 1, "Force per length (LINE_LOAD) and pressure on a line",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ";
-"2D2N": Distributed<LineLoad<false>>, 2, 4;
-"2D3N": Distributed<LineLoad<false>>, 3, 6;
-"3D2N": Distributed<SpatialLineLoad>, 2, 6;
-"3D3N": Distributed<SpatialLineLoad>, 3, 9 }
+"2D2N": Following<LineLoad<false>>, 2, 4;
+"2D3N": Following<LineLoad<false>>, 3, 6;
+"3D2N": Following<SpatialLineLoad>, 2, 6;
+"3D3N": Following<SpatialLineLoad>, 3, 9 }
 
 register_conditions! { "AxisymLineLoadCondition", 1, "Force per area (LINE_LOAD) and pressure on a surface of revolution",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ";
-"2D2N": Distributed<LineLoad<true>>, 2, 4;
-"2D3N": Distributed<LineLoad<true>>, 3, 6 }
+"2D2N": Following<LineLoad<true>>, 2, 4;
+"2D3N": Following<LineLoad<true>>, 3, 6 }
 
 register_conditions! { "SmallDisplacementLineLoadCondition", 1,
 "Force per length (LINE_LOAD) and pressure on a line where it was at the start",

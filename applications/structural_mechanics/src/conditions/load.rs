@@ -21,13 +21,22 @@ pub trait DistributedLoad<const NODES: usize, const SIZE: usize>: 'static {
     fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]);
 }
 
-/// The kernel of a distributed load, with a Gauss rule one order above the shape's.
-pub struct Distributed<L> {
+/// The kernel of a distributed load, with a Gauss rule one order above the shape's; `STILL` on the initial geometry, for small
+/// displacements: its forces do not follow the motion.
+pub struct Distributed<L, const STILL: bool> {
     rule: &'static ShapeTable,
     load: PhantomData<fn() -> L>,
 }
 
-impl<L: DistributedLoad<NODES, SIZE>, const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for Distributed<L> {
+/// One whose forces follow the motion.
+pub type Following<L> = Distributed<L, false>;
+/// One whose forces stay as they were at first.
+pub type AtStart<L> = Distributed<L, true>;
+
+impl<L, const STILL: bool, const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for Distributed<L, STILL>
+where
+    L: DistributedLoad<NODES, SIZE>,
+{
     type State = ();
 
     fn unknowns() -> [LocalUnknown; SIZE] {
@@ -44,7 +53,7 @@ impl<L: DistributedLoad<NODES, SIZE>, const NODES: usize, const SIZE: usize> Ker
     }
 
     fn tangent(&self) -> Tangent {
-        Tangent::General
+        if STILL { Tangent::Zero } else { Tangent::General }
     }
 
     fn local_system(
@@ -56,44 +65,12 @@ impl<L: DistributedLoad<NODES, SIZE>, const NODES: usize, const SIZE: usize> Ker
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
-        L::add(self.rule, entity, view, lhs, rhs);
-        Ok(())
-    }
-}
-
-/// The kernel of a distributed load on the initial geometry, for small displacements: its forces do not follow the motion.
-pub struct AtStart<L>(Distributed<L>);
-
-impl<L: DistributedLoad<NODES, SIZE>, const NODES: usize, const SIZE: usize> Kernel<NODES, SIZE> for AtStart<L> {
-    type State = ();
-
-    fn unknowns() -> [LocalUnknown; SIZE] {
-        displacements(L::SPACE)
-    }
-
-    fn new(request: &BlockRequest<'_>) -> Result<Self> {
-        Ok(Self(<Distributed<L> as Kernel<NODES, SIZE>>::new(request)?))
-    }
-
-    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn tangent(&self) -> Tangent {
-        Tangent::Zero
-    }
-
-    fn local_system(
-        &self,
-        entity: &Gather<'_, NODES>,
-        _state: &(),
-        view: &StepView<'_>,
-        _want: Want,
-        _lhs: &mut [f64],
-        rhs: &mut [f64; SIZE],
-    ) -> Result<(), String> {
-        let still = Gather { current: entity.initial, ..*entity };
-        L::add(self.0.rule, &still, view, &mut [], rhs);
+        if STILL {
+            let still = Gather { current: entity.initial, ..*entity };
+            L::add(self.rule, &still, view, &mut [], rhs);
+        } else {
+            L::add(self.rule, entity, view, lhs, rhs);
+        }
         Ok(())
     }
 }

@@ -9,7 +9,7 @@ use zelus_core::geometry::ShapeTable;
 use zelus_core::vector3::{cross, norm, scale};
 
 use super::load::{
-    AtStart, Distributed, DistributedLoad, counts_stretch, interpolate, pressure, register_conditions, vector_load,
+    AtStart, DistributedLoad, Following, counts_stretch, interpolate, pressure, register_conditions, vector_load,
 };
 use crate::variables::SURFACE_LOAD;
 
@@ -71,11 +71,11 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Sur
 
 register_conditions! { "SurfaceLoadCondition", 2, "Force per area (SURFACE_LOAD) and pressure on a surface",
 "f_i = ∫ N_i (q |n| + p n) dξ dη, n = t_1 × t_2";
-"3D3N": Distributed<SurfaceLoad>, 3, 9;
-"3D4N": Distributed<SurfaceLoad>, 4, 12;
-"3D6N": Distributed<SurfaceLoad>, 6, 18;
-"3D8N": Distributed<SurfaceLoad>, 8, 24;
-"3D9N": Distributed<SurfaceLoad>, 9, 27 }
+"3D3N": Following<SurfaceLoad>, 3, 9;
+"3D4N": Following<SurfaceLoad>, 4, 12;
+"3D6N": Following<SurfaceLoad>, 6, 18;
+"3D8N": Following<SurfaceLoad>, 8, 24;
+"3D9N": Following<SurfaceLoad>, 9, 27 }
 
 register_conditions! { "SmallDisplacementSurfaceLoadCondition", 2,
 "Force per area (SURFACE_LOAD) and pressure on a surface where it was at the start",

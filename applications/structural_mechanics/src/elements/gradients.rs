@@ -3,7 +3,7 @@
 use zelus_core::entities::{Gather, StepView};
 use zelus_core::model::Variable;
 
-use crate::tensor::{IDENTITY, Tensor, determinant, inverse};
+use crate::tensor::{IDENTITY, Tensor, determinant, inverse, pairs};
 
 /// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
 pub(super) fn gradient<const NODES: usize, const DIM: usize>(
@@ -45,6 +45,13 @@ pub(super) fn physical_gradients<const NODES: usize, const DIM: usize>(
         out
     });
     (dn, determinant(&jacobian))
+}
+
+/// The rows of B of one node: derivatives of Green's and Lagrange's strain under F with respect to its displacements, of the
+/// small strain where F is the unit tensor.
+pub(super) fn strain_rows<const DIM: usize, const S: usize>(f: &Tensor, dn: &[f64; DIM]) -> [[f64; DIM]; S] {
+    pairs::<S>()
+        .map(|(p, q)| std::array::from_fn(|a| if p == q { f[a][p] * dn[p] } else { f[a][p] * dn[q] + f[a][q] * dn[p] }))
 }
 
 /// Three numbers a node of a column, zeros when nothing has added it.

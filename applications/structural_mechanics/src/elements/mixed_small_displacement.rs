@@ -14,26 +14,14 @@
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Want;
 
-use super::gradients::{gradient, padded};
+use super::gradients::{gradient, padded, strain_rows};
 use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
-use crate::tensor::{determinant, inverse, pairs, strain_vector};
+use crate::tensor::{IDENTITY, determinant, inverse, strain_vector};
 
 /// Small strain whose volumetric part is that of the nodes.
 #[derive(Debug)]
 pub struct MixedSmallDisplacement;
-
-/// The rows of B that belong to one node.
-fn b_of<const DIM: usize, const S: usize>(dn: &[f64; DIM]) -> [[f64; DIM]; S] {
-    pairs::<S>().map(|(p, q)| {
-        let mut row = [0.0; DIM];
-        row[p] += if p == q { dn[p] } else { dn[q] };
-        if p != q {
-            row[q] += dn[p];
-        }
-        row
-    })
-}
 
 /// Nodal less kinematic volumetric strain, e − div u.
 fn excess<const NODES: usize, const DIM: usize>(at: &Place<'_, NODES, DIM>, values: &Values<NODES>) -> f64 {
@@ -45,7 +33,7 @@ fn excess<const NODES: usize, const DIM: usize>(at: &Place<'_, NODES, DIM>, valu
 /// τ₁, the trace of (Σ B_iᵀ D B_i)⁻¹.
 fn flexibility<const NODES: usize, const DIM: usize, const S: usize>(d: &Matrix<S>, dn: &[[f64; DIM]; NODES]) -> f64 {
     let mut sum = [[0.0; DIM]; DIM];
-    for b in dn.iter().map(|dn| b_of::<DIM, S>(dn)) {
+    for b in dn.iter().map(|dn| strain_rows::<DIM, S>(&IDENTITY, dn)) {
         for (s, t) in (0..S).flat_map(|s| (0..S).map(move |t| (s, t))).filter(|&(s, t)| d[s][t] != 0.0) {
             for (sum, x) in sum.iter_mut().zip(&b[s]) {
                 sum.iter_mut().zip(&b[t]).for_each(|(sum, y)| *sum += x * d[s][t] * y);
@@ -113,7 +101,7 @@ impl VolumetricForm for MixedSmallDisplacement {
         let wanted = if lhs.is_empty() { None } else { Some(&mut d) };
         let mut stress = matter.law.stress(state, StressMeasure::Pk2, wanted);
         stress[..DIM].iter_mut().for_each(|s| *s -= bulk * tau_2 * theta);
-        let b = at.dn.map(|dn| b_of::<DIM, S>(&dn));
+        let b = at.dn.map(|dn| strain_rows::<DIM, S>(&IDENTITY, &dn));
         for i in 0..NODES {
             for (row, s) in b[i].iter().zip(&stress) {
                 row.iter().enumerate().for_each(|(a, b)| rhs[i * step + a] -= at.weight * b * s);

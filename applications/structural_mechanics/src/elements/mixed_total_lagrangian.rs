@@ -16,10 +16,10 @@
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Want;
 
-use super::gradients::{gradient, padded};
+use super::gradients::{gradient, padded, strain_rows};
 use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use crate::laws::{ConstitutiveLaw, StrainState, StressMeasure};
-use crate::tensor::{Tensor, determinant, inverse, pairs, product, strain_vector, stress_tensor, transposed};
+use crate::tensor::{Tensor, determinant, inverse, product, strain_vector, stress_tensor, transposed};
 
 /// Share of μ/(μ + κ) that is τ_θ.
 const TAU_THETA: f64 = 0.1;
@@ -127,11 +127,7 @@ impl VolumetricForm for MixedTotalLagrangian {
         let scale = motion.stretch(DIM).powi(2);
         // F is that of the displacements alone: C = Fᵀ F as a strain vector
         let c: [f64; S] = strain_vector(&product(&transposed(f), f));
-        let b = at.dn.map(|dn| -> [[f64; DIM]; S] {
-            pairs::<S>().map(|(p, q)| {
-                std::array::from_fn(|a| if p == q { f[a][p] * dn[p] } else { f[a][p] * dn[q] + f[a][q] * dn[p] })
-            })
-        });
+        let b = at.dn.map(|dn| strain_rows::<DIM, S>(f, &dn));
         // D times the change of the law's strain with the volume at fixed displacements, of 1 + θ to its first power
         let swollen: [f64; S] = std::array::from_fn(|s| scale / dim * dot(&d[s], &c));
         for k in 0..NODES {

@@ -7,6 +7,7 @@ use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::Model;
 use crate::parameters::Defaults;
+use crate::processes::comparison::is_close;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
 use crate::registry::Build;
@@ -99,11 +100,8 @@ impl CompareTwoFiles {
 
     fn is_same(&self, a: &str, b: &str) -> bool {
         let words = |line| str::split(line, |c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
-        let close = |a: f64, b: f64| {
-            a == b || (a - b).abs() <= (self.relative_tolerance * a.abs().max(b.abs())).max(self.tolerance)
-        };
         let same = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
-            (Ok(a), Ok(b)) => close(a, b),
+            (Ok(a), Ok(b)) => a == b || is_close(a, b, self.tolerance, self.relative_tolerance),
             _ => a == b,
         };
         words(a).count() == words(b).count() && words(a).zip(words(b)).all(|(a, b)| same(a, b))

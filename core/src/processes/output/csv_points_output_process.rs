@@ -3,6 +3,7 @@
 use super::points::{REQUIRED, points_output};
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::parameters::Defaults;
+use crate::processes::target::read_text;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
 use crate::registry::Build;
@@ -11,10 +12,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let key = "csv_file_path";
     let settings = request.settings_with(|defaults: Defaults| defaults.require(&REQUIRED).require(&[key]))?;
     let path = request.folder.join(settings.get_str(key)?);
-    let text = std::fs::read_to_string(&path).map_err(|error| {
-        let fact = format!("{} cannot be read: {error}", path.display());
-        settings.error(key, "missing-file", fact).remedy("the path is relative to the deck")
-    })?;
+    let text = read_text(&settings, key, &path)?;
     let mut rows = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let names: Vec<&str> = rows.next().map(|(_, line)| line.split(',').map(str::trim).collect()).unwrap_or_default();
     let columns = ["x", "y", "z"].map(|axis| names.iter().position(|name| *name == axis));

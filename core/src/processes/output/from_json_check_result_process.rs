@@ -12,6 +12,7 @@ use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::{Model, ModelPart, SubPart, Table};
 use crate::parameters::Defaults;
+use crate::processes::comparison::{is_close, told};
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
 use crate::registry::{Build, Kind};
@@ -97,10 +98,6 @@ impl FromJsonCheck {
         (!points.is_empty()).then(|| Table::new(points).value(time))
     }
 
-    fn is_close(&self, a: f64, b: f64) -> bool {
-        (a - b).abs() <= (self.relative_tolerance * a.abs().max(b.abs())).max(self.tolerance)
-    }
-
     fn compare(&self, part: &ModelPart, selection: &SubPart) -> Differences {
         let mut found = Differences::default();
         let time = part.info.time;
@@ -136,7 +133,7 @@ impl FromJsonCheck {
     fn judge(&self, entry: &Value, key: &str, name: &str, values: &[f64], time: f64, found: &mut Differences) {
         for (at, &value) in values.iter().enumerate() {
             match self.expected(entry, name, at, values.len(), time) {
-                Some(expected) if self.is_close(value, expected) => {}
+                Some(expected) if is_close(value, expected, self.tolerance, self.relative_tolerance) => {}
                 Some(expected) => {
                     let letter = if values.len() > 1 { format!(" component {at}") } else { String::new() };
                     let told = format!("{key} {name}{letter}: {value:e}, expected {expected:e}");
@@ -182,19 +179,13 @@ impl Process for FromJsonCheck {
 
 impl FromJsonCheck {
     fn tell(&self, differences: &[String], time: f64) -> String {
-        let told: Vec<&str> = differences.iter().take(TOLD).map(String::as_str).collect();
-        let more = if differences.len() > TOLD {
-            format!("\n    and {} more", differences.len() - TOLD)
-        } else {
-            String::new()
-        };
         format!(
-            "results at time {time} differ from {} in {} values (tolerance {:e}, relative {:e}):\n    {}{more}",
+            "results at time {time} differ from {} in {} values (tolerance {:e}, relative {:e}):\n    {}",
             self.file.display(),
             differences.len(),
             self.tolerance,
             self.relative_tolerance,
-            told.join("\n    ")
+            told(differences, TOLD)
         )
     }
 }

@@ -24,12 +24,12 @@ impl Quantity {
 
     /// As [`Quantity::list`] for pictures, which leave out what is known and has no values here, with a warning.
     pub(super) fn shown(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
-        leave_out(settings, key, report, Self::new)
+        each(settings, key, report, true, Self::new)
     }
 
     /// The quantities a list of the deck names; problems go to `report`.
     pub(super) fn list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
-        each(settings, key, report, Self::new)
+        each(settings, key, report, false, Self::new)
     }
 
     /// The column it is in.
@@ -88,18 +88,18 @@ impl GaussQuantity {
 
     /// As [`Quantity::shown`].
     pub(super) fn shown(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
-        leave_out(settings, key, report, Self::new)
+        each(settings, key, report, true, Self::new)
     }
 
     /// As [`Quantity::list`].
     pub(super) fn list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
-        each(settings, key, report, Self::new)
+        each(settings, key, report, false, Self::new)
     }
 }
 
 /// The flags a list of the deck names; problems go to `report`.
 pub(super) fn flag_list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<&'static str>> {
-    each(settings, key, report, known_flag)
+    each(settings, key, report, false, known_flag)
 }
 
 /// The flag a setting names; `None` when it is empty.
@@ -127,37 +127,23 @@ fn computed(name: &str) -> Result<(), Diagnostic> {
 
 const NOT_COMPUTED: &str = "not-computed";
 
-/// As [`each`], where what is known and has no values is left out with a warning.
-fn leave_out<T>(
-    settings: &Settings,
-    key: &str,
-    report: &mut Report,
-    make: impl Fn(&str) -> Result<T, Diagnostic>,
-) -> Result<Vec<T>> {
-    let mut kept = Vec::new();
-    for item in settings.items(key)? {
-        match make(item.str()?) {
-            Ok(made) => kept.push(made),
-            Err(problem) if problem.code == NOT_COMPUTED => {
-                let warning = Diagnostic::warning(NOT_COMPUTED, format!("{}; it is left out", problem.fact));
-                report.push(warning.at(item.place()));
-            }
-            Err(problem) => report.push(problem.at(item.place())),
-        }
-    }
-    Ok(kept)
-}
-
+/// What `make` makes of the names of a list; problems go to `report`. With `leave_out`, what is known and has no values is
+/// left out with a warning.
 fn each<T>(
     settings: &Settings,
     key: &str,
     report: &mut Report,
+    leave_out: bool,
     make: impl Fn(&str) -> Result<T, Diagnostic>,
 ) -> Result<Vec<T>> {
     let mut out = Vec::new();
     for item in settings.items(key)? {
         match make(item.str()?) {
             Ok(made) => out.push(made),
+            Err(problem) if leave_out && problem.code == NOT_COMPUTED => {
+                let warning = Diagnostic::warning(NOT_COMPUTED, format!("{}; it is left out", problem.fact));
+                report.push(warning.at(item.place()));
+            }
             Err(problem) => report.push(problem.at(item.place())),
         }
     }
