@@ -183,7 +183,7 @@ impl<const NS: usize, const NM: usize> PointList<NS, NM> {
         let (slave, master) = (self.slave, self.master);
         for n in 0..NM {
             if inside(master[n], &slave, self.tolerance) {
-                self.push(master[n], Vertex::Master(n));
+                self.push(master[n], Vertex::Master(n), self.tolerance);
             }
         }
         if self.len == NM {
@@ -191,9 +191,18 @@ impl<const NS: usize, const NM: usize> PointList<NS, NM> {
         }
         for n in 0..NS {
             if inside(slave[n], &master, self.tolerance) {
-                self.push(slave[n], Vertex::Slave(n));
+                self.push(slave[n], Vertex::Slave(n), self.tolerance);
             }
         }
+        // Where nearly parallel edges cross is known badly along them: such crossings come last, and only where no other
+        // point is.
+        self.collect_crossings(false);
+        self.collect_crossings(true);
+    }
+
+    /// Lists the crossings of edges, those of nearly parallel ones or the others.
+    fn collect_crossings(&mut self, grazing: bool) {
+        let (slave, master) = (self.slave, self.master);
         for i in 0..NS {
             let (a, b) = (slave[i], slave[(i + 1) % NS]);
             let along = minus(b, a);
@@ -201,7 +210,8 @@ impl<const NS: usize, const NM: usize> PointList<NS, NM> {
                 let (c, d) = (master[j], master[(j + 1) % NM]);
                 let across = minus(d, c);
                 let denominator = cross2(along, across);
-                if denominator.abs() <= TOLERANCE * length(along) * length(across) {
+                let sine = denominator.abs() / (length(along) * length(across));
+                if sine <= TOLERANCE || (sine < GRAZING) != grazing {
                     continue;
                 }
                 let t = cross2(minus(c, a), across) / denominator;
@@ -209,14 +219,16 @@ impl<const NS: usize, const NM: usize> PointList<NS, NM> {
                 let range = -TOLERANCE..=1.0 + TOLERANCE;
                 if range.contains(&t) && range.contains(&u) {
                     let point = [a[0] + t * along[0], a[1] + t * along[1]];
-                    self.push(point, Vertex::Crossing { slave: i, master: j });
+                    let reach = if grazing { self.tolerance / sine } else { self.tolerance };
+                    self.push(point, Vertex::Crossing { slave: i, master: j }, reach);
                 }
             }
         }
     }
 
-    fn push(&mut self, point: [f64; 2], vertex: Vertex) {
-        if self.points[..self.len].iter().all(|&p| length(minus(point, p)) > self.tolerance) {
+    /// Adds a point that no other is within `reach` of.
+    fn push(&mut self, point: [f64; 2], vertex: Vertex, reach: f64) {
+        if self.points[..self.len].iter().all(|&p| length(minus(point, p)) > reach) {
             self.points[self.len] = point;
             self.vertices[self.len] = vertex;
             self.len += 1;
@@ -304,6 +316,23 @@ mod tests {
         for noise in [0.0, 1e-15, -1e-15, 3e-13] {
             let found = vertices(SQUARE, moved(noise, -noise));
             assert_eq!(found, [Vertex::Master(0), Vertex::Master(3), Vertex::Master(2), Vertex::Master(1)]);
+        }
+    }
+
+    #[test]
+    fn edges_that_nearly_coincide_cross_at_no_new_corner() {
+        // Diagonals on one line but for the twelve digits of a mesh file; the overlap is a triangle.
+        let (low, high) = ([0.333333333333, 0.266666666667], [0.666666666667, 0.533333333333]);
+        for n in 0..50 {
+            let moved = |x: [f64; 2]| x.map(|x| x + 0.0137 * f64::from(n));
+            let slave = [low, high, [low[0], high[1]]].map(moved);
+            let master = [[0.0, 0.0], [0.0, 0.4], [0.5, 0.4]].map(moved);
+            let mut list = PointList::new(&slave, &master);
+            list.collect();
+            let corners = [low, [0.5, 0.4], [low[0], 0.4]].map(moved);
+            for point in &list.points[..list.len] {
+                assert!(corners.iter().any(|&c| length(minus(*point, c)) < 1e-11), "{n} {point:?}");
+            }
         }
     }
 
