@@ -65,6 +65,7 @@ pub(super) const fn family(friction: Friction) -> Family {
         ],
         friction,
         penalty: false,
+        weighted_gaps: true,
         block: shapes::block::<AlmFrictional>,
     }
 }

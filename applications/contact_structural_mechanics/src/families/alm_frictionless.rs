@@ -31,6 +31,7 @@ register! { Condition "ALMContactFrictionless",
         variables: &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1), ("WEIGHTED_SCALAR_RESIDUAL", 1)],
         friction: Friction::None,
         penalty: false,
+        weighted_gaps: true,
         block: shapes::block::<AlmFrictionless>,
     }),
 }

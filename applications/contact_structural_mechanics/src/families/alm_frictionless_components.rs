@@ -31,6 +31,7 @@ register! { Condition "ALMContactFrictionlessComponents",
         variables: &[("NORMAL", 3), ("VECTOR_LAGRANGE_MULTIPLIER", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_VECTOR_RESIDUAL", 3)],
         friction: Friction::None,
         penalty: false,
+        weighted_gaps: true,
         block: shapes::block::<AlmFrictionlessComponents>,
     }),
 }

@@ -41,6 +41,7 @@ register! { Condition "PenaltyContactFrictional",
         variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3)],
         friction: Friction::Coulomb,
         penalty: true,
+        weighted_gaps: true,
         block: shapes::block::<PenaltyFrictional>,
     }),
 }

@@ -30,6 +30,7 @@ register! { Condition "PenaltyContactFrictionless",
         variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
         friction: Friction::None,
         penalty: true,
+        weighted_gaps: true,
         block: shapes::block::<PenaltyFrictionless>,
     }),
 }

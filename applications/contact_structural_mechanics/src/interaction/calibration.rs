@@ -1,12 +1,14 @@
 //! Penalty, scale factor and reach of the search, from the bodies behind the interfaces and what the deck says.
 
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
 use super::contact_settings::ContactSettings;
 use super::friction;
 use super::step_parameters::StepParameters;
-use crate::interface::{AlmParameters, Interface, Roles, alm_parameters};
+use crate::interface::{AlmParameters, Interface, Roles, alm_parameters, unit_of_length};
 use crate::mortar::SegmentationSettings;
+use crate::pairs::Multiplier;
 use crate::search::GapCheck;
 use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_H};
 
@@ -27,10 +29,15 @@ pub(super) fn calibrate(
     before: &StepParameters,
 ) -> (f64, StepParameters) {
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
+    let unit = unit_of_length(&part.nodes.initial);
+    let measure = if part.info.domain_size == 2 && !settings.axisymmetric { unit } else { unit * unit };
     let mut chosen = settings.manual.unwrap_or(AlmParameters {
-        penalty: estimate.penalty * settings.penalty_factor,
+        penalty: estimate.penalty * settings.penalty_factor / if settings.family.weighted_gaps { measure } else { 1.0 },
         scale_factor: estimate.scale_factor,
     });
+    if unit != 1.0 && matches!(settings.family.multiplier, Multiplier::None) && settings.manual.is_none() {
+        part.messages.push(warn_of_unit(unit, measure));
+    }
     if chosen.penalty <= 0.0 {
         chosen.penalty = settings.least_penalty;
     }
@@ -54,11 +61,22 @@ pub(super) fn calibrate(
             axisymmetric: settings.axisymmetric.then(|| thickness(part, interfaces)),
         },
         scale_factor: chosen.scale_factor,
+        operator_threshold: settings.operator_threshold * measure,
         stiffness: if of_bodies > 0.0 { of_bodies } else { chosen.penalty },
         slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction),
         ..before.clone()
     };
     (threshold, parameters)
+}
+
+/// The warning that the penalty, on which answers depend without multipliers, is not the reference program's but that
+/// over `measure`.
+fn warn_of_unit(unit: f64, measure: f64) -> Diagnostic {
+    let fact =
+        format!("the penalty is estimated as for a unit of length of {unit:e}: it is Kratos' own over {measure:e}");
+    Diagnostic::warning("penalty-unit", fact).remedy(format!(
+        "for Kratos' own multiply \"stiffness_factor\" by {measure:e}; \"manual_ALM\" with \"penalty\" sets any other"
+    ))
 }
 
 /// Mean of NODAL_H over the nodes of a side; of an open interface over all its nodes.

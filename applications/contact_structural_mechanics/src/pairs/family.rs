@@ -76,6 +76,8 @@ pub struct Family {
     pub friction: Friction,
     /// Whether it works without multipliers and therefore with a larger penalty.
     pub penalty: bool,
+    /// Whether its penalty counts weighted gaps, and is a stress by length and area; otherwise gaps.
+    pub weighted_gaps: bool,
     /// Makes the block of one pair of shapes (slave, master).
     pub block: fn(Shape, Shape, PairRequest) -> Option<Box<dyn ContactBlock>>,
 }

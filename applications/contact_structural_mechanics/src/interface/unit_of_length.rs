@@ -1,0 +1,33 @@
+//! The unit of length that dimensionless settings refer to.
+//!
+//! Kratos multiplies *weighted* gaps, which hold an area, with E/h, and compares operators, which are areas, with a bare
+//! number. Such numbers mean something in a unit of length only, and are chosen for bodies that measure about one in it.
+//! Engineers' units step by thousands: µm, mm, m, km.
+
+/// That power of a thousand in which points extend over about one: between 1/√1000 and √1000 (length).
+///
+/// The extent is the diagonal of the box around them; 1 without any. In units a thousand times smaller it is a thousand
+/// times the number, to the last bit.
+pub fn unit_of_length(points: &[[f64; 3]]) -> f64 {
+    let bounds = |c: usize| {
+        let of = points.iter().map(|x| x[c]);
+        of.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)))
+    };
+    let sides = [0, 1, 2].map(|c| bounds(c)).map(|(least, most)| most - least);
+    let extent = zelus_core::vector3::norm(sides);
+    if extent.is_finite() && extent > 0.0 { 1000.0_f64.powi((extent.log10() / 3.0).round() as i32) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unit_of_length;
+
+    #[test]
+    fn follows_the_unit_of_the_mesh() {
+        let body = |extent: f64| unit_of_length(&[[5.0, 5.0, 5.0], [5.0 + extent, 5.0, 5.0]]);
+        assert_eq!([0.04, 1.0, 30.0].map(body), [1.0; 3]);
+        assert_eq!([40.0, 1e3, 3e4].map(body), [1e3; 3]);
+        assert_eq!([4e-5, 1e-3, 0.03].map(body), [1e-3; 3]);
+        assert_eq!((unit_of_length(&[]), body(0.0)), (1.0, 1.0));
+    }
+}
