@@ -32,6 +32,7 @@ def main():
     parser.add_argument("--products", type=int, default=6, help="products of the matrix in a Krylov iteration")
     parser.add_argument("--element", type=float, default=16e-6, help="seconds for the tangent of an element")
     parser.add_argument("--facet", type=float, default=72e-6, help="seconds for the pairs of a slave facet")
+    parser.add_argument("--decide", type=float, default=40e-6, help="seconds a slave facet of all ranks for what every rank does")
     parser.add_argument("--memory", type=float, default=5e9, help="bytes a second that a rank reads from memory")
     parser.add_argument("--latency", type=float, default=2e-6, help="seconds a message")
     parser.add_argument("--network", type=float, default=1e9, help="bytes a second that a rank sends")
@@ -46,6 +47,7 @@ def main():
     entries = d * d * entries_each * nodes
     ghosts, copies, rows = (grow * most[key] for key in ("ghosts", "copies", "ghost_entries"))
     neighbours, facets = most["neighbours"], grow * mean["slave_facets"]
+    common, all_facets = grow * counts["common"], ranks * facets
     levels = math.ceil(math.log2(ranks)) if ranks > 1 else 0
     coarse = max(1, math.ceil(math.log(ranks * nodes * d / 1000) / math.log(20)))
 
@@ -53,6 +55,7 @@ def main():
         ("tangents of elements", "m t_e", f"{options.elements:.0f} · {options.element:.2g}",
          options.elements * options.element),
         ("pairs of slave facets", "f t_f", f"{facets:.0f} · {options.facet:.2g}", facets * options.facet),
+        ("what every rank decides", "F t_d", f"{all_facets:.0f} · {options.decide:.2g}", all_facets * options.decide),
         ("products of the matrix", "12 z K S 4/3 / M", f"12 · {entries:.3g} · {krylov} · {products} · 1.33",
          12 * entries * krylov * products * 4 / 3 / options.memory),
         ("set-up of multigrid", "12 z 10 S 4/3 / M", f"12 · {entries:.3g} · 10 · {products} · 1.33",
@@ -61,13 +64,17 @@ def main():
     talk = [
         ("values, residuals", "8 d (p + g) / B + 2 P a", f"8 · {d} · ({copies:.0f} + {ghosts:.0f}); 2 · {neighbours}",
          8 * d * (copies + ghosts) / options.network + 2 * neighbours * options.latency),
+        ("values on all ranks", "8 d C / B + (N - 1) a", f"8 · {d} · {common:.0f}; {ranks - 1}",
+         8 * d * common / options.network + (ranks - 1) * options.latency),
+        ("interface", "(72 + 8 ⌈log₂ N⌉) F / B + (N - 1) a", f"(72 + 8 · {levels}) · {all_facets:.0f}; {ranks - 1}",
+         (72 + 8 * levels) * all_facets / options.network + (ranks - 1) * options.latency),
         ("tangent rows of ghosts", "8 d² e / B + P a", f"8 · {d * d} · {rows:.0f}; {neighbours}",
          8 * d * d * rows / options.network + neighbours * options.latency),
         ("products: values", "K S (8 d p 4/3 / B + P L a)",
          f"{krylov} · {products} · (8 · {d} · {copies:.0f} · 1.33; {neighbours} · {coarse})",
          krylov * products * (8 * d * copies * 4 / 3 / options.network + neighbours * coarse * options.latency)),
-        ("sums over all ranks", "(3 K + 1) 2 ⌈log₂ N⌉ a", f"{3 * krylov + 1} · 2 · {levels}",
-         (3 * krylov + 1) * 2 * levels * options.latency),
+        ("sums over all ranks", "(3 K + 4) 2 ⌈log₂ N⌉ a", f"{3 * krylov + 4} · 2 · {levels}",
+         (3 * krylov + 4) * 2 * levels * options.latency),
     ]
     print(f"{ranks} ranks of {options.elements:.0f} elements: {ranks * nodes * d:.3g} unknowns, {nodes * d:.3g} a rank")
     print(f"\n| in one of {newton} Newton iterations | formula | count | seconds |\n|---|---|---|---|")
@@ -78,9 +85,8 @@ def main():
     print(f"| waiting for the fullest rank | (imbalance - 1) work | {imbalance - 1:.3f} · {alone:.3f} | {late:.4f} |")
     print(f"\na step: {newton * (alone + late + spoken):.2f} s on {ranks} ranks, {newton * alone:.2f} s on 1 with its share; "
           f"efficiency {alone / (alone + late + spoken):.2f}")
-    whole = 8 * d * nodes * (ranks - 1)
-    print(f"fields on every rank, as the program keeps them: {whole / 1e6:.0f} MB more received a sum, three sums an "
-          f"iteration, {3 * whole / options.network:.2f} s; {ranks * nodes * 1e3 / 1e9:.1f} GB a rank")
+    print(f"nodes a rank has: {nodes:.0f} own, {ghosts:.0f} ghosts, {common:.0f} that all have; "
+          f"{(nodes + ghosts + common) / 1e6:.2f} GB of mesh and fields at 1 kB a node")
 
 
 if __name__ == "__main__":

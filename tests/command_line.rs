@@ -199,7 +199,7 @@ fn partition_gives_every_element_one_rank_and_says_what_it_costs() {
     let output = zelus(folder.path(), &["partition", deck, "-n", "3", "--json", "cut.json", "--vtu", "cut.vtu"]);
     assert!(output.status.success(), "{}", said(&output));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    for word in ["neighbours", "ghosts", "mean", "imbalance", "faces cut", "far pairs"] {
+    for word in ["neighbours", "held", "ghosts", "on all ranks", "mean", "imbalance", "faces cut", "far pairs"] {
         assert!(text.contains(word), "{word} is not said:\n{text}");
     }
     let cut = read_json(&folder.path().join("cut.json")).expect("the partition");

@@ -334,6 +334,74 @@ fn ranks_write_a_piece_of_the_picture_each() {
     }
 }
 
+/// Put before the JSON output of a deck: what rank 0 writes of the values of all.
+const FILES: &str = r#""files": [
+    {"python_module": "integration_values_extrapolation_to_nodes_process", "kratos_module": "KratosMultiphysics",
+        "Parameters": {"model_part_name": "Structure", "list_of_variables": ["VON_MISES_STRESS"]}},
+    {"python_module": "vtk_output_process", "kratos_module": "KratosMultiphysics",
+        "Parameters": {"model_part_name": "Structure", "output_sub_model_parts": true, "write_ids": true,
+        "output_precision": 14, "file_format": "ascii", "nodal_solution_step_data_variables": ["DISPLACEMENT"],
+        "nodal_data_value_variables": ["VON_MISES_STRESS"], "nodal_flags": ["SLAVE"],
+        "gauss_point_variables_in_elements": ["VON_MISES_STRESS"]}},
+    {"python_module": "gid_output_process", "kratos_module": "KratosMultiphysics",
+        "Parameters": {"model_part_name": "Structure", "output_name": "pictures", "postprocess_parameters": {
+        "result_file_configuration": {"gidpost_flags": {"GiDPostMode": "GiD_PostAscii",
+        "WriteConditionsFlag": "WriteConditions"}, "nodal_results": ["DISPLACEMENT", "REACTION"],
+        "gauss_point_results": ["VON_MISES_STRESS", "PK2_STRESS_TENSOR"]}}}},
+    {"python_module": "line_output_process", "kratos_module": "KratosMultiphysics",
+        "Parameters": {"model_part_name": "Structure.Lower", "start_point": [0.05, 0.1, 0.2], "end_point": [0.9, 0.8, 0.9],
+        "sampling_points": 5, "output_variables": ["DISPLACEMENT", "VELOCITY_X"],
+        "output_file_settings": {"file_name": "line"}}},
+    {"python_module": "point_output_process", "kratos_module": "KratosMultiphysics",
+        "Parameters": {"model_part_name": "Structure.Upper", "entity_type": "node", "position": [1.0, 0.8, 2.0],
+        "output_variables": ["REACTION"], "output_file_settings": {"file_name": "corner"}}},
+    {"python_module": "json_output_process", "kratos_module": "KratosMultiphysics",
+        "Parameters": {"model_part_name": "Structure", "output_file_name": "stresses.json", "historical_value": false,
+        "output_variables": ["VON_MISES_STRESS"], "gauss_points_output_variables": ["CAUCHY_STRESS_VECTOR"],
+        "time_frequency": 0.0}},
+    {"python_module": "json_output_process", "kratos_module": "KratosMultiphysics",
+        "Parameters": {"model_part_name": "Structure.Bottom", "output_file_name": "sum.json", "resultant_solution": true,
+        "output_variables": ["REACTION"], "time_frequency": 0.0}}], "json_output_process_list""#;
+
+#[test]
+fn files_of_one_rank_hold_what_all_have() {
+    let folder = case("contact_3d/hexahedra_nonmatching");
+    change(folder.path(), DECK, "\"json_output_process_list\"", FILES);
+    let before: Vec<_> = contents(folder.path()).into_keys().collect();
+    let written = |folder: &Path| -> BTreeMap<std::path::PathBuf, String> {
+        let texts = contents(folder).into_iter().filter(|(name, _)| !before.contains(name));
+        texts.map(|(name, bytes)| (name, String::from_utf8(bytes).expect("text"))).collect()
+    };
+    let alone = scratch_copy(folder.path());
+    let output = zelus(alone.path(), &["run", DECK]);
+    assert!(output.status.success(), "{}", said(&output));
+    let expected = written(alone.path());
+    assert!(expected.len() >= 15, "{:?}", expected.keys());
+    for ranks in [2, 3, 8] {
+        let shared = scratch_copy(folder.path());
+        let Some(output) = distributed(shared.path(), ranks, &["run", DECK]) else { return };
+        assert!(output.status.success(), "{}", said(&output));
+        let found = written(shared.path());
+        assert!(found.keys().eq(expected.keys()), "{ranks} ranks: {:?}, not {:?}", found.keys(), expected.keys());
+        for (name, text) in &expected {
+            let number = |word: &str| word.trim_end_matches(',').parse::<f64>().ok();
+            let largest = text.split_whitespace().filter_map(number).fold(0.0, |most: f64, x| most.max(x.abs()));
+            let same = |(a, b): (&str, &str)| match (number(a), number(b)) {
+                // What should be zero is round-off of stresses and forces.
+                (Some(a), Some(b)) => {
+                    let size = a.abs().max(b.abs());
+                    (a - b).abs() <= EQUAL * size || size <= 1e-12 * largest
+                }
+                _ => a == b,
+            };
+            let (found, text) = (found[name].split_whitespace(), text.split_whitespace());
+            assert_eq!(found.clone().count(), text.clone().count(), "{ranks} ranks: {}", name.display());
+            let other = text.zip(found).find(|pair| !same(*pair));
+            assert!(other.is_none(), "{ranks} ranks: {} differs: {other:?}", name.display());
+        }
+    }
+}
+
 fn case(name: &str) -> tempfile::TempDir {
     scratch_copy(&root().join("tests/cases").join(name))
 }

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde_json::json;
-use zelus_core::analysis::read_deck_mesh;
+use zelus_core::analysis::{DeckMesh, read_deck_mesh};
 use zelus_core::io::replace_file;
 use zelus_core::io::results::{Cells, Column, Dataset, write_vtu};
 use zelus_core::model::ModelPart;
@@ -43,9 +43,9 @@ pub(super) struct Arguments {
 
 /// Cuts the mesh, prints the table and writes the files asked for.
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let (part, surfaces) = read_deck_mesh(&arguments.file)?;
+    let DeckMesh { part, surfaces, common } = read_deck_mesh(&arguments.file)?;
     let cut = partition(&part, &surfaces, arguments.ranks)?;
-    let counts = Counts::new(&part, &cut);
+    let counts = Counts::new(&part, &cut, &common);
     let repeats = Repeats { newton: arguments.newton, krylov: arguments.krylov };
     say(explain(&part, &counts, repeats, arguments.all).trim_end());
     if let Some(path) = &arguments.json {
@@ -64,9 +64,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 /// A column of the table: its head and what it shows of a rank.
 type Shown = (&'static str, fn(&RankCounts, Traffic) -> usize);
 
-const COLUMNS: [Shown; 10] = [
+const COLUMNS: [Shown; 11] = [
     ("elements", |rank, _| rank.elements),
     ("nodes", |rank, _| rank.nodes),
+    ("held", |rank, _| rank.held),
     ("ghosts", |rank, _| rank.ghosts),
     ("neighbours", |rank, _| rank.neighbours),
     ("cut faces", |rank, _| rank.cut_faces),
@@ -114,11 +115,13 @@ fn explain(part: &ModelPart, counts: &Counts, repeats: Repeats, all: bool) -> St
     let all_bytes: usize = rows.iter().map(|row| row[COLUMNS.len() - 1]).sum();
     let _ = writeln!(
         text,
-        "{} faces cut; imbalance {:.3} (largest load over mean load); {:.3} MB sent by all ranks a step\n\
+        "{} faces cut; imbalance {:.3} (largest load over mean load); {} nodes are on all ranks; {:.3} MB sent by all ranks a \
+         step\n\
          messages and bytes sent a step: {} Newton iterations of one solve with {} Krylov iterations each, {} unknowns \
-         a node, between neighbours only",
+         a node",
         counts.cut,
         counts.imbalance,
+        counts.common,
         all_bytes as f64 / 1e6,
         repeats.newton,
         repeats.krylov,

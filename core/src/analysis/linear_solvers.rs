@@ -2,8 +2,6 @@
 
 use zelus_linear_algebra::{DirectSettings, Engine, KrylovSettings, LinearSolver, Multipliers, Preconditioner, create};
 
-#[cfg(feature = "petsc")]
-use crate::assembly::DofTable;
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
 use crate::register;
@@ -50,13 +48,17 @@ const FACTORISED: usize = 500_000;
 /// # Errors
 /// An unknown engine.
 #[cfg(feature = "petsc")]
-pub(super) fn petsc(settings: &Settings, dofs: &DofTable) -> Result<Option<(zelus_petsc::PetscSettings, String)>> {
+pub(super) fn petsc(
+    settings: &Settings,
+    unknowns: usize,
+    has_multipliers: bool,
+) -> Result<Option<(zelus_petsc::PetscSettings, String)>> {
     use zelus_petsc::{PetscEngine, PetscSettings};
     let word = |key: &str| settings.node().get(key).map(|n| n.str()).transpose().map(|word| word.unwrap_or(""));
     let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
     let name = word("petsc_engine")?;
-    let enough = if dofs.dofs().iter().any(|dof| dof.multiplier) { FACTORISED } else { MULTIGRID };
-    if name == "none" || (name.is_empty() && dofs.len() < enough) {
+    let enough = if has_multipliers { FACTORISED } else { MULTIGRID };
+    if name == "none" || (name.is_empty() && unknowns < enough) {
         return Ok(None);
     }
     let engine = PetscEngine::find(name);

@@ -9,13 +9,23 @@ use super::solver::SolverSettings;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
-use crate::partition::{Surface, surfaces};
+use crate::partition::{Surface, common_nodes, surfaces};
 
-/// The model part that the first stage of a deck reads, and its surfaces that may touch.
+/// A mesh, and what of it ranks have in common.
+pub struct DeckMesh {
+    /// The model part that the first stage reads.
+    pub part: ModelPart,
+    /// Its surfaces that may touch.
+    pub surfaces: Vec<Surface>,
+    /// Marks of the nodes that every rank keeps.
+    pub common: Vec<bool>,
+}
+
+/// The mesh of the first stage of a deck.
 ///
 /// # Errors
 /// A deck or mesh that cannot be read.
-pub fn read_deck_mesh(path: &Path) -> Result<(ModelPart, Vec<Surface>)> {
+pub fn read_deck_mesh(path: &Path) -> Result<DeckMesh> {
     let (deck, folder) = open(path)?;
     let all = stages(&deck, &mut RunReport::default())?;
     let stage = all.first().ok_or_else(|| {
@@ -32,5 +42,6 @@ pub fn read_deck_mesh(path: &Path) -> Result<(ModelPart, Vec<Surface>)> {
     problems.finish()?;
     let part = model.parts.remove(&root).ok_or_else(|| Error::System(format!("the stage has no model part {root}")))?;
     let surfaces = surfaces(&settings, &part);
-    Ok((part, surfaces))
+    let common = common_nodes(&part, &surfaces, &settings);
+    Ok(DeckMesh { part, surfaces, common })
 }

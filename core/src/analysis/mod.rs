@@ -17,7 +17,7 @@ mod stage;
 mod time_stepping;
 
 pub use cutting::Cutting;
-pub use mesh::read_deck_mesh;
+pub use mesh::{DeckMesh, read_deck_mesh};
 pub use orchestrator::{RunOptions, check, run};
 pub use report::{RunReport, Sizes};
 pub use solver::{ARC_LENGTH, EXPLICIT, ExtensionDefinition, NodalVariable, SolverDefinition};

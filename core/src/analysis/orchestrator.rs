@@ -25,8 +25,9 @@ pub fn run(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (Res
         let (deck, folder) = open(path)?;
         let mut model = Model::default();
         warn_of_checkpoints(&deck, report, monitor);
-        for stage in stages(&deck, report)? {
-            Stage::prepare(&stage, &folder, &mut model, report, monitor)?.run(&mut model, report, monitor)?;
+        let all = stages(&deck, report)?;
+        for at in 0..all.len() {
+            Stage::prepare(&all[at..], &folder, &mut model, report, monitor)?.run(&mut model, report, monitor)?;
         }
         report.converged = true;
         Ok(())
@@ -39,9 +40,10 @@ pub fn check(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (R
         let (deck, folder) = open(path)?;
         let mut model = Model::default();
         warn_of_checkpoints(&deck, report, monitor);
-        for stage in stages(&deck, report)? {
-            Stage::prepare(&stage, &folder, &mut model, report, monitor)?;
-            report.stages.push(stage.name);
+        let all = stages(&deck, report)?;
+        for at in 0..all.len() {
+            Stage::prepare(&all[at..], &folder, &mut model, report, monitor)?;
+            report.stages.push(all[at].name.clone());
         }
         Ok(())
     })

@@ -6,49 +6,58 @@ use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::{ModelPart, Properties};
 use crate::parameters::Node;
-use crate::partition::{Partition, partition, surfaces};
+use crate::partition::{Partition, Share, common_nodes, keep_share, partition, surfaces};
 use crate::strategies::Monitor;
 
-/// Gives every rank its share of the mesh, where there are several ranks and enough to share.
+/// Gives every rank its share of the mesh, where there are several ranks and enough to share; from then on a rank has its
+/// own elements with their nodes, and all of the interfaces. `decks` are this stage and those after it.
 ///
 /// # Errors
 /// Ranks that have read different files; a mesh that cannot be cut.
-pub(super) fn distribute(part: &mut ModelPart, deck: &Node, monitor: &mut dyn Monitor) -> Result<()> {
+pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, monitor: &mut dyn Monitor) -> Result<()> {
     let ranks = world().size();
-    if ranks > 1 {
-        read_the_same(part, deck)?;
-    }
-    // What elements remember of an earlier stage stays where it is.
-    let fits = |p: &Partition| p.elements.len() == part.elements.len() && p.nodes.len() == part.nodes.len();
-    if part.partition.as_ref().is_some_and(|p| fits(p) && p.conditions.len() == part.conditions.len()) {
-        return Ok(());
-    }
-    part.partition = None;
     if ranks == 1 {
         return Ok(());
     }
-    if part.elements.len() < ranks || part.interactions.iter().any(|interaction| interaction.needs_all_elements()) {
-        monitor
-            .note(&format!("{} elements: too few to share, each of {ranks} ranks computes all", part.elements.len()));
+    // What an earlier stage has shared out stays where it is, unless a modeler has changed it: then every rank has it whole.
+    let fits = |share: &Share| share.elements.len() == part.elements.len() && share.owners.len() == part.nodes.len();
+    if part.share.as_ref().is_some_and(|share| fits(share) && share.conditions.len() == part.conditions.len()) {
         return Ok(());
     }
-    let shared = partition(part, &surfaces(deck, part), ranks)?;
+    part.share = None;
+    if part.elements.len() < ranks {
+        monitor
+            .note(&format!("{} elements: too few to share among {ranks} ranks, one computes all", part.elements.len()));
+        keep_share(part, &Partition::on_one_rank(part, ranks), &vec![true; part.nodes.len()]);
+        return Ok(());
+    }
+    let cut = partition(part, &surfaces(&decks[0], part), ranks)?;
+    let mut common = vec![changes; part.nodes.len()];
+    for deck in decks {
+        let of_stage = common_nodes(part, &surfaces(deck, part), deck);
+        common.iter_mut().zip(of_stage).for_each(|(common, of_stage)| *common |= of_stage);
+    }
     let mut facets = vec![0_usize; ranks];
-    shared.facets.iter().filter(|f| f.slave).for_each(|f| facets[shared.elements[f.element as usize] as usize] += 1);
-    let mut note = format!("{ranks} ranks share {} elements, {} faces are cut", part.elements.len(), shared.cut);
+    cut.facets.iter().filter(|f| f.slave).for_each(|f| facets[cut.elements[f.element as usize] as usize] += 1);
+    let mut note = format!("{ranks} ranks share {} elements, {} faces are cut", part.elements.len(), cut.cut);
     if facets.iter().any(|&count| count > 0) {
         let all: usize = facets.iter().sum();
         let holders = facets.iter().filter(|&&count| count > 0).count();
         note.push_str(&format!("; {all} slave facets on {holders} of them"));
     }
+    keep_share(part, &cut, &common);
+    let whole = part.sizes().nodes;
+    let most = world().gather_numbers(&[part.nodes.len() as f64]).concat().into_iter().fold(0.0, f64::max);
+    note.push_str(&format!("; the fullest has {most} of {whole} nodes"));
     monitor.note(&note);
-    part.partition = Some(shared);
     Ok(())
 }
 
 /// Errors when the ranks have not read the same files; collective.
-fn read_the_same(part: &ModelPart, deck: &Node) -> Result<()> {
-    for (what, number) in [("meshes", of_mesh(part)), ("materials", of_materials(part)), ("decks", of_deck(deck))] {
+pub(super) fn read_the_same(part: &ModelPart, deck: &Node) -> Result<()> {
+    // Once a mesh is shared out, ranks have different parts of it.
+    let mesh = if part.share.is_none() { of_mesh(part) } else { 0 };
+    for (what, number) in [("meshes", mesh), ("materials", of_materials(part)), ("decks", of_deck(deck))] {
         if !world().is_same(number) {
             return Err(Error::System(format!(
                 "the ranks have read different {what}\n    give all of them the same files, e.g. in a shared folder"

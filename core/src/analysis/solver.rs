@@ -293,8 +293,11 @@ impl SolverSettings {
         #[cfg(feature = "petsc")]
         let mut says = says;
         #[cfg(feature = "petsc")]
-        if part.partition.is_some()
-            && let Some((petsc, by_petsc)) = super::linear_solvers::petsc(&named, &part.dofs)?
+        let has_multipliers = part.dofs.dofs().iter().any(|dof| dof.multiplier);
+        #[cfg(feature = "petsc")]
+        if part.share.is_some()
+            && let Some((petsc, by_petsc)) =
+                super::linear_solvers::petsc(&named, unknowns_of_all(part), has_multipliers)?
         {
             newton.solve_by_petsc(petsc, multipliers(&part.info));
             says = by_petsc;
@@ -338,11 +341,9 @@ fn find_solver(name: &str) -> Result<(&'static Entry, &'static SolverDefinition)
 pub fn make_blocks(part: &mut ModelPart) -> Result<()> {
     let mut report = Report::new();
     let mut both = [Vec::new(), Vec::new()];
-    let owners = part.partition.as_ref();
-    let owners = [owners.map(|p| &p.elements), owners.map(|p| &p.conditions)];
-    let rank = world().rank() as u32;
-    for ((blocks, table), owners) in both.iter_mut().zip([&part.elements, &part.conditions]).zip(owners) {
-        let is_own = |at: usize| owners.is_none_or(|owners| owners[at] == rank);
+    let tables = [(Kind::Element, &part.elements), (Kind::Condition, &part.conditions)];
+    for (blocks, (kind, table)) in both.iter_mut().zip(tables) {
+        let is_own = |at: usize| part.evaluates(kind, at);
         for (entry, members) in groups(table, is_own) {
             let Build::Block(factory) = entry.build else { continue };
             let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
@@ -372,6 +373,12 @@ fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static 
         groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);
     }
     groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()
+}
+
+/// Unknowns of all ranks; collective.
+pub(super) fn unknowns_of_all(part: &ModelPart) -> usize {
+    let own = part.dofs.dofs().iter().filter(|dof| part.owns_node(dof.node as usize)).count();
+    if part.share.is_some() { world().total(own as f64) as usize } else { own }
 }
 
 /// Replaces points and bars of space by those of the plane in a plane problem, where they are the same.

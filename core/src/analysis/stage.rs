@@ -8,8 +8,8 @@ use super::deck::{StageDeck, check_top_level, import, make_processes, root_name}
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
-use super::sharing::distribute;
-use super::solver::{SolverSettings, check_dimensions, make_blocks};
+use super::sharing::{distribute, read_the_same};
+use super::solver::{SolverSettings, check_dimensions, make_blocks, unknowns_of_all};
 use super::time_stepping::TimeStepping;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
@@ -39,13 +39,14 @@ impl Stage {
     /// # Errors
     /// Every problem of the deck that can be found, gathered.
     pub(super) fn prepare(
-        stage: &StageDeck,
+        stages: &[StageDeck],
         folder: &Path,
         model: &mut Model,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
     ) -> Result<Self> {
         let start = Instant::now();
+        let (stage, later) = stages.split_first().expect("there is a stage to prepare");
         let mut problems = Report::new();
         let mut deck = modernise(&stage.settings, &mut problems);
         let known = ["problem_data", "solver_settings", "processes", "output_processes", "modelers", "analysis_stage"];
@@ -105,46 +106,50 @@ impl Stage {
         report.add_seconds("read", start.elapsed().as_secs_f64());
         let start = Instant::now();
         complete_part_names(&mut deck, &root, model, &mut problems);
+        let mut decks = vec![deck.clone()];
+        for later in later {
+            let mut deck = modernise(&later.settings, &mut Report::new());
+            complete_part_names(&mut deck, &root, model, &mut Report::new());
+            decks.push(deck);
+        }
+        let changes = later.iter().any(|later| !later.modelers.is_empty());
+        if world().size() > 1 {
+            read_the_same(model.root(&root)?, &deck)?;
+        }
+        distribute(model.root_mut(&root)?, &decks, changes, monitor)?;
         let mut processes = make_processes(&deck, folder, model, &mut problems);
-        if problems.has_errors() {
-            return Err(finish(problems));
-        }
+        problems = problems_of_all(problems)?;
         for process in &mut processes {
-            problems.absorb(process.initialize(model));
+            let initialized = process.initialize(model);
+            problems.absorb(initialized);
         }
-        if problems.has_errors() {
-            return Err(finish(problems));
-        }
+        problems = problems_of_all(problems)?;
         let part = model.root_mut(&root)?;
-        distribute(part, &deck, monitor)?;
-        problems.absorb(world().agree(make_blocks(part)));
-        if problems.has_errors() {
-            return Err(finish(problems));
-        }
+        problems.absorb(make_blocks(part));
+        problems = problems_of_all(problems)?;
         warn_of_lonely_nodes(part, &mut problems);
         let mut interactions = std::mem::take(&mut part.interactions);
         for interaction in &mut interactions {
             problems.absorb(interaction.initialize(part));
         }
         part.interactions = interactions;
-        if problems.has_errors() {
-            return Err(finish(problems));
-        }
+        problems = problems_of_all(problems)?;
         let (strategy, says) = solver.strategy(part, &mut problems)?;
         monitor.note(&says);
         report.linear_solver = says;
+        let sizes = part.sizes();
         report.sizes = Sizes {
-            nodes: part.nodes.len(),
-            elements: part.elements.len(),
-            conditions: part.conditions.len(),
+            nodes: sizes.nodes,
+            elements: sizes.elements,
+            conditions: sizes.conditions,
             constraints: part.constraints.len(),
-            unknowns: part.dofs.len(),
+            unknowns: unknowns_of_all(part),
         };
         for process in &processes {
             let checked = process.check(model, &mut problems);
             problems.absorb(checked);
         }
-        for warning in problems.finish()? {
+        for warning in problems_of_all(problems)?.finish()? {
             report.warnings.push(warning.to_string());
             monitor.warn(&warning);
         }
@@ -313,7 +318,8 @@ impl Stage {
 
     /// Hands warnings met by processes and interactions to the monitor and the report.
     fn pass_on_messages(&self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
-        for warning in std::mem::take(&mut model.root_mut(&self.root)?.messages) {
+        let own = std::mem::take(&mut model.root_mut(&self.root)?.messages);
+        for warning in world().problems_of_all(own) {
             report.warnings.push(warning.to_string());
             monitor.warn(&warning);
         }
@@ -328,15 +334,31 @@ fn finish(mut problems: Report) -> Error {
     problems.finish().expect_err("it has errors")
 }
 
+/// The problems of all ranks, each once; collective.
+///
+/// # Errors
+/// All of them, when one on any rank is an error.
+fn problems_of_all(problems: Report) -> Result<Report> {
+    let (Ok(own) | Err(Error::Input(own))) = problems.finish() else { unreachable!("problems are of the input") };
+    let mut all = Report::new();
+    world().problems_of_all(own).into_iter().for_each(|problem| all.push(problem));
+    if all.has_errors() { Err(finish(all)) } else { Ok(all) }
+}
+
+/// The warning that nodes belong to nothing; collective.
 fn warn_of_lonely_nodes(part: &ModelPart, problems: &mut Report) {
-    let mut used = vec![false; part.nodes.len()];
+    let mut used = vec![0.0; part.nodes.len()];
     for blocks in [&part.element_blocks, &part.condition_blocks] {
         for block in blocks {
-            (0..block.len()).for_each(|at| block.nodes(at).iter().for_each(|&n| used[n as usize] = true));
+            (0..block.len()).for_each(|at| block.nodes(at).iter().for_each(|&n| used[n as usize] = 1.0));
         }
     }
-    world().any_of(&mut used);
-    let lonely: Vec<usize> = (0..used.len()).filter(|&n| !used[n]).map(|n| part.nodes.ids[n]).collect();
+    if let Some(share) = &part.share {
+        share.halo.sum(&mut used);
+    }
+    let lonely = (0..used.len()).filter(|&n| used[n] == 0.0 && part.owns_node(n)).map(|n| part.nodes.ids[n] as f64);
+    let mut lonely = world().gather_numbers(&lonely.collect::<Vec<f64>>()).concat();
+    lonely.sort_by(f64::total_cmp);
     if let Some(first) = lonely.first() {
         problems.push(
             Diagnostic::warning(

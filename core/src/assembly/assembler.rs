@@ -5,6 +5,7 @@
 //! tangents of follower forces are small and not symmetric.
 
 mod inertia;
+mod ranks;
 mod tangents;
 
 use std::time::Instant;
@@ -13,14 +14,16 @@ use zelus_linear_algebra::{Csr, Symmetry, System};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 
+use self::ranks::{Carriers, carriers_of_all};
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::distribution::Distribution;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
+use super::numbering::Numbering;
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
-use crate::model::{ModelPart, Named, ScalarVariable, named};
+use crate::model::ModelPart;
 
 /// Seconds spent assembling, by what was assembled.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -60,6 +63,7 @@ pub struct Assembler {
     damping: Option<([f64; 2], Vec<f64>)>,
     traits: Traits,
     distribution: Option<Distribution>,
+    numbering: Option<Numbering>,
     /// Seconds spent so far.
     pub seconds: AssemblySeconds,
 }
@@ -103,7 +107,7 @@ impl Traits {
 impl Assembler {
     /// Numbers the unknowns of the part and lays out the patterns that last.
     pub fn new(part: &mut ModelPart, interactions: &[Box<dyn Interaction>], lumped_mass: bool) -> Self {
-        let mut carriers: Vec<(ScalarVariable, bool, Vec<u32>)> = Vec::new();
+        let mut carriers: Vec<Carriers> = Vec::new();
         for block in part.element_blocks.iter().chain(&part.condition_blocks) {
             for unknown in block.unknowns() {
                 let nodes = (0..block.len()).map(|at| block.nodes(at)[unknown.node as usize]);
@@ -113,8 +117,8 @@ impl Assembler {
                 }
             }
         }
-        if part.partition.is_some() {
-            carriers = carriers_of_all(carriers, part.nodes.len());
+        if let Some(share) = &part.share {
+            carriers = carriers_of_all(carriers, part.nodes.len(), &share.halo);
         }
         carriers.sort_by_key(|(variable, ..)| *variable);
         for interaction in interactions {
@@ -127,7 +131,7 @@ impl Assembler {
             blocks.iter().map(|block| block_numbers(block.as_ref(), &part.dofs)).collect()
         };
         let pattern_blocks = || part.element_blocks.iter().chain(&part.condition_blocks).map(AsRef::as_ref);
-        let distribution = part.partition.as_ref().map(|partition| Distribution::new(&part.dofs, partition));
+        let distribution = Distribution::new(&part.dofs, part);
         let pattern = BulkPattern::new(
             &part.dofs,
             part.nodes.len(),
@@ -168,15 +172,16 @@ impl Assembler {
     }
 
     /// Step start, and whenever constraints change: the equations left by fixities and constraints, and the pattern of
-    /// the interactions.
+    /// the interactions. Collective.
     ///
     /// # Errors
     /// Constraints that contradict each other.
     pub fn begin_step(&mut self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<()> {
-        let equations = Equations::new(&part.dofs, &part.nodes, &part.constraints)?;
+        let equations = world().agree(Equations::new(&part.dofs, &part.nodes, &part.constraints))?;
         let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
-        if changed {
+        if world().any(changed) {
             self.equations = equations;
+            self.numbering = self.distribution.as_ref().map(|d| Numbering::new(&self.equations, d));
             self.stamps.bulk_graph += 1;
             self.stamps.bulk_values += 1;
             self.coupling_graph = None;
@@ -268,18 +273,6 @@ impl Assembler {
             add_residual(block.as_ref(), numbers, &view, Want::Residual, &mut out)?;
         }
         Ok(out)
-    }
-
-    /// On several ranks: replaces what this rank has by the sum over all; collective.
-    fn add_up(&self, values: &mut [f64]) {
-        if let Some(distribution) = &self.distribution {
-            distribution.sum(values);
-        }
-    }
-
-    /// Which rank owns which unknown; `None` when one process computes everything.
-    pub fn distribution(&self) -> Option<&Distribution> {
-        self.distribution.as_ref()
     }
 
     /// The equations to solve, without the follower loads.
@@ -379,33 +372,6 @@ fn load_blocks(part: &ModelPart) -> Blocks<'_> {
         .iter()
         .map(AsRef::as_ref)
         .filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::General)
-        .collect()
-}
-
-/// The nodes that carry each unknown on any rank; collective.
-fn carriers_of_all(own: Vec<(ScalarVariable, bool, Vec<u32>)>, nodes: usize) -> Vec<(ScalarVariable, bool, Vec<u32>)> {
-    let names: Vec<String> = own.iter().map(|(variable, ..)| variable.to_string()).collect();
-    let mut all: Vec<String> = world()
-        .gather_bytes(names.join("\n").as_bytes())
-        .iter()
-        .flat_map(|text| String::from_utf8_lossy(text).lines().map(str::to_owned).collect::<Vec<_>>())
-        .collect();
-    all.sort_unstable();
-    all.dedup();
-    let scalar = |name: &String| match named(name).expect("unknowns are registered variables") {
-        Named::Component(scalar) => scalar,
-        Named::Whole(column, _) => ScalarVariable { column, component: None },
-    };
-    all.iter()
-        .map(scalar)
-        .map(|variable| {
-            let mut carries = vec![false; nodes];
-            let mine = own.iter().filter(|(known, ..)| *known == variable).flat_map(|(.., list)| list);
-            mine.for_each(|&node| carries[node as usize] = true);
-            world().any_of(&mut carries);
-            let list = (0..nodes as u32).filter(|&node| carries[node as usize]).collect();
-            (variable, false, list)
-        })
         .collect()
 }
 

@@ -1,60 +1,49 @@
-//! Vectors over all unknowns on several ranks: each adds what its entities give, and all receive the sum.
+//! Vectors over the unknowns of several ranks: each has those of its nodes, and sums pass through the owners.
 
 use crate::communication::world;
-use crate::partition::Partition;
+use crate::model::ModelPart;
+use crate::partition::Halo;
 
 use super::dof_table::DofTable;
 
-/// Which rank owns each unknown: that of its node.
+/// Which rank owns each unknown this rank has, that of its node, and where the copies are.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Distribution {
-    owner: Vec<u32>,
-    /// Unknowns of each rank, ascending.
-    owned: Vec<Vec<u32>>,
+    owners: Vec<u32>,
+    halo: Halo,
+    /// Place in the whole mesh of each unknown's node.
+    places: Vec<u32>,
 }
 
 impl Distribution {
-    /// The owners of `dofs`.
-    pub fn new(dofs: &DofTable, partition: &Partition) -> Self {
-        let owner: Vec<u32> = dofs.dofs().iter().map(|dof| partition.nodes[dof.node as usize]).collect();
-        let mut owned = vec![Vec::new(); partition.ranks];
-        owner.iter().enumerate().for_each(|(number, &rank)| owned[rank as usize].push(number as u32));
-        Self { owner, owned }
-    }
-
-    /// The rank of an unknown.
-    pub fn owner(&self, number: usize) -> u32 {
-        self.owner[number]
+    /// The owners of `dofs`; `None` when this process has everything.
+    pub fn new(dofs: &DofTable, part: &ModelPart) -> Option<Self> {
+        let share = part.share.as_ref()?;
+        let of_nodes = |list: &[u32]| -> Vec<u32> { dofs.dofs().iter().map(|dof| list[dof.node as usize]).collect() };
+        let mut starts = vec![0_u32; part.nodes.len() + 1];
+        dofs.dofs().iter().for_each(|dof| starts[dof.node as usize + 1] += 1);
+        (1..starts.len()).for_each(|at| starts[at] += starts[at - 1]);
+        let halo = share.halo.expand(|node, out| out.extend(starts[node as usize]..starts[node as usize + 1]));
+        Some(Self { owners: of_nodes(&share.owners), halo, places: of_nodes(&share.places) })
     }
 
     /// Whether this rank owns an unknown.
     pub fn is_own(&self, number: usize) -> bool {
-        self.owner[number] as usize == world().rank()
+        self.owners[number] as usize == world().rank()
+    }
+
+    /// Place in the whole mesh of the node of an unknown.
+    pub fn place(&self, number: usize) -> u32 {
+        self.places[number]
     }
 
     /// Replaces what this rank has by the sum over all ranks, the same bits on each of them; collective.
-    ///
-    /// Contributions go to the owner, who adds them in the order of the ranks and passes the sums on.
     pub fn sum(&self, values: &mut [f64]) {
-        let world = world();
-        let rank = world.rank();
-        // Each message is the numbers of unknowns, then as many values; numbers below 2^32 are exact in floating point.
-        let mut numbers = vec![Vec::new(); world.size()];
-        let mut parts = vec![Vec::new(); world.size()];
-        for (number, (&value, &owner)) in values.iter().zip(&self.owner).enumerate() {
-            if value != 0.0 && owner as usize != rank {
-                numbers[owner as usize].push(number as f64);
-                parts[owner as usize].push(value);
-            }
-        }
-        numbers.iter_mut().zip(&parts).for_each(|(message, part)| message.extend_from_slice(part));
-        for message in world.exchange_numbers(&numbers) {
-            let (numbers, part) = message.split_at(message.len() / 2);
-            numbers.iter().zip(part).for_each(|(&number, value)| values[number as usize] += value);
-        }
-        let own: Vec<f64> = self.owned[rank].iter().map(|&number| values[number as usize]).collect();
-        let counts: Vec<usize> = self.owned.iter().map(Vec::len).collect();
-        let sums = world.gather_counted(&own, &counts);
-        self.owned.iter().flatten().zip(sums).for_each(|(&number, sum)| values[number as usize] = sum);
+        self.halo.sum(values);
+    }
+
+    /// Gives all copies the value of the owner; collective.
+    pub fn spread(&self, values: &mut [f64]) {
+        self.halo.spread(values);
     }
 }

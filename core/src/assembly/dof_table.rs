@@ -78,6 +78,11 @@ impl DofTable {
         self.numbers.get(&variable).map_or(&[], Vec::as_slice)
     }
 
+    /// The variables of unknowns, those of other ranks too, in one order on all of them.
+    pub fn variables(&self) -> impl Iterator<Item = ScalarVariable> + '_ {
+        self.numbers.keys().copied()
+    }
+
     /// Number of one unknown.
     pub fn number_of(&self, variable: ScalarVariable, node: u32) -> Option<u32> {
         self.numbers.get(&variable).map(|list| list[node as usize]).filter(|&number| number != NONE)

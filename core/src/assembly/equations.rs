@@ -91,6 +91,11 @@ impl Equations {
         self.free.is_empty()
     }
 
+    /// Number of unknowns, solved for or not.
+    pub fn unknown_count(&self) -> usize {
+        self.roles.len()
+    }
+
     /// Unknown of each equation.
     pub fn unknowns(&self) -> &[u32] {
         &self.free

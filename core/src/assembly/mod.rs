@@ -7,8 +7,10 @@ mod dof_table;
 mod equations;
 mod group_matrix;
 mod local;
+mod numbering;
 
 pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties, strongest_damping};
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};
+pub use numbering::Numbering;

@@ -74,10 +74,9 @@ impl dyn Communicator + '_ {
     /// Sets each flag that is set on any rank; collective.
     pub fn any_of(&self, flags: &mut [bool]) {
         if self.size() > 1 && !flags.is_empty() {
-            let own: Vec<u8> = flags.iter().map(|&flag| u8::from(flag)).collect();
-            for of_rank in self.gather_equal_bytes(&own).chunks_exact(own.len()) {
-                flags.iter_mut().zip(of_rank).for_each(|(flag, other)| *flag |= *other != 0);
-            }
+            let mut all: Vec<u8> = flags.iter().map(|&flag| u8::from(flag)).collect();
+            self.or(&mut all);
+            flags.iter_mut().zip(all).for_each(|(flag, any)| *flag = any != 0);
         }
     }
 
@@ -90,6 +89,62 @@ impl dyn Communicator + '_ {
                 values.iter_mut().zip(of_rank).for_each(|(sum, value)| *sum += value);
             }
         }
+    }
+
+    /// The sum of one number of each rank; collective.
+    pub fn total(&self, own: f64) -> f64 {
+        let mut sum = [own];
+        self.sum(&mut sum);
+        sum[0]
+    }
+
+    /// What every rank gives, by rank, on rank 0; nothing on the others. Collective.
+    pub fn to_root(&self, own: Vec<f64>) -> Vec<Vec<f64>> {
+        if self.size() == 1 {
+            return vec![own];
+        }
+        let mut parts = vec![Vec::new(); self.size()];
+        parts[0] = own;
+        let received = self.exchange_numbers(&parts);
+        if self.is_root() { received } else { Vec::new() }
+    }
+
+    /// The lines of all ranks, one after another; collective.
+    pub fn lines_of_all(&self, own: Vec<String>) -> Vec<String> {
+        if self.size() == 1 || !self.any(!own.is_empty()) {
+            return own;
+        }
+        let all = self.gather_bytes(own.join("\n").as_bytes());
+        all.iter()
+            .flat_map(|text| String::from_utf8_lossy(text).lines().map(str::to_owned).collect::<Vec<_>>())
+            .collect()
+    }
+
+    /// What the first rank with something to say says; collective.
+    pub fn first_to_say(&self, own: Option<String>) -> Option<String> {
+        if self.size() == 1 || !self.any(own.is_some()) {
+            return own;
+        }
+        let all = self.gather_bytes(own.unwrap_or_default().as_bytes());
+        all.iter().find(|text| !text.is_empty()).map(|text| String::from_utf8_lossy(text).into_owned())
+    }
+
+    /// The problems of all ranks, each once; collective.
+    pub fn problems_of_all(&self, own: Vec<Diagnostic>) -> Vec<Diagnostic> {
+        if self.size() == 1 || !self.any(!own.is_empty()) {
+            return own;
+        }
+        let text = Value::from(own.iter().map(encode_problem).collect::<Vec<_>>()).to_string();
+        let mut out: Vec<Diagnostic> = Vec::new();
+        for text in self.gather_bytes(text.as_bytes()) {
+            let problems = serde_json::from_slice::<Value>(&text).unwrap_or_default();
+            for problem in problems.as_array().into_iter().flatten().map(decode_problem) {
+                if !out.contains(&problem) {
+                    out.push(problem);
+                }
+            }
+        }
+        out
     }
 
     /// Whether all ranks give the same number; collective.

@@ -2,7 +2,7 @@
 
 /// The processes of a run, as one of them sees them.
 ///
-/// `gather…`, `exchange…` and `broadcast` are collective: every rank calls them, in the same order.
+/// `gather…`, `exchange…` and `or` are collective: every rank calls them, in the same order.
 pub trait Communicator: Send + Sync {
     /// Number of this process, from 0.
     fn rank(&self) -> usize;
@@ -19,6 +19,9 @@ pub trait Communicator: Send + Sync {
     /// What every rank gives, one after another; each gives as many bytes.
     fn gather_equal_bytes(&self, own: &[u8]) -> Vec<u8>;
 
+    /// Sets each bit that is set on any rank; collective.
+    fn or(&self, bytes: &mut [u8]);
+
     /// What every rank gives, one after another; rank r gives `counts[r]` numbers.
     fn gather_counted(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
@@ -30,9 +33,6 @@ pub trait Communicator: Send + Sync {
 
     /// Sends `parts[r]` to rank r; gives what each rank sent here.
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
-
-    /// The numbers of rank 0 for all; the length is the same everywhere.
-    fn broadcast(&self, numbers: &mut [f64]);
 
     /// Tells the other ranks, from rank 0, that the run has failed; not collective.
     fn announce_failure(&self);
@@ -69,6 +69,8 @@ impl Communicator for Serial {
         own.to_vec()
     }
 
+    fn or(&self, _bytes: &mut [u8]) {}
+
     fn gather_counted(&self, own: &[f64], _counts: &[usize]) -> Vec<f64> {
         own.to_vec()
     }
@@ -84,8 +86,6 @@ impl Communicator for Serial {
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>> {
         parts.to_vec()
     }
-
-    fn broadcast(&self, _numbers: &mut [f64]) {}
 
     fn announce_failure(&self) {}
 

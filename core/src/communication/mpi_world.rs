@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use mpi::Threading;
+use mpi::collective::SystemOperation;
 use mpi::datatype::{Partition, PartitionMut};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, CommunicatorCollectives, Destination, Equivalence, Root, Source};
@@ -19,8 +20,6 @@ const FAILED: i32 = 4711;
 const BUSY: Duration = Duration::from_micros(50);
 /// The longest it then sleeps at a time.
 const NAP: Duration = Duration::from_millis(1);
-/// Numbers in one broadcast; MPI counts in 32 bits.
-const PIECE: usize = 1 << 28;
 
 /// All processes that mpirun has started.
 pub(super) struct MpiWorld {
@@ -135,6 +134,11 @@ impl Communicator for MpiWorld {
         received
     }
 
+    fn or(&self, bytes: &mut [u8]) {
+        let own = bytes.to_vec();
+        self.together().all_reduce_into(&own[..], bytes, SystemOperation::bitwise_or());
+    }
+
     fn gather_counted(&self, own: &[f64], lengths: &[usize]) -> Vec<f64> {
         let (counts, starts) = counts(lengths.iter().copied());
         let mut received = vec![0.0; lengths.iter().sum()];
@@ -163,13 +167,6 @@ impl Communicator for MpiWorld {
 
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>> {
         self.exchange(parts)
-    }
-
-    fn broadcast(&self, numbers: &mut [f64]) {
-        let all = self.together();
-        for piece in numbers.chunks_mut(PIECE) {
-            all.process_at_rank(0).broadcast_into(piece);
-        }
     }
 
     fn announce_failure(&self) {

@@ -102,11 +102,6 @@ pub trait Interaction: Send + Sync {
         0
     }
 
-    /// Whether it reads the blocks of elements, which each rank then makes of all elements instead of its share.
-    fn needs_all_elements(&self) -> bool {
-        false
-    }
-
     /// Whether [`Interaction::after_update`] reads REACTION, which is then that of the updated state.
     fn needs_reactions(&self) -> bool {
         false

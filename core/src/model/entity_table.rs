@@ -43,6 +43,17 @@ impl EntityTable {
         at
     }
 
+    /// The chosen entities with all they carry, their nodes renumbered by `new`.
+    pub fn pick(&self, items: &[u32], new: &[u32]) -> Self {
+        let mut out = Self { data: self.data.pick(items), flags: self.flags.pick(items), ..Self::default() };
+        for &item in items {
+            let at = item as usize;
+            let nodes: Vec<u32> = self.nodes(item).iter().map(|&node| new[node as usize]).collect();
+            out.push(self.ids[at], self.kinds[at], self.properties[at], &nodes);
+        }
+        out
+    }
+
     /// Makes the data columns as long as the table; call after the last [`EntityTable::push`].
     pub fn finish(&mut self) {
         if self.data.len() == 0 {

@@ -65,6 +65,19 @@ impl Fields {
         }
     }
 
+    /// The values of the chosen items, in their order.
+    pub fn pick(&self, items: &[u32]) -> Self {
+        let pick = |field: &Field| {
+            let size = field.components;
+            let level = |values: &Vec<f64>| {
+                items.iter().flat_map(|&at| &values[at as usize * size..][..size]).copied().collect()
+            };
+            Field { components: size, levels: field.levels.iter().map(level).collect() }
+        };
+        let columns = self.columns.iter().map(|(name, field)| (*name, pick(field))).collect();
+        Self { columns, levels: self.levels, count: items.len() }
+    }
+
     /// Sets the number of time levels; new ones copy the oldest.
     pub fn set_levels(&mut self, levels: usize) {
         self.levels = levels.max(1);

@@ -123,6 +123,13 @@ impl Flags {
         column[index] = state;
     }
 
+    /// The flags of the chosen items, in their order.
+    pub fn pick(&self, items: &[u32]) -> Self {
+        let pick =
+            |column: &Vec<i8>| items.iter().map(|&at| column.get(at as usize).copied().unwrap_or(UNDEFINED)).collect();
+        Self { columns: self.columns.iter().map(|(name, column)| (*name, pick(column))).collect() }
+    }
+
     /// Makes the flag undefined everywhere.
     pub fn clear(&mut self, flag: &str) {
         self.columns.remove(flag);

@@ -14,7 +14,8 @@ use crate::assembly::DofTable;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
 use crate::entities::{EntityBlock, Interaction, MasterSlaveConstraint, StepView};
-use crate::partition::Partition;
+use crate::partition::{MeshSizes, Share};
+use crate::registry::Kind;
 
 /// A root model part; sub parts select from it by index.
 #[derive(Default)]
@@ -49,8 +50,8 @@ pub struct ModelPart {
     pub condition_blocks: Vec<Box<dyn EntityBlock>>,
     /// What acts between bodies, e.g. contact.
     pub interactions: Vec<Box<dyn Interaction>>,
-    /// Which rank computes what; `None` when this process computes everything.
-    pub partition: Option<Partition>,
+    /// What this rank has of a mesh that several share; `None` when this process computes everything.
+    pub share: Option<Share>,
     /// Warnings met while running; the stage passes them on after each step.
     pub messages: Vec<Diagnostic>,
 }
@@ -139,13 +140,54 @@ impl ModelPart {
     /// Whether this rank evaluates an entity between bodies with these nodes: who has the pairs of the last one does, which
     /// is one of the slave's.
     pub fn evaluates_pair(&self, nodes: &[u32]) -> bool {
-        let rank = |partition: &Partition| nodes.last().map_or(0, |&node| partition.pairs[node as usize]);
-        self.partition.as_ref().is_none_or(|partition| rank(partition) as usize == world().rank())
+        let rank = |share: &Share| nodes.last().map_or(0, |&node| share.pairs[node as usize]);
+        self.share.as_ref().is_none_or(|share| rank(share) as usize == world().rank())
     }
 
     /// Whether this rank owns a node with its unknowns.
     pub fn owns_node(&self, node: usize) -> bool {
-        self.partition.as_ref().is_none_or(|partition| partition.nodes[node] as usize == world().rank())
+        self.share.as_ref().is_none_or(|share| share.owns(node))
+    }
+
+    /// Whether this rank evaluates an entity of the elements or conditions.
+    pub fn evaluates(&self, kind: Kind, at: usize) -> bool {
+        self.share.as_ref().is_none_or(|share| {
+            let owners = if kind == Kind::Element { &share.elements } else { &share.conditions };
+            owners[at] as usize == world().rank()
+        })
+    }
+
+    /// Whether this rank has every element at a node.
+    pub fn has_all_at(&self, node: usize) -> bool {
+        self.share.as_ref().is_none_or(|share| share.common[node])
+    }
+
+    /// Nodes, elements and conditions of the whole mesh, however many ranks share it.
+    pub fn sizes(&self) -> MeshSizes {
+        let own =
+            || MeshSizes { nodes: self.nodes.len(), elements: self.elements.len(), conditions: self.conditions.len() };
+        self.share.as_ref().map_or_else(own, |share| share.whole)
+    }
+
+    /// Drops everything but these nodes and entities, ascending; constraints stay, and their nodes must.
+    pub fn keep(&mut self, nodes: &[u32], elements: &[u32], conditions: &[u32]) {
+        let new = |kept: &[u32], count: usize| {
+            let mut new = vec![u32::MAX; count];
+            kept.iter().enumerate().for_each(|(at, &old)| new[old as usize] = at as u32);
+            new
+        };
+        let new_nodes = new(nodes, self.nodes.len());
+        let new_elements = new(elements, self.elements.len());
+        let new_conditions = new(conditions, self.conditions.len());
+        self.nodes = self.nodes.pick(nodes);
+        self.elements = self.elements.pick(elements, &new_nodes);
+        self.conditions = self.conditions.pick(conditions, &new_nodes);
+        self.geometries = Geometries::default();
+        self.tree.renumber(&new_nodes, &new_elements, &new_conditions);
+        for constraint in &mut self.constraints {
+            constraint.slave.0 = new_nodes[constraint.slave.0 as usize];
+            constraint.masters.iter_mut().for_each(|((node, _), _)| *node = new_nodes[*node as usize]);
+        }
     }
 
     /// Fixes or frees an unknown of some nodes; unknowns not in the system are remembered all the same.

@@ -43,6 +43,20 @@ impl Nodes {
         }
     }
 
+    /// The chosen nodes with all they carry; `nodes` ascends.
+    pub fn pick(&self, nodes: &[u32]) -> Self {
+        let ids: Vec<usize> = nodes.iter().map(|&at| self.ids[at as usize]).collect();
+        Self {
+            index: ids.iter().enumerate().map(|(at, &id)| (id, at as u32)).collect(),
+            ids,
+            initial: nodes.iter().map(|&at| self.initial[at as usize]).collect(),
+            current: nodes.iter().map(|&at| self.current[at as usize]).collect(),
+            history: self.history.pick(nodes),
+            values: self.values.pick(nodes),
+            flags: self.flags.pick(nodes),
+        }
+    }
+
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.ids.len()

@@ -63,6 +63,17 @@ impl SubPart {
         out
     }
 
+    /// Drops what is not kept and renumbers the rest, here and below; [`u32::MAX`] stands for what is dropped.
+    pub fn renumber(&mut self, nodes: &[u32], elements: &[u32], conditions: &[u32]) {
+        for (list, new) in
+            [(&mut self.nodes, nodes), (&mut self.elements, elements), (&mut self.conditions, conditions)]
+        {
+            *list = list.iter().map(|&at| new[at as usize]).filter(|&at| at != u32::MAX).collect();
+        }
+        self.geometries.clear();
+        self.children.values_mut().for_each(|child| child.renumber(nodes, elements, conditions));
+    }
+
     /// Sorts all lists and removes repetitions, here and below.
     pub fn normalise(&mut self) {
         let SubPart { nodes, elements, conditions, geometries, constraints, .. } = self;

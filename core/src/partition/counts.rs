@@ -1,28 +1,29 @@
 //! What a partition costs each rank, counted on the mesh.
 //!
-//! The counts suppose that every rank keeps its own nodes and one layer of ghosts, and that neighbours talk to each other
-//! only. With d unknowns a node, g ghosts, p copies that others have of own nodes, e entries of the node graph in rows of
-//! ghosts, f slave facets whose partner is elsewhere and has c corners, P neighbours, N ranks, I Newton iterations a step
-//! and K Krylov iterations a solve with S products of the matrix each, a rank sends in a step
+//! Every rank keeps its own elements with their nodes, and all of the interfaces. With d unknowns a node, g ghosts, p copies
+//! that neighbours have of own nodes, C nodes that all ranks have, F slave facets of all ranks, about as many as slave nodes,
+//! e entries of the node graph in rows of ghosts, P neighbours, N ranks, I Newton iterations a step and K Krylov iterations a
+//! solve with S products of the matrix each, a rank sends in a step at most
 //!
 //! | what | messages | bytes |
 //! |---|---|---|
 //! | values of own nodes to those who have copies | I P | 8 d p I |
+//! | values of the nodes that all have, passed on round a ring | I (N − 1) | 8 d C I |
 //! | residual of ghosts to their owners | I P | 8 d g I |
 //! | tangent rows of ghosts to their owners | I P | 8 d² e I |
 //! | Krylov: values to those who have copies | I K S P | 8 d p I K S |
 //! | Krylov: three sums over all ranks | 3 I K ⌈log₂ N⌉ | 24 I K ⌈log₂ N⌉ |
-//! | criteria: one sum of four over all ranks | I ⌈log₂ N⌉ | 32 I ⌈log₂ N⌉ |
-//! | search: boxes of ranks to all, once | ⌈log₂ N⌉ | 48 (N − 1) |
-//! | pairs: position and displacement of corners, force back | 2 I F | 8 · 3 d c f I |
+//! | criteria: four sums over all ranks | 4 I ⌈log₂ N⌉ | 64 I ⌈log₂ N⌉ |
+//! | interface: nine numbers a slave node, round a ring; two bytes a pair, four pairs a facet | I (N − 1 + ⌈log₂ N⌉) | (72 + 8 ⌈log₂ N⌉) F I |
 //!
-//! where F is the number of ranks that partners are on. Coarse levels of multigrid are left out.
+//! Coarse levels of multigrid are left out.
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use super::faces::{faces, outer_and_shared};
 use super::facets::facing_pairs;
+use super::share::everywhere;
 use super::{Partition, weights};
 use crate::model::ModelPart;
 
@@ -38,6 +39,8 @@ pub struct RankCounts {
     pub conditions: usize,
     /// Nodes it owns.
     pub nodes: usize,
+    /// Nodes it has in all: those of its elements and those that all ranks have.
+    pub held: usize,
     /// Nodes of its elements that others own.
     pub ghosts: usize,
     /// Copies that other ranks have of its nodes.
@@ -52,8 +55,6 @@ pub struct RankCounts {
     pub slave_facets: usize,
     /// Slave facets whose nearest facing facet is on another rank.
     pub far_pairs: usize,
-    /// Ranks that those facing facets are on.
-    pub far_ranks: usize,
     /// Entries of the node graph that its elements give in rows of ghosts.
     pub ghost_entries: usize,
     /// Weight of its elements, as the partition balances it.
@@ -97,13 +98,13 @@ pub struct Counts {
     pub entries: usize,
     /// Unknowns a node: the dimensions of the elements' space.
     pub unknowns_per_node: usize,
-    /// Corners of the facet with most.
-    pub facet_corners: usize,
+    /// Nodes that all ranks have: those of the interfaces and of the elements at them.
+    pub common: usize,
 }
 
 impl Counts {
-    /// Counts what `partition` gives each rank of the mesh.
-    pub fn new(part: &ModelPart, partition: &Partition) -> Self {
+    /// Counts what `partition` gives each rank of the mesh, where all ranks keep the `common` nodes with the elements at them.
+    pub fn new(part: &ModelPart, partition: &Partition, common: &[bool]) -> Self {
         let mut ranks = vec![RankCounts::default(); partition.ranks];
         let at = |element: u32| partition.elements[element as usize] as usize;
         for (element, weight) in weights(part, &partition.facets).into_iter().enumerate() {
@@ -125,24 +126,18 @@ impl Counts {
             rank.facets += 1;
             rank.slave_facets += usize::from(facet.slave);
         }
-        let mut partners: Vec<(usize, usize)> = Vec::new();
         for (slave, master) in facing_pairs(&partition.facets) {
             let [own, other] = [slave, master].map(|facet| at(partition.facets[facet as usize].element));
-            if own != other {
-                ranks[own].far_pairs += 1;
-                partners.push((own, other));
-            }
+            ranks[own].far_pairs += usize::from(own != other);
         }
-        partners.sort_unstable();
-        partners.dedup();
-        partners.iter().for_each(|&(own, _)| ranks[own].far_ranks += 1);
-        let entries = meet(part, partition, &mut ranks);
+        let everywhere = everywhere(part, common);
+        let entries = meet(part, partition, &everywhere, &mut ranks);
         let loads = ranks.iter().map(|rank| rank.load);
         let mean = loads.clone().sum::<usize>() as f64 / partition.ranks as f64;
         let imbalance = loads.max().unwrap_or(0) as f64 / mean.max(1.0);
         let space = part.elements.kinds.iter().map(|kind| kind.space).max().unwrap_or(3);
-        let facet_corners = if space == 2 { 2 } else { 4 };
-        Self { ranks, imbalance, cut: partition.cut, entries, unknowns_per_node: space.max(1), facet_corners }
+        let common = everywhere.iter().filter(|everywhere| **everywhere).count();
+        Self { ranks, imbalance, cut: partition.cut, entries, unknowns_per_node: space.max(1), common }
     }
 
     /// What a rank sends in a step, by the table at the head of this file.
@@ -152,18 +147,20 @@ impl Counts {
         let count = self.ranks.len();
         let levels = count.next_power_of_two().trailing_zeros() as usize;
         let products = krylov * PRODUCTS;
-        let neighbours = newton * own.neighbours * (3 + products);
-        let sums = newton * (3 * krylov + 1) * levels + levels;
-        let values = 8 * d * newton * (own.copies * (1 + products) + own.ghosts);
-        let tangent = 8 * d * d * own.ghost_entries * newton;
-        let all = newton * (24 * krylov + 32) * levels + 48 * (count - 1);
-        let pairs = 8 * 3 * d * self.facet_corners * own.far_pairs * newton;
-        Traffic { messages: neighbours + sums + 2 * newton * own.far_ranks, bytes: values + tangent + all + pairs }
+        let facets: usize = self.ranks.iter().map(|rank| rank.slave_facets).sum();
+        let neighbours = own.neighbours * (3 + products);
+        let rings = (count - 1) * (usize::from(self.common > 0) + usize::from(facets > 0));
+        let sums = (3 * krylov + 4 + usize::from(facets > 0)) * levels;
+        let values = 8 * d * (own.copies * (1 + products) + own.ghosts + self.common);
+        let tangent = 8 * d * d * own.ghost_entries;
+        let all = (24 * krylov + 64 + 8 * facets) * levels + 72 * facets;
+        Traffic { messages: newton * (neighbours + rings + sums), bytes: newton * (values + tangent + all) }
     }
 }
 
-/// Counts ghosts, copies, neighbours and ghost rows of every rank; gives the entries of the whole node graph.
-fn meet(part: &ModelPart, partition: &Partition, ranks: &mut [RankCounts]) -> usize {
+/// Counts nodes held, ghosts, copies, neighbours and ghost rows of every rank; gives the entries of the whole node graph.
+fn meet(part: &ModelPart, partition: &Partition, everywhere: &[bool], ranks: &mut [RankCounts]) -> usize {
+    let shared = everywhere.iter().filter(|everywhere| **everywhere).count();
     let mut of_rank: Vec<Vec<u32>> = vec![Vec::new(); partition.ranks];
     for (element, &rank) in partition.elements.iter().enumerate() {
         of_rank[rank as usize].push(element as u32);
@@ -180,9 +177,11 @@ fn meet(part: &ModelPart, partition: &Partition, ranks: &mut [RankCounts]) -> us
         pairs.sort_unstable();
         pairs.dedup();
         let mut last = u64::MAX;
+        ranks[rank].held = shared;
         for &pair in &pairs {
             let node = pair >> 32;
             let owner = partition.nodes[node as usize];
+            ranks[rank].held += usize::from(node != last && !everywhere[node as usize]);
             if owner as usize != rank {
                 ranks[rank].ghost_entries += 1;
                 if node != last {

@@ -25,6 +25,12 @@ impl Face {
         &self.key[..self.key.iter().position(|&node| node == NONE).unwrap_or(4)]
     }
 
+    /// All its nodes, mid-side nodes included.
+    pub(super) fn all<'p>(&self, part: &'p ModelPart) -> impl Iterator<Item = u32> + use<'p> {
+        let nodes = part.elements.nodes(self.element);
+        shape_of(part, self.element).cell().faces[usize::from(self.number)].nodes.iter().map(|&at| nodes[at])
+    }
+
     /// Its corner nodes in the order that shows their outward side.
     pub(super) fn ordered<'p>(&self, part: &'p ModelPart) -> impl Iterator<Item = u32> + 'p {
         let nodes = part.elements.nodes(self.element);

@@ -1,5 +1,6 @@
 //! The surfaces of a deck that may touch each other, found in the settings of its processes.
 
+use super::common::each_process;
 use crate::model::ModelPart;
 use crate::parameters::{Node, Value};
 
@@ -26,6 +27,14 @@ pub fn surfaces(deck: &Node, part: &ModelPart) -> Vec<Surface> {
     let mut out = Vec::new();
     if let Some(lists) = deck.get("processes") {
         walk(lists, part, &mut out);
+        // What is left out of the deck is the whole skin, as by default.
+        each_process(lists, &mut |entry, parameters| {
+            let named = |key: &&str| entry.defaults.contains(&format!("\"{key}\""));
+            let given = |key: &&str| parameters.is_some_and(|parameters| parameters.get(key).is_some());
+            if BY_PAIR.iter().any(named) && !BY_PAIR.iter().any(given) {
+                out.push(Surface { whole_skin: true, ..Surface::default() });
+            }
+        });
     }
     out
 }

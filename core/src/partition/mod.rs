@@ -3,19 +3,26 @@
 //! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind
 //! facets that face each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Every
 //! rank can compute it for itself and gets the same. [`surfaces`] finds the facets' surfaces in a deck, and [`Counts`]
-//! says what a partition costs; [`Partition::balance_pairs`] shares out pairs anew once they are known.
+//! says what a partition costs. [`keep_share`] then cuts the mesh of a rank down to its [`Share`], and
+//! [`Share::balance_pairs`] shares out pairs anew once they are known.
 
 mod balance;
+mod common;
 mod counts;
 mod faces;
 mod facets;
+mod halo;
 mod interfaces;
+mod share;
 #[cfg(test)]
 mod tests;
 
+pub use common::common_nodes;
 pub use counts::{Counts, PRODUCTS, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
+pub use halo::Halo;
 pub use interfaces::{Surface, surfaces};
+pub use share::{MeshSizes, Share, keep_share};
 
 use zelus_linear_algebra::{WeightedGraph, partition_graph};
 
@@ -40,12 +47,24 @@ pub struct Partition {
     pub conditions: Vec<u32>,
     /// Rank that owns each node with its unknowns: one of those with an element there, where there is one.
     pub nodes: Vec<u32>,
-    /// Rank that evaluates the pairs of facets whose last slave node this is: its owner, or who has fewer of them.
-    pub pairs: Vec<u32>,
     /// Facets of the surfaces that may touch, in the order of surfaces and faces.
     pub facets: Vec<ContactFacet>,
     /// Faces between elements of different ranks.
     pub cut: usize,
+}
+
+impl Partition {
+    /// Everything on rank 0, for a mesh too small to share.
+    pub fn on_one_rank(part: &ModelPart, ranks: usize) -> Self {
+        Self {
+            ranks,
+            elements: vec![0; part.elements.len()],
+            conditions: vec![0; part.conditions.len()],
+            nodes: vec![0; part.nodes.len()],
+            facets: Vec::new(),
+            cut: 0,
+        }
+    }
 }
 
 /// Cuts the mesh of `part` for `ranks` ranks; `surfaces` may touch each other.
@@ -76,7 +95,7 @@ pub fn partition(part: &ModelPart, surfaces: &[Surface], ranks: usize) -> Result
     let cut = shared.iter().filter(|&&(a, b, _)| elements[a as usize] != elements[b as usize]).count();
     let nodes = node_owners(part, &elements, &elements_of_nodes, ranks);
     let conditions = condition_owners(part, &elements, &nodes, &elements_of_nodes);
-    Ok(Partition { ranks, elements, conditions, pairs: nodes.clone(), nodes, facets, cut })
+    Ok(Partition { ranks, elements, conditions, nodes, facets, cut })
 }
 
 /// Weight of each element: its nodes, and more behind slave facets.

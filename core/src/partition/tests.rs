@@ -1,6 +1,7 @@
 use std::collections::HashMap;
 
-use super::{Counts, Partition, Repeats, Surface, Traffic, partition, surfaces};
+use super::share::Kept;
+use super::{Counts, Partition, Repeats, Share, Surface, Traffic, common_nodes, partition, surfaces};
 use crate::geometry::Shape;
 use crate::model::{ModelPart, Nodes, SubPart};
 use crate::parameters::Document;
@@ -147,22 +148,25 @@ fn counts_of_a_halved_bar_are_those_of_its_section() {
     // the blocks share no node, so one rank each leaves nothing but the pairs to talk about
     cut.nodes = (0..250).map(|node| node / 125).collect();
     (cut.elements, cut.cut) = (by_block, 0);
-    let counts = Counts::new(&part, &cut);
+    let surfaces = its_surfaces(&part);
+    let common = common_nodes(&part, &surfaces, &Document::from_str("{}", "deck.json").unwrap().root);
+    let counts = Counts::new(&part, &cut, &common);
     let [lower, upper] = counts.ranks[..] else { panic!("two ranks") };
     assert_eq!((lower.nodes, lower.ghosts, lower.copies, lower.neighbours, lower.cut_faces), (125, 0, 0, 0, 0));
-    assert_eq!((lower.slave_facets, upper.slave_facets, upper.far_pairs, upper.far_ranks), (0, 16, 16, 1));
+    assert_eq!((lower.slave_facets, upper.slave_facets, upper.far_pairs), (0, 16, 16));
+    // two layers of 25 nodes a block at the interface
+    assert_eq!((counts.common, lower.held, upper.held), (100, 125 + 50, 125 + 50));
     // 13³ pairs of neighbouring nodes a block: 3 n + 1 along each axis
     assert_eq!(counts.entries, 2 * 13 * 13 * 13);
     let repeats = Repeats { newton: 2, krylov: 3 };
-    let sums = 2 * (24 * 3 + 32) + 48;
-    assert_eq!(counts.traffic(0, repeats), Traffic { messages: 2 * 10 + 1, bytes: sums });
-    assert_eq!(counts.traffic(1, repeats).bytes, sums + 8 * 3 * 3 * 4 * 16 * 2);
-    assert_eq!(counts.traffic(1, repeats).messages, 2 * 10 + 1 + 4);
+    let bytes = 2 * (24 * 3 + 64 + (8 + 72) * 16 + 8 * 3 * 100);
+    assert_eq!(counts.traffic(0, repeats), Traffic { messages: 2 * (9 + 4 + 1 + 2), bytes });
+    assert_eq!(counts.traffic(1, repeats), counts.traffic(0, repeats));
 
     // lower block split along x = 1/2: a section of 25 nodes and 16 faces
     cut.elements = (0..128).map(|element| if element < 64 { u32::from(element % 4 >= 2) } else { 1 }).collect();
     cut.nodes = (0..250).map(|node| if node < 125 { u32::from(node % 5 > 2) } else { 1 }).collect();
-    let counts = Counts::new(&part, &cut);
+    let counts = Counts::new(&part, &cut, &common);
     let [left, right] = counts.ranks[..] else { panic!("two ranks") };
     assert_eq!((left.nodes, left.ghosts, left.copies, left.neighbours, left.cut_faces), (75, 0, 25, 1, 16));
     assert_eq!((right.nodes, right.ghosts, right.copies, right.neighbours, right.cut_faces), (175, 25, 0, 1, 16));
@@ -170,11 +174,72 @@ fn counts_of_a_halved_bar_are_those_of_its_section() {
     assert_eq!(right.ghost_entries, 13 * 13 * 2);
 }
 
+/// Every rank has its elements with their nodes, the interface with the elements at it, and knows who else has what.
+#[test]
+fn ranks_keep_their_elements_and_the_interface() {
+    let whole = two_blocks(6);
+    let ranks = 5;
+    let surfaces = its_surfaces(&whole);
+    let cut = partition(&whole, &surfaces, ranks).unwrap();
+    let deck = Document::from_str("{}", "deck.json").unwrap().root;
+    let common = common_nodes(&whole, &surfaces, &deck);
+    assert_eq!(common.iter().filter(|common| **common).count(), 2 * 49);
+    let mut shares = Vec::new();
+    for rank in 0..ranks {
+        let mut part = two_blocks(6);
+        let kept = Kept::new(&part, &cut, &common, rank);
+        part.keep(&kept.nodes, &kept.elements, &kept.conditions);
+        let share = kept.share(&cut, whole.sizes());
+        assert!(part.nodes.len() < 400 && share.owners.len() == part.nodes.len(), "{}", part.nodes.len());
+        let own = |list: &[u32]| list.iter().filter(|&&owner| owner as usize == rank).count();
+        assert_eq!(own(&share.elements), own(&cut.elements));
+        assert_eq!((own(&share.owners), own(&share.conditions)), (own(&cut.nodes), own(&cut.conditions)));
+        // Both layers of elements at the interface.
+        assert!(part.elements.ids.iter().filter(|&&id| (181..=252).contains(&id)).count() == 72);
+        for element in 0..part.elements.len() as u32 {
+            let id = |node: &u32| part.nodes.ids[*node as usize];
+            let before = whole.elements.find(part.elements.ids[element as usize]).unwrap();
+            assert!(
+                part.elements.nodes(element).iter().map(id).eq(whole
+                    .elements
+                    .nodes(before)
+                    .iter()
+                    .map(|n| *n as usize + 1))
+            );
+        }
+        assert_eq!(part.part("Contact").unwrap().nodes.len(), 98);
+        shares.push(share);
+    }
+    for (a, b) in (0..ranks).flat_map(|a| (0..ranks).map(move |b| (a, b))).filter(|(a, b)| a != b) {
+        let places = |share: &Share, list: &[u32]| list.iter().map(|&n| share.places[n as usize]).collect::<Vec<u32>>();
+        assert_eq!(places(&shares[a], &shares[a].halo.copied[b]), places(&shares[b], &shares[b].halo.copies[a]));
+        for (of_a, of_b) in shares[a].halo.everywhere.iter().zip(&shares[b].halo.everywhere) {
+            assert_eq!(places(&shares[a], of_a), places(&shares[b], of_b));
+        }
+    }
+}
+
+/// What is left out of a process's settings is its default, the whole skin, and parts that it needs whole are kept.
+#[test]
+fn processes_say_what_every_rank_keeps() {
+    let part = two_blocks(3);
+    let text = r#"{"processes": {"list": [{"python_module": "impose_rigid_movement_process",
+        "Parameters": {"model_part_name": "Slave", "master_node_id": 1}}]}}"#;
+    let deck = Document::from_str(text, "deck.json").unwrap().root;
+    let common = common_nodes(&part, &[], &deck);
+    assert_eq!(common.iter().filter(|common| **common).count(), 17);
+    assert!(common[0]);
+    let skin = [Surface { whole_skin: true, ..Surface::default() }];
+    assert_eq!(common_nodes(&part, &skin, &deck).iter().filter(|common| **common).count(), 2 * (64 - 8));
+}
+
 /// Two ranks with the node pairs (7, 100, 100) and (3): everything above the mean of 105 goes over, node by node.
 #[test]
 fn pairs_of_a_full_rank_go_to_an_empty_one() {
-    let mut cut = partition(&two_blocks(2), &[], 2).unwrap();
+    let part = two_blocks(2);
+    let cut = partition(&part, &[], 2).unwrap();
     let home = cut.nodes.clone();
+    let mut share = Kept::new(&part, &cut, &vec![true; part.nodes.len()], 0).share(&cut, part.sizes());
     let of = |rank: u32| home.iter().enumerate().filter(move |(_, r)| **r == rank).map(|(node, _)| node as u32);
     let full: Vec<u32> = of(0).take(3).collect();
     let empty = of(1).next().unwrap();
@@ -182,11 +247,11 @@ fn pairs_of_a_full_rank_go_to_an_empty_one() {
         let nodes = [full[0], full[1], full[2], empty];
         nodes.into_iter().zip(counts).flat_map(|(node, count)| std::iter::repeat_n(node, count)).collect::<Vec<u32>>()
     };
-    assert_eq!(cut.balance_pairs(pairs([7, 100, 100, 3]).into_iter()), 107);
-    assert_eq!(full.iter().map(|&node| cut.pairs[node as usize]).collect::<Vec<_>>(), [1, 1, 0]);
-    assert_eq!(cut.pairs[empty as usize], 1);
+    assert_eq!(share.balance_pairs(pairs([7, 100, 100, 3]).into_iter()), 107);
+    assert_eq!(full.iter().map(|&node| share.pairs[node as usize]).collect::<Vec<_>>(), [1, 1, 0]);
+    assert_eq!(share.pairs[empty as usize], 1);
     for balanced in [[7, 100, 0, 90], [10, 10, 10, 3]] {
-        assert_eq!(cut.balance_pairs(pairs(balanced).into_iter()), 0, "not worth it: {balanced:?}");
-        assert_eq!(cut.pairs, home, "pairs come home");
+        assert_eq!(share.balance_pairs(pairs(balanced).into_iter()), 0, "not worth it: {balanced:?}");
+        assert_eq!(share.pairs, home, "pairs come home");
     }
 }

@@ -95,7 +95,7 @@ impl AssignToNodes {
     /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.
     fn fixed_in_vain(&self, part: &ModelPart) -> Option<Diagnostic> {
         let solved =
-            |column: &str| MOTION.contains(&column) || part.dofs.dofs().iter().any(|dof| dof.variable.column == column);
+            |column: &str| MOTION.contains(&column) || part.dofs.variables().any(|variable| variable.column == column);
         let component = self.components.iter().find(|c| c.fixed && !solved(c.variable.column))?;
         let Target { process, place, .. } = &self.target;
         let fact = format!("{process} fixes {}, which is not an unknown: it gives a value only", component.variable);

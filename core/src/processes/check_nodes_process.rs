@@ -7,6 +7,7 @@ use super::local_axes::LocalAxes;
 use super::process::{Process, ProcessRequest};
 use super::scalar_value::ScalarValue;
 use super::target::{Target, scalar_variable, vector_variable};
+use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::{Model, ScalarVariable};
 use crate::parameters::{Settings, SpaceTime};
@@ -76,7 +77,8 @@ impl Process for CheckNodes {
         let mut found = Vec::new();
         for (variable, expected) in &self.expected {
             let field = part.nodes.history.field(variable.column).map_err(|e| e.at(&self.target.place))?;
-            for &node in &self.target.selection(&part.tree)?.nodes {
+            let own = self.target.selection(&part.tree)?.nodes.iter().filter(|&&node| part.owns_node(node as usize));
+            for &node in own {
                 let at = node as usize;
                 let initial = part.nodes.initial[at];
                 let current = if self.initial { initial } else { part.nodes.current[at] };
@@ -89,6 +91,7 @@ impl Process for CheckNodes {
                 }
             }
         }
+        let found = world().lines_of_all(found);
         if found.is_empty() {
             return Ok(());
         }

@@ -143,6 +143,7 @@ register! { Process "impose_rigid_movement_process",
     aliases: &["ImposeRigidMovementProcess"],
     about: "ties the nodes of a part to one of them by linear constraints",
     source: "eqs. D.12a–e",
+    common: &["model_part_name", "master_node_id"],
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/impose_rigid_movement_process.json")),
     build: Build::Process(build),
 }

@@ -116,6 +116,8 @@ pub struct Entry {
     pub space: usize,
     /// Variables with history that nodes of an element or condition have: name and number of components.
     pub nodal: &'static [(&'static str, usize)],
+    /// Keys of a process whose parts, or nodes by id, every rank must have whole where several share a mesh.
+    pub common: &'static [&'static str],
     /// How it is made.
     pub build: Build,
     /// Source file of the registration.
@@ -137,6 +139,7 @@ impl Entry {
             cell: None,
             space: 0,
             nodal: &[],
+            common: &[],
             build: Build::NameOnly,
             file,
             line,

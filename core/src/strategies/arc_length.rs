@@ -10,6 +10,7 @@ use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
 use crate::assembly::Assembler;
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::Interaction;
 use crate::model::ModelPart;
@@ -146,7 +147,7 @@ impl ArcLength {
             interaction.begin_step(part)?;
         }
         self.newton.assembler.begin_step(part, interactions)?;
-        if self.newton.start(part, None)?.iter().any(|d| *d != 0.0) {
+        if world().any(self.newton.start(part, None)?.iter().any(|d| *d != 0.0)) {
             let fact = "arc length scales loads, but a prescribed displacement changes";
             return Err(Diagnostic::error("arc-length", fact)
                 .remedy("keep it constant, or use \"newton_raphson\"")
@@ -174,7 +175,7 @@ impl ArcLength {
             }
             let (along, mut solved) = self.solve(part, &load, &mut relaxation)?;
             let increment: Vec<f64> = if iteration == 1 {
-                let size = dot(&along, &along).sqrt();
+                let size = self.newton.assembler.dot(&along, &along).sqrt();
                 if size == 0.0 {
                     let fact = "no load acts that arc length could scale";
                     let remedy =
@@ -182,7 +183,7 @@ impl ArcLength {
                     return Err(Diagnostic::error("arc-length", fact).remedy(remedy).into());
                 }
                 let [_, radius] = *self.radius.get_or_insert([size; 2]);
-                let forward = self.last.is_empty() || dot(&along, &self.last) >= 0.0;
+                let forward = self.last.is_empty() || self.newton.assembler.dot(&along, &self.last) >= 0.0;
                 let more = if forward { radius / size } else { -radius / size };
                 factor += more;
                 predictor = along.iter().map(|d| more * d).collect();
@@ -190,7 +191,8 @@ impl ArcLength {
             } else {
                 let back;
                 (back, solved) = self.solve(part, &residual, &mut relaxation)?;
-                let more = -dot(&predictor, &back) / dot(&predictor, &along);
+                let assembler = &self.newton.assembler;
+                let more = -assembler.dot(&predictor, &back) / assembler.dot(&predictor, &along);
                 factor += more;
                 back.iter().zip(&along).map(|(b, d)| b + more * d).collect()
             };
@@ -228,10 +230,6 @@ impl ArcLength {
         let failure = self.newton.explain(part, &records, &residual);
         Ok((records, Some(failure)))
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl SolutionStrategy for ArcLength {

@@ -2,9 +2,9 @@
 
 use zelus_linear_algebra::{CondensationSettings, Multipliers, NotCondensable};
 
-use crate::assembly::DofTable;
+use super::meaning::Meanings;
 use crate::diagnostics::{Diagnostic, Place};
-use crate::model::{Nodes, ProcessInfo};
+use crate::model::ProcessInfo;
 
 /// Mark of the step data: iterative engines solve for the unknowns without multipliers.
 pub const CONDENSE_MULTIPLIERS: &str = "CONDENSE_MULTIPLIERS";
@@ -34,11 +34,8 @@ pub(crate) fn multipliers(info: &ProcessInfo) -> Multipliers {
 }
 
 /// Why multipliers are not condensed, by the names of their nodes.
-pub(super) fn fact(refused: NotCondensable, unknowns: &[u32], dofs: &DofTable, nodes: &Nodes) -> String {
-    let name = |equation: usize| {
-        let dof = &dofs.dofs()[unknowns[equation] as usize];
-        format!("{} of node {}", dof.variable, nodes.ids[dof.node as usize])
-    };
+pub(super) fn fact(refused: NotCondensable, meaning: Meanings<'_>) -> String {
+    let name = |equation| meaning(equation).map_or_else(|| format!("equation {equation}"), |it| it.to_string());
     match refused {
         NotCondensable::OffNode { multiplier, equation, share } => format!(
             "{} acts on {} by {share:.1e} of what it does on its own node, so that multipliers cannot be condensed",
@@ -66,14 +63,8 @@ pub(super) fn remedy(refused: NotCondensable) -> &'static str {
 }
 
 /// The warning that the direct engine solves for all unknowns; `place` names the iterative engine.
-pub(super) fn warning(
-    refused: NotCondensable,
-    unknowns: &[u32],
-    dofs: &DofTable,
-    nodes: &Nodes,
-    place: Option<&Place>,
-) -> Diagnostic {
-    let fact = fact(refused, unknowns, dofs, nodes);
+pub(super) fn warning(refused: NotCondensable, meaning: Meanings<'_>, place: Option<&Place>) -> Diagnostic {
+    let fact = fact(refused, meaning);
     Diagnostic::warning("not-condensed", format!("{fact}: a direct engine solves for all unknowns"))
         .at(place.cloned())
         .remedy(remedy(refused))

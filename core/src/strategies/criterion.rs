@@ -1,6 +1,7 @@
 //! Convergence criteria: what they may look at, and what they say.
 
-use crate::assembly::{Dof, DofTable, Equations};
+use crate::assembly::{Distribution, Dof, DofTable, Equations};
+use crate::communication::world;
 use crate::diagnostics::{Report, Result};
 use crate::model::Nodes;
 use crate::parameters::{Node, Settings};
@@ -37,6 +38,8 @@ pub struct Measures<'a> {
     pub dofs: &'a DofTable,
     /// Which unknowns are solved for.
     pub equations: &'a Equations,
+    /// Which unknowns this rank counts; `None` when it has all.
+    pub distribution: Option<&'a Distribution>,
     /// External minus internal forces.
     pub residual: &'a [f64],
     /// Residuals that a relative measure refers to: before the first solve, prescribed increments included, and after it.
@@ -53,26 +56,21 @@ pub struct Measures<'a> {
 }
 
 impl Measures<'_> {
-    /// Entries of `vector` that are solved for and that `wanted` accepts.
-    pub fn select<'v>(
-        &'v self,
-        vector: &'v [f64],
-        wanted: impl Fn(&Dof) -> bool + 'v,
-    ) -> impl Iterator<Item = f64> + 'v {
+    /// Σ a b over a block of the unknowns that are solved for, and number of its entries, on all ranks; collective.
+    pub fn dot(&self, a: &[f64], b: &[f64], block: Block) -> (f64, usize) {
         let dofs = self.dofs.dofs();
-        self.equations.unknowns().iter().map(|&n| n as usize).filter(move |&n| wanted(&dofs[n])).map(|n| vector[n])
+        let counts = |n: &usize| block.holds(&dofs[*n]) && self.distribution.is_none_or(|d| d.is_own(*n));
+        let own = self.equations.unknowns().iter().map(|&n| n as usize).filter(counts);
+        let mut sums = own.fold([0.0; 2], |[sum, count], n| [sum + a[n] * b[n], count + 1.0]);
+        world().sum(&mut sums);
+        (sums[0], sums[1] as usize)
     }
 
-    /// Euclidean norm over a block and number of its entries.
+    /// Euclidean norm over a block, and number of its entries, as [`Measures::dot`].
     pub fn block(&self, vector: &[f64], block: Block) -> (f64, usize) {
-        norm(self.select(vector, |dof| block.holds(dof)))
+        let (square, count) = self.dot(vector, vector, block);
+        (square.sqrt(), count)
     }
-}
-
-/// Euclidean norm and number of entries.
-pub fn norm(entries: impl Iterator<Item = f64>) -> (f64, usize) {
-    let (sum, count) = entries.fold((0.0, 0), |(sum, count), value| (sum + value * value, count + 1));
-    (sum.sqrt(), count)
 }
 
 /// Whether a residual norm is no larger than the round-off of the terms it is the sum of.

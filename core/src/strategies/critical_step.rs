@@ -1,6 +1,7 @@
 //! The longest stable step of explicit integration.
 
-use crate::assembly::Assembler;
+use crate::assembly::{Assembler, DofTable};
+use crate::communication::world;
 
 /// Products with the tangent at most.
 const PRODUCTS: usize = 100;
@@ -12,12 +13,22 @@ const MARGIN: f64 = 1.02;
 /// Estimates the longest stable step, 2/ω (√(1+ξ²) − ξ) with ξ = (α/ω + β ω)/2, in units of time.
 ///
 /// ω² is the largest eigenvalue of M⁻¹ K on the present equations, by power iteration; `mass` has a positive number an
-/// equation. Infinite without stiffness.
-pub(super) fn critical_step(assembler: &Assembler, mass: &[f64], [alpha, beta]: [f64; 2]) -> f64 {
+/// equation. Infinite without stiffness. Collective.
+pub(super) fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64], [alpha, beta]: [f64; 2]) -> f64 {
     let equations = assembler.equations();
-    let mut x: Vec<f64> =
-        (0..mass.len()).map(|i| (1.0 + (i % 7) as f64 / 7.0) * if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
-    let weighted = |x: &[f64]| x.iter().zip(mass).map(|(x, m)| m * x * x).sum::<f64>().sqrt();
+    // Any start will do that is the same for every number of ranks.
+    let start = |&number: &u32| {
+        let dof = &dofs.dofs()[number as usize];
+        let node = assembler.distribution().map_or(dof.node, |distribution| distribution.place(number as usize));
+        let i = 3 * node as usize + dof.variable.offset();
+        (1.0 + (i % 7) as f64 / 7.0) * if i % 2 == 0 { 1.0 } else { -1.0 }
+    };
+    let mut x: Vec<f64> = equations.unknowns().iter().map(start).collect();
+    let counts = |at: usize| assembler.counts(equations.unknowns()[at] as usize);
+    let weighted = |x: &[f64]| {
+        let own = (0..x.len()).filter(|&at| counts(at)).map(|at| mass[at] * x[at] * x[at]);
+        world().total(own.sum()).sqrt()
+    };
     let mut square = 0.0;
     for _ in 0..PRODUCTS {
         let size = weighted(&x);

@@ -11,6 +11,7 @@ use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::gather;
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, Inertia, damped_by_properties, impose_constraints, strongest_damping};
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::Interaction;
 use crate::model::ModelPart;
@@ -85,16 +86,7 @@ impl ExplicitStrategy {
         let interactions = std::mem::take(&mut part.interactions);
         let mut assembler = Assembler::new(part, &interactions, true);
         part.interactions = interactions;
-        if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.multiplier) {
-            let fact = format!("explicit integration cannot carry the Lagrange multipliers {}", dof.variable.column);
-            let remedy = "use contact by penalty, \"mortar_type\": \"PenaltyContactFrictionless\"";
-            return Err(Diagnostic::error("explicit-multipliers", fact).remedy(remedy).into());
-        }
-        if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.variable.column != DISPLACEMENT.name()) {
-            let fact = format!("explicit integration cannot carry {}, which has no mass", dof.variable.column);
-            let remedy = "use elements of displacements only, e.g. SmallDisplacementBbarElement2D4N or 3D8N";
-            return Err(Diagnostic::error("explicit-unknowns", fact).remedy(remedy).into());
-        }
+        world().agree(only_displacements(part))?;
         scheme.prepare(part);
         part.nodes.history.add(&FORCE_RESIDUAL);
         let mass = assembler.lumped_mass(part)?;
@@ -106,8 +98,9 @@ impl ExplicitStrategy {
                 worst = Some((part.nodes.ids[dof.node as usize], m));
             }
         }
-        if let Some((node, m)) = worst.filter(|(_, m)| *m <= 0.0) {
-            let fact = format!("the lumped mass of node {node} is {m}, explicit integration needs a positive one");
+        let massless = worst.filter(|(_, m)| *m <= 0.0).map(|(node, m)| format!("of node {node} is {m}"));
+        if let Some(massless) = world().first_to_say(massless) {
+            let fact = format!("the lumped mass {massless}, explicit integration needs a positive one");
             let remedy = "give a DENSITY, or elements whose lumped mass is positive (e.g. 2D4N instead of 2D8N)";
             return Err(Diagnostic::error("lumped-mass", fact).remedy(remedy).into());
         }
@@ -125,7 +118,7 @@ impl ExplicitStrategy {
         part.interactions = interactions;
         result?;
         let rayleigh = strongest_damping(part, self.settings.rayleigh);
-        Ok(critical_step(&self.assembler, &self.reduced_mass(), rayleigh))
+        Ok(critical_step(&self.assembler, &part.dofs, &self.reduced_mass(), rayleigh))
     }
 
     /// Mass of each equation; what slaves carry is lumped on their masters.
@@ -182,7 +175,7 @@ impl ExplicitStrategy {
             self.warn_of_motion(part, number);
         }
         let broken = self.assembler.values(part).iter().position(|v| !v.is_finite());
-        Ok((Vec::new(), broken.map(|number| self.explain(part, number))))
+        Ok((Vec::new(), world().first_to_say(broken.map(|number| self.explain(part, number)))))
     }
 
     /// Puts prescribed unknowns back to where they are now: forces are those of the step's start.
@@ -242,6 +235,22 @@ impl ExplicitStrategy {
         let node = part.nodes.ids[dof.node as usize];
         format!("{} of node {node} is no longer finite: the step is longer than the critical one", dof.variable)
     }
+}
+
+/// # Errors
+/// Unknowns that central differences cannot move.
+fn only_displacements(part: &ModelPart) -> Result<()> {
+    if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.multiplier) {
+        let fact = format!("explicit integration cannot carry the Lagrange multipliers {}", dof.variable.column);
+        let remedy = "use contact by penalty, \"mortar_type\": \"PenaltyContactFrictionless\"";
+        return Err(Diagnostic::error("explicit-multipliers", fact).remedy(remedy).into());
+    }
+    if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.variable.column != DISPLACEMENT.name()) {
+        let fact = format!("explicit integration cannot carry {}, which has no mass", dof.variable.column);
+        let remedy = "use elements of displacements only, e.g. SmallDisplacementBbarElement2D4N or 3D8N";
+        return Err(Diagnostic::error("explicit-unknowns", fact).remedy(remedy).into());
+    }
+    Ok(())
 }
 
 impl SolutionStrategy for ExplicitStrategy {

@@ -1,15 +1,21 @@
 //! The equations of all ranks added up on rank 0, where one direct solver serves them all.
+//!
+//! There they stand in the order in which one process would count them, so that its answer is that of one process.
 
 use std::sync::OnceLock;
 
 use rayon::ThreadPool;
-use zelus_linear_algebra::{Csr, NotCondensable, System};
+use zelus_linear_algebra::{Csr, Layout, NotCondensable, System};
 
+use super::meaning::Meaning;
+use crate::assembly::{Assembler, DofTable, Numbering};
 use crate::communication::{threads_while_others_wait, world};
+use crate::model::Nodes;
 
 /// The three matrices of a system on rank 0; empty on the others.
 #[derive(Default)]
 pub(super) struct Gathered {
+    whole: Whole,
     bulk: GatheredMatrix,
     coupling: GatheredMatrix,
     loads: GatheredMatrix,
@@ -21,19 +27,85 @@ pub(super) struct Gathered {
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,
 }
 
+/// All equations on rank 0.
+#[derive(Default)]
+struct Whole {
+    graph: Option<u64>,
+    /// Place here of each equation, by its number over all ranks.
+    places: Vec<u32>,
+    layout: Layout,
+    meanings: Vec<Meaning>,
+}
+
+impl Whole {
+    /// Puts the equations of all ranks in the order of their nodes; collective.
+    fn lay_out(&mut self, assembler: &Assembler, numbering: &Numbering, dofs: &DofTable, nodes: &Nodes) {
+        let unknowns = assembler.equations().unknowns();
+        let row = |&equation: &u32| {
+            let number = unknowns[equation as usize];
+            let place = assembler.distribution().map_or(0, |distribution| distribution.place(number as usize));
+            let [variable, node, multiplier] = Meaning::of(dofs, nodes, number).pack(dofs);
+            [f64::from(place), variable, node, multiplier]
+        };
+        let own: Vec<f64> = numbering.own.iter().flat_map(row).collect();
+        let counts: Vec<usize> = numbering.counts().iter().map(|count| 4 * count).collect();
+        let rows = world().gather_to_root(&own, &counts);
+        let rows: Vec<&[f64]> = rows.chunks_exact(4).collect();
+        let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+        // Equations of a node stand together already, in their order.
+        order.sort_by_key(|&number| rows[number as usize][0] as u32);
+        self.places = vec![0; rows.len()];
+        order.iter().enumerate().for_each(|(place, &number)| self.places[number as usize] = place as u32);
+        let sorted = || order.iter().map(|&number| rows[number as usize]);
+        self.layout = Layout {
+            node: sorted().map(|row| row[0] as u32).collect(),
+            multiplier: sorted().map(|row| row[3] != 0.0).collect(),
+            near_null_space: Vec::new(),
+        };
+        self.meanings = sorted().filter_map(|row| Meaning::unpack(&row[1..], dofs)).collect();
+    }
+}
+
 impl Gathered {
     /// Brings rank 0 up to date with what the ranks have, as far as its stamps have changed; collective.
-    pub(super) fn update(&mut self, own: &System<'_>, loads: Option<&Csr>) {
-        self.bulk.update(own.bulk, own.bulk_graph, own.bulk_values);
+    pub(super) fn update(&mut self, assembler: &Assembler, loads: Option<&Csr>, dofs: &DofTable, nodes: &Nodes) {
+        let own = assembler.system();
+        let Some(numbering) = assembler.numbering() else { return };
+        if self.whole.graph != Some(own.bulk_graph) {
+            self.whole.lay_out(assembler, numbering, dofs, nodes);
+            self.whole.graph = Some(own.bulk_graph);
+            (self.bulk, self.coupling, self.loads) = Default::default();
+        }
+        let places = &self.whole.places;
+        self.bulk.update(own.bulk, numbering, places, own.bulk_graph, own.bulk_values);
         let none = Csr::empty(own.equations());
-        self.coupling.update(own.coupling.unwrap_or(&none), own.coupling_graph, own.coupling_values);
+        let coupling = own.coupling.unwrap_or(&none);
+        self.coupling.update(coupling, numbering, places, own.coupling_graph, own.coupling_values);
         self.solves += 1;
         if world().any(loads.is_some()) {
             // Which follower loads act may change at any time.
-            self.loads.update(loads.unwrap_or(&none), self.solves, self.solves);
+            self.loads.update(loads.unwrap_or(&none), numbering, places, self.solves, self.solves);
         } else {
             self.loads = GatheredMatrix::default();
         }
+    }
+
+    /// The vector of all equations on rank 0, from one over those of each rank; collective.
+    pub(super) fn gather(&self, own: &[f64], numbering: &Numbering) -> Vec<f64> {
+        let all = world().gather_to_root(&numbering.own_of(own), &numbering.counts());
+        let mut out = vec![0.0; all.len()];
+        self.whole.places.iter().zip(all).for_each(|(&place, value)| out[place as usize] = value);
+        out
+    }
+
+    /// Gives every rank what it owns of a vector that rank 0 has; collective.
+    pub(super) fn scatter(&self, whole: &[f64], numbering: &Numbering) -> Vec<f64> {
+        let of = |number: usize| whole[self.whole.places[number] as usize];
+        let parts: Vec<Vec<f64>> = match world().is_root() {
+            true => numbering.starts.windows(2).map(|range| (range[0]..range[1]).map(of).collect()).collect(),
+            false => vec![Vec::new(); world().size()],
+        };
+        world().exchange_numbers(&parts).swap_remove(0)
     }
 
     /// Does what the other ranks wait for, with the threads of those on this machine.
@@ -58,11 +130,25 @@ impl Gathered {
         None
     }
 
+    /// What the equations stand for, on rank 0.
+    pub(super) fn meanings(&self) -> &[Meaning] {
+        &self.whole.meanings
+    }
+
+    /// What an equation stands for that [`Gathered::not_condensed`] or the solver of rank 0 names.
+    pub(super) fn meaning(&self, equation: usize) -> Option<Meaning> {
+        #[cfg(feature = "petsc")]
+        if let Some(rows) = &self.petsc {
+            return rows.meaning(equation);
+        }
+        self.whole.meanings.get(equation).copied()
+    }
+
     /// The whole system, on rank 0, and the tangents of follower loads.
     pub(super) fn system<'a>(&'a self, own: &System<'a>) -> (System<'a>, Option<&'a Csr>) {
         let coupling = (self.coupling.sum.entries() > 0).then_some(&self.coupling.sum);
         let loads = (self.loads.sum.entries() > 0).then_some(&self.loads.sum);
-        (System { bulk: &self.bulk.sum, coupling, ..*own }, loads)
+        (System { layout: &self.whole.layout, bulk: &self.bulk.sum, coupling, ..*own }, loads)
     }
 }
 
@@ -77,53 +163,53 @@ struct GatheredMatrix {
 }
 
 impl GatheredMatrix {
-    fn update(&mut self, own: &Csr, graph: u64, values: u64) {
+    /// `places` says where each equation is on rank 0, by its number.
+    fn update(&mut self, own: &Csr, numbering: &Numbering, places: &[u32], graph: u64, values: u64) {
         let new_graph = self.graph != Some(graph);
         if !new_graph && self.values == Some(values) {
             return;
         }
         let world = world();
         if new_graph {
-            let starts: Vec<u32> = own.row_starts.iter().map(|&start| start as u32).collect();
-            let starts = world.exchange_indices(&to_root(starts));
-            let columns = world.exchange_indices(&to_root(own.columns.clone()));
+            let rows = |row: usize| std::iter::repeat_n(numbering.numbers[row], own.row(row).0.len());
+            let rows: Vec<u32> = (0..own.rows).flat_map(rows).collect();
+            let columns: Vec<u32> = own.columns.iter().map(|&column| numbering.numbers[column as usize]).collect();
+            let rows = world.exchange_indices(&to_root(rows));
+            let columns = world.exchange_indices(&to_root(columns));
             if world.is_root() {
-                self.join(&starts, &columns);
+                self.join(&rows, &columns, places);
             }
         }
         let counts: Vec<usize> = self.places.iter().map(Vec::len).collect();
         let of_ranks = world.gather_to_root(&own.values, &counts);
         self.sum.zero();
-        let places = self.places.iter().flatten();
-        places.zip(of_ranks).for_each(|(&place, value)| self.sum.values[place as usize] += value);
+        let entries = self.places.iter().flatten();
+        entries.zip(of_ranks).for_each(|(&entry, value)| self.sum.values[entry as usize] += value);
         (self.graph, self.values) = (Some(graph), Some(values));
     }
 
     /// The union of the patterns, and where the entries of each rank are in it.
-    fn join(&mut self, starts: &[Vec<u32>], columns: &[Vec<u32>]) {
-        let rows = starts[0].len() - 1;
-        let row = |rank: usize, row: usize| &columns[rank][starts[rank][row] as usize..starts[rank][row + 1] as usize];
+    fn join(&mut self, rows: &[Vec<u32>], columns: &[Vec<u32>], places: &[u32]) {
+        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); places.len()];
+        let place = |number: &u32| places[*number as usize];
+        for (row, column) in rows.iter().flatten().zip(columns.iter().flatten()) {
+            lists[place(row) as usize].push(place(column));
+        }
         let mut row_starts = vec![0];
         let mut joined: Vec<u32> = Vec::new();
-        self.places = columns.iter().map(|list| Vec::with_capacity(list.len())).collect();
-        let mut merged: Vec<u32> = Vec::new();
-        for i in 0..rows {
-            merged.clear();
-            (0..starts.len()).for_each(|rank| merged.extend_from_slice(row(rank, i)));
-            merged.sort_unstable();
-            merged.dedup();
-            for (rank, places) in self.places.iter_mut().enumerate() {
-                let mut at = 0;
-                for &column in row(rank, i) {
-                    while merged[at] != column {
-                        at += 1;
-                    }
-                    places.push((joined.len() + at) as u32);
-                }
-            }
-            joined.extend_from_slice(&merged);
+        for list in &mut lists {
+            list.sort_unstable();
+            list.dedup();
+            joined.extend_from_slice(list);
             row_starts.push(joined.len());
         }
+        drop(lists);
+        let entry = |(row, column): (&u32, &u32)| {
+            let (start, end) = (row_starts[place(row) as usize], row_starts[place(row) as usize + 1]);
+            let column = place(column);
+            (start + joined[start..end].partition_point(|&other| other < column)) as u32
+        };
+        self.places = rows.iter().zip(columns).map(|(r, c)| r.iter().zip(c).map(entry).collect()).collect();
         self.sum = Csr::from_sorted_pattern(row_starts, joined);
     }
 }
@@ -139,10 +225,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn patterns_are_joined() {
+    fn patterns_are_joined_in_the_order_of_one_process() {
         let mut matrix = GatheredMatrix::default();
-        matrix.join(&[vec![0, 2, 2], vec![0, 1, 2]], &[vec![0, 1], vec![1, 0]]);
-        assert_eq!((&matrix.sum.row_starts[..], &matrix.sum.columns[..]), (&[0, 2, 3][..], &[0, 1, 0][..]));
-        assert_eq!(matrix.places, [vec![0, 1], vec![1, 2]]);
+        // Equation 0 of rank 0 comes second, equation 1, of rank 1, first.
+        matrix.join(&[vec![0, 0], vec![0, 1]], &[vec![0, 1], vec![0, 1]], &[1, 0]);
+        assert_eq!((&matrix.sum.row_starts[..], &matrix.sum.columns[..]), (&[0, 1, 3][..], &[0, 0, 1][..]));
+        assert_eq!(matrix.places, [vec![2, 1], vec![2, 0]]);
     }
 }

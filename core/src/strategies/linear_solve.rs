@@ -4,6 +4,7 @@ use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, v
 
 use super::condensing;
 use super::gathered::Gathered;
+use super::meaning::{Meaning, Meanings};
 use crate::assembly::{Assembler, DofTable};
 use crate::communication::world;
 use crate::diagnostics::Error;
@@ -65,27 +66,31 @@ pub(super) fn solve(
     nodes: &Nodes,
 ) -> Result<(Vec<f64>, SolveReport), Failed> {
     let loads = assembler.load_tangents().cloned();
-    let unknowns = assembler.equations().unknowns();
     let system = assembler.system();
-    if assembler.distribution().is_none() {
-        return solve_here(&system, loads.as_ref(), assembler.merged_stamps(), solver, rhs, unknowns, dofs, nodes);
-    }
+    let Some(numbering) = assembler.numbering() else {
+        let unknowns = assembler.equations().unknowns();
+        let meaning = |equation: usize| unknowns.get(equation).map(|&number| Meaning::of(dofs, nodes, number));
+        return solve_here(&system, loads.as_ref(), assembler.merged_stamps(), solver, rhs, &meaning);
+    };
     #[cfg(feature = "petsc")]
     if let Some(rows) = &mut gathered.petsc {
-        let solved = rows.solve(assembler, loads.as_ref(), dofs, nodes, rhs)?;
-        return solved.map_err(|error| explain(&error, None, unknowns, dofs, nodes));
+        let solved = rows.solve(assembler, numbering, loads.as_ref(), dofs, nodes, rhs)?;
+        return solved.map_err(|error| explain(&error, None, &|equation| rows.meaning(equation)));
     }
-    gathered.update(&system, loads.as_ref());
+    gathered.update(assembler, loads.as_ref(), dofs, nodes);
+    let rhs = gathered.gather(rhs, numbering);
     let (whole, loads) = gathered.system(&system);
     let solved = if world().is_root() {
         let stamps = assembler.merged_stamps();
-        gathered.while_others_wait(|| solve_here(&whole, loads, stamps, solver, rhs, unknowns, dofs, nodes))
+        let meanings = gathered.meanings();
+        gathered.while_others_wait(|| {
+            solve_here(&whole, loads, stamps, solver, &rhs, &|equation| meanings.get(equation).copied())
+        })
     } else {
-        Ok((vec![0.0; rhs.len()], elsewhere()))
+        Ok((Vec::new(), elsewhere()))
     };
-    let (mut increment, report) = world().agree(solved.map_err(Error::from))?;
-    world().broadcast(&mut increment);
-    Ok((increment, report))
+    let (increment, report) = world().agree(solved.map_err(Error::from))?;
+    Ok((assembler.complete(&gathered.scatter(&increment, numbering)), report))
 }
 
 /// What a rank knows of a solve that rank 0 did.
@@ -111,11 +116,9 @@ fn solve_here(
     merged_stamps: [u64; 2],
     solver: &mut dyn LinearSolver,
     rhs: &[f64],
-    unknowns: &[u32],
-    dofs: &DofTable,
-    nodes: &Nodes,
+    meaning: Meanings<'_>,
 ) -> Result<(Vec<f64>, SolveReport), Failed> {
-    let explain = |error: SolveError| explain(&error, Some(system), unknowns, dofs, nodes);
+    let explain = |error: SolveError| explain(&error, Some(system), meaning);
     let mut increment = vec![0.0; rhs.len()];
     let mut report = solver.solve(system, rhs, &mut increment).map_err(explain)?;
     let Some(loads) = loads else { return Ok((increment, report)) };
@@ -156,35 +159,22 @@ fn solve_here(
     Ok((increment, report))
 }
 
-fn explain(
-    error: &SolveError,
-    system: Option<&System<'_>>,
-    unknowns: &[u32],
-    dofs: &DofTable,
-    nodes: &Nodes,
-) -> Failed {
+fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_>) -> Failed {
     if let SolveError::NotCondensable(refused) = error {
-        let (fact, remedy) = (condensing::fact(*refused, unknowns, dofs, nodes), condensing::remedy(*refused));
+        let (fact, remedy) = (condensing::fact(*refused, meaning), condensing::remedy(*refused));
         return Failed::Other(Error::System(format!("linear solve: {fact}\n    {remedy}")));
     }
     let SolveError::Singular { equations, rank_deficiency } = error else {
         return Failed::Other(Error::System(format!("linear solve: {error}")));
     };
-    let names: Vec<String> = equations
-        .iter()
-        .take(6)
-        .filter_map(|&e| unknowns.get(e))
-        .map(|&n| {
-            let dof = &dofs.dofs()[n as usize];
-            format!("{} of node {}", dof.variable, nodes.ids[dof.node as usize])
-        })
-        .collect();
-    let only_multipliers =
-        equations.iter().all(|&e| unknowns.get(e).is_some_and(|&n| dofs.dofs()[n as usize].multiplier));
+    let names: Vec<String> =
+        equations.iter().take(6).filter_map(|&e| meaning(e)).map(|meaning| meaning.to_string()).collect();
+    let only_multipliers = equations.iter().all(|&e| meaning(e).is_some_and(|meaning| meaning.multiplier));
     let rank = match rank_deficiency {
-        _ if only_multipliers => system
-            .and_then(zelus_linear_algebra::rank)
-            .map(|rank| format!(": its rank is {rank}, its size {}", unknowns.len())),
+        _ if only_multipliers => system.and_then(|system| {
+            let rank = zelus_linear_algebra::rank(system)?;
+            Some(format!(": its rank is {rank}, its size {}", system.equations()))
+        }),
         free => free.map(|r| format!(", at least {r} free motions")),
     }
     .unwrap_or_default();

@@ -17,6 +17,7 @@ mod gathered;
 mod generalized_alpha_scheme;
 mod line_search;
 mod linear_solve;
+mod meaning;
 mod newton;
 #[cfg(feature = "petsc")]
 mod owned_condensation;
@@ -37,7 +38,7 @@ pub(crate) use condensing::multipliers;
 pub use condensing::{CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE};
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
-    is_round_off, norm,
+    is_round_off,
 };
 pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{ExplicitSettings, ExplicitStrategy};

@@ -12,10 +12,12 @@ use super::criterion::{ConvergenceCriterion, Measures, Verdict};
 use super::gathered::Gathered;
 use super::line_search::LineSearch;
 use super::linear_solve::{self, Failed, Solved};
+use super::meaning::Meaning;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, impose_constraints};
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::entities::Interaction;
 use crate::model::ModelPart;
@@ -141,7 +143,7 @@ impl NewtonRaphson {
     /// # Errors
     /// A singular matrix or a solver that fails, naming nodes.
     pub(super) fn solve(&mut self, part: &mut ModelPart, rhs: &[f64]) -> Result<Solved, Failed> {
-        if rhs.iter().all(|v| *v == 0.0) {
+        if !world().any(rhs.iter().any(|v| *v != 0.0)) {
             let engine = "none: nothing out of balance".to_owned();
             let increment = vec![0.0; rhs.len()];
             return Ok(Solved { increment, relative_residual: 0.0, iterations: 0, engine, fallback: None });
@@ -156,8 +158,12 @@ impl NewtonRaphson {
             // Said once, and with the names of nodes.
             fallback = None;
             if !std::mem::replace(&mut self.warned_of_multipliers, true) {
-                let (unknowns, place) = (self.assembler.equations().unknowns(), self.solver_place.as_ref());
-                part.messages.push(condensing::warning(refused, unknowns, &part.dofs, &part.nodes, place));
+                let unknowns = self.assembler.equations().unknowns();
+                let meaning = |equation: usize| match self.assembler.numbering() {
+                    Some(_) => self.gathered.meaning(equation),
+                    None => unknowns.get(equation).map(|&number| Meaning::of(&part.dofs, &part.nodes, number)),
+                };
+                part.messages.push(condensing::warning(refused, &meaning, self.solver_place.as_ref()));
             }
         }
         Ok(Solved { increment, relative_residual, iterations, engine: engine.to_owned(), fallback })
@@ -177,6 +183,7 @@ impl NewtonRaphson {
             nodes: &part.nodes,
             dofs: &part.dofs,
             equations: self.assembler.equations(),
+            distribution: self.assembler.distribution(),
             residual: balanced,
             references: &references.start,
             switched: references.switched.as_deref(),
@@ -186,10 +193,13 @@ impl NewtonRaphson {
         })
     }
 
-    /// The first unknown that is no number any more, or whose residual is not.
-    pub(super) fn first_infinite(&self, part: &ModelPart, residual: &[f64]) -> Option<usize> {
+    /// The first unknown that is no number any more, or whose residual is not; collective.
+    pub(super) fn first_infinite(&self, part: &ModelPart, residual: &[f64]) -> Option<String> {
         let values = self.assembler.values(part);
-        (0..values.len()).find(|&n| !(residual[n].is_finite() && values[n].is_finite()))
+        let broken = (0..values.len() as u32)
+            .find(|&n| !(residual[n as usize].is_finite() && values[n as usize].is_finite()))
+            .map(|n| format!("{} or its residual is no longer finite", Meaning::of(&part.dofs, &part.nodes, n)));
+        world().first_to_say(broken)
     }
 
     /// Adds an increment to the unknowns; rates and positions follow.
@@ -213,9 +223,8 @@ impl NewtonRaphson {
         residual: &[f64],
         increment: &mut [f64],
     ) -> Result<()> {
-        let work = |residual: &[f64]| increment.iter().zip(residual).map(|(d, r)| d * r).sum::<f64>();
         let begin = self.assembler.values(part);
-        let before = work(residual);
+        let before = self.assembler.dot(increment, residual);
         let go = |newton: &mut Self, part: &mut ModelPart, factor: f64| {
             let now = newton.assembler.values(part);
             let way = begin.iter().zip(&now).zip(increment.iter());
@@ -228,7 +237,7 @@ impl NewtonRaphson {
             last = factor;
             let inertia = self.scheme.inertia(part);
             match self.assembler.residual(part, interactions, inertia.as_ref()) {
-                Ok(residual) => Ok(Some(work(&residual)).filter(|w| w.is_finite())),
+                Ok(residual) => Ok(Some(self.assembler.dot(increment, &residual)).filter(|w| w.is_finite())),
                 Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => Ok(None),
                 Err(error) => Err(error),
             }
@@ -251,9 +260,18 @@ impl NewtonRaphson {
         })
     }
 
-    /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by power and inverse power iteration.
-    fn condition_number(&self, monitor: &mut dyn Monitor) -> Option<f64> {
-        match zelus_linear_algebra::condition_number(&self.assembler.system()) {
+    /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by power and inverse power iteration; on several
+    /// ranks, rank 0 knows it. Collective.
+    fn condition_number(&mut self, part: &ModelPart, monitor: &mut dyn Monitor) -> Option<f64> {
+        let mut system = self.assembler.system();
+        if self.assembler.numbering().is_some() {
+            self.gathered.update(&self.assembler, None, &part.dofs, &part.nodes);
+            system = self.gathered.system(&system).0;
+        }
+        if !world().is_root() {
+            return None;
+        }
+        match zelus_linear_algebra::condition_number(&system) {
             Ok(spectrum) => Some(spectrum.condition_number()),
             Err(error) => {
                 monitor.note(&format!("condition number: {error}"));
@@ -265,18 +283,14 @@ impl NewtonRaphson {
     pub(super) fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {
         let equations = self.assembler.equations();
         let residual = equations.balanced(residual);
-        let worst = equations
-            .unknowns()
-            .iter()
-            .map(|&n| n as usize)
-            .max_by(|&a, &b| residual[a].abs().total_cmp(&residual[b].abs()));
-        let worst = worst.map(|n| {
-            let dof = &part.dofs.dofs()[n];
-            format!(
-                "; largest residual {:.3e} at {} of node {}",
-                residual[n], dof.variable, part.nodes.ids[dof.node as usize]
-            )
+        let size = |n: u32| residual[n as usize].abs();
+        let worst = equations.unknowns().iter().copied().max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        let largest = world().gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
+        let worst = worst.filter(|&n| size(n) >= largest).map(|n| {
+            let value = residual[n as usize];
+            format!("; largest residual {value:.3e} at {}", Meaning::of(&part.dofs, &part.nodes, n))
         });
+        let worst = world().first_to_say(worst);
         let last = records.last();
         let cycling = last.filter(|r| r.active_set_changes + r.stick_slip_changes > 0).map(|r| {
             let nodes: Vec<String> = r.changed_nodes.iter().map(ToString::to_string).collect();

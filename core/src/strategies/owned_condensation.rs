@@ -2,101 +2,181 @@
 //!
 //! Every rank gets the rows of all nodes with multipliers, which are few, and condenses its own rows with them.
 
+use rustc_hash::{FxHashMap, FxHashSet};
 use zelus_linear_algebra::{Condensation, CondensationSettings, Csr, Layout, NotCondensable, Symmetry, System};
 
+use crate::assembly::Numbering;
 use crate::communication::world;
 
 /// Largest share of a multiplier on other slave nodes: nothing corrects here for what the condensation leaves out.
 const OFF_NODE: f64 = 1e-14;
 
-/// Owned rows of a condensed system; equations count over all ranks, those of rank 0 first.
+/// Place of the node of an equation in the whole mesh, and whether it is a multiplier, by the equation's number.
+pub(super) type Held = FxHashMap<u32, (u32, bool)>;
+
+/// Owned rows of a condensed system, whose equations count over all ranks, those of rank 0 first.
 pub(super) struct OwnedCondensation {
     condensation: Condensation,
-    /// Equations left of each rank, as the whole system counts them.
-    pub(super) equations: Vec<Vec<u32>>,
+    /// Numbers of the equations that the condensation sees, ascending.
+    seen: Vec<u32>,
+    /// Which equation of this rank each of them is, where it is one.
+    here: Vec<Option<u32>>,
+    /// Numbers of all multipliers, ascending.
+    multipliers: Vec<u32>,
+    /// Equations left that this rank owns, as it counts its equations.
+    pub(super) own: Vec<u32>,
+    /// Number of the first of them among all that are left.
+    pub(super) first: usize,
     pub(super) row_starts: Vec<usize>,
     pub(super) columns: Vec<u64>,
     pub(super) values: Vec<f64>,
 }
 
 impl OwnedCondensation {
-    /// Condenses the rows `(equation, columns, values)` of this rank; `equations` are those of each rank. Collective.
+    /// Condenses the rows `(number, columns, values)` of this rank; `held` knows the equations in them, `multiplier` says
+    /// which equations of this rank are multipliers. Collective.
     ///
     /// # Errors
-    /// The same on all ranks: why the multipliers cannot be condensed.
+    /// The same on all ranks: why the multipliers cannot be condensed, by numbers over all ranks.
     pub(super) fn new<'r>(
-        rows: impl Iterator<Item = (u32, Vec<u32>, &'r [f64])>,
-        equations: &[Vec<u32>],
-        layout: &Layout,
+        rows: impl Iterator<Item = (u32, &'r [u64], &'r [f64])>,
+        held: &Held,
+        numbering: &Numbering,
+        multiplier: &[bool],
         settings: &CondensationSettings,
     ) -> Result<Self, NotCondensable> {
         let world = world();
-        let mut has_multipliers = vec![false; layout.node.iter().max().map_or(0, |&node| node as usize + 1)];
-        let multipliers = layout.node.iter().zip(&layout.multiplier).filter(|(_, multiplier)| **multiplier);
-        multipliers.for_each(|(&node, _)| has_multipliers[node as usize] = true);
-        let mut triplets = Vec::new();
-        // Row, column, value; numbers below 2^32 are exact in floating point.
-        let mut shared = Vec::new();
-        for (row, columns, values) in rows {
-            let entries = columns.iter().zip(values);
-            if has_multipliers[layout.node[row as usize] as usize] {
-                entries.for_each(|(&column, &value)| shared.extend([f64::from(row), f64::from(column), value]));
-            } else {
-                triplets.extend(entries.map(|(&column, &value)| (row as usize, column as usize, value)));
-            }
-        }
-        for entry in world.gather_numbers(&shared).iter().flat_map(|list| list.chunks_exact(3)) {
-            triplets.push((entry[0] as usize, entry[1] as usize, entry[2]));
-        }
-        let matrix = Csr::from_triplets(layout.equations(), &triplets);
+        // Multipliers are on every rank.
+        let of_here = numbering.numbers.iter().zip(multiplier).filter(|(_, multiplier)| **multiplier);
+        let mut multipliers: Vec<u32> = of_here.map(|(&number, _)| number).collect();
+        multipliers.sort_unstable();
+        let (known, entries) = Self::rows_of_all(rows, held, &multipliers);
+        let mut seen: Vec<u32> = known.keys().copied().collect();
+        seen.sort_unstable();
+        let at = |number: u32| seen.partition_point(|&other| other < number);
+        let mut places: Vec<u32> = known.values().map(|(place, _)| *place).collect();
+        places.sort_unstable();
+        places.dedup();
+        let layout = Layout {
+            node: seen.iter().map(|number| places.partition_point(|&p| p < known[number].0) as u32).collect(),
+            multiplier: seen.iter().map(|number| known[number].1).collect(),
+            near_null_space: Vec::new(),
+        };
+        let triplets: Vec<(usize, usize, f64)> = entries.iter().map(|&(r, c, value)| (at(r), at(c), value)).collect();
+        let matrix = Csr::from_triplets(seen.len(), &triplets);
         let settings = CondensationSettings { off_node: settings.off_node.min(OFF_NODE), ..*settings };
-        let condensed = Condensation::new(&System::bulk(layout, &matrix, Symmetry::General), &settings, 0);
-        let refused = condensed.as_ref().err().map_or_else(Vec::new, encode);
+        let condensed = Condensation::new(&System::bulk(&layout, &matrix, Symmetry::General), &settings, 0);
+        let refused = condensed.as_ref().err().map_or_else(Vec::new, |refused| encode(refused, &seen));
         if let Some(refused) = world.gather_numbers(&refused).iter().find(|refused| !refused.is_empty()) {
             return Err(decode(refused));
         }
         let condensation = condensed?;
-        let left: Vec<Vec<u32>> = equations
-            .iter()
-            .map(|list| list.iter().copied().filter(|&e| !layout.multiplier[e as usize]).collect())
-            .collect();
+        let own: Vec<u32> = numbering.own.iter().copied().filter(|&e| !multiplier[e as usize]).collect();
+        let left_before = |number: u32| number as usize - multipliers.partition_point(|&m| m < number);
         let kept = condensation.equations();
-        let place = |equation: u32| kept.partition_point(|&e| e < equation);
-        let mut number = vec![0_u64; kept.len()];
-        left.iter().flatten().enumerate().for_each(|(new, &equation)| number[place(equation)] = new as u64);
         let bulk = condensation.system().bulk;
         let (mut row_starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        for &equation in &left[world.rank()] {
-            let (of_row, of_values) = bulk.row(place(equation));
-            let mut entries: Vec<(u64, f64)> =
-                of_row.iter().map(|&c| number[c as usize]).zip(of_values.iter().copied()).collect();
+        for &equation in &own {
+            let row = at(numbering.numbers[equation as usize]);
+            let (of_row, of_values) = bulk.row(kept.partition_point(|&e| (e as usize) < row));
+            let number = |&column: &u32| left_before(seen[kept[column as usize] as usize]) as u64;
+            let mut entries: Vec<(u64, f64)> = of_row.iter().map(number).zip(of_values.iter().copied()).collect();
             entries.sort_unstable_by_key(|(column, _)| *column);
             columns.extend(entries.iter().map(|(column, _)| *column));
             values.extend(entries.iter().map(|(_, value)| *value));
             row_starts.push(columns.len());
         }
-        Ok(Self { condensation, equations: left, row_starts, columns, values })
+        let first = left_before(numbering.starts[world.rank()] as u32);
+        let equations: FxHashMap<u32, u32> =
+            numbering.numbers.iter().enumerate().map(|(equation, &number)| (number, equation as u32)).collect();
+        let here = seen.iter().map(|number| equations.get(number).copied()).collect();
+        Ok(Self { condensation, seen, here, multipliers, own, first, row_starts, columns, values })
     }
 
-    /// Right-hand side of the rows of this rank, for one of the whole system.
+    /// The rows of this rank and those of all nodes with multipliers as (row, column, value), and the equations in them;
+    /// collective.
+    fn rows_of_all<'r>(
+        rows: impl Iterator<Item = (u32, &'r [u64], &'r [f64])>,
+        held: &Held,
+        multipliers: &[u32],
+    ) -> (Held, Vec<(u32, u32, f64)>) {
+        let with_multipliers: FxHashSet<u32> = multipliers.iter().map(|number| held[number].0).collect();
+        let mut known: Held = multipliers.iter().map(|number| (*number, held[number])).collect();
+        let mut entries = Vec::new();
+        // Row and column, each with its node and kind, and the value; numbers below 2^32 are exact in floating point.
+        let mut shared = Vec::new();
+        let packed = |number: u32| {
+            let (place, multiplier) = held[&number];
+            [f64::from(number), f64::from(place), f64::from(u8::from(multiplier))]
+        };
+        for (row, columns, values) in rows {
+            known.insert(row, held[&row]);
+            let of_row = columns.iter().map(|&column| column as u32).zip(values);
+            if with_multipliers.contains(&held[&row].0) {
+                of_row.for_each(|(column, &value)| {
+                    shared.extend(packed(row));
+                    shared.extend(packed(column));
+                    shared.push(value);
+                });
+            } else {
+                for (column, &value) in of_row {
+                    known.insert(column, held[&column]);
+                    entries.push((row, column, value));
+                }
+            }
+        }
+        for entry in world().gather_numbers(&shared).iter().flat_map(|list| list.chunks_exact(7)) {
+            for equation in [&entry[..3], &entry[3..6]] {
+                known.insert(equation[0] as u32, (equation[1] as u32, equation[2] != 0.0));
+            }
+            entries.push((entry[0] as u32, entry[3] as u32, entry[6]));
+        }
+        (known, entries)
+    }
+
+    /// Right-hand side of the rows of this rank, for one of the equations it has.
     pub(super) fn reduce(&self, rhs: &[f64]) -> Vec<f64> {
-        let reduced = self.condensation.reduce(rhs);
-        let kept = self.condensation.equations();
-        let own = self.equations[world().rank()].iter();
-        own.map(|&equation| reduced[kept.partition_point(|&e| e < equation)]).collect()
+        let reduced = self.condensation.reduce(&self.of_seen(rhs));
+        let mut of_here = vec![0.0; rhs.len()];
+        for (&equation, value) in self.condensation.equations().iter().zip(reduced) {
+            if let Some(here) = self.here[equation as usize] {
+                of_here[here as usize] = value;
+            }
+        }
+        self.own.iter().map(|&equation| of_here[equation as usize]).collect()
     }
 
-    /// Completes a solution that has all but the multipliers.
+    /// Completes a solution over the equations of this rank that has all but the multipliers.
     pub(super) fn recover(&self, rhs: &[f64], x: &mut [f64]) {
-        let left: Vec<f64> = self.condensation.equations().iter().map(|&equation| x[equation as usize]).collect();
-        self.condensation.expand(rhs, &left, x);
+        let known = self.of_seen(x);
+        let left: Vec<f64> = self.condensation.equations().iter().map(|&e| known[e as usize]).collect();
+        let mut all = vec![0.0; known.len()];
+        self.condensation.expand(&self.of_seen(rhs), &left, &mut all);
+        for number in &self.multipliers {
+            let at = self.seen.partition_point(|other| other < number);
+            if let Some(here) = self.here[at] {
+                x[here as usize] = all[at];
+            }
+        }
+    }
+
+    /// Number over all ranks of an equation that is left, by its number among those.
+    pub(super) fn number_before(&self, left: usize) -> usize {
+        let later = |number: usize, &multiplier: &u32| number + usize::from(multiplier as usize <= number);
+        self.multipliers.iter().fold(left, later)
+    }
+
+    /// A vector over the equations of this rank as the condensation counts them; zero at those of others.
+    fn of_seen(&self, values: &[f64]) -> Vec<f64> {
+        self.here.iter().map(|here| here.map_or(0.0, |equation| values[equation as usize])).collect()
     }
 }
 
-fn encode(refused: &NotCondensable) -> Vec<f64> {
+fn encode(refused: &NotCondensable, seen: &[u32]) -> Vec<f64> {
+    let number = |equation: usize| f64::from(seen[equation]);
     match *refused {
-        NotCondensable::OffNode { multiplier, equation, share } => vec![multiplier as f64, equation as f64, share],
-        NotCondensable::Undetermined { multiplier, share } => vec![multiplier as f64, share],
+        NotCondensable::OffNode { multiplier, equation, share } => vec![number(multiplier), number(equation), share],
+        NotCondensable::Undetermined { multiplier, share } => vec![number(multiplier), share],
     }
 }
 

@@ -1,12 +1,16 @@
 //! The equations of all ranks, each row complete on the rank that owns it, and PETSc that solves them.
 //!
-//! Equations are counted anew: those of rank 0 come first, then those of rank 1 and so on.
+//! Equations are counted over all ranks, see [`Numbering`].
 
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
 use zelus_linear_algebra::{CondensationSettings, Csr, NotCondensable, SolveError, SolveReport, Symmetry, System};
 use zelus_petsc::{DistributedMatrix, DistributedSolver, PetscSettings, RigidModes};
 
-use super::owned_condensation::OwnedCondensation;
-use crate::assembly::{Assembler, DofTable};
+use super::meaning::Meaning;
+use super::owned_condensation::{Held, OwnedCondensation};
+use crate::assembly::{Assembler, DofTable, Numbering};
 use crate::communication::{petsc, world};
 use crate::diagnostics::Result;
 use crate::model::{Nodes, variables::DISPLACEMENT};
@@ -19,8 +23,6 @@ pub(super) struct OwnedRows {
     made_of: Option<[u64; 4]>,
     graph: u64,
     stamp: u64,
-    /// Equations of each rank, ascending.
-    equations: Vec<Vec<u32>>,
     row_starts: Vec<usize>,
     columns: Vec<u64>,
     values: Vec<f64>,
@@ -31,8 +33,59 @@ pub(super) struct OwnedRows {
     modes: RigidModes,
     /// How multipliers are condensed, where they are to be.
     condensing: Option<CondensationSettings>,
+    /// The node of each equation in the rows of this rank, and whether it is a multiplier; only where these are condensed.
+    held: Held,
     /// What is condensed now, with the stamp of the rows it was made of, or why it is not.
     condensed: Option<(Result<OwnedCondensation, NotCondensable>, u64)>,
+    /// What the equations stand for that are to blame for something.
+    meanings: BTreeMap<usize, Meaning>,
+}
+
+/// The equations of this rank and what they stand for.
+#[derive(Clone, Copy)]
+struct Here<'a> {
+    assembler: &'a Assembler,
+    numbering: &'a Numbering,
+    system: &'a System<'a>,
+    unknowns: &'a [u32],
+    dofs: &'a DofTable,
+    nodes: &'a Nodes,
+}
+
+impl Here<'_> {
+    /// Node of an equation in the whole mesh and whether it is a multiplier, in one word.
+    fn word(&self, equation: u32) -> u32 {
+        let number = self.unknowns[equation as usize] as usize;
+        let place = self.assembler.distribution().map_or(0, |distribution| distribution.place(number));
+        2 * place + u32::from(self.system.layout.multiplier[equation as usize])
+    }
+
+    /// The meanings of a few equations of all ranks, by their numbers over all ranks; collective.
+    fn meanings(&self, wanted: &[usize]) -> BTreeMap<usize, Meaning> {
+        let first = self.numbering.starts[world().rank()];
+        let own = |number: usize| number.checked_sub(first).and_then(|at| self.numbering.own.get(at));
+        let packed = |&number: &usize| match own(number) {
+            Some(&equation) => Meaning::of(self.dofs, self.nodes, self.unknowns[equation as usize]).pack(self.dofs),
+            None => [0.0; 3],
+        };
+        let mut packed: Vec<f64> = wanted.iter().flat_map(packed).collect();
+        world().sum(&mut packed);
+        let meaning = |(&number, packed)| Some((number, Meaning::unpack(packed, self.dofs)?));
+        wanted.iter().zip(packed.chunks_exact(3)).filter_map(meaning).collect()
+    }
+
+    /// Positions and directions of equations, for rigid motions; collective.
+    fn modes(&self, equations: &[u32]) -> RigidModes {
+        let of = |e: &u32| &self.dofs.dofs()[self.unknowns[*e as usize] as usize];
+        let component = |e: &u32| {
+            let variable = of(e).variable;
+            if variable.column == DISPLACEMENT.name() { variable.component.unwrap_or(u8::MAX) } else { u8::MAX }
+        };
+        let components: Vec<u8> = equations.iter().map(component).collect();
+        let dimension = if world().any(components.contains(&2)) { 3 } else { 2 };
+        let coordinates = equations.iter().map(|e| self.nodes.initial[of(e).node as usize]).collect();
+        RigidModes { dimension, coordinates, components }
+    }
 }
 
 impl OwnedRows {
@@ -41,13 +94,14 @@ impl OwnedRows {
         let is_multigrid = settings.engine.is_some_and(|engine| !engine.is_direct());
         Self {
             condensing: condensing.filter(|_| is_multigrid),
+            held: FxHashMap::default(),
             condensed: None,
+            meanings: BTreeMap::new(),
             settings,
             solver: None,
             made_of: None,
             graph: 0,
             stamp: 0,
-            equations: Vec::new(),
             row_starts: Vec::new(),
             columns: Vec::new(),
             values: Vec::new(),
@@ -57,22 +111,26 @@ impl OwnedRows {
         }
     }
 
-    /// Solves `(bulk + coupling + loads) x = rhs` of all ranks, where `rhs` and the answer are whole; collective.
+    /// Solves `(bulk + coupling + loads) x = rhs` of all ranks, where `rhs` and the answer are over the equations this rank
+    /// has; collective.
     ///
     /// # Errors
-    /// Those of [`DistributedSolver::solve`], with equations counted as in `rhs`; [`crate::Error::System`] when PETSc
-    /// cannot start.
+    /// Those of [`DistributedSolver::solve`], with equations that [`OwnedRows::meaning`] knows; [`crate::Error::System`] when
+    /// PETSc cannot start.
     pub(super) fn solve(
         &mut self,
         assembler: &Assembler,
+        numbering: &Numbering,
         loads: Option<&Csr>,
         dofs: &DofTable,
         nodes: &Nodes,
         rhs: &[f64],
     ) -> Result<std::result::Result<(Vec<f64>, SolveReport), SolveError>> {
         let system = assembler.system();
-        self.update(assembler, &system, loads, dofs, nodes);
-        self.condense(&system);
+        let unknowns = assembler.equations().unknowns();
+        let here = Here { assembler, numbering, system: &system, unknowns, dofs, nodes };
+        self.update(here, loads);
+        self.condense(here);
         let left = match &self.condensed {
             Some((Ok(left), _)) => Some(left),
             Some((Err(refused), _)) if self.condensing.is_some_and(|settings| !settings.fallback) => {
@@ -81,11 +139,9 @@ impl OwnedRows {
             _ => None,
         };
         let has_coupling = world().any(system.coupling.is_some() || loads.is_some());
-        let modes =
-            left.map(|left| modes(assembler.equations().unknowns(), &left.equations[world().rank()], dofs, nodes));
-        let equations = left.map_or(&self.equations, |left| &left.equations);
+        let modes = left.map(|left| here.modes(&left.own));
         let matrix = DistributedMatrix {
-            first_row: first_row(equations, world().rank()),
+            first_row: left.map_or(numbering.starts[world().rank()], |left| left.first) as u64,
             row_starts: left.map_or(&self.row_starts, |left| &left.row_starts),
             columns: left.map_or(&self.columns, |left| &left.columns),
             values: left.map_or(&self.values, |left| &left.values),
@@ -96,32 +152,28 @@ impl OwnedRows {
             graph: if left.is_some() { u64::MAX - self.stamp } else { self.graph },
             stamp: self.stamp,
         };
-        let own = &equations[world().rank()];
-        let rhs_owned = match left {
-            Some(left) => left.reduce(rhs),
-            None => own.iter().map(|&e| rhs[e as usize]).collect(),
-        };
-        let mut x_owned = vec![0.0; own.len()];
+        let rhs_owned = left.map_or_else(|| numbering.own_of(rhs), |left| left.reduce(rhs));
+        let mut x_owned = vec![0.0; rhs_owned.len()];
         let solver = match &mut self.solver {
             Some(solver) => solver,
             none => none.insert(DistributedSolver::new(petsc()?, self.settings.clone())),
         };
         let report = match solver.solve(&matrix, &rhs_owned, &mut x_owned) {
             Ok(report) => report,
-            Err(SolveError::Singular { equations: suspicious, rank_deficiency }) => {
-                let all: Vec<u32> = equations.concat();
-                let equations = suspicious.into_iter().filter_map(|e| all.get(e).map(|&e| e as usize)).collect();
+            Err(SolveError::Singular { mut equations, rank_deficiency }) => {
+                if let Some(left) = left {
+                    equations.iter_mut().for_each(|equation| *equation = left.number_before(*equation));
+                }
+                self.meanings = here.meanings(&equations);
                 return Ok(Err(SolveError::Singular { equations, rank_deficiency }));
             }
             Err(error) => return Ok(Err(error)),
         };
-        let counts: Vec<usize> = equations.iter().map(Vec::len).collect();
-        let mut x = vec![0.0; rhs.len()];
-        let all = world().gather_counted(&x_owned, &counts);
-        equations.iter().flatten().zip(all).for_each(|(&equation, value)| x[equation as usize] = value);
-        if let Some(left) = left {
-            left.recover(rhs, &mut x);
-        }
+        let Some(left) = left else { return Ok(Ok((assembler.complete(&x_owned), report))) };
+        let mut own = vec![0.0; rhs.len()];
+        left.own.iter().zip(x_owned).for_each(|(&equation, value)| own[equation as usize] = value);
+        let mut x = assembler.complete(&numbering.own_of(&own));
+        left.recover(rhs, &mut x);
         Ok(Ok((x, report)))
     }
 
@@ -130,32 +182,37 @@ impl OwnedRows {
         self.condensed.as_ref().and_then(|(condensed, _)| condensed.as_ref().err().copied())
     }
 
+    /// What an equation stands for that an error or [`OwnedRows::not_condensed`] names.
+    pub(super) fn meaning(&self, equation: usize) -> Option<Meaning> {
+        self.meanings.get(&equation).copied()
+    }
+
     /// Brings the condensed rows up to date; collective.
-    fn condense(&mut self, system: &System<'_>) {
-        let Some(settings) = self.condensing.filter(|_| system.layout.multiplier.contains(&true)) else { return };
+    fn condense(&mut self, here: Here<'_>) {
+        let multiplier = &here.system.layout.multiplier;
+        let Some(settings) = self.condensing.filter(|_| multiplier.contains(&true)) else { return };
         if self.condensed.as_ref().is_some_and(|(_, stamp)| *stamp == self.stamp) {
             return;
         }
-        let all: Vec<u32> = self.equations.concat();
-        let row = |(at, &equation): (usize, &u32)| {
+        let first = here.numbering.starts[world().rank()];
+        let row = |at: usize| {
             let range = self.row_starts[at]..self.row_starts[at + 1];
-            let columns = self.columns[range.clone()].iter().map(|&column| all[column as usize]).collect();
-            (equation, columns, &self.values[range])
+            ((first + at) as u32, &self.columns[range.clone()], &self.values[range])
         };
-        let rows = self.equations[world().rank()].iter().enumerate().map(row);
-        let made = OwnedCondensation::new(rows, &self.equations, system.layout, &settings);
+        let rows = (0..here.numbering.own.len()).map(row);
+        let made = OwnedCondensation::new(rows, &self.held, here.numbering, multiplier, &settings);
+        if let Err(refused) = &made {
+            self.meanings = here.meanings(&match *refused {
+                NotCondensable::OffNode { multiplier, equation, .. } => vec![multiplier, equation],
+                NotCondensable::Undetermined { multiplier, .. } => vec![multiplier],
+            });
+        }
         self.condensed = Some((made, self.stamp));
     }
 
-    fn update(
-        &mut self,
-        assembler: &Assembler,
-        system: &System<'_>,
-        loads: Option<&Csr>,
-        dofs: &DofTable,
-        nodes: &Nodes,
-    ) {
+    fn update(&mut self, here: Here<'_>, loads: Option<&Csr>) {
         let has_loads = world().any(loads.is_some());
+        let system = here.system;
         let stamps = [system.bulk_graph, system.coupling_graph, system.bulk_values, system.coupling_values];
         if !has_loads && self.made_of == Some(stamps) {
             return;
@@ -166,7 +223,7 @@ impl OwnedRows {
         }
         // Which follower loads act may change at any time.
         if has_loads || self.made_of.is_none_or(|made_of| made_of[..2] != stamps[..2]) {
-            self.lay_out(assembler, &sum, dofs, nodes);
+            self.lay_out(here, &sum);
         }
         let sent: Vec<Vec<f64>> =
             self.sent.iter().map(|list| list.iter().map(|&at| sum.values[at as usize]).collect()).collect();
@@ -179,28 +236,31 @@ impl OwnedRows {
     }
 
     /// Finds the owners of the rows of `sum`, and the pattern of the rows of this rank.
-    fn lay_out(&mut self, assembler: &Assembler, sum: &Csr, dofs: &DofTable, nodes: &Nodes) {
-        let world = world();
-        let unknowns = assembler.equations().unknowns();
-        let owner = |e: usize| assembler.distribution().map_or(0, |d| d.owner(unknowns[e] as usize)) as usize;
-        self.equations = vec![Vec::new(); world.size()];
-        (0..unknowns.len()).for_each(|e| self.equations[owner(e)].push(e as u32));
-        let mut number = vec![0_u32; unknowns.len()];
-        self.equations.iter().flatten().enumerate().for_each(|(new, &e)| number[e as usize] = new as u32);
+    fn lay_out(&mut self, here: Here<'_>, sum: &Csr) {
+        let (world, numbering) = (world(), here.numbering);
         self.sent = vec![Vec::new(); world.size()];
         let (mut rows, mut columns) = (vec![Vec::new(); world.size()], vec![Vec::new(); world.size()]);
         for e in 0..sum.rows {
-            let rank = owner(e);
+            let rank = numbering.owner(numbering.numbers[e]);
             for at in sum.row_starts[e]..sum.row_starts[e + 1] {
                 self.sent[rank].push(at as u32);
-                rows[rank].push(number[e]);
-                columns[rank].push(number[sum.columns[at] as usize]);
+                rows[rank].push(numbering.numbers[e]);
+                columns[rank].push(numbering.numbers[sum.columns[at] as usize]);
             }
         }
+        let words = |list: &Vec<u32>| list.iter().map(|&at| here.word(sum.columns[at as usize])).collect();
+        let words: Vec<Vec<u32>> = match self.condensing {
+            Some(_) => world.exchange_indices(&self.sent.iter().map(words).collect::<Vec<_>>()),
+            None => Vec::new(),
+        };
         let (rows, columns) = (world.exchange_indices(&rows), world.exchange_indices(&columns));
-        let first = first_row(&self.equations, world.rank()) as u32;
-        let own = self.equations[world.rank()].len();
-        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); own];
+        if self.condensing.is_some() {
+            let of_rows = columns.iter().flatten().copied().zip(words.into_iter().flatten());
+            let of_here = (0..here.unknowns.len() as u32).map(|e| (numbering.numbers[e as usize], here.word(e)));
+            self.held = of_rows.chain(of_here).map(|(number, word)| (number, (word / 2, word % 2 == 1))).collect();
+        }
+        let first = numbering.starts[world.rank()] as u32;
+        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); numbering.own.len()];
         for (&row, &column) in rows.iter().flatten().zip(columns.iter().flatten()) {
             lists[(row - first) as usize].push(column);
         }
@@ -217,25 +277,7 @@ impl OwnedRows {
         self.places = rows.iter().zip(&columns).map(|(r, c)| r.iter().zip(c).map(place).collect()).collect();
         self.columns = lists.iter().flatten().map(|&column| u64::from(column)).collect();
         self.values = vec![0.0; self.columns.len()];
-        self.modes = modes(unknowns, &self.equations[world.rank()], dofs, nodes);
+        self.modes = here.modes(&numbering.own);
         self.graph += 1;
     }
-}
-
-/// Number of the first row of a rank, whose equations are counted after those of the ranks before.
-fn first_row(equations: &[Vec<u32>], rank: usize) -> u64 {
-    equations[..rank].iter().map(|list| list.len() as u64).sum()
-}
-
-/// Positions and directions of equations, for rigid motions; collective.
-fn modes(unknowns: &[u32], equations: &[u32], dofs: &DofTable, nodes: &Nodes) -> RigidModes {
-    let of = |e: &u32| &dofs.dofs()[unknowns[*e as usize] as usize];
-    let component = |e: &u32| {
-        let variable = of(e).variable;
-        if variable.column == DISPLACEMENT.name() { variable.component.unwrap_or(u8::MAX) } else { u8::MAX }
-    };
-    let components: Vec<u8> = equations.iter().map(component).collect();
-    let dimension = if world().any(components.contains(&2)) { 3 } else { 2 };
-    let coordinates = equations.iter().map(|e| nodes.initial[of(e).node as usize]).collect();
-    RigidModes { dimension, coordinates, components }
 }

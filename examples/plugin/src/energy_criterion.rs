@@ -6,7 +6,9 @@ use zelus_core::Result;
 use zelus_core::analysis::ExtensionDefinition;
 use zelus_core::register;
 use zelus_core::registry::Build;
-use zelus_core::strategies::{Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict};
+use zelus_core::strategies::{
+    Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict,
+};
 
 /// Defaults of the object `"energy_settings"` that a deck may write among its solver settings.
 const DEFAULTS: &str = r#"// Settings of energy_criterion.
@@ -26,7 +28,7 @@ fn make(request: &mut CriterionRequest<'_>) -> Result<Box<dyn ConvergenceCriteri
 
 /// |Σ a_i b_i| over the unknowns that are solved for.
 fn work(measures: &Measures<'_>, a: &[f64], b: &[f64]) -> f64 {
-    measures.select(a, |_| true).zip(measures.select(b, |_| true)).map(|(a, b)| a * b).sum::<f64>().abs()
+    measures.dot(a, b, Block::All).0.abs()
 }
 
 impl ConvergenceCriterion for EnergyCriterion {

@@ -4,6 +4,7 @@
 //! force is only the constraint's own as long as no two that act share a position, and no position can be eliminated
 //! twice: the price of having no further unknowns.
 
+use zelus_core::communication::world;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{EntityBlock, Interaction, LocalSystems, MasterSlaveConstraint, SetChange, StepView, Want};
 use zelus_core::model::{Model, ModelPart, ScalarVariable};
@@ -31,8 +32,14 @@ struct EliminationInteraction {
     version: u64,
 }
 
-/// −f′ at a node: what the elements exert on its position.
+/// −f′ at a node: what the elements exert on its position; collective.
 fn force(part: &ModelPart, view: &StepView<'_>, node: u32) -> Result<f64> {
+    let own = world().agree(own_force(part, view, node))?;
+    Ok(if part.share.is_some() { world().total(own) } else { own })
+}
+
+/// What the elements of this rank exert.
+fn own_force(part: &ModelPart, view: &StepView<'_>, node: u32) -> Result<f64> {
     let mut sum = 0.0;
     let mut local = LocalSystems::default();
     for block in &part.element_blocks {
@@ -47,10 +54,6 @@ fn force(part: &ModelPart, view: &StepView<'_>, node: u32) -> Result<f64> {
 }
 
 impl Interaction for EliminationInteraction {
-    fn needs_all_elements(&self) -> bool {
-        true
-    }
-
     fn name(&self) -> &str {
         INTERACTION
     }

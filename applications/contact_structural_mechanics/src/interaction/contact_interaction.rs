@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use zelus_core::Result;
+use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, Outer, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
@@ -110,7 +111,9 @@ impl ContactInteraction {
         if !self.settings.adapt_search {
             return;
         }
-        let sizes = part.nodes.values.values(&NODAL_H, 0).iter().copied().filter(|h| *h > 0.0);
+        let own = part.nodes.values.values(&NODAL_H, 0).iter().copied().filter(|h| *h > 0.0 && *h < f64::MAX);
+        let own = own.fold([f64::INFINITY, 0.0_f64], |[least, most], h| [least.min(h), most.max(h)]);
+        let sizes = world().gather_numbers(&own).concat().into_iter().filter(|h| h.is_finite() && *h > 0.0);
         let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), h| (least.min(h), most.max(h)));
         if most > 0.0 {
             self.settings.search.factor *= most / least;
@@ -174,11 +177,9 @@ impl ContactInteraction {
                 }
             }
         }
-        if part.partition.is_some() {
-            let columns = [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..])];
-            let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
-            add_up_nodes(&self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
-        }
+        let columns = [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..])];
+        let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
+        add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         for &node in &self.slaves {
             part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
         }

@@ -73,9 +73,9 @@ pub(super) fn late_pairs(
         }
     }
     let slaves = pairing.slaves();
-    if part.partition.is_some() {
+    if part.share.is_some() {
         world().any_of(&mut flags);
-        add_up_nodes(&slaves, &mut [(1, &mut more_gap[..]), (1, &mut more_area[..])]);
+        add_up_nodes(part, &slaves, &mut [(1, &mut more_gap[..]), (1, &mut more_area[..])]);
     }
     gap.iter_mut().zip(&more_gap).for_each(|(sum, more)| *sum += more);
     area.iter_mut().zip(&more_area).for_each(|(sum, more)| *sum += more);

@@ -160,15 +160,15 @@ impl Pairing {
 
     /// On several ranks: lets ranks with few pairs evaluate some of those with many.
     fn share_out(&mut self, part: &mut ModelPart) {
-        let Some(mut partition) = part.partition.take() else { return };
-        let before = partition.pairs.clone();
+        let Some(mut share) = part.share.take() else { return };
+        let before = share.pairs.clone();
         let blocks = self.as_entities();
         let last = blocks.iter().flat_map(|block| (0..block.len()).filter_map(|at| block.nodes(at).last().copied()));
-        self.moved = partition.balance_pairs(last);
-        if before != partition.pairs {
+        self.moved = share.balance_pairs(last);
+        if before != share.pairs {
             self.graph += 1;
         }
-        part.partition = Some(partition);
+        part.share = Some(share);
     }
 
     /// Pairs that are near each other, and whether their centres are within reach.
@@ -234,7 +234,7 @@ impl Pairing {
         let own = |nodes: &[u32]| part.evaluates_pair(nodes);
         let integrals: Vec<_> = self.blocks.iter().map(|block| block.integrate(&part.view(), &own)).collect();
         let mut flags: Vec<bool> = integrals.iter().flatten().flat_map(|i| [i.overlapping, i.facing]).collect();
-        if part.partition.is_some() {
+        if part.share.is_some() {
             world().any_of(&mut flags);
         }
         let meetings = flags.chunks_exact(2).map(|pair| Meeting { overlapping: pair[0], facing: pair[1] }).collect();
@@ -312,17 +312,20 @@ fn normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
     centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
 }
 
-/// Adds up over the ranks what each has at these nodes; each column comes with its number of numbers a node.
-pub(super) fn add_up_nodes(nodes: &[u32], columns: &mut [(usize, &mut [f64])]) {
+/// Adds up over the ranks what each has at these nodes, ascending, which all of them have; each column comes with its number
+/// of numbers a node. Collective.
+pub(super) fn add_up_nodes(part: &ModelPart, nodes: &[u32], columns: &mut [(usize, &mut [f64])]) {
+    let Some(share) = &part.share else { return };
+    let width: usize = columns.iter().map(|(width, _)| width).sum();
     let place = |width: usize, node: u32| width * node as usize..width * (node as usize + 1);
-    let own = |(width, column): &(usize, &mut [f64])| -> Vec<f64> {
-        nodes.iter().flat_map(|&node| column[place(*width, node)].to_vec()).collect()
-    };
-    let mut values: Vec<f64> = columns.iter().flat_map(own).collect();
-    world().sum(&mut values);
-    let mut rest = &values[..];
-    for (width, column) in columns {
-        for &node in nodes {
+    let row = |&node: &u32| columns.iter().flat_map(move |(width, column)| column[place(*width, node)].to_vec());
+    let mut values: Vec<f64> = nodes.iter().flat_map(row).collect();
+    let halo = share.halo.only(|node| nodes.binary_search(&node).is_ok());
+    let at = |node: u32| nodes.partition_point(|&other| other < node);
+    halo.expand(|node, out| out.extend(place(width, at(node) as u32).map(|at| at as u32))).sum(&mut values);
+    for (&node, row) in nodes.iter().zip(values.chunks_exact(width.max(1))) {
+        let mut rest = row;
+        for (width, column) in columns.iter_mut() {
             let (sums, others) = rest.split_at(*width);
             column[place(*width, node)].copy_from_slice(sums);
             rest = others;

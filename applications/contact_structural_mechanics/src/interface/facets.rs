@@ -110,7 +110,10 @@ pub fn interfaces(
     for (key, list) in named {
         let mut found: Vec<Facet> = Vec::new();
         if skin {
-            let mut all: Vec<&(u32, Vec<u32>, usize)> = faces.values().filter(|(.., shared)| *shared == 1).collect();
+            // Where ranks meet, a face may seem to be an outer one.
+            let whole = |nodes: &[u32]| nodes.iter().all(|&node| part.has_all_at(node as usize));
+            let outer = faces.values().filter(|(_, nodes, shared)| *shared == 1 && whole(nodes));
+            let mut all: Vec<&(u32, Vec<u32>, usize)> = outer.collect();
             all.sort_by_key(|(element, nodes, _)| (part.elements.ids[*element as usize], nodes.clone()));
             for (element, nodes, _) in all {
                 found.push(facet(part, nodes.clone(), FacetSource::Face(*element), *element)?);

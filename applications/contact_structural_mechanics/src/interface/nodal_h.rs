@@ -5,7 +5,8 @@ use zelus_core::vector3::{norm, sub};
 
 use crate::variables::NODAL_H;
 
-/// Writes NODAL_H: the distance to the nearest other node of any element of the node, initial configuration (length).
+/// Writes NODAL_H: the distance to the nearest other node of any element of the node, initial configuration (length);
+/// collective.
 pub fn find_nodal_h(part: &mut ModelPart) {
     let mut sizes = vec![f64::MAX; part.nodes.len()];
     for element in 0..part.elements.len() as u32 {
@@ -17,6 +18,9 @@ pub fn find_nodal_h(part: &mut ModelPart) {
                 sizes[b as usize] = sizes[b as usize].min(length);
             }
         }
+    }
+    if let Some(share) = &part.share {
+        share.halo.least(&mut sizes);
     }
     part.nodes.values.values_mut(&NODAL_H, 0).copy_from_slice(&sizes);
 }

@@ -26,6 +26,8 @@ impl Assembler {
         let own = self.own_tangents(part, interactions, inertia);
         world().agree(own)?;
         let start = Instant::now();
+        // Damped unknowns without rates may be on other ranks only.
+        self.bulk_general = world().any(self.bulk_general);
         let acting = interactions.iter().filter(|i| !i.blocks().is_empty());
         let diagonal = acting.map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
         let mut in_use = self.coupling.lonely_rows_in_use();
@@ -105,7 +107,9 @@ impl Assembler {
     /// Adds `amount` to the diagonals of the multipliers' tangents, until these are computed anew.
     pub fn relax_multipliers(&mut self, dofs: &DofTable, amount: f64) {
         for (number, _) in dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.multiplier) {
-            self.coupling.matrix.add(number, number, amount);
+            if self.counts(number) {
+                self.coupling.matrix.add(number, number, amount);
+            }
         }
         self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;

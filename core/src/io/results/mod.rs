@@ -5,6 +5,7 @@
 mod dataset;
 mod gid;
 mod number;
+mod pieces;
 mod pvtu;
 #[cfg(test)]
 mod tests;

@@ -188,18 +188,3 @@ fn gid_files_name_meshes_results_and_points() {
         Result \"VON_MISES_STRESS\" \"Kratos\" 0.5 Scalar OnGaussPoints \"triangle3_1gp_element\"\nValues\n7 3.5\nEnd Values\n";
     assert_eq!(String::from_utf8(out).unwrap(), wanted);
 }
-
-#[test]
-fn pieces_hold_their_cells_with_their_points() {
-    let mut data = data();
-    data.points.push([9.0; 3]);
-    data.point_ids.push(11);
-    data.point_data = vec![Column::ids("KRATOS_NODE_ID", &[2, 3, 5, 8, 11])];
-    let [first, second] = [0, 1].map(|rank| data.piece(|cell| cell == rank, |_| rank == 1));
-    assert_eq!((&first.point_ids[..], &first.cells.ids[..]), (&[2, 3, 5][..], &[7][..]));
-    // The point without a cell goes where it belongs.
-    assert_eq!((&second.point_ids[..], &second.cells.ids[..]), (&[2, 3, 5, 8, 11][..], &[9][..]));
-    assert_eq!(second.cells.points, [0, 1, 3, 2]);
-    assert_eq!(second.point_data, data.point_data);
-    assert_eq!(second.cell_data[1], Column::ids("PROPERTIES_ID", &[2]));
-}

@@ -9,6 +9,7 @@ use super::gauss;
 use super::json_output_process::{fields, node_key, passes};
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::{Model, ModelPart, SubPart, Table};
 use crate::parameters::Defaults;
@@ -98,13 +99,15 @@ impl FromJsonCheck {
         (!points.is_empty()).then(|| Table::new(points).value(time))
     }
 
+    /// What differs on any rank; collective.
     fn compare(&self, part: &ModelPart, selection: &SubPart) -> Differences {
         let mut found = Differences::default();
         let time = part.info.time;
         let fields = fields(part, self.history);
         let mut values = Vec::new();
-        for &node in selection.nodes.iter().filter(|&&node| passes(&part.nodes.flags, self.flag, node)) {
-            let key = node_key(part, node, false);
+        let wanted = |&&node: &&u32| part.owns_node(node as usize) && passes(&part.nodes.flags, self.flag, node);
+        for &node in selection.nodes.iter().filter(wanted) {
+            let key = node_key(part.nodes.ids[node as usize]);
             for quantity in &self.quantities {
                 values.resize(quantity.components(fields), 0.0);
                 quantity.read(fields, node, &mut values);
@@ -127,7 +130,7 @@ impl FromJsonCheck {
                 }
             });
         }
-        found
+        Differences { wrong: world().lines_of_all(found.wrong), uncertain: world().lines_of_all(found.uncertain) }
     }
 
     fn judge(&self, entry: &Value, key: &str, name: &str, values: &[f64], time: f64, found: &mut Differences) {

@@ -1,5 +1,7 @@
 //! Quantities at Gauss points, as means of entities, as values at nodes, and as they are.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::quantity::GaussQuantity;
@@ -20,8 +22,8 @@ struct Seen<'a> {
     is_active: bool,
 }
 
-/// Calls `visit` with the position in `selected`, the entity and its values for every element (or condition) that knows
-/// the quantity, blocks and entities in their order; of several ranks each sees all. Collective.
+/// Calls `visit` with the position in `selected`, the entity and its values for every element (or condition) of this rank
+/// that knows the quantity, blocks and entities in their order.
 fn visit(
     part: &ModelPart,
     kind: Kind,
@@ -30,16 +32,11 @@ fn visit(
     mut visit: impl FnMut(usize, &Seen<'_>, &Gauss),
 ) {
     let view = part.view();
-    let (blocks, table) = match kind {
-        Kind::Element => (&part.element_blocks, &part.elements),
-        _ => (&part.condition_blocks, &part.conditions),
-    };
+    let blocks = if kind == Kind::Element { &part.element_blocks } else { &part.condition_blocks };
     let mut position = vec![OUT; selected.iter().max().map_or(0, |&last| last as usize + 1)];
     for (at, &item) in selected.iter().enumerate() {
         position[item as usize] = at as u32;
     }
-    let is_shared = part.partition.is_some();
-    let mut own = Vec::new();
     for block in blocks {
         let known = block.gauss_variables();
         let names = [Some(quantity.name.as_str()), quantity.vector.as_deref()];
@@ -54,62 +51,23 @@ fn visit(
             wanted.par_iter().map(|&(at, _)| values_of(block.as_ref(), &view, name, at)).collect();
         for ((at, row), gauss) in wanted.into_iter().zip(values) {
             let Some(gauss) = gauss.filter(|gauss| !gauss.weights.is_empty()) else { continue };
-            let is_active = block.is_active(at, &view);
-            if is_shared {
-                pack(row, is_active, &gauss, &mut own);
-            } else {
-                let seen = Seen { shape: block.entry().cell, nodes: block.nodes(at), is_active };
-                visit(row, &seen, &gauss);
-            }
-        }
-    }
-    if is_shared {
-        let mut all: Vec<(usize, bool, Gauss)> = world().gather_numbers(&own).iter().flat_map(|n| unpack(n)).collect();
-        let order = |row: usize| {
-            let at = selected[row];
-            (table.kinds[at as usize].name, table.properties[at as usize], at)
-        };
-        all.sort_by_key(|(row, ..)| order(*row));
-        for (row, is_active, gauss) in &all {
-            let at = selected[*row];
-            let seen = Seen { shape: table.kinds[at as usize].cell, nodes: table.nodes(at), is_active: *is_active };
-            visit(*row, &seen, gauss);
+            let seen =
+                Seen { shape: block.entry().cell, nodes: block.nodes(at), is_active: block.is_active(at, &view) };
+            visit(row, &seen, &gauss);
         }
     }
 }
 
-/// Adds an entity's values to a message.
-fn pack(row: usize, is_active: bool, gauss: &Gauss, out: &mut Vec<f64>) {
-    let sizes = [gauss.components, gauss.values.len(), gauss.weights.len(), gauss.shape.len()];
-    out.extend([row as f64, f64::from(u8::from(is_active))]);
-    out.extend(sizes.map(|size| size as f64));
-    [&gauss.values, &gauss.weights, &gauss.shape].into_iter().for_each(|list| out.extend_from_slice(list));
-}
-
-/// The entities of a message of [`pack`].
-fn unpack(mut message: &[f64]) -> Vec<(usize, bool, Gauss)> {
-    let mut out = Vec::new();
-    while let [row, is_active, components, values, weights, shape, rest @ ..] = message {
-        let (values, rest) = rest.split_at(*values as usize);
-        let (weights, rest) = rest.split_at(*weights as usize);
-        let (shape, rest) = rest.split_at(*shape as usize);
-        let gauss = Gauss {
-            components: *components as usize,
-            values: values.to_vec(),
-            weights: weights.to_vec(),
-            shape: shape.to_vec(),
-        };
-        out.push((*row as usize, *is_active != 0.0, gauss));
-        message = rest;
-    }
-    out
+/// The largest number of components that any rank has met; collective.
+fn widest(components: usize) -> usize {
+    world().gather_numbers(&[components as f64]).concat().into_iter().fold(1.0, f64::max) as usize
 }
 
 fn values_of(block: &dyn EntityBlock, view: &StepView<'_>, name: &str, at: usize) -> Option<Gauss> {
     block.gauss(view, name, at)
 }
 
-/// One value an entity: the plain mean of its Gauss points; zero where the quantity is not known.
+/// One value an entity: the plain mean of its Gauss points; zero where the quantity is not known. Collective.
 pub(super) fn means(part: &ModelPart, kind: Kind, selected: &[u32], quantity: &GaussQuantity) -> Column {
     let mut found: Vec<(usize, Vec<f64>)> = Vec::new();
     visit(part, kind, selected, quantity, |row, _, gauss| {
@@ -120,7 +78,7 @@ pub(super) fn means(part: &ModelPart, kind: Kind, selected: &[u32], quantity: &G
         mean.iter_mut().for_each(|mean| *mean /= gauss.weights.len() as f64);
         found.push((row, mean));
     });
-    let components = found.iter().map(|(_, mean)| mean.len()).max().unwrap_or(1);
+    let components = widest(found.iter().map(|(_, mean)| mean.len()).max().unwrap_or(1));
     let mut values = vec![0.0; selected.len() * components];
     for (row, mean) in found {
         values[row * components..][..mean.len()].copy_from_slice(&mean);
@@ -138,6 +96,7 @@ pub(super) enum Share {
 }
 
 /// One value a node: Σ w J |N_i| v / Σ w J |N_i| over the Gauss points of the active entities around it, or without w J.
+/// Collective.
 pub(super) fn at_nodes(
     part: &ModelPart,
     kind: Kind,
@@ -168,7 +127,15 @@ pub(super) fn at_nodes(
             }
         }
     });
-    let components = components.max(1);
+    let most = widest(components);
+    let mut sums = widen(&sums, components, most, part.nodes.len());
+    let components = most;
+    if let Some(halo) = part.share.as_ref().map(|share| &share.halo) {
+        halo.sum(&mut weights);
+        let at =
+            |node: u32, out: &mut Vec<u32>| out.extend((0..components as u32).map(|c| node * components as u32 + c));
+        halo.expand(at).sum(&mut sums);
+    }
     let mut values = vec![0.0; nodes.len() * components];
     for (row, &node) in values.chunks_exact_mut(components).zip(nodes) {
         let weight = weights[node as usize];
@@ -188,7 +155,8 @@ fn widen(values: &[f64], from: usize, to: usize, rows: usize) -> Vec<f64> {
     out
 }
 
-/// The values as they are, in one result for each shape and number of points; stresses and strains in GiD's order.
+/// The values as they are, in one result for each shape and number of points; stresses and strains in GiD's order. Of several
+/// ranks the first gets those of all; collective.
 pub(super) fn as_they_are(
     part: &ModelPart,
     kind: Kind,
@@ -216,7 +184,46 @@ pub(super) fn as_they_are(
         out[at].cells.push(ids[selected[row] as usize]);
         out[at].values.extend(values);
     });
-    out
+    if part.share.is_some() { gathered(&quantity.name, &out) } else { out }
+}
+
+/// The results of all ranks on rank 0, cells by their ids.
+fn gathered(name: &str, own: &[GaussResult]) -> Vec<GaussResult> {
+    let mut message = Vec::new();
+    for result in own {
+        let sizes = [result.shape as usize, result.points.len(), result.components, result.cells.len()];
+        message.extend(sizes.map(|size| size as f64));
+        message.extend(result.points.as_flattened());
+        message.extend(result.cells.iter().map(|&id| id as f64));
+        message.extend(&result.values);
+    }
+    // Local coordinates of the points, and for each cell its values.
+    type Found = (Vec<[f64; 3]>, BTreeMap<usize, Vec<f64>>);
+    let mut all: BTreeMap<[usize; 3], Found> = BTreeMap::new();
+    for message in world().to_root(message) {
+        let mut rest = &message[..];
+        while let [shape, points, components, cells, more @ ..] = rest {
+            let [shape, points, components, cells] = [shape, points, components, cells].map(|n| *n as usize);
+            let (positions, more) = more.split_at(3 * points);
+            let (ids, more) = more.split_at(cells);
+            let (values, more) = more.split_at(cells * points * components);
+            rest = more;
+            let found = all.entry([shape, points, components]).or_default();
+            found.0 = positions.as_chunks().0.to_vec();
+            let rows = values.chunks_exact((points * components).max(1)).map(<[f64]>::to_vec);
+            found.1.extend(ids.iter().map(|&id| id as usize).zip(rows));
+        }
+    }
+    all.into_iter()
+        .map(|([shape, _, components], (points, cells))| GaussResult {
+            name: name.to_owned(),
+            shape: Shape::ALL[shape],
+            points,
+            components,
+            cells: cells.keys().copied().collect(),
+            values: cells.into_values().flatten().collect(),
+        })
+        .collect()
 }
 
 /// Symmetric tensors as GiD reads them, (xx, yy, zz, xy, yz, xz); anything else as it is.
@@ -249,7 +256,7 @@ fn local_points(shape: Shape, gauss: &Gauss) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The values of every Gauss point of every selected entity that knows the quantity: position and values.
+/// The values of every Gauss point of every selected entity of this rank that knows the quantity: position and values.
 pub(super) fn each(
     part: &ModelPart,
     kind: Kind,
@@ -263,15 +270,6 @@ pub(super) fn each(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn messages_hold_what_was_packed() {
-        let gauss = Gauss { components: 2, values: vec![1., 2.], weights: vec![3.], shape: vec![0.5, 0.5] };
-        let mut message = Vec::new();
-        pack(7, true, &gauss, &mut message);
-        pack(9, false, &Gauss::default(), &mut message);
-        assert_eq!(unpack(&message), [(7, true, gauss), (9, false, Gauss::default())]);
-    }
 
     #[test]
     fn tensors_stand_in_the_order_of_gid() {

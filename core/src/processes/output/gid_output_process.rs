@@ -1,6 +1,6 @@
 //! Results for GiD as text: a mesh file and a results file, or one pair a step.
 
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::PathBuf;
 
 use super::control::OutputControl;
@@ -9,7 +9,9 @@ use super::picture::{CellChoice, Mesh};
 use super::place::{PartPath, append, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::diagnostics::{Diagnostic, Result};
-use crate::io::results::{Column, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step};
+use crate::io::results::{
+    Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
+};
 use crate::io::{append_to_file, replace_file};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::{Defaults, Settings};
@@ -103,28 +105,40 @@ impl GidOutput {
         append(&self.base, &format!("{label}.post.{ending}"))
     }
 
-    /// Meshes of elements and conditions; GiD reads the points of both with the first of them.
-    fn mesh(&self, part: &ModelPart, selection: &SubPart, out: &mut impl Write) -> io::Result<()> {
+    /// Meshes of elements and conditions; of several ranks the first has them. Collective.
+    fn meshes(&self, part: &ModelPart, selection: &SubPart) -> Vec<(GidKind, Dataset)> {
         let mut drawn = SubPart { children: Default::default(), ..selection.clone() };
         if self.conditions {
             drawn.nodes.extend(selection.conditions.iter().flat_map(|&c| part.conditions.nodes(c)));
         }
-        let mut with_points = true;
-        for (wanted, choice, kind) in [
+        let kinds = [
             (self.elements, CellChoice::Elements, GidKind::Element),
             (self.conditions, CellChoice::Conditions, GidKind::Condition),
-        ] {
-            if wanted {
-                let mesh = Mesh::new(part, &drawn, choice, self.deformed).data;
-                write_gid_mesh(out, &mesh, kind, with_points)?;
-                with_points &= mesh.cells.is_empty();
-            }
-        }
-        Ok(())
+        ];
+        let mesh = |choice| Mesh::new(part, &drawn, choice, self.deformed).data;
+        let whole = |mesh: Dataset| if part.share.is_some() { mesh.gathered() } else { mesh };
+        let wanted = kinds.into_iter().filter(|(wanted, ..)| *wanted);
+        wanted.map(|(_, choice, kind)| (kind, whole(mesh(choice)))).collect()
     }
 
+    /// Writes the file of the mesh; collective.
+    fn write_mesh(&self, part: &ModelPart, selection: &SubPart, label: f64) -> Result<()> {
+        let meshes = self.meshes(part, selection);
+        replace_file(&self.path(label, "msh"), |out| {
+            // GiD reads the points of all with the first that has cells.
+            let mut with_points = true;
+            for (kind, mesh) in &meshes {
+                write_gid_mesh(out, mesh, *kind, with_points)?;
+                with_points &= mesh.cells.is_empty();
+            }
+            Ok(())
+        })
+    }
+
+    /// What is shown; of several ranks the first has it. Collective.
     fn results(&self, part: &ModelPart, selection: &SubPart) -> (Vec<usize>, Vec<Column>, Vec<GaussResult>) {
-        let nodes = &selection.nodes;
+        let own = selection.nodes.iter().copied().filter(|&node| part.owns_node(node as usize));
+        let nodes = &own.collect::<Vec<u32>>();
         let mut columns: Vec<Column> = Vec::new();
         columns.extend(self.history.iter().map(|q| q.gather(&part.nodes.history, nodes)));
         columns.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, nodes)));
@@ -133,7 +147,13 @@ impl GidOutput {
             gauss::as_they_are(part, Kind::Element, &selection.elements, &part.elements.ids, quantity)
         });
         let gauss = if self.elements { gauss.collect() } else { Vec::new() };
-        (nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect(), columns, gauss)
+        let ids: Vec<usize> = nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect();
+        if part.share.is_none() {
+            return (ids, columns, gauss);
+        }
+        let points = vec![[0.0; 3]; ids.len()];
+        let shown = Dataset { point_ids: ids, points, point_data: columns, ..Dataset::default() }.gathered();
+        (shown.point_ids, shown.point_data, gauss)
     }
 
     fn label(&self, part: &ModelPart) -> f64 {
@@ -163,7 +183,7 @@ impl Process for GidOutput {
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         if self.single && self.body {
-            replace_file(&self.path(0.0, "msh"), |out| self.mesh(part, selection, out))?;
+            self.write_mesh(part, selection, 0.0)?;
         }
         Ok(())
     }
@@ -178,7 +198,7 @@ impl Process for GidOutput {
         let (ids, columns, gauss) = self.results(part, selection);
         let path = self.path(label, "res");
         if !self.single {
-            replace_file(&self.path(label, "msh"), |out| self.mesh(part, selection, out))?;
+            self.write_mesh(part, selection, label)?;
         }
         if self.written.contains(&path) {
             append_to_file(&path, |out| write_gid_step(out, label, &ids, &columns, &gauss))?;

@@ -1,5 +1,6 @@
 //! Histories of nodes and Gauss points in a JSON file.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -8,6 +9,7 @@ use super::control::TimeCounter;
 use super::gauss;
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
+use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::Gauss;
 use crate::io::replace_file;
@@ -31,25 +33,24 @@ struct JsonOutput {
     history: bool,
     resultant: bool,
     by_coordinates: bool,
+    /// Nodes of this rank that have passed the filter, ascending.
+    known: Vec<u32>,
+    /// Elements of this rank whose Gauss points are followed.
+    followed: Vec<u32>,
     times: Vec<f64>,
-    nodes: Vec<NodeSeries>,
-    elements: Vec<ElementSeries>,
+    /// By id; of several ranks the first has them all.
+    nodes: BTreeMap<usize, NodeSeries>,
+    /// By id; of several ranks the first has them all.
+    elements: BTreeMap<usize, Vec<Vec<Gauss>>>,
     resultants: Vec<Vec<f64>>,
     last_write: Option<Instant>,
 }
 
 /// The history of one node: all quantities of a step one after another.
+#[derive(Default)]
 struct NodeSeries {
-    node: u32,
     key: String,
     values: Vec<f64>,
-}
-
-/// The history of one element: for each quantity its steps.
-struct ElementSeries {
-    element: u32,
-    key: String,
-    steps: Vec<Vec<Gauss>>,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
@@ -65,9 +66,11 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         history: settings.get_bool("historical_value")?,
         resultant: settings.get_bool("resultant_solution")?,
         by_coordinates: settings.get_bool("use_node_coordinates")?,
+        known: Vec::new(),
+        followed: Vec::new(),
         times: Vec::new(),
-        nodes: Vec::new(),
-        elements: Vec::new(),
+        nodes: BTreeMap::new(),
+        elements: BTreeMap::new(),
         resultants: Vec::new(),
         last_write: None,
     }))
@@ -83,67 +86,96 @@ pub(super) fn fields(part: &ModelPart, history: bool) -> &Fields {
     if history { &part.nodes.history } else { &part.nodes.values }
 }
 
-/// The key of a node, by id or by its initial coordinates.
-pub(super) fn node_key(part: &ModelPart, node: u32, by_coordinates: bool) -> String {
-    let at = node as usize;
-    if by_coordinates {
-        let [x, y, z] = part.nodes.initial[at];
-        return format!("NODE_X_{x:.6}_Y_{y:.6}_Z_{z:.6}");
-    }
-    format!("NODE_{}", part.nodes.ids[at])
+/// The key of a node, by its id.
+pub(super) fn node_key(id: usize) -> String {
+    format!("NODE_{id}")
 }
 
 impl JsonOutput {
-    /// Makes keys for the nodes and elements that pass the filter and have none yet.
+    /// Makes keys for the nodes and elements that pass the filter and have none yet; collective.
     fn keys(&mut self, part: &ModelPart, selection: &SubPart) {
-        let known: Vec<u32> = self.nodes.iter().map(|series| series.node).collect();
-        let new = |node: &&u32| known.binary_search(node).is_err() && passes(&part.nodes.flags, self.flag, **node);
-        let new: Vec<u32> = selection.nodes.iter().filter(new).copied().collect();
-        for node in new {
-            let key = node_key(part, node, self.by_coordinates);
-            self.nodes.push(NodeSeries { node, key, values: Vec::new() });
+        let is_new = |node: &&u32| {
+            self.known.binary_search(node).is_err()
+                && part.owns_node(**node as usize)
+                && passes(&part.nodes.flags, self.flag, **node)
+        };
+        let new: Vec<u32> = selection.nodes.iter().filter(is_new).copied().collect();
+        let row = |&node: &u32| {
+            let [x, y, z] = part.nodes.initial[node as usize];
+            [part.nodes.ids[node as usize] as f64, x, y, z]
+        };
+        for row in rows(world().to_root(new.iter().flat_map(row).collect()), 4) {
+            let id = row[0] as usize;
+            let key = match self.by_coordinates {
+                true => format!("NODE_X_{:.6}_Y_{:.6}_Z_{:.6}", row[1], row[2], row[3]),
+                false => node_key(id),
+            };
+            self.nodes.insert(id, NodeSeries { key, ..NodeSeries::default() });
         }
-        self.nodes.sort_by_key(|series| series.node);
-        if self.gauss.is_empty() || !self.elements.is_empty() {
+        self.known.extend(new);
+        self.known.sort_unstable();
+        if self.gauss.is_empty() || world().any(!self.followed.is_empty()) {
             return;
         }
-        for &element in selection.elements.iter().filter(|&&e| passes(&part.elements.flags, self.flag, e)) {
-            let key = format!("ELEMENT_{}", part.elements.ids[element as usize]);
-            self.elements.push(ElementSeries { element, key, steps: vec![Vec::new(); self.gauss.len()] });
+        let follows =
+            |&&e: &&u32| part.evaluates(Kind::Element, e as usize) && passes(&part.elements.flags, self.flag, e);
+        self.followed = selection.elements.iter().filter(follows).copied().collect();
+        let ids = self.followed.iter().map(|&element| part.elements.ids[element as usize] as f64).collect();
+        for id in world().to_root(ids).concat() {
+            self.elements.insert(id as usize, vec![Vec::new(); self.gauss.len()]);
         }
     }
 
+    /// Takes the values of this moment; collective.
     fn sample(&mut self, part: &ModelPart, selection: &SubPart) {
         self.keys(part, selection);
         self.times.push(part.info.time);
         let fields = fields(part, self.history);
         let sizes: Vec<usize> = self.quantities.iter().map(|q| q.components(fields)).collect();
-        let width = sizes.iter().sum();
-        let mut sum = vec![0.0; width];
-        for series in self.nodes.iter_mut().filter(|s| passes(&part.nodes.flags, self.flag, s.node)) {
-            let start = series.values.len();
-            series.values.resize(start + width, 0.0);
-            let mut rest = &mut series.values[start..];
+        let width: usize = sizes.iter().sum();
+        let mut own = Vec::new();
+        for &node in self.known.iter().filter(|&&node| passes(&part.nodes.flags, self.flag, node)) {
+            own.push(part.nodes.ids[node as usize] as f64);
+            let start = own.len();
+            own.resize(start + width, 0.0);
+            let mut rest = &mut own[start..];
             for (quantity, &size) in self.quantities.iter().zip(&sizes) {
-                let (own, others) = rest.split_at_mut(size);
-                quantity.read(fields, series.node, own);
+                let (values, others) = rest.split_at_mut(size);
+                quantity.read(fields, node, values);
                 rest = others;
             }
-            sum.iter_mut().zip(&series.values[start..]).for_each(|(sum, value)| *sum += value);
+        }
+        let mut sum = vec![0.0; width];
+        let mut sampled = rows(world().to_root(own), width + 1);
+        sampled.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        for row in sampled {
+            self.nodes.entry(row[0] as usize).or_default().values.extend_from_slice(&row[1..]);
+            sum.iter_mut().zip(&row[1..]).for_each(|(sum, value)| *sum += value);
         }
         if self.resultant {
             self.resultants.push(sum);
         }
-        let elements: Vec<u32> = self.elements.iter().map(|series| series.element).collect();
         for (at, quantity) in self.gauss.iter().enumerate() {
-            let series = &mut self.elements;
-            gauss::each(part, Kind::Element, &elements, quantity, |row, values| {
-                if passes(&part.elements.flags, self.flag, elements[row]) {
-                    let only_values =
-                        Gauss { components: values.components, values: values.values.clone(), ..Gauss::default() };
-                    series[row].steps[at].push(only_values);
+            let mut own = Vec::new();
+            gauss::each(part, Kind::Element, &self.followed, quantity, |row, gauss| {
+                let element = self.followed[row];
+                if passes(&part.elements.flags, self.flag, element) {
+                    let id = part.elements.ids[element as usize];
+                    own.extend([id as f64, gauss.components as f64, gauss.values.len() as f64]);
+                    own.extend(&gauss.values);
                 }
             });
+            for message in world().to_root(own) {
+                let mut rest = &message[..];
+                while let [id, components, count, more @ ..] = rest {
+                    let (values, more) = more.split_at(*count as usize);
+                    rest = more;
+                    let only_values =
+                        Gauss { components: *components as usize, values: values.to_vec(), ..Gauss::default() };
+                    let series = self.elements.get_mut(&(*id as usize)).expect("it is followed");
+                    series[at].push(only_values);
+                }
+            }
         }
     }
 
@@ -164,15 +196,15 @@ impl JsonOutput {
             json.key("RESULTANT")?;
             self.series(&mut json, &self.resultants.concat(), sizes)?;
         } else {
-            for series in &self.nodes {
+            for series in self.nodes.values() {
                 json.key(&series.key)?;
                 self.series(&mut json, &series.values, sizes)?;
             }
         }
-        for series in &self.elements {
-            json.key(&series.key)?;
+        for (id, series) in &self.elements {
+            json.key(&format!("ELEMENT_{id}"))?;
             json.open('{')?;
-            for (quantity, steps) in self.gauss.iter().zip(&series.steps) {
+            for (quantity, steps) in self.gauss.iter().zip(series) {
                 let Some(first) = steps.first() else { continue };
                 json.key(&quantity.name)?;
                 json.open('{')?;
@@ -209,6 +241,11 @@ impl JsonOutput {
         }
         json.close('}')
     }
+}
+
+/// The rows of the messages of all ranks.
+fn rows(messages: Vec<Vec<f64>>, width: usize) -> Vec<Vec<f64>> {
+    messages.iter().flat_map(|message| message.chunks_exact(width).map(<[f64]>::to_vec).collect::<Vec<_>>()).collect()
 }
 
 /// Writes JSON with an indentation of two.

@@ -3,11 +3,11 @@
 use super::gauss::{self, Share};
 use super::place::one_of;
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
+use crate::communication::world;
 use crate::diagnostics::{Report, Result};
 use crate::io::results::{Column, Dataset};
 use crate::model::{EntityTable, ModelPart, SubPart};
 use crate::parameters::Settings;
-use crate::partition::Partition;
 use crate::registry::Kind;
 
 /// Which entities are the cells.
@@ -31,10 +31,11 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of a part; nodes of its cells belong to it even where the part does not list them.
+    /// The mesh of a part; nodes of its cells belong to it even where the part does not list them. Of several ranks each has
+    /// the cells it evaluates with their points, and its nodes that no cell has; collective.
     pub(super) fn new(part: &ModelPart, selection: &SubPart, choice: CellChoice, deformed: bool) -> Self {
         let elements = match choice {
-            CellChoice::Automatic => !selection.elements.is_empty(),
+            CellChoice::Automatic => world().any(!selection.elements.is_empty()),
             CellChoice::Elements => true,
             CellChoice::Conditions => false,
         };
@@ -42,28 +43,31 @@ impl Mesh {
             true => (Kind::Element, &part.elements, &selection.elements),
             false => (Kind::Condition, &part.conditions, &selection.conditions),
         };
-        let drawn = |&&at: &&u32| table.kinds[at as usize].cell.is_some();
+        let drawn = |&&at: &&u32| table.kinds[at as usize].cell.is_some() && part.evaluates(kind, at as usize);
         let cells: Vec<u32> = chosen.iter().filter(drawn).copied().collect();
         let mut used = vec![false; part.nodes.len()];
-        let own = cells.iter().flat_map(|&cell| table.nodes(cell));
-        selection.nodes.iter().chain(own).for_each(|&node| used[node as usize] = true);
+        cells.iter().flat_map(|&cell| table.nodes(cell)).for_each(|&node| used[node as usize] = true);
+        let loose = |&&node: &&u32| part.owns_node(node as usize);
+        let has_cell = of_all(part, &used);
+        let loose = selection.nodes.iter().filter(|&&node| !has_cell[node as usize]).filter(loose);
+        loose.for_each(|&node| used[node as usize] = true);
         let nodes: Vec<u32> = (0..part.nodes.len() as u32).filter(|&node| used[node as usize]).collect();
         let data = dataset(part, table, &nodes, &cells, deformed);
         Self { data, nodes, cells, kind }
-    }
-
-    /// The piece of a rank: its cells with their points, and its points without cells.
-    pub(super) fn piece(&self, partition: &Partition, rank: usize) -> Dataset {
-        let owners = if self.kind == Kind::Element { &partition.elements } else { &partition.conditions };
-        let is_own = |owner: u32| owner as usize == rank;
-        let has_cell = |at: usize| is_own(owners[self.cells[at] as usize]);
-        self.data.piece(has_cell, |at| is_own(partition.nodes[self.nodes[at] as usize]))
     }
 
     /// The table of the cells.
     pub(super) fn table<'m>(&self, part: &'m ModelPart) -> &'m EntityTable {
         if self.kind == Kind::Element { &part.elements } else { &part.conditions }
     }
+}
+
+/// Marks of nodes that any rank has set; collective.
+fn of_all(part: &ModelPart, marks: &[bool]) -> Vec<bool> {
+    let Some(share) = &part.share else { return marks.to_vec() };
+    let mut sums: Vec<f64> = marks.iter().map(|&mark| f64::from(u8::from(mark))).collect();
+    share.halo.sum(&mut sums);
+    sums.iter().map(|&sum| sum > 0.0).collect()
 }
 
 fn dataset(part: &ModelPart, table: &EntityTable, nodes: &[u32], cells: &[u32], deformed: bool) -> Dataset {
@@ -127,7 +131,7 @@ impl Picture {
         })
     }
 
-    /// The picture of one part now; with columns of Gauss points, collective.
+    /// The picture of one part now, of several ranks the piece of each; collective.
     pub(super) fn draw(&self, part: &ModelPart, selection: &SubPart) -> Mesh {
         let mut mesh = Mesh::new(part, selection, self.choice, self.deformed);
         mesh.data.point_data = self.point_data(part, selection, &mesh);

@@ -6,12 +6,14 @@ use std::path::PathBuf;
 use super::json_output_process::fields;
 use super::place::{PartPath, one_of};
 use super::quantity::Quantity;
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::{mapping, shape_functions};
 use crate::io::{append_to_file, replace_file};
-use crate::model::{EntityTable, Model, ModelPart, SubPart};
+use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::{Interval, Node, Settings};
 use crate::processes::{Process, ProcessRequest};
+use crate::registry::Kind;
 
 /// Interpolates in the cells that hold the points; the cells are found once, before the first step.
 pub(super) struct PointsOutput {
@@ -29,9 +31,12 @@ pub(super) struct PointsOutput {
 struct Point {
     position: [f64; 3],
     file: PathBuf,
-    /// Nodes and their weights.
+    /// Nodes and their weights, on the rank that writes them.
     weights: Vec<(u32, f64)>,
 }
+
+/// Where a point was found: how far away, the id of the node or entity, and the nodes to mix with their weights.
+type Found = (f64, usize, Vec<(u32, f64)>);
 
 /// Keys that every process of points must be given.
 pub(super) const REQUIRED: [&str; 3] = ["model_part_name", "output_variables", "output_file_settings"];
@@ -88,8 +93,18 @@ pub(super) fn position(settings: &Settings, key: &str, node: &Node) -> Result<[f
 }
 
 impl PointsOutput {
-    /// The nodes whose values are mixed, with their weights; `None` when the point is nowhere.
+    /// The nodes whose values are mixed, with their weights; empty on ranks that others go before, `None` when the point is
+    /// nowhere. Collective.
     fn find(&self, part: &ModelPart, selection: &SubPart, point: [f64; 3]) -> Option<Vec<(u32, f64)>> {
+        let own = self.find_here(part, selection, point);
+        let offer = own.as_ref().map_or(Vec::new(), |(distance, id, _)| vec![*distance, *id as f64]);
+        let offers = world().gather_numbers(&offer);
+        let order = |a: &usize, b: &usize| offers[*a].partial_cmp(&offers[*b]).unwrap_or(std::cmp::Ordering::Equal);
+        let best = (0..offers.len()).filter(|&rank| !offers[rank].is_empty()).min_by(order)?;
+        Some(own.filter(|_| best == world().rank()).map_or(Vec::new(), |(.., weights)| weights))
+    }
+
+    fn find_here(&self, part: &ModelPart, selection: &SubPart, point: [f64; 3]) -> Option<Found> {
         let positions = if self.is_current { &part.nodes.current } else { &part.nodes.initial };
         match self.entity {
             0 => {
@@ -97,22 +112,20 @@ impl PointsOutput {
                     let x = positions[node as usize];
                     x.iter().zip(&point).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
                 };
-                let found = selection.nodes.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-                (distance(found) <= self.tolerance).then(|| vec![(found, 1.0)])
+                let own = selection.nodes.iter().copied().filter(|&node| part.owns_node(node as usize));
+                let found = own.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+                let id = part.nodes.ids[found as usize];
+                (distance(found) <= self.tolerance).then(|| (distance(found), id, vec![(found, 1.0)]))
             }
-            1 => self.in_cells(positions, &part.elements, &selection.elements, point),
-            _ => self.in_cells(positions, &part.conditions, &selection.conditions, point),
+            1 => self.in_cells(part, Kind::Element, &selection.elements, point),
+            _ => self.in_cells(part, Kind::Condition, &selection.conditions, point),
         }
     }
 
-    fn in_cells(
-        &self,
-        positions: &[[f64; 3]],
-        table: &EntityTable,
-        cells: &[u32],
-        point: [f64; 3],
-    ) -> Option<Vec<(u32, f64)>> {
-        cells.iter().find_map(|&cell| {
+    fn in_cells(&self, part: &ModelPart, kind: Kind, cells: &[u32], point: [f64; 3]) -> Option<Found> {
+        let positions = if self.is_current { &part.nodes.current } else { &part.nodes.initial };
+        let table = if kind == Kind::Element { &part.elements } else { &part.conditions };
+        cells.iter().filter(|&&cell| part.evaluates(kind, cell as usize)).find_map(|&cell| {
             let shape = table.kinds[cell as usize].cell?;
             let nodes = table.nodes(cell);
             let x: Vec<[f64; 3]> = nodes.iter().map(|&node| positions[node as usize]).collect();
@@ -127,13 +140,14 @@ impl PointsOutput {
             }
             let mut values = [0.0; 27];
             shape_functions(shape, found.xi, &mut values);
-            Some(nodes.iter().copied().zip(values).collect())
+            Some((0.0, table.ids[cell as usize], nodes.iter().copied().zip(values).collect()))
         })
     }
 
-    fn line(&self, part: &ModelPart, point: &Point) -> String {
+    /// The values at a point that this rank has found.
+    fn values(&self, part: &ModelPart, point: &Point) -> Vec<f64> {
         let fields = fields(part, self.history);
-        let mut line = format!("{:?}", part.info.time);
+        let mut values = Vec::new();
         for quantity in &self.quantities {
             let mut sum = vec![0.0; quantity.components(fields)];
             let mut value = sum.clone();
@@ -141,9 +155,9 @@ impl PointsOutput {
                 quantity.read(fields, node, &mut value);
                 sum.iter_mut().zip(&value).for_each(|(sum, value)| *sum += weight * value);
             }
-            sum.iter().for_each(|number| line.push_str(&format!(" {number:?}")));
+            values.extend(sum);
         }
-        line
+        values
     }
 
     fn head(&self, part: &ModelPart, point: &Point) -> String {
@@ -191,8 +205,24 @@ impl Process for PointsOutput {
         if !self.interval.contains(part.info.time) {
             return Ok(());
         }
-        let append = |point: &Point| append_to_file(&point.file, |out| writeln!(out, "{}", self.line(part, point)));
-        self.points.iter().try_for_each(append)
+        let own = self.points.iter().enumerate().filter(|(_, point)| !point.weights.is_empty());
+        let mut message = Vec::new();
+        for (at, point) in own {
+            let values = self.values(part, point);
+            message.extend([at as f64, values.len() as f64]);
+            message.extend(values);
+        }
+        for message in world().to_root(message) {
+            let mut rest = &message[..];
+            while let [at, count, more @ ..] = rest {
+                let (values, more) = more.split_at(*count as usize);
+                rest = more;
+                let mut line = format!("{:?}", part.info.time);
+                values.iter().for_each(|number| line.push_str(&format!(" {number:?}")));
+                append_to_file(&self.points[*at as usize].file, |out| writeln!(out, "{line}"))?;
+            }
+        }
+        Ok(())
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

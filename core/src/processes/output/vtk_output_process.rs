@@ -83,29 +83,34 @@ impl VtkOutput {
             steps.push((part.info.time, file));
             return write_pvd(&self.folder.join(format!("{series}.pvd")), steps);
         };
-        write_vtk(&self.folder.join(format!("{series}_0_{label}.vtk")), &mesh.data, format)
+        let path = self.folder.join(format!("{series}_0_{label}.vtk"));
+        if part.share.is_some() {
+            return write_vtk(&path, &mesh.data.gathered(), format);
+        }
+        write_vtk(&path, &mesh.data, format)
     }
 
     /// Writes a VTU file, or one a rank and a PVTU file that lists them; gives the name of what to open. Collective.
     ///
     /// Ranks without cells and points write nothing, unless all are without. The list is written once all that it lists is.
     fn write_vtu(&self, part: &ModelPart, mesh: &Mesh, name: &str) -> Result<String> {
-        let Some(partition) = &part.partition else {
+        let Some(share) = &part.share else {
             let file = format!("{name}.vtu");
             write_vtu(&self.folder.join(&file), &mesh.data)?;
             return Ok(file);
         };
         let piece_file = |rank: usize| format!("{name}_{rank}.vtu");
-        let own = mesh.piece(partition, world().rank());
-        let is_needed = !own.points.is_empty() || (mesh.data.points.is_empty() && world().is_root());
+        let own = &mesh.data;
+        let is_empty = !world().any(!own.points.is_empty());
+        let is_needed = !own.points.is_empty() || (is_empty && world().is_root());
         let path = self.folder.join(piece_file(world().rank()));
-        world().agree(if is_needed { write_piece(&path, &own) } else { Ok(()) })?;
-        let mut has_piece = vec![false; partition.ranks];
+        world().agree(if is_needed { write_piece(&path, own) } else { Ok(()) })?;
+        let mut has_piece = vec![false; share.ranks];
         has_piece[world().rank()] = is_needed;
         world().any_of(&mut has_piece);
-        let pieces: Vec<String> = (0..partition.ranks).filter(|&rank| has_piece[rank]).map(piece_file).collect();
+        let pieces: Vec<String> = (0..share.ranks).filter(|&rank| has_piece[rank]).map(piece_file).collect();
         let file = format!("{name}.pvtu");
-        write_pvtu(&self.folder.join(&file), &mesh.data, &pieces)?;
+        write_pvtu(&self.folder.join(&file), own, &pieces)?;
         Ok(file)
     }
 
@@ -142,7 +147,8 @@ impl Process for VtkOutput {
         self.write(part, selection, &path)?;
         if self.sub_parts {
             for (name, child) in &selection.children {
-                if !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty() {
+                let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
+                if world().any(is_here) {
                     self.write(part, child, &format!("{path}.{name}"))?;
                 }
             }

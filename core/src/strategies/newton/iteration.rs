@@ -119,7 +119,7 @@ impl NewtonRaphson {
         if let Some(why) = &solved.fallback {
             monitor.note(&format!("linear solver: {why}"));
         }
-        let condition = if part.info.is(super::CONDITION_NUMBER) { self.condition_number(monitor) } else { None };
+        let condition = if part.info.is(super::CONDITION_NUMBER) { self.condition_number(part, monitor) } else { None };
         let increment = self.take(&solved, step, part, interactions)?;
         // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
         // serves for what the interactions take from it and nothing else.
@@ -145,10 +145,7 @@ impl NewtonRaphson {
         };
         monitor.iteration(&record);
         step.records.push(record);
-        if let Some(n) = self.first_infinite(part, &step.residual) {
-            let dof = &part.dofs.dofs()[n];
-            let node = part.nodes.ids[dof.node as usize];
-            let what = format!("{} of node {node} or its residual is no longer finite", dof.variable);
+        if let Some(what) = self.first_infinite(part, &step.residual) {
             return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
         if afresh {
@@ -176,7 +173,7 @@ impl NewtonRaphson {
         if let Some(amount) = step.relaxed {
             self.assembler.relax_multipliers(&part.dofs, amount);
         }
-        if step.prescribed.iter().any(|d| *d != 0.0) {
+        if has_motion(&step.prescribed) {
             self.assembler.subtract_product(&step.prescribed, &mut step.residual);
         }
         if iteration == 1 {
@@ -234,7 +231,8 @@ impl NewtonRaphson {
         interactions: &[Box<dyn Interaction>],
     ) -> Result<Vec<f64>> {
         let mut increment = self.assembler.equations().expand(&solved.increment);
-        let searched = self.settings.line_search.filter(|_| step.prescribed.iter().all(|d| *d == 0.0));
+        let is_still = !has_motion(&step.prescribed);
+        let searched = self.settings.line_search.filter(|_| is_still);
         increment.iter_mut().zip(&step.prescribed).for_each(|(sum, d)| *sum += d);
         step.prescribed.fill(0.0);
         match searched {
@@ -314,6 +312,11 @@ impl NewtonRaphson {
             write_reactions(part, residual);
         }
     }
+}
+
+/// Whether an unknown of any rank moves by prescription; collective.
+fn has_motion(prescribed: &[f64]) -> bool {
+    world().any(prescribed.iter().any(|d| *d != 0.0))
 }
 
 /// # Errors

@@ -2,6 +2,7 @@
 
 use super::NewtonRaphson;
 use crate::assembly::impose_constraints;
+use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::Interaction;
 use crate::model::ModelPart;
@@ -66,13 +67,15 @@ impl NewtonRaphson {
     ) -> Result<bool> {
         let (now, old) = (self.assembler.values(part), part.dofs.gather(&part.nodes, 1));
         let moves = (0..now.len()).any(|n| self.assembler.equations().is_fixed(n) && now[n] != old[n]);
-        if !moves || self.settings.linear {
+        if !world().any(moves) || self.settings.linear {
             return Ok(false);
         }
         let after = self.assembler.residual(part, interactions, None)?;
         let after = self.assembler.equations().balanced(&after);
         let forces = |balance: &[f64]| -> f64 {
-            part.dofs.dofs().iter().zip(balance).filter(|(dof, _)| !dof.multiplier).map(|(_, r)| r * r).sum()
+            let own = part.dofs.dofs().iter().enumerate();
+            let own = own.filter(|(number, dof)| !dof.multiplier && self.assembler.counts(*number));
+            world().total(own.map(|(number, _)| balance[number] * balance[number]).sum())
         };
         Ok(forces(&after) > forces(before))
     }
