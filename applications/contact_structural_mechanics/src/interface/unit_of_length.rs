@@ -4,14 +4,18 @@
 //! number. Such numbers mean something in a unit of length only, and are chosen for bodies that measure about one in it.
 //! Engineers' units step by thousands: µm, mm, m, km.
 
+use zelus_core::communication::world;
+
 /// That power of a thousand in which points extend over about one: between 1/√1000 and √1000 (length).
 ///
-/// The extent is the diagonal of the box around them; 1 without any. In units a thousand times smaller it is a thousand
-/// times the number, to the last bit.
+/// The extent is the diagonal of the box around those of all ranks; 1 without any. In units a thousand times smaller it is a
+/// thousand times the number, to the last bit. Collective.
 pub fn unit_of_length(points: &[[f64; 3]]) -> f64 {
     let bounds = |c: usize| {
         let of = points.iter().map(|x| x[c]);
-        of.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)))
+        let own = of.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)]);
+        let all = world().gather_numbers(&own);
+        all.iter().fold((own[0], own[1]), |(least, most), of_rank| (least.min(of_rank[0]), most.max(of_rank[1])))
     };
     let sides = [0, 1, 2].map(|c| bounds(c)).map(|(least, most)| most - least);
     let extent = zelus_core::vector3::norm(sides);
