@@ -154,6 +154,7 @@ fn frictional_contact() {
     equals_serial("contact_3d/friction_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")], EXACT, true);
     equals_serial("contact_2d/friction_pure_slip", &[], EXACT, true);
     equals_serial("contact_2d/friction_arc", &[], EQUAL, true);
+    equals_serial("contact_2d/friction_none", &[], EXACT, true);
     equals_serial("contact_2d/friction_slide", &[], EXACT, true);
     equals_serial("contact_2d/friction_tresca_slide", &[], EXACT, true);
     equals_serial("contact_2d/friction_by_pair", &[], EXACT, true);

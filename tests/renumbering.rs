@@ -1,4 +1,4 @@
-//! Numbering a mesh otherwise changes no result: every case again with all its numbers reversed.
+//! Numbering a mesh otherwise changes no result and no number of iterations: every case again with all its numbers reversed.
 
 mod support;
 
@@ -114,9 +114,15 @@ fn histories(folder: &Path) -> BTreeMap<(String, String), BTreeMap<u64, Vec<f64>
     found
 }
 
-fn run(folder: &Path) -> Result<(), String> {
-    let output = zelus(folder, &["run", "ProjectParameters.json"]);
-    if output.status.success() { Ok(()) } else { Err(format!("exit {:?}\n{}", output.status.code(), said(&output))) }
+/// Runs a deck; the iterations of its steps.
+fn run(folder: &Path) -> Result<Vec<usize>, String> {
+    let output = zelus(folder, &["run", "ProjectParameters.json", "--report", "report.out"]);
+    if !output.status.success() {
+        return Err(format!("exit {:?}\n{}", output.status.code(), said(&output)));
+    }
+    let report = read_json(&folder.join("report.out")).expect("the report");
+    let steps = report["steps"].as_array().into_iter().flatten();
+    Ok(steps.map(|step| step["iterations"].as_array().map_or(0, Vec::len)).collect())
 }
 
 /// What differs between a deck and the same deck numbered otherwise.
@@ -130,8 +136,11 @@ fn difference(folder: &Path) -> Result<(), String> {
     let text = std::fs::read_to_string(folder.join(&mesh)).map_err(|e| e.to_string())?;
     let (ids, text) = reversed(&text);
     std::fs::write(other.path().join(&mesh), text).map_err(|e| e.to_string())?;
-    run(one.path())?;
-    run(other.path()).map_err(|said| format!("numbered otherwise: {said}"))?;
+    let iterations = run(one.path())?;
+    let again = run(other.path()).map_err(|said| format!("numbered otherwise: {said}"))?;
+    if iterations != again {
+        return Err(format!("iterations {iterations:?}, numbered otherwise {again:?}"));
+    }
     let name = folder.to_string_lossy();
     let tolerance = match () {
         () if name.contains("spheres_light") => TOLERANCE_OF_LIGHT_LOADS,

@@ -15,6 +15,7 @@ register_variable! {
     pub NORMAL_LENGTH: f64 = "Length of the sum of facet normals at a node, before it is made a unit vector.";
     pub NODAL_H: f64 = "Distance to the nearest node that shares an element (length).";
     pub INITIAL_PENALTY: f64 = "Penalty parameter of contact (force per length cubed).";
+    pub MULTIPLIER_WEIGHT: f64 = "What the equation of a slave node counts its multiplier with where it states a traction (force times area).";
     pub DYNAMIC_FACTOR: f64 = "Factor of contact forces in the step in which a gap closes.";
     pub FRICTION_COEFFICIENT: f64 = "Coulomb's coefficient of friction.";
     pub TRESCA_FRICTION_THRESHOLD: f64 = "Tresca's limit of the tangential traction (force per area).";

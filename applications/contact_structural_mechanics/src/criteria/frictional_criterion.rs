@@ -1,7 +1,8 @@
 //! Displacements and, of the multipliers, normal, sticking and sliding parts, each against tolerances of its own.
 //!
 //! The multiplier entries r of a node split into (r·n) n and the rest. The rest belongs to the sticking or the sliding
-//! part by the state of the node; without friction or contact the whole node belongs to the normal part.
+//! part by the state of the node; without friction or contact the whole node belongs to the normal part. Equations of
+//! sliding nodes state tractions, and are measured by these besides.
 
 use zelus_core::Result;
 use zelus_core::model::variables::NORMAL;
@@ -12,6 +13,7 @@ use super::measure::{Form, Tolerance, check};
 use crate::formulations::NodeState;
 use crate::friction_law::smooth_nodes;
 use crate::mortar::tangential;
+use crate::variables::MULTIPLIER_WEIGHT;
 
 /// The criterion of the families with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,11 +104,29 @@ fn split(measures: &Measures<'_>, vector: &[f64], signed: bool) -> Sizes {
     sizes
 }
 
+/// Size of the tractions that the equations of sliding nodes state: what is left of them is little or much beside that, also
+/// where it was nothing but round-off from the start of the step.
+fn tractions(measures: &Measures<'_>) -> Sizes {
+    let weights = measures.nodes.values.values(&MULTIPLIER_WEIGHT, 0);
+    let slides = |node: usize| NodeState::of_flags(&measures.nodes.flags, node) == NodeState::Slip;
+    let is_smooth = smooth_nodes(measures.nodes);
+    let mut sizes = Sizes::default();
+    for &unknown in measures.equations.unknowns() {
+        let dof = &measures.dofs.dofs()[unknown as usize];
+        let node = dof.node as usize;
+        if dof.multiplier && slides(node) {
+            let size = weights.get(node).map_or(0.0, |weight| weight * measures.values[unknown as usize]);
+            sizes.squares[if is_smooth(node) { 0 } else { 2 }] += size * size;
+        }
+    }
+    sizes
+}
+
 /// The residuals that a relative measure refers to. A node that has come to slide obeys another equation than at the start
 /// of the step, so what it left when states last changed counts too.
 fn references(measures: &Measures<'_>) -> Vec<Sizes> {
     let start = measures.references.iter().map(Vec::as_slice);
-    start.chain(measures.switched).map(|r| split(measures, r, true)).collect()
+    start.chain(measures.switched).map(|r| split(measures, r, true)).chain([tractions(measures)]).collect()
 }
 
 impl ConvergenceCriterion for FrictionalCriterion {

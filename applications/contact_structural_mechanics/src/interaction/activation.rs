@@ -15,8 +15,8 @@ use crate::mortar::tangent;
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::resolution::Resolution;
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
-    NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, MULTIPLIER_WEIGHT,
+    NODAL_AREA, NODAL_H, NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Gap, in mesh sizes, of the simple activation.
@@ -248,6 +248,22 @@ fn numbers(
         tangent_factor: parameters.tangent_factor,
         resolution,
     }
+}
+
+/// Writes k² A/c of the slave nodes, where rows of multipliers state tractions: the criteria measure them by it.
+pub(super) fn weigh_multipliers(part: &mut ModelPart, slaves: &[u32], family: &Family, parameters: &StepParameters) {
+    if !family.frictional() || !family.multiplier.is_unknown() {
+        return;
+    }
+    let areas = part.nodes.values.values(&NODAL_AREA, 0);
+    let penalties = part.nodes.values.values(&INITIAL_PENALTY, 0);
+    let weight = |&n: &u32| {
+        let (area, penalty) = (areas[n as usize], penalties[n as usize]);
+        parameters.scale_factor.powi(2) * area / parameters.nodal_stiffness(penalty, area)
+    };
+    let weights: Vec<f64> = slaves.iter().map(weight).collect();
+    let column = part.nodes.values.values_mut(&MULTIPLIER_WEIGHT, 0);
+    slaves.iter().zip(weights).for_each(|(&n, weight)| column[n as usize] = weight);
 }
 
 /// What is too small to decide on at these interface nodes: `nodes` all of them, `slaves` those with multipliers.

@@ -191,6 +191,7 @@ impl ContactInteraction {
         if self.settings.family.frictional() {
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slip.as_flattened());
         }
+        activation::weigh_multipliers(part, &self.slaves, self.settings.family, &self.parameters);
         let family = self.settings.family;
         self.resolution = activation::resolution(part, &self.pairing.nodes(), &self.slaves, family, &self.parameters);
         let at_origin = |&node: &u32| norm(mapped[node as usize]) <= self.resolution.length * area[node as usize];
