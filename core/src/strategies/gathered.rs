@@ -171,8 +171,10 @@ impl GatheredMatrix {
         }
         let world = world();
         if new_graph {
-            let rows = |row: usize| std::iter::repeat_n(numbering.numbers[row], own.row(row).0.len());
-            let rows: Vec<u32> = (0..own.rows).flat_map(rows).collect();
+            // Each row with entries: its number and how many it has.
+            let counts = own.row_starts.windows(2).map(|pair| (pair[1] - pair[0]) as u32);
+            let rows = numbering.numbers.iter().zip(counts).filter(|(_, count)| *count > 0);
+            let rows: Vec<u32> = rows.flat_map(|(&number, count)| [number, count]).collect();
             let columns: Vec<u32> = own.columns.iter().map(|&column| numbering.numbers[column as usize]).collect();
             let rows = world.exchange_indices(&to_root(rows));
             let columns = world.exchange_indices(&to_root(columns));
@@ -189,27 +191,43 @@ impl GatheredMatrix {
     }
 
     /// The union of the patterns, and where the entries of each rank are in it.
+    ///
+    /// A rank has its rows, and the columns of a row, in the order of the places here.
     fn join(&mut self, rows: &[Vec<u32>], columns: &[Vec<u32>], places: &[u32]) {
-        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); places.len()];
         let place = |number: &u32| places[*number as usize];
-        for (row, column) in rows.iter().flatten().zip(columns.iter().flatten()) {
-            lists[place(row) as usize].push(place(column));
-        }
         let mut row_starts = vec![0];
         let mut joined: Vec<u32> = Vec::new();
-        for list in &mut lists {
-            list.sort_unstable();
-            list.dedup();
-            joined.extend_from_slice(list);
+        self.places = columns.iter().map(|list| Vec::with_capacity(list.len())).collect();
+        let mut rest: Vec<(&[u32], &[u32])> = rows.iter().zip(columns).map(|(r, c)| (&r[..], &c[..])).collect();
+        let mut merged: Vec<u32> = Vec::new();
+        let mut found: Vec<(usize, &[u32])> = Vec::new();
+        for row in 0..places.len() as u32 {
+            found.clear();
+            merged.clear();
+            for (rank, (rows, columns)) in rest.iter_mut().enumerate() {
+                if let [number, count, others @ ..] = rows
+                    && place(number) == row
+                {
+                    let (own, of_others) = columns.split_at(*count as usize);
+                    (*rows, *columns) = (others, of_others);
+                    merged.extend(own.iter().map(place));
+                    found.push((rank, own));
+                }
+            }
+            merged.sort_unstable();
+            merged.dedup();
+            for (rank, own) in &found {
+                let mut at = 0;
+                for column in own.iter().map(place) {
+                    while merged[at] != column {
+                        at += 1;
+                    }
+                    self.places[*rank].push((joined.len() + at) as u32);
+                }
+            }
+            joined.extend_from_slice(&merged);
             row_starts.push(joined.len());
         }
-        drop(lists);
-        let entry = |(row, column): (&u32, &u32)| {
-            let (start, end) = (row_starts[place(row) as usize], row_starts[place(row) as usize + 1]);
-            let column = place(column);
-            (start + joined[start..end].partition_point(|&other| other < column)) as u32
-        };
-        self.places = rows.iter().zip(columns).map(|(r, c)| r.iter().zip(c).map(entry).collect()).collect();
         self.sum = Csr::from_sorted_pattern(row_starts, joined);
     }
 }
@@ -228,8 +246,8 @@ mod tests {
     fn patterns_are_joined_in_the_order_of_one_process() {
         let mut matrix = GatheredMatrix::default();
         // Equation 0 of rank 0 comes second, equation 1, of rank 1, first.
-        matrix.join(&[vec![0, 0], vec![0, 1]], &[vec![0, 1], vec![0, 1]], &[1, 0]);
+        matrix.join(&[vec![0, 1], vec![1, 1, 0, 2]], &[vec![0], vec![1, 1, 0]], &[1, 0]);
         assert_eq!((&matrix.sum.row_starts[..], &matrix.sum.columns[..]), (&[0, 1, 3][..], &[0, 0, 1][..]));
-        assert_eq!(matrix.places, [vec![2, 1], vec![2, 0]]);
+        assert_eq!(matrix.places, [vec![2], vec![0, 1, 2]]);
     }
 }
