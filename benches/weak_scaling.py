@@ -32,7 +32,8 @@ def main():
     parser.add_argument("--products", type=int, default=6, help="products of the matrix in a Krylov iteration")
     parser.add_argument("--element", type=float, default=16e-6, help="seconds for the tangent of an element")
     parser.add_argument("--facet", type=float, default=72e-6, help="seconds for the pairs of a slave facet")
-    parser.add_argument("--decide", type=float, default=40e-6, help="seconds a slave facet of all ranks for what every rank does")
+    parser.add_argument("--decide", type=float, default=5e-6, 
+                        help="seconds a slave facet of all ranks for what every rank decides")
     parser.add_argument("--memory", type=float, default=5e9, help="bytes a second that a rank reads from memory")
     parser.add_argument("--latency", type=float, default=2e-6, help="seconds a message")
     parser.add_argument("--network", type=float, default=1e9, help="bytes a second that a rank sends")
@@ -55,13 +56,13 @@ def main():
         ("tangents of elements", "m t_e", f"{options.elements:.0f} · {options.element:.2g}",
          options.elements * options.element),
         ("pairs of slave facets", "f t_f", f"{facets:.0f} · {options.facet:.2g}", facets * options.facet),
-        ("what every rank decides", "F t_d", f"{all_facets:.0f} · {options.decide:.2g}", all_facets * options.decide),
         ("products of the matrix", "12 z K S 4/3 / M", f"12 · {entries:.3g} · {krylov} · {products} · 1.33",
          12 * entries * krylov * products * 4 / 3 / options.memory),
         ("set-up of multigrid", "12 z 10 S 4/3 / M", f"12 · {entries:.3g} · 10 · {products} · 1.33",
          12 * entries * 10 * products * 4 / 3 / options.memory),
     ]
     talk = [
+        ("what every rank decides", "F t_d", f"{all_facets:.0f} · {options.decide:.2g}", all_facets * options.decide),
         ("values, residuals", "8 d (p + g) / B + 2 P a", f"8 · {d} · ({copies:.0f} + {ghosts:.0f}); 2 · {neighbours}",
          8 * d * (copies + ghosts) / options.network + 2 * neighbours * options.latency),
         ("values on all ranks", "8 d C / B + (N - 1) a", f"8 · {d} · {common:.0f}; {ranks - 1}",
