@@ -183,6 +183,18 @@ fn tied_meshes() {
 }
 
 /// Systems as small as these are solved by rank 0 unless the deck asks for PETSc.
+/// Ties over a whole part, stages, dynamics, whole skins, fields that are mapped, and bodies that touch themselves.
+#[test]
+fn what_looks_beyond_a_rank() {
+    equals_serial("constraints/rigid_plate", &[], EXACT, true);
+    equals_serial("structural/stages_of_plastic_flow", &[], EXACT, true);
+    equals_serial("structural/volumetric_strain_swings_3D8N", &[], EQUAL, true);
+    equals_serial("contact_3d/skin_detection", &[], EXACT, true);
+    equals_serial("contact_3d/parts_of_nodes", &[], EXACT, true);
+    equals_serial("mpc/mapped_field", &[], EXACT, true);
+    equals_serial("self_contact/slit_hexahedra", &[], EQUAL, true);
+}
+
 #[test]
 fn petsc_solves_for_all() {
     if !cfg!(feature = "petsc") {
