@@ -31,7 +31,7 @@ pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, mo
         keep_share(part, &Partition::on_one_rank(part, ranks), &vec![true; part.nodes.len()]);
         return Ok(());
     }
-    let cut = partition(part, &surfaces(&decks[0], part), ranks)?;
+    let cut = cut_on_rank_0(part, &decks[0], ranks)?;
     let mut common = vec![changes; part.nodes.len()];
     for deck in decks {
         let of_stage = common_nodes(part, &surfaces(deck, part), deck);
@@ -51,6 +51,21 @@ pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, mo
     note.push_str(&format!("; the fullest has {most} of {whole} nodes"));
     monitor.note(&note);
     Ok(())
+}
+
+/// The partition, which rank 0 makes for all; without facets on the others. Collective.
+fn cut_on_rank_0(part: &ModelPart, deck: &Node, ranks: usize) -> Result<Partition> {
+    let world = world();
+    let made = if world.is_root() { partition(part, &surfaces(deck, part), ranks).map(Some) } else { Ok(None) };
+    let made = world.agree(made)?;
+    let owners = made.iter().flat_map(|cut| [&cut.elements, &cut.conditions, &cut.nodes]).flatten().copied().collect();
+    let owners = world.exchange_indices(&vec![owners; ranks]).swap_remove(0);
+    Ok(made.unwrap_or_else(|| {
+        let (elements, others) = owners.split_at(part.elements.len());
+        let (conditions, nodes) = others.split_at(part.conditions.len());
+        let [elements, conditions, nodes] = [elements, conditions, nodes].map(<[u32]>::to_vec);
+        Partition { ranks, elements, conditions, nodes, facets: Vec::new(), cut: 0 }
+    }))
 }
 
 /// Errors when the ranks have not read the same files; collective.
