@@ -195,6 +195,27 @@ fn what_looks_beyond_a_rank() {
     equals_serial("self_contact/slit_hexahedra", &[], EQUAL, true);
 }
 
+/// κ of the system of all ranks, not of what one of them adds to it.
+#[test]
+fn condition_numbers_are_those_of_the_whole_system() {
+    let folder = case("contact_2d/nonmatching");
+    let asks = "\"mortar_type\": \"ALMContactFrictionless\"";
+    change(folder.path(), DECK, asks, &format!("{asks}, \"condn_convergence_criterion\": true"));
+    let arguments = ["run", DECK, "--report", "report.json"];
+    let number = |folder: &Path| -> f64 {
+        let report = read_json(&folder.join("report.json")).expect("the report");
+        report["steps"][0]["iterations"][0]["condition_number"].as_f64().expect("a condition number")
+    };
+    assert!(zelus(folder.path(), &arguments).status.success());
+    let alone = number(folder.path());
+    for ranks in [2, 3] {
+        let Some(output) = distributed(folder.path(), ranks, &arguments) else { return };
+        assert!(output.status.success(), "{}", said(&output));
+        let shared = number(folder.path());
+        assert!((shared - alone).abs() <= EQUAL * alone, "{ranks} ranks: {shared}, not {alone}");
+    }
+}
+
 #[test]
 fn petsc_solves_for_all() {
     if !cfg!(feature = "petsc") {
