@@ -6,6 +6,7 @@
 
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
+use super::meaning::Meaning;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::gather;
@@ -171,8 +172,8 @@ impl ExplicitStrategy {
         if self.settings.move_mesh {
             part.move_mesh();
         }
-        if let Some(number) = moved.filter(|_| !self.settings.follow_prescribed) {
-            self.warn_of_motion(part, number);
+        if !self.settings.follow_prescribed && !self.warned {
+            self.warn_of_motion(part, moved);
         }
         let broken = self.assembler.values(part).iter().position(|v| !v.is_finite());
         Ok((Vec::new(), world().first_to_say(broken.map(|number| self.explain(part, number)))))
@@ -219,21 +220,20 @@ impl ExplicitStrategy {
         }
     }
 
-    fn warn_of_motion(&mut self, part: &mut ModelPart, number: usize) {
-        if !std::mem::replace(&mut self.warned, true) {
-            let dof = &part.dofs.dofs()[number];
-            let node = part.nodes.ids[dof.node as usize];
-            let fact =
-                format!("{} of node {node} is fixed and given another value: it stays where it is", dof.variable);
+    /// Warns, once, of a fixed unknown on any rank that is given another value; collective.
+    fn warn_of_motion(&mut self, part: &mut ModelPart, moved: Option<usize>) {
+        let moved = moved.map(|number| Meaning::of(&part.dofs, &part.nodes, number as u32).to_string());
+        if let Some(moved) = world().first_to_say(moved) {
+            let fact = format!("{moved} is fixed and given another value: it stays where it is");
             let remedy = "\"follow_prescribed_motion\" of the solver settings is false: true moves fixed unknowns";
             part.messages.push(Diagnostic::warning("prescribed-motion", fact).remedy(remedy));
+            self.warned = true;
         }
     }
 
     fn explain(&self, part: &ModelPart, number: usize) -> String {
-        let dof = &part.dofs.dofs()[number];
-        let node = part.nodes.ids[dof.node as usize];
-        format!("{} of node {node} is no longer finite: the step is longer than the critical one", dof.variable)
+        let unknown = Meaning::of(&part.dofs, &part.nodes, number as u32);
+        format!("{unknown} is no longer finite: the step is longer than the critical one")
     }
 }
 
