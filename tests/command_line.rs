@@ -227,3 +227,31 @@ fn more_ranks_than_elements_are_bad_input() {
         assert!(said(&output).contains("cannot be shared by"), "{}", said(&output));
     }
 }
+
+/// The defaults of Kratos are laid under what a deck leaves out, never over what it says, by option or by the deck's own word.
+#[test]
+fn defaults_of_kratos_fill_in_what_a_deck_leaves_out() {
+    let folder = case("contact_2d/matching");
+    let laid = |arguments: &[&str]| {
+        let output =
+            zelus(folder.path(), &[&["run", "ProjectParameters.json", "--report", "run.json"], arguments].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        let report = read_json(&folder.path().join("run.json")).expect("the report");
+        let laid: Vec<String> = serde_json::from_value(report["laid_defaults"].clone()).expect("settings");
+        (report["like"].as_str().map(str::to_owned), laid)
+    };
+    let normals = "alm_contact_process.normal_variation = \"no_derivatives_computation\"".to_owned();
+    assert_eq!(laid(&[]), (None, vec![]));
+    let (program, settings) = laid(&["--like", "kratos"]);
+    assert_eq!(program.as_deref(), Some("kratos"));
+    assert!(settings.contains(&normals), "{settings:?}");
+    change(folder.path(), "\"problem_data\": {", "\"problem_data\": { \"like\": \"kratos\",");
+    assert_eq!(laid(&[]), (program, settings));
+    let normal = "\"normal_variation\": \"elemental_derivatives\", \"contact_type\"";
+    change(folder.path(), "\"contact_type\"", normal);
+    let (_, settings) = laid(&[]);
+    assert!(!settings.contains(&normals), "{settings:?}");
+    let output = zelus(folder.path(), &["check", "ProjectParameters.json", "--like", "kratoss"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("unknown-program") && said(&output).contains("kratos"), "{}", said(&output));
+}

@@ -3,9 +3,10 @@
 mod support;
 
 use std::collections::BTreeSet;
+use std::path::Path;
 use support::root;
 use zelus as _;
-use zelus_core::parameters::Defaults;
+use zelus_core::parameters::{Defaults, Document, Settings};
 use zelus_core::registry::{Kind, duplicates, entries, require};
 
 #[test]
@@ -47,6 +48,22 @@ fn every_name_says_what_it_is_and_where_it_lives() {
             && let Err(error) = Defaults::parse(entry.name, entry.defaults)
         {
             problems.push(format!("{place}: {error}"));
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// What `--like` lays under a deck must be settings that the object takes.
+#[test]
+fn defaults_of_other_programs_are_settings() {
+    let mut problems = Vec::new();
+    for entry in entries() {
+        for (program, values) in entry.like {
+            let laid = Document::from_str(values, Path::new(entry.name)).unwrap().root;
+            let defaults = Defaults::parse(entry.name, entry.defaults).unwrap();
+            if let Err(error) = Settings::check(&laid, &defaults) {
+                problems.push(format!("{} like {program}: {error}", entry.name));
+            }
         }
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));

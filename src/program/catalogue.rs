@@ -65,6 +65,10 @@ pub(super) fn describe(name: &str) -> Result<()> {
             say("  settings with their defaults:");
             entry.defaults.lines().for_each(|line| say(&format!("    {line}")));
         }
+        for (program, values) in entry.like {
+            say(&format!("  with --like {program}, where a deck names nothing:"));
+            values.lines().for_each(|line| say(&format!("    {line}")));
+        }
     }
     let variable = variables().get(name);
     if let Some(entry) = variable {

@@ -44,11 +44,17 @@ enum Command {
         /// Write the report of the run (sizes, iterations, contact state, timings, warnings) to this JSON file.
         #[arg(long)]
         report: Option<PathBuf>,
+        /// Take the defaults of this program where the deck names nothing, e.g. kratos.
+        #[arg(long, value_name = "PROGRAM")]
+        like: Option<String>,
     },
     /// Check everything about a deck that can be known without solving.
     Check {
         /// The deck, e.g. ProjectParameters.json.
         file: PathBuf,
+        /// Take the defaults of this program where the deck names nothing, e.g. kratos.
+        #[arg(long, value_name = "PROGRAM")]
+        like: Option<String>,
     },
     /// Cut the mesh of a deck for several ranks and say what each has, whom it meets and what it sends.
     Partition(partition::Arguments),
@@ -89,11 +95,11 @@ pub fn main() -> ExitCode {
 
 fn execute(command: Command) -> Result<()> {
     match command {
-        Command::Run { file, threads, report } => {
+        Command::Run { file, threads, report, like } => {
             if let Some(path) = &report {
                 check_writable(path)?;
             }
-            let options = RunOptions { threads };
+            let options = RunOptions { threads, like };
             if !world().is_root() {
                 return zelus_core::analysis::run(&file, &options, &mut Silent).0;
             }
@@ -103,10 +109,11 @@ fn execute(command: Command) -> Result<()> {
             let written = report.map_or(Ok(()), |path| write_report(&path, &run));
             result.and(written)
         }
-        Command::Check { file } => {
+        Command::Check { file, like } => {
+            let options = RunOptions { like, ..RunOptions::default() };
             let mut monitor: Box<dyn Monitor> =
                 if world().is_root() { Box::new(Terminal::new()) } else { Box::new(Silent) };
-            let (result, report) = zelus_core::analysis::check(&file, &RunOptions::default(), monitor.as_mut());
+            let (result, report) = zelus_core::analysis::check(&file, &options, monitor.as_mut());
             result?;
             if !world().is_root() {
                 return Ok(());

@@ -5,6 +5,7 @@
 
 mod cutting;
 mod deck;
+mod like;
 mod linear_solvers;
 mod mesh;
 mod older_decks;

@@ -50,6 +50,7 @@ pub(super) fn modernise(deck: &Node, report: &mut Report) -> Node {
     }
     let mut places = Vec::new();
     for_each_process(&mut deck, |_, parameters| {
+        let Value::Object(parameters) = &mut parameters.value else { return };
         if parameters.get("mesh_id").and_then(Node::as_i64) == Some(0)
             && let Some(member) = parameters.remove("mesh_id")
         {
@@ -71,6 +72,7 @@ pub(super) fn complete_part_names(deck: &mut Node, root: &str, model: &Model, re
         if process.is_some_and(|entry| entry.defaults.contains("\"main_model_part_name\"")) {
             return;
         }
+        let Value::Object(parameters) = &mut parameters.value else { return };
         let names_full_path = |key: &&str| key.ends_with("model_part_name") && !key.starts_with("sub_");
         let keys: Vec<String> = parameters.keys().filter(names_full_path).map(str::to_owned).collect();
         for key in keys {
@@ -105,7 +107,7 @@ fn all_is_computed(name: &str, root: &str) -> Diagnostic {
 }
 
 /// Does something to the parameters of each process, of which the registered entry is given where there is one.
-fn for_each_process(deck: &mut Node, mut change: impl FnMut(Option<&Entry>, &mut Object)) {
+pub(super) fn for_each_process(deck: &mut Node, mut change: impl FnMut(Option<&Entry>, &mut Node)) {
     let Value::Object(top) = &mut deck.value else { return };
     for section in ["processes", "output_processes"] {
         let Some(Node { value: Value::Object(lists), .. }) = top.get_mut(section) else { continue };
@@ -116,7 +118,7 @@ fn for_each_process(deck: &mut Node, mut change: impl FnMut(Option<&Entry>, &mut
                 let Value::Object(process) = &mut item.value else { continue };
                 let module = process.get("python_module").or_else(|| process.get("name")).and_then(Node::as_str);
                 let entry = module.and_then(|path| registry::find(Kind::Process, path.rsplit('.').next()?));
-                if let Some(Node { value: Value::Object(parameters), .. }) = process.get_mut("Parameters") {
+                if let Some(parameters) = process.get_mut("Parameters").filter(|node| node.as_object().is_some()) {
                     change(entry, parameters);
                 }
             }

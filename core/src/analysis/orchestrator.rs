@@ -17,6 +17,8 @@ use crate::strategies::Monitor;
 pub struct RunOptions {
     /// Threads; `None` takes all of the machine, as rayon sees them.
     pub threads: Option<usize>,
+    /// Program whose defaults hold where the deck names nothing, e.g. `kratos`; `None` for what the deck says, else our own.
+    pub like: Option<String>,
 }
 
 /// Runs a deck; the second value is the report, also of a run that failed.
@@ -27,7 +29,8 @@ pub fn run(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (Res
         warn_of_checkpoints(&deck, report, monitor);
         let all = stages(&deck, report)?;
         for at in 0..all.len() {
-            Stage::prepare(&all[at..], &folder, &mut model, report, monitor)?.run(&mut model, report, monitor)?;
+            Stage::prepare(&all[at..], &folder, options.like.as_deref(), &mut model, report, monitor)?
+                .run(&mut model, report, monitor)?;
         }
         report.converged = true;
         Ok(())
@@ -42,7 +45,7 @@ pub fn check(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (R
         warn_of_checkpoints(&deck, report, monitor);
         let all = stages(&deck, report)?;
         for at in 0..all.len() {
-            Stage::prepare(&all[at..], &folder, &mut model, report, monitor)?;
+            Stage::prepare(&all[at..], &folder, options.like.as_deref(), &mut model, report, monitor)?;
             report.stages.push(all[at].name.clone());
         }
         Ok(())

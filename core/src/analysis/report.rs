@@ -29,6 +29,10 @@ pub struct RunReport {
     pub version: String,
     /// Name of the problem.
     pub problem: String,
+    /// Program whose defaults hold where the deck names nothing; `None` for our own.
+    pub like: Option<String>,
+    /// The settings that this gave the deck, as `object.key = value`.
+    pub laid_defaults: Vec<String>,
     /// Stages run.
     pub stages: Vec<String>,
     /// Sizes of the last stage.

@@ -83,11 +83,8 @@ impl SolverSettings {
     /// # Errors
     /// Everything that does not fit, gathered.
     pub fn new(user: &Node, report: &mut Report) -> Result<Self> {
-        let solver_type = user.require("solver_type")?;
-        let (mut entry, mut definition) = find_solver(solver_type.str()?).map_err(|e| e.at(&solver_type.place()))?;
-        if let Some(name) = (definition.variant)(user) {
-            (entry, definition) = find_solver(name)?;
-        }
+        let entry = solver_entry(user)?;
+        let definition = definition_of(entry);
         let mut own = user.clone();
         let mut extensions = Vec::new();
         let mut lenient = false;
@@ -327,10 +324,22 @@ impl SolverSettings {
     }
 }
 
-fn find_solver(name: &str) -> Result<(&'static Entry, &'static SolverDefinition)> {
-    let entry = registry::require(Kind::Solver, name)?;
+/// The registered solver that `solver_settings` ask for.
+///
+/// # Errors
+/// No `solver_type`, or one that is not registered.
+pub(super) fn solver_entry(user: &Node) -> Result<&'static Entry> {
+    let solver_type = user.require("solver_type")?;
+    let entry = registry::require(Kind::Solver, solver_type.str()?).map_err(|d| d.at(solver_type.place()))?;
+    match (definition_of(entry).variant)(user) {
+        Some(name) => Ok(registry::require(Kind::Solver, name)?),
+        None => Ok(entry),
+    }
+}
+
+fn definition_of(entry: &'static Entry) -> &'static SolverDefinition {
     let Build::Factory(definition) = entry.build else { unreachable!("solvers register a factory") };
-    Ok((entry, definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition")))
+    definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition")
 }
 
 /// Makes the blocks of a part from its tables: one for each kind and properties, with the entities of this rank. Elements

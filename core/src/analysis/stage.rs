@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::cutting::{Cutting, Lengths};
 use super::deck::{StageDeck, check_top_level, import, make_processes, root_name};
+use super::like::{lay_defaults, program};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
@@ -41,6 +42,7 @@ impl Stage {
     pub(super) fn prepare(
         stages: &[StageDeck],
         folder: &Path,
+        like: Option<&str>,
         model: &mut Model,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
@@ -49,6 +51,16 @@ impl Stage {
         let (stage, later) = stages.split_first().expect("there is a stage to prepare");
         let mut problems = Report::new();
         let mut deck = modernise(&stage.settings, &mut problems);
+        if let Some(program) = problems.absorb(program(&deck, like)).flatten() {
+            let laid = lay_defaults(&mut deck, program, &mut problems);
+            let laid = problems.absorb(laid).unwrap_or_default();
+            monitor.note(&format!(
+                "defaults of {program} hold where the deck names nothing: {} settings, which the report lists",
+                laid.len()
+            ));
+            report.like = Some(program.to_owned());
+            report.laid_defaults.extend(laid);
+        }
         let known = ["problem_data", "solver_settings", "processes", "output_processes", "modelers", "analysis_stage"];
         for member in deck.object()?.iter() {
             check_top_level(&member.key, &known, &deck, &mut problems);

@@ -51,6 +51,24 @@ pub struct Member {
     pub node: Node,
 }
 
+impl Member {
+    /// The same member as if it stood at `place`.
+    pub fn at(&self, place: &Place) -> Self {
+        let mut member = self.clone();
+        let file: Arc<Path> = Arc::from(place.file.as_path());
+        member.key_position = (place.line, place.column);
+        member.node.move_to((&file, place.line, place.column), true);
+        member
+    }
+
+    /// The same member with another value.
+    #[must_use]
+    pub fn with(mut self, value: Value) -> Self {
+        self.node.value = value;
+        self
+    }
+}
+
 /// Named values: iterated in byte order of their keys, source order on demand.
 #[derive(Debug, Clone, Default)]
 pub struct Object {

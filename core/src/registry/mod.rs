@@ -110,6 +110,8 @@ pub struct Entry {
     pub source: &'static str,
     /// Default settings in JSON with a comment on every key; empty when it has none.
     pub defaults: &'static str,
+    /// Programs whose own defaults differ: their names, and the keys that differ with their values, JSON with comments.
+    pub like: &'static [(&'static str, &'static str)],
     /// Reference cell of an element or condition.
     pub cell: Option<Shape>,
     /// Dimensions of the space an element or condition lives in: 2 or 3; 0 for everything else.
@@ -136,6 +138,7 @@ impl Entry {
             about: "",
             source: "",
             defaults: "",
+            like: &[],
             cell: None,
             space: 0,
             nodal: &[],

@@ -255,5 +255,6 @@ register! { Process "alm_contact_process",
     about: "contact by the augmented Lagrangian method on mortar pairs",
     source: "eqs. 4.9, 4.11, D.11",
     defaults: include_str!("../../../../configs/processes/alm_contact_process.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/alm_contact_process.json"))],
     build: Build::Process(|request| of_families(request, &AUGMENTED)),
 }

@@ -13,5 +13,6 @@ register! { Process "explicit_penalty_contact_process",
     about: "contact by the penalty method on mortar pairs, in explicit steps",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/explicit_penalty_contact_process.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_penalty_contact_process.json"))],
     build: Build::Process(|request| of_families(request, &EXPLICIT)),
 }

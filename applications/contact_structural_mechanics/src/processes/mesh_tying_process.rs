@@ -100,5 +100,6 @@ register! { Process "mesh_tying_process",
     aliases: &["MeshTyingProcess"],
     about: "ties meshes that do not match by multipliers on mortar pairs",
     defaults: include_str!("../../../../configs/processes/mesh_tying_process.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/mesh_tying_process.json"))],
     build: Build::Process(build),
 }

@@ -98,5 +98,6 @@ register! { Process "mpc_contact_process",
     about: "contact and ties by linear constraints that active nodes obey",
     source: "eqs. D.12a–e",
     defaults: include_str!("../../../../configs/processes/mpc_contact_process.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/mpc_contact_process.json"))],
     build: Build::Process(build),
 }

@@ -13,5 +13,6 @@ register! { Process "penalty_contact_process",
     about: "contact by the penalty method on mortar pairs",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/penalty_contact_process.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/penalty_contact_process.json"))],
     build: Build::Process(|request| of_families(request, &PENALTY)),
 }

@@ -12,5 +12,6 @@ register! { Process "perturbed_lagrangian_contact_process",
     about: "contact by the perturbed Lagrangian on mortar pairs",
     source: "eq. 4.11; Simo, Wriggers and Taylor (1985)",
     defaults: include_str!("../../../../configs/processes/perturbed_lagrangian_contact_process.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/perturbed_lagrangian_contact_process.json"))],
     build: Build::Process(|request| of_families(request, &FAMILIES)),
 }

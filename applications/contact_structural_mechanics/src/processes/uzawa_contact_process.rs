@@ -12,5 +12,6 @@ register! { Process "uzawa_contact_process",
     about: "contact by Uzawa's iteration on the penalty kernel",
     source: "eqs. 4.11, D.10",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/uzawa_contact_process.json"))],
     build: Build::Process(|request| of_families(request, &FAMILIES)),
 }

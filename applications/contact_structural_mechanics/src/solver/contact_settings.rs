@@ -21,6 +21,7 @@ pub const SIMPLIFIED_SEMI_SMOOTH_NEWTON: &str = "SIMPLIFIED_SEMI_SMOOTH_NEWTON";
 register! { SolverExtension "contact_settings",
     about: "what the solver needs to know of contact",
     defaults: include_str!("../../../../configs/solvers/contact_settings.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/contact_settings.json"))],
     build: Build::Factory(&ExtensionDefinition {
         variables: |settings| {
             let mortar_type = settings.get_str("mortar_type")?;

@@ -10,6 +10,7 @@ pub(crate) const UPDATE_EACH_ITERATION: &str = "UPDATE_EACH_NL_ITERATION";
 register! { SolverExtension "mpc_contact_settings",
     about: "what the solver needs to know of contact by constraints",
     defaults: include_str!("../../../../configs/solvers/mpc_contact_settings.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/mpc_contact_settings.json"))],
     build: Build::Factory(&ExtensionDefinition {
         variables: |settings| {
             let mut variables = vec![("NORMAL", 3), ("WEIGHTED_GAP", 1)];

@@ -13,6 +13,7 @@ register! { Solver "Dynamic",
     aliases: &["dynamic"],
     about: "motion with inertia, integrated in time by a scheme",
     defaults: include_str!("../../../../configs/solvers/dynamic.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/dynamic.json"))],
     build: Build::Factory(&SolverDefinition {
         variant: |user| {
             let method = user.get("time_integration_method").and_then(|method| method.str().ok());

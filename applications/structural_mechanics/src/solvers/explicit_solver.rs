@@ -7,6 +7,7 @@ use zelus_core::registry::Build;
 register! { Solver "ExplicitDynamic",
     about: "what \"Dynamic\" is with \"time_integration_method\": \"explicit\": short steps without iterations",
     defaults: include_str!("../../../../configs/solvers/explicit_dynamic.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_dynamic.json"))],
     build: Build::Factory(&SolverDefinition {
         variant: |_| None,
         variables: &super::dynamic_solver::VARIABLES,

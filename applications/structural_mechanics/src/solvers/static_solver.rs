@@ -8,6 +8,7 @@ register! { Solver "Static",
     aliases: &["static"],
     about: "equilibrium at each time; time only orders the loads",
     defaults: include_str!("../../../../configs/solvers/static.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/static.json"))],
     build: Build::Factory(&SolverDefinition {
         variant: |_| None,
         variables: &super::VARIABLES,
