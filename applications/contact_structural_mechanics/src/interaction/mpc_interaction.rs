@@ -24,7 +24,7 @@ use crate::interface::{Interface, add_contact_part, find_nodal_h, interfaces, no
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{FacetPair, Friction, PairKey, condition_name, facet_operators, overlapping_pairs};
 use crate::resolution::is_more;
-use crate::search::{SearchSettings, warn_of_reach};
+use crate::search::SearchSettings;
 use crate::solver::UPDATE_EACH_ITERATION;
 use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 
@@ -86,7 +86,6 @@ pub struct MpcInteraction {
     steps_since_search: usize,
     acting: bool,
     warned: bool,
-    reach_warned: bool,
     saved: BTreeMap<PairKey, PairRelation>,
     saved_forces: Vec<[f64; 3]>,
 }
@@ -114,7 +113,6 @@ impl MpcInteraction {
             steps_since_search: usize::MAX,
             acting: false,
             warned: false,
-            reach_warned: false,
             saved: BTreeMap::new(),
             saved_forces: Vec::new(),
         })
@@ -135,9 +133,8 @@ impl MpcInteraction {
             keep && holds(relation) && facet_operators(part, slave, master, segmentation).is_some()
         });
         let known = |key: &PairKey| self.pairs.contains_key(key);
-        let (found, lost) = overlapping_pairs(part, interfaces, &self.settings.search, segmentation, &known);
+        let found = overlapping_pairs(part, interfaces, &self.settings.search, segmentation, &known);
         self.relate(part, &found);
-        warn_of_reach(part, lost, &mut self.reach_warned);
         self.warn_of_unlike_meshes(part);
     }
 

@@ -18,7 +18,7 @@ use crate::pairs::{
     FacetOperators, FacetPair, PairKey, TyingFamily, TyingRequest, condition_name, group_by_shapes, overlapping_pairs,
     tying_block,
 };
-use crate::search::{SearchSettings, warn_of_reach};
+use crate::search::SearchSettings;
 
 /// What a deck chooses about a tie.
 pub struct TyingSettings {
@@ -54,7 +54,6 @@ pub struct TyingInteraction {
     scale_factor: f64,
     graph: u64,
     steps_since_search: Option<usize>,
-    warned: bool,
 }
 
 impl TyingInteraction {
@@ -74,17 +73,15 @@ impl TyingInteraction {
             scale_factor: 1.0,
             graph: 1,
             steps_since_search: None,
-            warned: false,
         })
     }
 
     fn search(&mut self, part: &mut ModelPart) {
         nodal_normals(part, &self.interfaces);
         let known = |key: &PairKey| self.pairs.contains_key(key);
-        let (found, lost) =
+        let found =
             overlapping_pairs(part, &self.interfaces, &self.settings.search, &self.settings.segmentation, &known);
         self.pairs.extend(found.into_iter().map(|pair| (pair.key, pair.operators)));
-        warn_of_reach(part, lost, &mut self.warned);
     }
 
     fn make_blocks(&mut self, part: &ModelPart) -> Result<()> {

@@ -97,32 +97,25 @@ fn of_shapes<const NS: usize, const NM: usize>(
     Some(out)
 }
 
-/// Pairs that overlap now, ascending, without those `known` already; and how many lie beyond the reach of the search.
+/// Pairs that overlap now, ascending, without those `known` already.
 pub fn overlapping_pairs(
     part: &ModelPart,
     interfaces: &[Interface],
     search: &SearchSettings,
     segmentation: &SegmentationSettings,
     known: &(dyn Fn(&PairKey) -> bool + Sync),
-) -> (Vec<FacetPair>, usize) {
-    let mut kept = Vec::new();
-    let mut lost = 0;
+) -> Vec<FacetPair> {
+    let mut pairs = Vec::new();
     for (at, interface) in interfaces.iter().enumerate() {
-        let found: Vec<(bool, FacetPair)> = candidates(part, interface, search)
-            .into_par_iter()
-            .with_min_len(32)
-            .filter_map(|Candidate { slave, master, within_reach }| {
+        pairs.par_extend(candidates(part, interface, search).into_par_iter().with_min_len(32).filter_map(
+            |candidate| {
+                let Candidate { slave, master, .. } = candidate;
                 let key = PairKey { interface: at as u32, slave, master };
                 let (slave, master) = (&interface.facets[slave as usize], &interface.facets[master as usize]);
-                if known(&key) {
-                    return None;
-                }
-                let operators = facet_operators(part, slave, master, segmentation)?;
-                Some((within_reach, FacetPair { key, operators }))
-            })
-            .collect();
-        lost += found.iter().filter(|(within_reach, _)| !within_reach).count();
-        kept.extend(found.into_iter().filter_map(|(within_reach, pair)| within_reach.then_some(pair)));
+                let operators = if known(&key) { None } else { facet_operators(part, slave, master, segmentation) };
+                Some(FacetPair { key, operators: operators? })
+            },
+        ));
     }
-    (kept, lost)
+    pairs
 }

@@ -23,7 +23,7 @@ use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
 use crate::pairs::{Family, find_family};
 use crate::penalty_adaptation::PenaltyRule;
-use crate::search::{GapCheck, SearchSettings};
+use crate::search::{GapCheck, SearchDistance, SearchSettings};
 
 #[derive(Debug, Deserialize)]
 struct Search {
@@ -31,6 +31,7 @@ struct Search {
     adapt_search: bool,
     dynamic_search: bool,
     search_factor: f64,
+    search_distance: SearchDistance,
     active_check_factor: f64,
     database_step_update: usize,
     normal_orientation_threshold: f64,
@@ -154,6 +155,7 @@ fn interaction(
         normal_variation,
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
+            distance: whole.search_parameters.search_distance,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             check: whole.search_parameters.check_gap,
             dynamic: whole.search_parameters.dynamic_search,

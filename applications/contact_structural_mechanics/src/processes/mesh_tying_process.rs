@@ -14,7 +14,7 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
 use crate::interaction::{TyingInteraction, TyingSettings};
 use crate::pairs::find_tying_family;
-use crate::search::{GapCheck, SearchSettings};
+use crate::search::{GapCheck, SearchDistance, SearchSettings};
 
 #[derive(Debug, Deserialize)]
 struct Search {
@@ -64,6 +64,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         interval: Interval::from_node(settings.get("interval")?)?,
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
+            distance: SearchDistance::BetweenFacets,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             check: GapCheck::CheckMapping,
             dynamic: false,

@@ -14,7 +14,7 @@ use super::interface_settings::{check_positive, segmentation};
 use crate::interface::{Interface, interfaces, nodal_normals};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{FacetPair, overlapping_pairs};
-use crate::search::{GapCheck, SearchSettings};
+use crate::search::{GapCheck, SearchDistance, SearchSettings};
 
 /// Least difference of unit normals of facets that face each other.
 const FACING: f64 = 0.1;
@@ -110,6 +110,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         coefficient: settings.get_f64("mapping_coefficient")?,
         search: SearchSettings {
             factor: settings.get_f64("search_parameters.search_factor")?,
+            distance: SearchDistance::BetweenFacets,
             normal_orientation_threshold: FACING,
             check: GapCheck::CheckMapping,
             dynamic: false,
@@ -138,7 +139,7 @@ impl Mapper {
         }
         part.nodes.history.add(&NORMAL);
         nodal_normals(part, &self.interface);
-        let (pairs, _) = overlapping_pairs(part, &self.interface, &self.search, &self.segmentation, &|_| false);
+        let pairs = overlapping_pairs(part, &self.interface, &self.search, &self.segmentation, &|_| false);
         if pairs.is_empty() {
             let fact = format!("{} and {} do not overlap: nothing is mapped", self.origin_part, self.destination_part);
             return Err(Diagnostic::error("nothing-mapped", fact)

@@ -20,11 +20,23 @@ pub enum GapCheck {
     NoCheck,
 }
 
+/// Between which points of two facets the reach of the search is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SearchDistance {
+    /// Between the boxes around them: what may overlap is a pair, whatever its size.
+    BetweenFacets,
+    /// Between their centres: masters much larger than the slave may be left out.
+    BetweenCentres,
+}
+
 /// What decides whether a pair is a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
-    /// Reach of the search in radii of the slave facet: centres farther apart are not a pair.
+    /// Reach of the search in radii of the slave facet: facets farther apart are not a pair.
     pub factor: f64,
+    /// How far apart two facets are.
+    pub distance: SearchDistance,
     /// Least difference of the unit normals: facets that face the same way are not a pair.
     pub normal_orientation_threshold: f64,
     /// How contact starts.
@@ -40,14 +52,14 @@ pub struct Candidate {
     pub slave: u32,
     /// Master facet of the interface.
     pub master: u32,
-    /// Whether the centres are within the reach of the search.
+    /// Whether the facets are within the reach of the search.
     pub within_reach: bool,
 }
 
 /// Candidates of an interface in the present configuration, ascending.
 ///
-/// The reach is a multiple of the distance from the centre of the slave to its farthest node, as decks set it. Facets whose
-/// boxes meet although their centres are farther apart (masters much larger than the slave) are given too, marked.
+/// The reach is a multiple of the distance from the centre of the slave to its farthest node, as decks set it. Where it is
+/// measured between centres, facets whose boxes meet although their centres are farther apart are given too, marked.
 pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSettings) -> Vec<Candidate> {
     let of_role = |role: Roles| -> Vec<u32> {
         (0..interface.facets.len() as u32).filter(|&f| interface.facets[f as usize].role == role).collect()
@@ -80,14 +92,16 @@ pub(super) fn among(
             let near = tree.meeting(&own.bounds.grown(reach));
             let found: Vec<Candidate> = near
                 .into_iter()
-                .map(|m| (m, &places[m as usize]))
+                .map(|m| (masters[m as usize], &places[m as usize]))
                 .filter(|(_, other)| norm(sub(own.normal, other.normal)) >= settings.normal_orientation_threshold)
-                .map(|(m, other)| Candidate {
-                    slave,
-                    master: masters[m as usize],
-                    within_reach: norm(sub(own.centre, other.centre)) <= reach,
+                .filter_map(|(master, other)| {
+                    let within_reach = match settings.distance {
+                        SearchDistance::BetweenFacets => true,
+                        SearchDistance::BetweenCentres => norm(sub(own.centre, other.centre)) <= reach,
+                    };
+                    let meets = within_reach || own.bounds.grown(0.1 * own.radius).meets(&other.bounds);
+                    meets.then_some(Candidate { slave, master, within_reach })
                 })
-                .filter(|c| c.within_reach || own.bounds.grown(0.1 * own.radius).meets(&place(c.master).bounds))
                 .collect();
             found
         })

@@ -10,7 +10,7 @@ pub fn warn_of_reach(part: &mut ModelPart, lost: usize, warned: &mut bool) {
             format!("{lost} pairs of facets overlap but lie beyond the reach of the search; contact has gaps there");
         part.messages.push(
             Diagnostic::warning("search-reach", fact)
-                .remedy("raise \"search_parameters.search_factor\", or let the finer side be the master"),
+                .remedy("set \"search_parameters.search_distance\" to \"between_facets\", or raise \"search_factor\""),
         );
     }
 }
