@@ -43,6 +43,8 @@ pub struct RunReport {
     pub warnings: Vec<String>,
     /// Which engine serves the deck's linear solver.
     pub linear_solver: String,
+    /// Numbers that interactions chose for the run, by name, e.g. penalty and scale factor of contact; of the last stage.
+    pub parameters: BTreeMap<String, f64>,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
     /// Threads used.

@@ -268,6 +268,7 @@ impl SolverSettings {
         let searched = way == "line_search" && !linear;
         let settings = NewtonSettings {
             max_iteration,
+            continue_if_converging: self.settings.get_bool("continue_if_converging")?,
             linear,
             compute_reactions: self.settings.get_bool("compute_reactions")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,

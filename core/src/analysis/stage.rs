@@ -1,5 +1,6 @@
 //! One stage: a solver, its processes, and the loop over the steps.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -146,6 +147,7 @@ impl Stage {
         }
         part.interactions = interactions;
         problems = problems_of_all(problems)?;
+        report.parameters = tell_parameters(part, monitor);
         let (strategy, says) = solver.strategy(part, &mut problems)?;
         monitor.note(&says);
         report.linear_solver = says;
@@ -235,6 +237,7 @@ impl Stage {
     ) -> Result<()> {
         let whole = target - model.root(&self.root)?.info.time;
         let mut lengths = Lengths::new(self.cutting, whole, self.first_length.take());
+        let mut failed: Option<StepRecord> = None;
         loop {
             let from = model.root(&self.root)?.info.time;
             let (to, last) = lengths.next(from, target);
@@ -244,17 +247,20 @@ impl Stage {
             if record.converged {
                 self.accept(model, report, monitor)?;
                 lengths.grow();
+                failed = None;
                 if last {
                     self.first_length = lengths.carry();
                     return Ok(());
                 }
                 continue;
             }
-            let failure = record.failure.unwrap_or_default();
+            let failure = record.failure.clone().unwrap_or_default();
             let can_cut = saved.is_some() && self.cutting.times > 0;
-            let Some(saved) = saved.filter(|_| lengths.cut(to - from)) else {
+            let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record));
+            let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
                 let tried = match self.cutting {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),
+                    _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
                     Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
                 };
                 if record.singular {
@@ -273,6 +279,7 @@ impl Stage {
             let factor = self.cutting.factor;
             monitor.note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
             saved.restore(model.root_mut(&self.root)?);
+            failed = Some(record);
         }
     }
 
@@ -355,6 +362,20 @@ fn problems_of_all(problems: Report) -> Result<Report> {
     let mut all = Report::new();
     world().problems_of_all(own).into_iter().for_each(|problem| all.push(problem));
     if all.has_errors() { Err(finish(all)) } else { Ok(all) }
+}
+
+/// Says what numbers the interactions chose for the run, and gives them.
+fn tell_parameters(part: &ModelPart, monitor: &mut dyn Monitor) -> BTreeMap<String, f64> {
+    let mut all = BTreeMap::new();
+    for interaction in &part.interactions {
+        let chosen = interaction.parameters(part);
+        if !chosen.is_empty() {
+            let words: Vec<String> = chosen.iter().map(|(name, value)| format!("{name} {value:.6e}")).collect();
+            monitor.note(&format!("{}: {}", interaction.name(), words.join(", ")));
+        }
+        all.extend(chosen.into_iter().map(|(name, value)| (name.to_owned(), value)));
+    }
+    all
 }
 
 /// The warning that nodes belong to nothing; collective.

@@ -20,6 +20,7 @@ use super::distribution::Distribution;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use super::numbering::Numbering;
+use super::reach::{is_displacement, reach};
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
@@ -308,23 +309,40 @@ impl Assembler {
 
     /// How large the round-off of each entry of a residual is, from the sizes of the terms it is a sum of.
     ///
-    /// Terms of constant blocks scale with displacements, those of all others with positions.
+    /// Terms of constant blocks scale with displacements, those of all others with positions. No term is larger than
+    /// stiffness times [`reach`]: bodies that have gone farther, and multipliers that push farther, measure no accuracy.
     pub fn round_off(&self, part: &ModelPart) -> Vec<f64> {
-        let displacement: Vec<f64> = self.values(part).iter().map(|v| v.abs()).collect();
-        let position: Vec<f64> = part
+        let reach = reach(&part.nodes, &part.dofs, &self.equations);
+        let before = part.dofs.gather(&part.nodes, 1);
+        let values = self.values(part);
+        // Of every unknown: its displacement, its position, its size as a multiplier, and how far it may go.
+        let sizes: Vec<[f64; 4]> = part
             .dofs
             .dofs()
             .iter()
-            .zip(&displacement)
-            .map(|(dof, value)| match dof.variable.component {
-                Some(c) if !dof.multiplier => part.nodes.current[dof.node as usize][usize::from(c)].abs().max(*value),
-                _ => *value,
+            .enumerate()
+            .map(|(n, dof)| match values[n].abs() {
+                value if dof.multiplier => [0.0, 0.0, value, 0.0],
+                value if is_displacement(dof) => {
+                    let (node, c) = (dof.node as usize, dof.variable.offset());
+                    let held = value.min(before[n].abs() + reach);
+                    let farthest = part.nodes.initial[node][c].abs() + held;
+                    [held, part.nodes.current[node][c].abs().min(farthest).max(held), 0.0, reach]
+                }
+                value => [value, value, 0.0, 0.0],
             })
             .collect();
-        let mut out = vec![0.0; part.dofs.len()];
+        let [displacement, position, multiplier, farthest] =
+            [0, 1, 2, 3].map(|i| sizes.iter().map(|s| s[i]).collect::<Vec<f64>>());
+        let mut out = vec![0.0; values.len()];
         let bulk = if self.traits.variable_elements { &position } else { &displacement };
         abs_product(&self.bulk, bulk, &mut out);
         abs_product(&self.coupling.matrix, &position, &mut out);
+        let (mut pushed, mut most) = (vec![0.0; values.len()], vec![0.0; values.len()]);
+        abs_product(&self.coupling.matrix, &multiplier, &mut pushed);
+        abs_product(&self.bulk, &farthest, &mut most);
+        abs_product(&self.coupling.matrix, &farthest, &mut most);
+        out.iter_mut().zip(pushed.iter().zip(&most)).for_each(|(sum, (pushed, most))| *sum += pushed.min(*most));
         self.add_up(&mut out);
         out.iter_mut().for_each(|v| *v *= f64::EPSILON);
         out

@@ -8,9 +8,11 @@ mod equations;
 mod group_matrix;
 mod local;
 mod numbering;
+mod reach;
 
 pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties, strongest_damping};
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};
 pub use numbering::Numbering;
+pub use reach::{is_displacement, reach};

@@ -142,7 +142,12 @@ pub trait Interaction: Send + Sync {
     /// Brings back what [`Interaction::save`] kept.
     fn restore(&mut self);
 
-    /// Numbers for the report of the run, by name.
+    /// Numbers chosen once for the run, by name: printed at its start and kept in its report.
+    fn parameters(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
+    /// Numbers for the report of a step, by name.
     fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
         Vec::new()
     }

@@ -33,6 +33,8 @@ pub(super) struct Solved {
 pub(super) enum Failed {
     /// The matrix is singular, which another state of the interactions may mend.
     Singular(String),
+    /// The matrix is so nearly singular that the direct engine finds no increment.
+    Inaccurate(String),
     /// Anything else.
     Other(Error),
 }
@@ -40,7 +42,7 @@ pub(super) enum Failed {
 impl From<Failed> for Error {
     fn from(failed: Failed) -> Self {
         match failed {
-            Failed::Singular(why) => Self::System(why),
+            Failed::Singular(why) | Failed::Inaccurate(why) => Self::System(why),
             Failed::Other(error) => error,
         }
     }
@@ -163,6 +165,9 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_
     if let SolveError::NotCondensable(refused) = error {
         let (fact, remedy) = (condensing::fact(*refused, meaning), condensing::remedy(*refused));
         return Failed::Other(Error::System(format!("linear solve: {fact}\n    {remedy}")));
+    }
+    if let SolveError::NotConverged { engine: "direct", .. } = error {
+        return Failed::Inaccurate(format!("linear solve: {error}: the system of equations is nearly singular"));
     }
     let SolveError::Singular { equations, rank_deficiency } = error else {
         return Failed::Other(Error::System(format!("linear solve: {error}")));

@@ -9,6 +9,7 @@ mod bdf_scheme;
 mod bossak_scheme;
 mod central_differences;
 mod condensing;
+mod contraction;
 mod criterion;
 mod critical_step;
 mod displacement_criterion;

@@ -1,11 +1,15 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
 mod iteration;
+mod lost_body;
+mod references;
 mod start;
 
 #[cfg(feature = "petsc")]
 use zelus_linear_algebra::Multipliers;
 use zelus_linear_algebra::{LinearSolver, SolveReport};
+
+pub(super) use references::References;
 
 use super::condensing;
 use super::criterion::{ConvergenceCriterion, Measures, Verdict};
@@ -32,6 +36,8 @@ pub const CONDITION_NUMBER: &str = "CONDN_CONVERGENCE_CRITERION";
 pub struct NewtonSettings {
     /// Linear solves before the step counts as not converged.
     pub max_iteration: usize,
+    /// Whether a step that converges steadily may take as many again.
+    pub continue_if_converging: bool,
     /// One linear solve and no check (`analysis_type` "linear").
     pub linear: bool,
     /// Whether REACTION is computed.
@@ -40,15 +46,6 @@ pub struct NewtonSettings {
     pub move_mesh: bool,
     /// How much of an increment is taken; all of it when `None`.
     pub line_search: Option<LineSearch>,
-}
-
-/// Residuals of a step that later ones are compared with.
-#[derive(Debug, Default)]
-pub(super) struct References {
-    /// Before and after the first solve.
-    pub start: Vec<Vec<f64>>,
-    /// After the last change of state.
-    pub switched: Option<Vec<f64>>,
 }
 
 /// Newton's iteration with its scheme, criterion, linear solver and system.

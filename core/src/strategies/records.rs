@@ -4,6 +4,11 @@ use super::criterion::Check;
 use super::linear_solve::Solved;
 use crate::entities::SetChange;
 
+/// Relative difference of measures that a step of another length leaves where it only scales the problem, and the measure below
+/// which they are round-off.
+const SAME: f64 = 1e-6;
+const NONE: f64 = 1e-9;
+
 /// Most nodes that a record names.
 const NAMED_NODES: usize = 12;
 
@@ -69,6 +74,26 @@ pub struct StepRecord {
     pub singular: bool,
     /// Numbers of the interactions by name, e.g. active nodes.
     pub interactions: Vec<(String, f64)>,
+}
+
+impl StepRecord {
+    /// Whether an attempt failed just as this one did: the same measures and changes of state in every iteration.
+    ///
+    /// Where nothing but the size of the load tells two steps apart, as without a gap, friction or curvature, a shorter one
+    /// is the same problem.
+    pub fn fails_like(&self, other: &Self) -> bool {
+        let alike = |a: &Check, b: &Check| (a.ratio - b.ratio).abs() <= SAME * a.ratio.max(b.ratio) + NONE;
+        let same = |(a, b): (&IterationRecord, &IterationRecord)| {
+            a.active_set_changes == b.active_set_changes
+                && a.stick_slip_changes == b.stick_slip_changes
+                && a.changed_nodes == b.changed_nodes
+                && a.checks.iter().zip(&b.checks).all(|(a, b)| alike(a, b))
+        };
+        self.singular == other.singular
+            && self.iterations.len() == other.iterations.len()
+            && self.iterations.iter().zip(&other.iterations).all(same)
+            && (!self.iterations.is_empty() || self.failure == other.failure)
+    }
 }
 
 /// Watches a run; the program prints, tests stay silent.

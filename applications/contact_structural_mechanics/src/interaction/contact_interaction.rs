@@ -402,14 +402,6 @@ impl Interaction for ContactInteraction {
             part.info.marks.insert(CONTACT, touching);
         }
         self.write_tangents(part);
-        if part.info.is(ENSURE_CONTACT)
-            && change.count() == 0
-            && !self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize))
-        {
-            return Err(zelus_core::Error::NotConverged(
-                "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
-            ));
-        }
         Ok(change)
     }
 
@@ -424,7 +416,14 @@ impl Interaction for ContactInteraction {
                 return Ok(outer);
             }
         }
-        self.search_again(part)
+        let outer = self.search_again(part)?;
+        let touches = self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize));
+        if outer == Outer::Done && part.info.is(ENSURE_CONTACT) && !touches {
+            return Err(zelus_core::Error::NotConverged(
+                "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
+            ));
+        }
+        Ok(outer)
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
@@ -485,6 +484,12 @@ impl Interaction for ContactInteraction {
     fn restore(&mut self) {
         self.pairing.restore(&self.settings, &self.parameters);
         self.steps_since_search = usize::MAX;
+    }
+
+    /// The ALM values of eq. 4.11.
+    fn parameters(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
+        let penalty = part.info.value_or(INITIAL_PENALTY.name(), 0.0);
+        vec![("penalty ε", penalty), ("scale factor k", self.parameters.scale_factor)]
     }
 
     fn summary(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {

@@ -5,6 +5,7 @@ use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, Outer, SetChange};
 use crate::model::ModelPart;
+use crate::strategies::contraction::contracts;
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::reactions::write_reactions;
 use crate::strategies::records::{IterationRecord, Monitor};
@@ -27,8 +28,9 @@ struct Step {
     relaxed: Option<f64>,
     /// Why the last search in a converged state found more.
     widened: Option<String>,
-    /// The last iteration it may take.
+    /// The last iteration it may take, and the last when it converges steadily.
     last: usize,
+    most: usize,
 }
 
 /// How an iteration ends.
@@ -54,7 +56,7 @@ impl NewtonRaphson {
     ) -> Result<(Vec<IterationRecord>, Option<String>)> {
         let mut step = self.begin_step(part, interactions)?;
         let mut iteration = 0;
-        while iteration < step.last {
+        while iteration < step.last || (iteration < step.most && contracts(&step.records, step.most - iteration)) {
             iteration += 1;
             match self.iteration(iteration, &mut step, part, interactions, monitor)? {
                 Turn::On => {}
@@ -97,7 +99,8 @@ impl NewtonRaphson {
             relaxation: interactions.iter().find_map(|interaction| interaction.relaxation()),
             relaxed: None,
             widened: None,
-            last: if self.settings.linear { 1 } else { self.settings.max_iteration },
+            last: self.allowed().0,
+            most: self.allowed().1,
         })
     }
 
@@ -128,7 +131,7 @@ impl NewtonRaphson {
         let change = self.let_decide(iteration, afresh, step, part, interactions)?;
         let balanced = self.assembler.equations().balanced(&step.residual);
         if iteration == 1 {
-            step.references.start.push(balanced.to_vec());
+            self.refer_to_first(part, &balanced, &mut step.references);
         }
         if change.count() > 0 {
             step.references.switched = Some(balanced.to_vec());
@@ -152,6 +155,13 @@ impl NewtonRaphson {
             step.prescribed = self.begin_again(part, interactions, &step.begin)?;
             step.residual = self.residual(part, interactions)?;
             return Ok(Turn::On);
+        }
+        if verdict.converged
+            && change.count() == 0
+            && !interactions.is_empty()
+            && let Some(why) = self.lost_body(part, &step.begin)
+        {
+            return Ok(Turn::Failed(why));
         }
         match (self.settings.linear, verdict.converged && change.count() == 0) {
             (true, _) => Ok(Turn::Converged),
@@ -177,7 +187,7 @@ impl NewtonRaphson {
             self.assembler.subtract_product(&step.prescribed, &mut step.residual);
         }
         if iteration == 1 {
-            step.references.start.push(self.assembler.equations().balanced(&step.residual).into_owned());
+            self.refer_to_start(part, &step.residual, &mut step.references)?;
         }
         let rhs = self.assembler.equations().reduce(&step.residual);
         if iteration == 1 {
@@ -210,6 +220,7 @@ impl NewtonRaphson {
                 self.singular = true;
                 Ok(Turn::Failed(why))
             }
+            Failed::Inaccurate(why) if !interactions.is_empty() => Ok(Turn::Failed(why)),
             // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
             Failed::Singular(why)
                 if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>
@@ -297,9 +308,16 @@ impl NewtonRaphson {
             return Ok(Turn::Converged);
         }
         self.assembler.begin_step(part, interactions)?;
-        step.last = iteration + self.settings.max_iteration;
+        let (last, most) = self.allowed();
+        (step.last, step.most) = (iteration + last, iteration + most);
         step.residual = self.residual(part, interactions)?;
         Ok(Turn::On)
+    }
+
+    /// Iterations of a step, and of one that converges steadily.
+    fn allowed(&self) -> (usize, usize) {
+        let last = if self.settings.linear { 1 } else { self.settings.max_iteration };
+        (last, if self.settings.continue_if_converging && !self.settings.linear { 2 * last } else { last })
     }
 
     fn residual(&mut self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {

@@ -72,12 +72,7 @@ impl NewtonRaphson {
         }
         let after = self.assembler.residual(part, interactions, None)?;
         let after = self.assembler.equations().balanced(&after);
-        let forces = |balance: &[f64]| -> f64 {
-            let own = part.dofs.dofs().iter().enumerate();
-            let own = own.filter(|(number, dof)| !dof.multiplier && self.assembler.counts(*number));
-            world().total(own.map(|(number, _)| balance[number] * balance[number]).sum())
-        };
-        Ok(forces(&after) > forces(before))
+        Ok(self.size_of_forces(part, &after) > self.size_of_forces(part, before))
     }
 
     /// Goes back to the step's start, `begin` but for prescribed unknowns, and gives the increments of those.

@@ -1,0 +1,58 @@
+//! Whether an iteration that has used up its number is on its way to the end.
+
+use super::records::IterationRecord;
+
+/// Largest ratio of two measures, one iteration apart, of a steady convergence.
+const RATE: f64 = 0.7;
+
+/// Whether `more` iterations, at the rate of the last two, take every measure to its tolerance: all that are not there fell by
+/// [`RATE`] or better in both, and no interaction changed state in them.
+pub(super) fn contracts(records: &[IterationRecord], more: usize) -> bool {
+    let [.., first, second, last] = records else { return false };
+    if [second, last].iter().any(|record| record.active_set_changes + record.stick_slip_changes > 0) {
+        return false;
+    }
+    let checks = last.checks.iter().zip(&second.checks).zip(&first.checks);
+    checks.filter(|((last, _), _)| !last.converged).all(|((last, second), first)| {
+        let rate = (last.ratio / second.ratio).max(second.ratio / first.ratio);
+        rate <= RATE && last.ratio * rate.powi(more as i32) <= last.ratio_tolerance
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strategies::Check;
+
+    fn records(ratios: [f64; 3], changes: usize) -> Vec<IterationRecord> {
+        let record = |(at, ratio): (usize, f64)| IterationRecord {
+            iteration: at,
+            checks: vec![Check {
+                label: "residual",
+                ratio,
+                ratio_tolerance: 1e-4,
+                absolute: 1.0,
+                absolute_tolerance: 0.0,
+                converged: ratio <= 1e-4,
+            }],
+            active_set_changes: changes,
+            stick_slip_changes: 0,
+            changed_nodes: Vec::new(),
+            linear_residual: 0.0,
+            linear_iterations: 0,
+            engine: String::new(),
+            condition_number: None,
+        };
+        ratios.into_iter().enumerate().map(record).collect()
+    }
+
+    #[test]
+    fn steady_convergence_goes_on_if_that_is_enough() {
+        let steady = records([0.1, 0.03, 0.009], 0);
+        assert!(contracts(&steady, 4) && !contracts(&steady, 3), "0.009 * 0.3^4 = 7e-5");
+        assert!(!contracts(&records([0.1, 0.03, 0.009], 1), 4), "states still change");
+        assert!(!contracts(&records([0.1, 0.3, 0.009], 0), 4), "up and down");
+        assert!(!contracts(&records([0.1, 0.09, 0.081], 0), 100), "too slow");
+        assert!(!contracts(&steady[1..], 4), "two are no rate");
+    }
+}

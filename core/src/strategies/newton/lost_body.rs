@@ -1,0 +1,39 @@
+//! States that balance nothing: a body that nothing holds has gone out of all proportion to the model.
+
+use super::NewtonRaphson;
+use crate::assembly::{is_displacement, reach};
+use crate::communication::world;
+use crate::model::{ModelPart, SubPart};
+
+impl NewtonRaphson {
+    /// Why a static state is no answer, `begin` being the unknowns at the start of the step: the node that has gone farthest
+    /// beyond [`reach`] and its part. Collective.
+    ///
+    /// Where a tangent is singular but for round-off, it lets a body go as far as round-off resists.
+    pub(super) fn lost_body(&self, part: &ModelPart, begin: &[f64]) -> Option<String> {
+        if !self.scheme.is_static() {
+            return None;
+        }
+        let reach = reach(&part.nodes, &part.dofs, self.assembler.equations());
+        let now = self.assembler.values(part);
+        let gone = part.dofs.dofs().iter().enumerate().filter(|(_, dof)| is_displacement(dof));
+        let gone = gone.map(|(n, dof)| ((now[n] - begin[n]).abs(), dof.node)).filter(|(motion, _)| *motion > reach);
+        let farthest = gone.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        let said = farthest.map(|(motion, node)| {
+            let (id, body) = (part.nodes.ids[node as usize], body_of(&part.tree, node));
+            let of = body.map_or(String::new(), |name| format!(" of part {name}"));
+            format!(
+                "node {id}{of} has gone {motion:.1e} far, the model reaches {reach:.1e}: nothing holds its body; support it, or \
+                 check that contact holds it from the first step"
+            )
+        });
+        world().first_to_say(said)
+    }
+}
+
+/// The smallest part with elements that holds a node.
+fn body_of(part: &SubPart, node: u32) -> Option<&str> {
+    let holds = |part: &&SubPart| !part.elements.is_empty() && part.nodes.binary_search(&node).is_ok();
+    let smallest = part.children.values().filter(holds).min_by_key(|part| part.nodes.len())?;
+    body_of(smallest, node).or(Some(&smallest.name))
+}
