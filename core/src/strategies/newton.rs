@@ -91,6 +91,7 @@ impl SolutionStrategy for NewtonRaphson {
             let forces = self.assembler.inertia_forces(part, &inertia)?;
             self.scheme.keep(forces);
         }
+        self.assembler.extrapolate_rates(part);
         accept(part)
     }
 }

@@ -27,7 +27,7 @@ use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
 use crate::resolution::Resolution;
 use crate::search::{GapCheck, assign_roles, warn_of_late_pairs};
-use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
+use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
     WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -475,6 +475,10 @@ impl Interaction for ContactInteraction {
 
     fn relaxation(&self) -> Option<f64> {
         Some(RELAXATION * self.parameters.scale_factor)
+    }
+
+    fn massless_nodes(&self, part: &ModelPart) -> Vec<u32> {
+        if self.acting && !part.info.is(KEEP_MASS) { self.pairing.nodes() } else { Vec::new() }
     }
 
     fn save(&mut self) {

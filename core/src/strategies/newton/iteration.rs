@@ -79,6 +79,9 @@ impl NewtonRaphson {
             interaction.begin_step(part)?;
         }
         self.assembler.begin_step(part, interactions)?;
+        if self.scheme.has_inertia() {
+            self.redistribute_mass(part, interactions)?;
+        }
         if let Some(past) = self.scheme.past_inertia(part) {
             let forces = self.assembler.inertia_forces(part, &past)?;
             self.scheme.keep(forces);
