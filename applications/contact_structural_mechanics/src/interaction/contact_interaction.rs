@@ -22,7 +22,7 @@ use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
 use crate::active_set::SlipRule;
-use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals};
+use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
 use crate::resolution::Resolution;
@@ -53,8 +53,6 @@ pub struct ContactInteraction {
     uzawa: Uzawa,
     /// Gap at which explicit steps stiffen the penalty; 0 in implicit ones (length).
     max_gap: f64,
-    /// Overlapping pairs of every node.
-    pair_counts: Vec<u32>,
     cycles: CycleGuard,
     /// Nodes that were pushed along their motion in this step and stick since.
     released: BTreeSet<u32>,
@@ -82,10 +80,11 @@ impl ContactInteraction {
             friction_law: settings.friction.law,
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
+            augmentation: settings.augmentation,
         });
         Ok(Self {
             settings,
-            pairing: Pairing::new(interfaces),
+            pairing: Pairing::new(interfaces, part),
             slaves: Vec::new(),
             parameters,
             threshold: f64::INFINITY,
@@ -97,7 +96,6 @@ impl ContactInteraction {
             resolution: Resolution::default(),
             uzawa: Uzawa::default(),
             max_gap: 0.0,
-            pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             released: BTreeSet::new(),
             searches: 0,
@@ -148,7 +146,8 @@ impl ContactInteraction {
             }
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.pairing.carriers());
-        nodal_normals(part, &self.pairing.interfaces);
+        self.pairing.find_patches(part);
+        self.pairing.patches.write(part);
     }
 
     /// Recomputes overlaps, weighted gaps and areas in the present configuration.
@@ -158,7 +157,7 @@ impl ContactInteraction {
         let count = part.nodes.len();
         let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-        let mut pairs = vec![0_u32; count];
+        let mut faced = vec![false; count];
         for (block, integrals) in self.pairing.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
                 let overlaps = meetings.next().is_some_and(|meeting| meeting.overlapping);
@@ -168,7 +167,7 @@ impl ContactInteraction {
                 }
                 for (local, &node) in block.slave_nodes(at).iter().enumerate() {
                     let node = node as usize;
-                    pairs[node] += 1;
+                    faced[node] = true;
                     gap[node] += integral.gap[local];
                     mean[node] += integral.gap[local] * integral.area[local];
                     area[node] += integral.area[local];
@@ -181,9 +180,8 @@ impl ContactInteraction {
         let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
         add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         for &node in &self.slaves {
-            part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
+            part.nodes.flags.set(ISOLATED, node as usize, !faced[node as usize]);
         }
-        self.pair_counts = pairs;
         mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
         self.mean_gaps = mean;
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
@@ -265,8 +263,7 @@ impl ContactInteraction {
 
     fn write_tangents(&self, part: &mut ModelPart) {
         if self.settings.family.frictional() {
-            let (family, counts) = (self.settings.family, &self.pair_counts);
-            sliding::write_tangents(part, &self.slaves, family, &self.parameters, self.resolution, counts);
+            sliding::write_tangents(part, &self.slaves, self.settings.family, &self.parameters, self.resolution);
         }
     }
 
@@ -321,7 +318,7 @@ impl Interaction for ContactInteraction {
         for node in self.pairing.carriers() {
             part.nodes.flags.set(ACTIVE, node as usize, false);
         }
-        nodal_normals(part, &self.pairing.interfaces);
+        self.pairing.patches.write(part);
         Ok(())
     }
 
@@ -342,7 +339,7 @@ impl Interaction for ContactInteraction {
             return Ok(());
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
-        nodal_normals(part, &self.pairing.interfaces);
+        self.pairing.patches.write(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.settings.database_step_update {
             self.assign_open_roles(part);
@@ -374,7 +371,7 @@ impl Interaction for ContactInteraction {
 
     fn keep_first_iterate(&mut self, part: &mut ModelPart) {
         if self.acting {
-            nodal_normals(part, &self.pairing.interfaces);
+            self.pairing.patches.write(part);
         }
     }
 
@@ -383,7 +380,7 @@ impl Interaction for ContactInteraction {
             return Ok(SetChange::default());
         }
         if iteration == 1 || self.updates_normals() {
-            nodal_normals(part, &self.pairing.interfaces);
+            self.pairing.patches.write(part);
         }
         if self.updates_normals() {
             self.pairing.refresh_normals(part, true);
