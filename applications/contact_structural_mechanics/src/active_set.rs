@@ -2,9 +2,10 @@
 //!
 //! The augmented normal pressure p̂ = k λ_n + c g decides: active if p̂ < 0. g is the gap of the node, WG/A with its weighted
 //! gap and its area over all pairs, and c a stiffness by length. Tangentially q̂ = k P λ + κ c s with the slip s = WS/A is
-//! compared with the bound that the law of friction sets under p̂. A sliding node sticks again when its slip has turned
-//! against its traction and q̂, with the weight of the slip that the deck gives or with 1, has fallen below the bound by a
-//! margin. What is too small to decide on, [`crate::resolution`] says.
+//! compared with the bound that the law of friction sets under p̂. A sticking node slides when what holds it, k P λ, is more
+//! than the bound; κ c s counts only for nodes that enter. A sliding node, which is at the bound by its own equation, sticks
+//! again when its slip has turned against its traction: then q̂ is below the bound, however small κ c s is. So the states of a
+//! solution do not depend on κ. What is too small to decide on, [`crate::resolution`] says.
 
 use crate::formulations::NodeState;
 use crate::friction_law::Bound;
@@ -28,6 +29,7 @@ pub fn frictionless(node: &SlaveNumbers) -> Decision {
         changed: entered,
         slip_changed: false,
         multiplier: entered.then(|| scale(node.normal, pressure / node.scale_factor)),
+        excess: if entered { pressure.abs() } else { 0.0 },
     }
 }
 
@@ -37,13 +39,29 @@ pub enum SlipRule {
     /// Contact always slides; stick does not occur.
     Pure,
     /// The law's bound on the augmented tangential pressure.
-    Bounded {
-        /// Weight of the slip in q̂ for nodes that slide already (`slip_augmentation_coefficient`).
-        augmentation: f64,
-        /// Relative margin below the bound at which a sliding node sticks again (`slip_threshold`).
-        threshold: f64,
-    },
+    Bounded(Margin),
 }
+
+/// How far below its bound a sliding node whose slip has turned must be to stick; none in the default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Margin {
+    /// Weight of the slip in q̂ (`slip_augmentation_coefficient`).
+    pub augmentation: f64,
+    /// Share of the bound (`slip_threshold`); 0 lets every node stick whose slip has turned.
+    pub threshold: f64,
+}
+
+impl SlipRule {
+    /// Whether a sliding node whose slip has turned goes on sliding within a margin.
+    fn holds(self, node: &SlaveNumbers, bound: f64) -> bool {
+        let Self::Bounded(Margin { augmentation, threshold }) = self else { return false };
+        let size = |coefficient: f64| norm(node.trial(coefficient));
+        threshold > 0.0 && size(augmentation).min(size(1.0)) > (1.0 - threshold) * bound
+    }
+}
+
+/// Slip against the traction, as a traction c s and as a share of the bound, that counts.
+pub(crate) const TURNED: f64 = 1e-6;
 
 /// Nodal numbers that enter a decision; sums over the pairs of the node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +100,18 @@ impl SlaveNumbers {
         self.resolution.exceeds(-pressure, 0.0, self.state.is_active())
     }
 
+    /// Whether the slip of a sliding node is against the traction that should oppose it.
+    fn has_turned(&self, bound: f64) -> bool {
+        let back = -dot(self.tangent, self.slip);
+        back > self.resolution.length && back * self.stiffness > TURNED * bound
+    }
+
+    /// Trial traction k P λ + a κ c s.
+    fn trial(&self, coefficient: f64) -> [f64; 3] {
+        let lambda_t = tangential(self.multiplier, self.normal);
+        add(scale(lambda_t, self.scale_factor), scale(self.slip_traction(), coefficient))
+    }
+
     /// Traction κ c s that the slip adds to the multiplier's.
     fn slip_traction(&self) -> [f64; 3] {
         scale(self.slip, self.tangent_factor * self.stiffness)
@@ -103,6 +133,8 @@ pub struct Decision {
     pub slip_changed: bool,
     /// New multiplier of a node that entered contact. One that left keeps its multiplier.
     pub multiplier: Option<[f64; 3]>,
+    /// Traction by which the state before violates the conditions of contact; 0 where it stays.
+    pub excess: f64,
 }
 
 impl Decision {
@@ -112,12 +144,21 @@ impl Decision {
         self.changed = state.is_active() != was.is_active();
         self.slip_changed = !self.changed && state != was;
         self.multiplier = None;
+        self.excess = 0.0;
     }
 
     /// A decision for a state and nothing else.
     #[cfg(test)]
     pub(crate) fn plain(state: NodeState) -> Self {
-        Self { pressure: 0.0, traction: [0.0; 3], state, changed: false, slip_changed: false, multiplier: None }
+        Self {
+            pressure: 0.0,
+            traction: [0.0; 3],
+            state,
+            changed: false,
+            slip_changed: false,
+            multiplier: None,
+            excess: 0.0,
+        }
     }
 }
 
@@ -129,23 +170,23 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     }
     let sliding = node.state == NodeState::Slip;
     let lambda_t = tangential(node.multiplier, node.normal);
-    let of_slip = node.slip_traction();
-    let augmented = |coefficient: f64| add(scale(lambda_t, node.scale_factor), scale(of_slip, coefficient));
     let bound = node.friction.at(pressure);
-    let (q, over) = match rule {
+    let (q, over) = match node.state {
         // Sliding is at the bound by its own equation, and right as long as the slip goes along the traction. Comparing
         // sizes alone makes nodes stick and slide in turn while pressures and normals still move between iterations.
-        SlipRule::Bounded { augmentation, threshold } if sliding => {
-            let q = augmented(augmentation);
-            let least = norm(q).min(norm(augmented(1.0)));
-            (q, dot(node.tangent, node.slip) > node.resolution.length || least > (1.0 - threshold) * bound)
+        NodeState::Slip if rule != SlipRule::Pure => {
+            (node.trial(0.0), !node.has_turned(bound) || rule.holds(node, bound))
+        }
+        NodeState::Stick => {
+            let q = node.trial(0.0);
+            (q, node.resolution.exceeds(norm(q), bound, false))
         }
         _ => {
             // A node that enters while it moves more along the surface than into it was not held: holding it at once would
             // tear it off again. Rough surfaces hold up to their own slope.
             let least = node.friction.coefficient.max(1.0) * node.gap.abs();
-            let dragged = !node.state.is_active() && is_more(norm(node.slip), least);
-            let q = augmented(1.0);
+            let dragged = is_more(norm(node.slip), least);
+            let q = node.trial(1.0);
             (q, dragged || node.resolution.exceeds(norm(q), bound, false))
         }
     };
@@ -171,19 +212,13 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         changed: entered,
         slip_changed: !entered && rule != SlipRule::Pure && slips != sliding,
         multiplier: entered.then(|| scale(add(scale(node.normal, pressure), traction), 1.0 / node.scale_factor)),
+        excess: match (node.state, slips) {
+            (NodeState::Inactive, _) => pressure.abs(),
+            (NodeState::Stick, true) => norm(q) - bound,
+            (NodeState::Slip, false) => node.stiffness * norm(node.slip),
+            _ => 0.0,
+        },
     }
-}
-
-/// Least slip against the traction, as a share of the bound in tractions, that counts.
-const LEAST_PUSH: f64 = 1e-6;
-
-/// Whether friction pushes a sliding node along its motion: its slip is against the traction that should oppose it.
-pub fn is_pushed(node: &SlaveNumbers, rule: SlipRule) -> bool {
-    let along = dot(node.tangent, node.slip_traction());
-    rule != SlipRule::Pure
-        && node.state == NodeState::Slip
-        && !node.friction.is_smooth()
-        && along < -LEAST_PUSH * node.friction.at(node.pressure())
 }
 
 /// Decides for a node of the frictional penalty method: it sticks while |κ c s| ≤ −μ p̂.
@@ -205,6 +240,11 @@ pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         changed: entered,
         slip_changed: !entered && rule != SlipRule::Pure && slips != sliding,
         multiplier: None,
+        excess: match (entered, slips != sliding) {
+            (true, _) => pressure.abs(),
+            (false, true) => (length - bound).abs(),
+            (false, false) => 0.0,
+        },
     }
 }
 
@@ -217,6 +257,7 @@ pub fn inactive(node: &SlaveNumbers, pressure: f64) -> Decision {
         changed: node.state.is_active(),
         slip_changed: false,
         multiplier: None,
+        excess: if node.state.is_active() { pressure.abs() } else { 0.0 },
     }
 }
 
@@ -224,7 +265,7 @@ pub fn inactive(node: &SlaveNumbers, pressure: f64) -> Decision {
 mod tests {
     use super::*;
 
-    const COULOMB: SlipRule = SlipRule::Bounded { augmentation: 0.0, threshold: 0.02 };
+    const COULOMB: SlipRule = SlipRule::Bounded(Margin { augmentation: 0.0, threshold: 0.0 });
 
     fn node(state: NodeState, multiplier: [f64; 3]) -> SlaveNumbers {
         SlaveNumbers {
@@ -282,21 +323,30 @@ mod tests {
     }
 
     #[test]
-    fn coulomb_with_hysteresis() {
-        // p̂ = −4·1 − 1 = −5, bound 1.5. Sticking: q̂ = 4 λ_t + 0.1.
-        let decide = |state, lambda_t: f64| alm_frictional(&node(state, [lambda_t, 0.0, -1.0]), COULOMB);
-        assert_eq!(decide(NodeState::Stick, 0.34).state, NodeState::Stick);
-        let slips = decide(NodeState::Stick, 0.36);
-        assert_eq!((slips.state, slips.slip_changed), (NodeState::Slip, true));
-        assert!((slips.traction[0] - 1.5).abs() < 1e-15, "cut to the bound");
-        // Sliding along the traction goes on, whatever its size; against it, 0.98 of the bound decides.
-        assert_eq!(decide(NodeState::Slip, 0.1).state, NodeState::Slip);
-        let turned = |lambda_t: f64| {
-            let node = node(NodeState::Slip, [lambda_t, 0.0, -1.0]);
-            alm_frictional(&SlaveNumbers { slip: [-0.1, 0.0, 0.0], ..node }, COULOMB)
-        };
-        assert_eq!(turned(0.4).state, NodeState::Slip);
-        assert_eq!(turned(0.39).state, NodeState::Stick);
+    fn coulomb_by_traction_and_by_the_sign_of_slip() {
+        // p̂ = −4·1 − 1 = −5, bound 1.5; q̂ = 4 λ_t + 2 κ s.
+        for tangent_factor in [0.5, 1e4] {
+            let decide = |state, lambda_t: f64| {
+                alm_frictional(&SlaveNumbers { tangent_factor, ..node(state, [lambda_t, 0.0, -1.0]) }, COULOMB)
+            };
+            assert_eq!(decide(NodeState::Stick, 0.374).state, NodeState::Stick);
+            let slips = decide(NodeState::Stick, 0.376);
+            assert_eq!((slips.state, slips.slip_changed), (NodeState::Slip, true));
+            assert!((slips.traction[0] - 1.5).abs() < 1e-15, "cut to the bound");
+            // Sliding along the traction goes on, whatever its size; against it never, however small the slip.
+            assert_eq!(decide(NodeState::Slip, 0.1).state, NodeState::Slip);
+            for slip in [-0.1, -1e-5] {
+                let node = SlaveNumbers { tangent_factor, ..node(NodeState::Slip, [0.375, 0.0, -1.0]) };
+                let turned = alm_frictional(&SlaveNumbers { slip: [slip, 0.0, 0.0], ..node }, COULOMB);
+                assert_eq!((turned.state, turned.slip_changed), (NodeState::Stick, true));
+            }
+        }
+        // With a margin the slip must have turned by enough.
+        let margin = SlipRule::Bounded(Margin { augmentation: 0.0, threshold: 0.02 });
+        let turned =
+            |lambda_t: f64| SlaveNumbers { slip: [-0.1, 0.0, 0.0], ..node(NodeState::Slip, [lambda_t, 0.0, -1.0]) };
+        assert_eq!(alm_frictional(&turned(0.4), margin).state, NodeState::Slip);
+        assert_eq!(alm_frictional(&turned(0.39), margin).state, NodeState::Stick);
         let pure = alm_frictional(&node(NodeState::Slip, [0.0, 0.0, -1.0]), SlipRule::Pure);
         assert_eq!((pure.state, pure.slip_changed), (NodeState::Slip, false));
     }

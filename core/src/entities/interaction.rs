@@ -85,6 +85,12 @@ pub trait Interaction: Send + Sync {
         Ok(Outer::Done)
     }
 
+    /// The system is singular: takes hold of bodies that it keeps apart, so that none of them is free to move; `false` where
+    /// there are none, or no more. What has been taken hold of may be let go after the solve as anything else.
+    fn reach_out(&mut self, _part: &mut ModelPart) -> bool {
+        false
+    }
+
     /// The step is accepted.
     ///
     /// # Errors
@@ -135,12 +141,6 @@ pub trait Interaction: Send + Sync {
     ///
     /// Called in place of [`Interaction::after_update`]; [`Interaction::after_prediction`] follows.
     fn keep_first_iterate(&mut self, _part: &mut ModelPart) {}
-
-    /// Step start, in motion with inertia: nodes that others carry the mass of, ascending, since forces on them come and go at
-    /// once.
-    fn massless_nodes(&self, _part: &ModelPart) -> Vec<u32> {
-        Vec::new()
-    }
 
     /// Keeps what a retried step must restore.
     fn save(&mut self);

@@ -11,6 +11,7 @@ use super::step_parameters::StepParameters;
 use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
 use crate::formulations::NodeState;
 use crate::friction_law::FrictionLaw;
+use crate::interface::{Interface, Roles};
 use crate::mortar::tangent;
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::resolution::Resolution;
@@ -102,21 +103,43 @@ pub(super) fn start(
     }
 }
 
+/// The slave nodes of interfaces without contact that are at most `reach` mesh sizes farther from a master than the nearest
+/// of their interface, where those are not in contact yet. `open` keeps the interfaces that had none when it was empty.
+pub(super) fn nearest(
+    part: &ModelPart,
+    interfaces: &[Interface],
+    reach: f64,
+    open: &mut BTreeSet<usize>,
+) -> BTreeSet<u32> {
+    let weighted = part.nodes.history.values(&WEIGHTED_GAP, 0);
+    let (areas, sizes) = (part.nodes.values.values(&NODAL_AREA, 0), part.nodes.values.values(&NODAL_H, 0));
+    let is_active = |n: &u32| part.nodes.flags.is(ACTIVE, *n as usize);
+    let nodes: Vec<Vec<u32>> = interfaces.iter().map(|interface| interface.nodes_of(Roles::Slave)).collect();
+    if open.is_empty() {
+        open.extend((0..nodes.len()).filter(|&at| !nodes[at].iter().any(is_active)));
+    }
+    let mut found = BTreeSet::new();
+    for own in open.iter().map(|&at| &nodes[at]) {
+        let facing = || own.iter().filter(|&&n| !part.nodes.flags.is(ISOLATED, n as usize));
+        let gap = |n: u32| weighted[n as usize] / areas[n as usize];
+        let least = facing().map(|&n| gap(n)).fold(f64::INFINITY, f64::min);
+        found.extend(facing().filter(|&&n| gap(n) - least <= reach * sizes[n as usize] && !is_active(&n)));
+    }
+    found
+}
+
 /// What the rules of [`active_set`] want of every slave node, and the states the nodes are in.
 ///
-/// Nodes that nothing overlaps are not in contact. When nothing changes at all, sliding nodes that friction pushes along
-/// their motion stick, each once a step: those in `released` did before.
+/// Nodes that nothing overlaps are not in contact.
 pub(super) fn decide(
     part: &ModelPart,
     slaves: &[u32],
     family: &Family,
     parameters: &StepParameters,
     resolution: Resolution,
-    released: &mut BTreeSet<u32>,
 ) -> (Vec<(u32, Decision)>, Vec<NodeState>) {
     let mut decisions = Vec::with_capacity(slaves.len());
     let mut states = Vec::with_capacity(slaves.len());
-    let mut pushed = Vec::new();
     for &node in slaves {
         let at = node as usize;
         let numbers = numbers(part, at, family, parameters, resolution);
@@ -128,18 +151,8 @@ pub(super) fn decide(
         if part.nodes.flags.is(ISOLATED, at) {
             decision = active_set::inactive(&numbers, decision.pressure);
         }
-        let multipliers = family.frictional() && !family.penalty;
-        if multipliers && !released.contains(&node) && active_set::is_pushed(&numbers, parameters.slip_rule) {
-            pushed.push(decisions.len());
-        }
         decisions.push((node, decision));
         states.push(numbers.state);
-    }
-    if decisions.iter().zip(&states).all(|((_, decision), was)| decision.state == *was) {
-        for at in pushed {
-            decisions[at].1.stay(NodeState::Stick, NodeState::Slip);
-            released.insert(decisions[at].0);
-        }
     }
     (decisions, states)
 }

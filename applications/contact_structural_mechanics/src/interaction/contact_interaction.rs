@@ -14,20 +14,20 @@ use zelus_core::vector3::norm;
 use super::activation::{self, Start};
 use super::calibration::{calibrate, limit};
 use super::contact_settings::ContactSettings;
-use super::cycling::CycleGuard;
+use super::cycling::{CycleGuard, Settled};
 use super::friction;
-use super::late_pairs::{Late, farthest_motion, late_pairs};
+use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
 use super::pairing::{Pairing, add_up_nodes};
 use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
 use crate::active_set::SlipRule;
-use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces};
+use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
 use crate::resolution::Resolution;
-use crate::search::{GapCheck, assign_roles, warn_of_late_pairs};
-use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
+use crate::search::{GapCheck, WithinStep, assign_roles, warn_of_late_pairs};
+use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
     WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -53,13 +53,14 @@ pub struct ContactInteraction {
     uzawa: Uzawa,
     /// Gap at which explicit steps stiffen the penalty; 0 in implicit ones (length).
     max_gap: f64,
+    /// Overlapping pairs of every node.
+    pair_counts: Vec<u32>,
     cycles: CycleGuard,
-    /// Nodes that were pushed along their motion in this step and stick since.
-    released: BTreeSet<u32>,
+    /// Times in this step that open interfaces took hold because a body was free to move, and which they are.
+    reached: usize,
+    open: BTreeSet<usize>,
     /// Searches in converged states of this step.
     searches: usize,
-    /// Facets in each other that the last of them left out; `None` before the first.
-    left_out: Option<usize>,
     warned_of_late_pairs: bool,
 }
 
@@ -80,11 +81,10 @@ impl ContactInteraction {
             friction_law: settings.friction.law,
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
-            augmentation: settings.augmentation,
         });
         Ok(Self {
             settings,
-            pairing: Pairing::new(interfaces, part),
+            pairing: Pairing::new(interfaces),
             slaves: Vec::new(),
             parameters,
             threshold: f64::INFINITY,
@@ -96,10 +96,11 @@ impl ContactInteraction {
             resolution: Resolution::default(),
             uzawa: Uzawa::default(),
             max_gap: 0.0,
+            pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
-            released: BTreeSet::new(),
+            reached: 0,
+            open: BTreeSet::new(),
             searches: 0,
-            left_out: None,
             warned_of_late_pairs: false,
         })
     }
@@ -146,8 +147,7 @@ impl ContactInteraction {
             }
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.pairing.carriers());
-        self.pairing.find_patches(part);
-        self.pairing.patches.write(part);
+        nodal_normals(part, &self.pairing.interfaces);
     }
 
     /// Recomputes overlaps, weighted gaps and areas in the present configuration.
@@ -157,7 +157,7 @@ impl ContactInteraction {
         let count = part.nodes.len();
         let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-        let mut faced = vec![false; count];
+        let mut pairs = vec![0_u32; count];
         for (block, integrals) in self.pairing.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
                 let overlaps = meetings.next().is_some_and(|meeting| meeting.overlapping);
@@ -167,7 +167,7 @@ impl ContactInteraction {
                 }
                 for (local, &node) in block.slave_nodes(at).iter().enumerate() {
                     let node = node as usize;
-                    faced[node] = true;
+                    pairs[node] += 1;
                     gap[node] += integral.gap[local];
                     mean[node] += integral.gap[local] * integral.area[local];
                     area[node] += integral.area[local];
@@ -180,8 +180,9 @@ impl ContactInteraction {
         let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
         add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         for &node in &self.slaves {
-            part.nodes.flags.set(ISOLATED, node as usize, !faced[node as usize]);
+            part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
         }
+        self.pair_counts = pairs;
         mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
         self.mean_gaps = mean;
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
@@ -204,43 +205,69 @@ impl ContactInteraction {
     /// Lets the rules of the active set decide in the present state.
     fn update_active_set(&mut self, part: &mut ModelPart) -> SetChange {
         let family = self.settings.family;
-        let (mut decisions, before) =
-            activation::decide(part, &self.slaves, family, &self.parameters, self.resolution, &mut self.released);
-        self.cycles.restrict(&mut decisions, &before, &part.nodes.initial);
+        let (mut decisions, before) = activation::decide(part, &self.slaves, family, &self.parameters, self.resolution);
+        self.cycles.restrict(&mut decisions, &before);
         part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
         activation::apply(part, &decisions, &before, family, &self.parameters)
     }
 
-    /// Facets that are in each other now and are no pair.
+    /// Lets the rules decide in a converged state, where the set was held.
+    fn settle(&mut self, part: &mut ModelPart) -> Outer {
+        let family = self.settings.family;
+        let (mut decisions, before) = activation::decide(part, &self.slaves, family, &self.parameters, self.resolution);
+        let largest = decisions.iter().map(|(_, decision)| -decision.pressure).fold(0.0, f64::max);
+        match self.cycles.settle(&mut decisions, &before, largest, &part.nodes.ids) {
+            Settled::Done => Outer::Done,
+            Settled::Failed(why) => Outer::Failed(why),
+            Settled::Change => {
+                activation::apply(part, &decisions, &before, family, &self.parameters);
+                self.write_tangents(part);
+                Outer::Again
+            }
+        }
+    }
+
+    /// Facets that matter now and are no pair.
     ///
     /// # Errors
     /// Those of making blocks.
     fn late_pairs(&self, part: &ModelPart) -> Result<Late> {
-        // Facets that have hardly moved since the search are not deeper in each other than they were then.
-        let still = self.steps_since_search == 0 && 2.0 * farthest_motion(part, &self.pairing.nodes()) < self.near();
+        let still =
+            self.steps_since_search == 0 && farthest_motion(part, &self.pairing.nodes()) <= self.resolution.length;
         if still || !self.threshold.is_finite() {
             return Ok(Late::default());
         }
-        // Where the first of them found nodes in the depth, the next finds all their pairs.
-        let all = self.searches > 0;
-        late_pairs(
-            part,
-            &self.pairing,
-            &self.settings,
-            &self.parameters,
-            limit(&self.settings, self.threshold),
-            self.near(),
-            all,
-        )
+        let limit = limit(&self.settings, self.threshold);
+        let wanted = match self.settings.search.within_step {
+            WithinStep::Facing => Wanted::facing(self.resolution),
+            WithinStep::Lost => Wanted::lost(self.near(), self.searches > 0),
+        };
+        late_pairs(part, &self.pairing, &self.settings, &self.parameters, limit, wanted)
     }
 
-    /// Looks at a converged state: nodes that came through facets they had no pair with get one, and the iteration goes on.
+    /// Takes in what bodies have come to face on their way, so that the iteration need not begin again for it at its end.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    fn search_on_the_way(&mut self, part: &mut ModelPart, iteration: usize) -> Result<()> {
+        let looks = self.settings.search.within_step == WithinStep::Facing && self.settings.explicit.is_none();
+        if iteration > SETTLED || !looks {
+            return Ok(());
+        }
+        let missed = self.late_pairs(part)?.missed;
+        if !missed.is_empty() {
+            self.pairing.add(missed, &self.settings, &self.parameters)?;
+            self.integrate(part);
+        }
+        Ok(())
+    }
+
+    /// Looks at a converged state: where nodes have come to face facets they had no pair with, the iteration goes on.
     ///
     /// # Errors
     /// Those of making blocks.
     fn search_again(&mut self, part: &mut ModelPart) -> Result<Outer> {
         let late = self.late_pairs(part)?;
-        self.left_out = Some(late.others);
         if late.missed.is_empty() {
             return Ok(Outer::Done);
         }
@@ -249,8 +276,13 @@ impl ContactInteraction {
             ids => format!("nodes {} came through facets they had no pair with", ids.join(" ")),
         };
         if self.searches == MOST_SEARCHES {
-            let outer = Outer::Failed(format!("{why}, after {MOST_SEARCHES} searches within the step"));
-            return Ok(if late.nodes.is_empty() { Outer::Done } else { outer });
+            if !late.nodes.is_empty() {
+                return Ok(Outer::Failed(format!("{why}, after {MOST_SEARCHES} searches within the step")));
+            }
+            if !std::mem::replace(&mut self.warned_of_late_pairs, true) {
+                part.messages.push(warn_of_late_pairs(late.missed.len(), MOST_SEARCHES));
+            }
+            return Ok(Outer::Done);
         }
         self.searches += 1;
         self.pairing.add(late.missed, &self.settings, &self.parameters)?;
@@ -263,7 +295,9 @@ impl ContactInteraction {
 
     fn write_tangents(&self, part: &mut ModelPart) {
         if self.settings.family.frictional() {
-            sliding::write_tangents(part, &self.slaves, self.settings.family, &self.parameters, self.resolution);
+            let (family, counts) = (self.settings.family, &self.pair_counts);
+            let keeps = self.settings.friction.keeps_direction;
+            sliding::write_tangents(part, &self.slaves, family, &self.parameters, self.resolution, counts, keeps);
         }
     }
 
@@ -280,6 +314,10 @@ impl ContactInteraction {
 const SETTLED: usize = 5;
 /// Share of the scale factor that makes redundant multipliers regular.
 const RELAXATION: f64 = 1e-8;
+
+/// How much farther than the nearest node of an open interface others are taken hold of with it, in mesh sizes: the first
+/// time that a body is free to move, the second, the third.
+const REACHES: [f64; 3] = [0.01, 0.5, f64::INFINITY];
 
 /// Searches in converged states of a step after which it counts as not converged.
 const MOST_SEARCHES: usize = 5;
@@ -318,7 +356,7 @@ impl Interaction for ContactInteraction {
         for node in self.pairing.carriers() {
             part.nodes.flags.set(ACTIVE, node as usize, false);
         }
-        self.pairing.patches.write(part);
+        nodal_normals(part, &self.pairing.interfaces);
         Ok(())
     }
 
@@ -330,16 +368,16 @@ impl Interaction for ContactInteraction {
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.acting = self.settings.interval.contains(part.info.time);
         self.cycles.begin_step();
+        self.reached = 0;
+        self.open.clear();
         self.searches = 0;
-        self.left_out = None;
         self.uzawa = Uzawa::default();
-        self.released.clear();
         if !self.acting {
             self.switch_off(part);
             return Ok(());
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
-        self.pairing.patches.write(part);
+        nodal_normals(part, &self.pairing.interfaces);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.settings.database_step_update {
             self.assign_open_roles(part);
@@ -371,7 +409,7 @@ impl Interaction for ContactInteraction {
 
     fn keep_first_iterate(&mut self, part: &mut ModelPart) {
         if self.acting {
-            self.pairing.patches.write(part);
+            nodal_normals(part, &self.pairing.interfaces);
         }
     }
 
@@ -380,7 +418,7 @@ impl Interaction for ContactInteraction {
             return Ok(SetChange::default());
         }
         if iteration == 1 || self.updates_normals() {
-            self.pairing.patches.write(part);
+            nodal_normals(part, &self.pairing.interfaces);
         }
         if self.updates_normals() {
             self.pairing.refresh_normals(part, true);
@@ -388,6 +426,7 @@ impl Interaction for ContactInteraction {
         let adaptation = self.settings.adaptation;
         let gaps = adaptation.gaps(part, &self.slaves, self.settings.explicit.is_some());
         self.integrate(part);
+        self.search_on_the_way(part, iteration)?;
         if iteration >= SETTLED {
             self.pairing.keep_habits(part);
         }
@@ -413,6 +452,12 @@ impl Interaction for ContactInteraction {
                 return Ok(outer);
             }
         }
+        if self.cycles.holds() {
+            let settled = self.settle(part);
+            if settled != Outer::Done {
+                return Ok(settled);
+            }
+        }
         let outer = self.search_again(part)?;
         let touches = self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize));
         if outer == Outer::Done && part.info.is(ENSURE_CONTACT) && !touches {
@@ -423,13 +468,22 @@ impl Interaction for ContactInteraction {
         Ok(outer)
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        if self.acting && !self.warned_of_late_pairs {
-            let found = |late: Late| late.missed.len() + late.others;
-            let left_out = self.left_out.map_or_else(|| self.late_pairs(part).map(found), Ok)?;
-            self.warned_of_late_pairs = left_out > 0;
-            part.messages.extend((left_out > 0).then(|| warn_of_late_pairs(left_out, self.near())));
+    fn reach_out(&mut self, part: &mut ModelPart) -> bool {
+        if !self.acting || self.settings.explicit.is_some() {
+            return false;
         }
+        let mut near = BTreeSet::new();
+        while near.is_empty() && self.reached < REACHES.len() {
+            near = activation::nearest(part, &self.pairing.interfaces, REACHES[self.reached], &mut self.open);
+            self.reached += 1;
+        }
+        let friction = (self.parameters.friction_law, self.parameters.slip_rule);
+        activation::start(part, &self.slaves, Start::Touching(&near), &self.at_origin, friction);
+        self.write_tangents(part);
+        !near.is_empty()
+    }
+
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
         let cleared = |n: u32| self.settings.clear_inactive && !part.nodes.flags.is(ACTIVE, n as usize);
@@ -439,6 +493,8 @@ impl Interaction for ContactInteraction {
         if self.settings.family.frictional() {
             let traction = part.nodes.values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
             inactive.iter().for_each(|&n| traction[3 * n as usize..3 * n as usize + 3].fill(0.0));
+            let (multiplier, law) = (self.settings.family.multiplier, self.settings.friction.law);
+            friction::meet_bounds(part, &self.slaves, multiplier, law, self.parameters.scale_factor);
             if !self.warned_of_friction {
                 let warning = friction::warn_of_pushing(
                     part,
@@ -472,10 +528,6 @@ impl Interaction for ContactInteraction {
 
     fn relaxation(&self) -> Option<f64> {
         Some(RELAXATION * self.parameters.scale_factor)
-    }
-
-    fn massless_nodes(&self, part: &ModelPart) -> Vec<u32> {
-        if self.acting && !part.info.is(KEEP_MASS) { self.pairing.nodes() } else { Vec::new() }
     }
 
     fn save(&mut self) {

@@ -1,12 +1,10 @@
-//! Active sets that come back: found, said and broken.
+//! Active sets that come back or do not come to rest: found, said and settled.
 //!
-//! A set that returns after others is a cycle: Newton's iteration would run through it for ever. It is broken by the first
-//! of these that helps, before the step is cut:
-//!
-//! 1. nodes of the cycle that stick and slide in turn are kept sliding until nothing else changes;
-//! 2. from then on one node a time changes, the first by place (least x, then y, then z) of those that want to.
-
-use std::collections::BTreeSet;
+//! A set that returns after others is a cycle: Newton's iteration would run through it for ever, because states change
+//! before displacements have followed. From then on, as from an iteration on by which sets should have come to rest, states
+//! change in converged states only: the set is held until the iteration has converged with it, then the rules decide on
+//! what is an equilibrium. Where that comes back to a set too, no set fulfils all conditions at the resolution of the
+//! mesh; that one is taken which violates them least, if that is little, and the step fails otherwise.
 
 use zelus_core::diagnostics::Diagnostic;
 
@@ -15,30 +13,35 @@ use crate::formulations::NodeState;
 
 /// Longest cycle that is looked for, in iterations.
 const LONGEST: usize = 6;
+/// Iterations after which sets that still change are held.
+const RESTLESS: usize = 15;
+/// Converged states in which a held set may change.
+const MOST_CHANGES: usize = 30;
+/// Violation, as a share of the largest pressure, that may stay where no set fulfils all conditions.
+const ALLOWED: f64 = 0.01;
 /// Nodes that a warning names.
 const NAMED: usize = 8;
 
-/// What is done about cycles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Remedy {
-    Nothing,
-    KeepSliding,
-    OneByOne,
+/// What follows from a converged state with a held set.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Settled {
+    /// The state fulfils the conditions, or nearly so where none does better.
+    Done,
+    /// States change, and the iteration goes on.
+    Change,
+    /// No set does.
+    Failed(String),
 }
 
 /// The sets of a step's iterations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct CycleGuard {
     sets: Vec<Vec<NodeState>>,
-    remedy: Remedy,
-    held: BTreeSet<u32>,
+    /// Whether states change in converged states only.
+    held: bool,
+    /// Sets that have converged, with what they violate.
+    converged: Vec<(Vec<NodeState>, f64)>,
     warned: bool,
-}
-
-impl Default for CycleGuard {
-    fn default() -> Self {
-        Self { sets: Vec::new(), remedy: Remedy::Nothing, held: BTreeSet::new(), warned: false }
-    }
 }
 
 impl CycleGuard {
@@ -47,62 +50,89 @@ impl CycleGuard {
         *self = Self { warned: self.warned, ..Self::default() };
     }
 
-    /// Takes back what the remedy in force does not allow to change.
-    ///
-    /// `places` are the initial positions of all nodes: an order by them does not depend on numbers.
-    pub(super) fn restrict(&mut self, decisions: &mut [(u32, Decision)], before: &[NodeState], places: &[[f64; 3]]) {
-        let changes = |(_, decision): &(u32, Decision), was: NodeState| decision.state != was;
-        if !self.held.is_empty() {
-            let quiet = decisions.iter().zip(before).all(|(d, &was)| !changes(d, was) || self.held.contains(&d.0));
-            if quiet {
-                self.held.clear();
-                self.remedy = Remedy::OneByOne;
-            }
-            for ((node, decision), &was) in decisions.iter_mut().zip(before) {
-                if self.held.contains(node) && decision.state.is_active() && was.is_active() {
-                    decision.stay(NodeState::Slip, was);
-                }
-            }
-        }
-        if self.remedy == Remedy::OneByOne {
-            let changing: Vec<usize> = (0..decisions.len()).filter(|&at| changes(&decisions[at], before[at])).collect();
-            let place = |at: usize| places[decisions[at].0 as usize];
-            let by_place = |a: &[f64; 3], b: &[f64; 3]| {
-                (0..3).map(|c| a[c].total_cmp(&b[c])).find(|order| order.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
-            };
-            let first = changing.iter().copied().min_by(|&a, &b| by_place(&place(a), &place(b)));
-            for at in changing.into_iter().filter(|&at| Some(at) != first) {
-                decisions[at].1.stay(before[at], before[at]);
-            }
+    /// Whether states change in converged states only.
+    pub(super) fn holds(&self) -> bool {
+        self.held
+    }
+
+    /// Takes back all changes of a set that is held.
+    pub(super) fn restrict(&self, decisions: &mut [(u32, Decision)], before: &[NodeState]) {
+        if self.held {
+            decisions.iter_mut().zip(before).for_each(|((_, decision), &was)| decision.stay(was, was));
         }
     }
 
     /// Keeps the set of an iteration; the warning when a cycle is met for the first time in the run.
     pub(super) fn keep(&mut self, decisions: &[(u32, Decision)], ids: &[usize], step: usize) -> Option<Diagnostic> {
-        self.sets.push(decisions.iter().map(|(_, decision)| decision.state).collect());
-        if self.remedy == Remedy::OneByOne || !self.held.is_empty() {
+        if self.held {
             return None;
         }
-        let period = self.period()?;
-        let states = &self.sets[self.sets.len() - period..];
-        let cycling: Vec<usize> =
-            (0..decisions.len()).filter(|&at| states.iter().any(|set| set[at] != states[0][at])).collect();
-        let turns = |at: &usize| states.iter().all(|set| set[*at].is_active());
-        self.held = cycling.iter().copied().filter(turns).map(|at| decisions[at].0).collect();
-        self.remedy = if self.held.is_empty() { Remedy::OneByOne } else { Remedy::KeepSliding };
+        self.sets.push(decisions.iter().map(|(_, decision)| decision.state).collect());
+        let Some(period) = self.period() else {
+            self.held = self.sets.len() >= RESTLESS;
+            return None;
+        };
+        self.held = true;
         if std::mem::replace(&mut self.warned, true) {
             return None;
         }
-        let names: Vec<String> =
-            cycling.iter().take(NAMED).map(|&at| ids[decisions[at].0 as usize].to_string()).collect();
-        let more = if cycling.len() > NAMED { " and others" } else { "" };
+        let states = &self.sets[self.sets.len() - period..];
+        let cycling = (0..decisions.len()).filter(|&at| states.iter().any(|set| set[at] != states[0][at]));
         let fact = format!(
-            "step {step}: the contact states of nodes {}{more} come back every {period} iterations",
-            names.join(" ")
+            "step {step}: the contact states of nodes {} come back every {period} iterations",
+            named(cycling.map(|at| ids[decisions[at].0 as usize]))
         );
         Some(Diagnostic::warning("contact-cycle", fact).remedy(
-            "nothing to do: they are kept sliding, then changed one by one, and the step is cut if neither helps; a shorter \
-             \"time_step\" may avoid it",
+            "nothing to do: from here on they change in converged states only; a shorter \"time_step\" may avoid it",
+        ))
+    }
+
+    /// What to do about decisions that a converged state with a held set leads to, which it may take back in part; `before` is
+    /// that set, `largest` the largest pressure.
+    ///
+    /// All states change as they want to, unless that leads back to a set that has converged before. Then one node changes,
+    /// that which is violated most of those that lead to a new set.
+    pub(super) fn settle(
+        &mut self,
+        decisions: &mut [(u32, Decision)],
+        before: &[NodeState],
+        largest: f64,
+        ids: &[usize],
+    ) -> Settled {
+        let mut changing: Vec<usize> = (0..before.len()).filter(|&at| decisions[at].1.state != before[at]).collect();
+        if changing.is_empty() {
+            return Settled::Done;
+        }
+        changing.sort_by(|&a, &b| decisions[b].1.excess.total_cmp(&decisions[a].1.excess));
+        let violation = decisions[changing[0]].1.excess;
+        let share = if largest > 0.0 { violation / largest } else { 1.0 };
+        self.converged.push((before.to_vec(), share));
+        let is_known = |set: &[NodeState]| self.converged.iter().any(|(known, _)| known == set);
+        let wanted: Vec<NodeState> = decisions.iter().map(|(_, decision)| decision.state).collect();
+        if !is_known(&wanted) && self.converged.len() < MOST_CHANGES {
+            return Settled::Change;
+        }
+        let single = |&at: &usize| {
+            let mut set = before.to_vec();
+            set[at] = wanted[at];
+            !is_known(&set)
+        };
+        if let Some(one) = changing.iter().copied().find(single).filter(|_| self.converged.len() < MOST_CHANGES) {
+            for at in changing.into_iter().filter(|&at| at != one) {
+                decisions[at].1.stay(before[at], before[at]);
+            }
+            return Settled::Change;
+        }
+        let best = self.converged.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
+        if share <= best && share <= ALLOWED {
+            return Settled::Done;
+        }
+        if best <= ALLOWED && self.converged.len() < 2 * MOST_CHANGES {
+            return Settled::Change;
+        }
+        let nodes = named(changing.into_iter().map(|at| ids[decisions[at].0 as usize]));
+        Settled::Failed(format!(
+            "the contact states of nodes {nodes} find no rest; they violate contact by {share:.1e} of the largest pressure"
         ))
     }
 
@@ -117,27 +147,36 @@ impl CycleGuard {
     }
 }
 
+/// Ids of some nodes, in words.
+fn named(ids: impl Iterator<Item = usize>) -> String {
+    let ids: Vec<usize> = ids.collect();
+    let names: Vec<String> = ids.iter().take(NAMED).map(ToString::to_string).collect();
+    format!("{}{}", names.join(" "), if ids.len() > NAMED { " and others" } else { "" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use NodeState::{Inactive, Slip, Stick};
 
-    fn decisions(states: &[NodeState]) -> Vec<(u32, Decision)> {
-        states.iter().enumerate().map(|(at, &state)| (at as u32, Decision::plain(state))).collect()
+    const IDS: [usize; 3] = [1, 2, 3];
+
+    fn decisions(states: &[NodeState], excess: f64) -> Vec<(u32, Decision)> {
+        states
+            .iter()
+            .enumerate()
+            .map(|(at, &state)| (at as u32, Decision { excess, ..Decision::plain(state) }))
+            .collect()
     }
 
     /// Runs a rule that wants `wants(iteration)`; gives the states after each iteration.
-    fn run(
-        guard: &mut CycleGuard,
-        wants: impl Fn(usize, &[NodeState]) -> Vec<NodeState>,
-        count: usize,
-    ) -> Vec<Vec<NodeState>> {
-        let mut states = wants(0, &[]);
+    fn run(guard: &mut CycleGuard, wants: impl Fn(usize) -> Vec<NodeState>, count: usize) -> Vec<Vec<NodeState>> {
+        let mut states = wants(0);
         let mut out = Vec::new();
         for iteration in 1..=count {
-            let mut list = decisions(&wants(iteration, &states));
-            guard.restrict(&mut list, &states, &[[0.0; 3], [1.0; 3], [2.0; 3]]);
-            guard.keep(&list, &[1, 2, 3], 1);
+            let mut list = decisions(&wants(iteration), 0.0);
+            guard.restrict(&mut list, &states);
+            guard.keep(&list, &IDS, 1);
             states = list.iter().map(|(_, d)| d.state).collect();
             out.push(states.clone());
         }
@@ -145,34 +184,47 @@ mod tests {
     }
 
     #[test]
-    fn nodes_that_stick_and_slide_in_turn_are_kept_sliding() {
+    fn a_cycle_is_held_and_changes_in_converged_states() {
         let mut guard = CycleGuard::default();
-        let wants = |i: usize, _: &[NodeState]| match i % 2 {
-            0 => vec![Stick, Slip, Inactive],
-            _ => vec![Slip, Slip, Slip],
-        };
-        let seen = run(&mut guard, wants, 6);
-        assert_eq!((seen[1][0], seen[5][0]), (Stick, Slip));
-        assert_eq!(guard.remedy, Remedy::KeepSliding);
+        let wants = |i: usize| vec![[Stick, Slip][i % 2], Slip, Slip];
+        let seen = run(&mut guard, wants, 8);
+        assert!(guard.holds() && seen[3] == seen[7] && seen[2] != seen[3]);
+        let mut wanted = decisions(&[Inactive, Slip, Slip], 1.0);
+        assert_eq!(guard.settle(&mut wanted, &seen[7], 1.0, &IDS), Settled::Change);
+        assert_eq!(guard.settle(&mut wanted, &[Inactive, Slip, Slip], 1.0, &IDS), Settled::Done);
     }
 
     #[test]
-    fn then_nodes_change_one_by_one() {
-        let mut guard = CycleGuard::default();
-        let flip = |s: NodeState| if s == Inactive { Slip } else { Inactive };
-        let wants = |i: usize, now: &[NodeState]| {
-            if i == 0 { vec![Inactive; 3] } else { now.iter().map(|s| flip(*s)).collect() }
+    fn of_two_sets_that_lead_to_each_other_the_better_is_taken_where_it_is_good() {
+        let (one, other) = ([Slip; 3], [Slip, Slip, Inactive]);
+        let run = |excess: [f64; 2]| {
+            let mut guard = CycleGuard::default();
+            let mut turn = |set: &[NodeState], wanted: &[NodeState], excess: f64| {
+                guard.settle(&mut decisions(wanted, excess), set, 1.0, &IDS)
+            };
+            [turn(&one, &other, excess[0]), turn(&other, &one, excess[1]), turn(&one, &other, excess[0])]
         };
-        let seen = run(&mut guard, wants, 6);
-        assert_eq!(guard.remedy, Remedy::OneByOne);
-        let changed = (0..3).filter(|&n| seen[4][n] != seen[5][n]).count();
-        assert_eq!(changed, 1);
+        assert_eq!(run([1e-3, 5e-3]), [Settled::Change, Settled::Change, Settled::Done]);
+        assert!(matches!(run([0.5, 0.5])[1], Settled::Failed(_)));
+    }
+
+    #[test]
+    fn several_nodes_that_come_back_together_change_one_by_one() {
+        let (one, other) = ([Stick; 3], [Slip, Slip, Stick]);
+        let mut guard = CycleGuard::default();
+        assert_eq!(guard.settle(&mut decisions(&other, 1.0), &one, 1.0, &IDS), Settled::Change);
+        let mut wanted = decisions(&one, 1.0);
+        wanted[1].1.excess = 2.0;
+        assert_eq!(guard.settle(&mut wanted, &other, 1.0, &IDS), Settled::Change);
+        assert_eq!(wanted.iter().map(|(_, d)| d.state).collect::<Vec<_>>(), [Slip, Stick, Stick]);
     }
 
     #[test]
     fn sets_that_settle_are_no_cycle() {
         let mut guard = CycleGuard::default();
-        run(&mut guard, |i, _| vec![if i < 3 { Stick } else { Slip }; 3], 8);
-        assert_eq!(guard.remedy, Remedy::Nothing);
+        run(&mut guard, |i| vec![if i < 3 { Stick } else { Slip }; 3], 8);
+        assert!(!guard.holds());
+        run(&mut guard, |_| vec![Slip; 3], 8);
+        assert!(guard.holds(), "held where nothing changes does no harm");
     }
 }

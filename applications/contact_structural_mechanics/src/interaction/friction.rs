@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::flags::SLIP;
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::{dot, norm};
+use zelus_core::vector3::{add, dot, norm, scale};
 
-use crate::active_set::SlipRule;
+use crate::active_set::{Margin, SlipRule};
 use crate::formulations::NodeState;
 use crate::friction_law::{COULOMB, FrictionLaw};
 use crate::interface::Interface;
@@ -25,10 +25,10 @@ pub struct FrictionSettings {
     pub law: &'static FrictionLaw,
     /// Coefficient by key of the pair, for surfaces whose properties have none.
     pub coefficients: BTreeMap<String, f64>,
-    /// Weight of the slip in the trial traction of nodes that slide (`slip_augmentation_coefficient`).
-    pub slip_augmentation: f64,
-    /// Relative margin below the bound at which a sliding node sticks again (`slip_threshold`).
-    pub slip_threshold: f64,
+    /// How far below its bound a sliding node sticks again (`slip_augmentation_coefficient`, `slip_threshold`).
+    pub margin: Margin,
+    /// Whether in the plane a node keeps the direction in which it began to slide (`sliding_direction`).
+    pub keeps_direction: bool,
     /// Every so many steps all nodes start in stick; `None` for never (`slip_step_reset_frequency`).
     pub reset_frequency: Option<usize>,
 }
@@ -36,7 +36,7 @@ pub struct FrictionSettings {
 impl Default for FrictionSettings {
     fn default() -> Self {
         let (coefficients, reset_frequency) = (BTreeMap::new(), None);
-        Self { law: &COULOMB, coefficients, slip_augmentation: 0.0, slip_threshold: 0.0, reset_frequency }
+        Self { law: &COULOMB, coefficients, margin: Margin::default(), keeps_direction: true, reset_frequency }
     }
 }
 
@@ -71,11 +71,7 @@ pub(super) fn prepare(
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {
         *slot = sum / count.max(1) as f64;
     }
-    if friction == Friction::PureSlip || largest <= 0.0 {
-        SlipRule::Pure
-    } else {
-        SlipRule::Bounded { augmentation: settings.slip_augmentation, threshold: settings.slip_threshold }
-    }
+    if friction == Friction::PureSlip || largest <= 0.0 { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) }
 }
 
 /// Step start: every so many steps the nodes with friction begin in stick.
@@ -89,8 +85,34 @@ pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRul
     }
 }
 
-/// The warning that friction pushes sliding nodes along the slip of the accepted step: it took its direction from the
-/// first, sticking iterate, and the normals have turned by more than the angle of friction since.
+/// Puts the tractions of sliding nodes exactly at their bound: tolerances leave a little more or less, which is much where
+/// the pressure is small.
+pub(super) fn meet_bounds(
+    part: &mut ModelPart,
+    slaves: &[u32],
+    multiplier: Multiplier,
+    law: &FrictionLaw,
+    scale_factor: f64,
+) {
+    let Multiplier::Vector(variable) = multiplier else { return };
+    for at in slaves.iter().map(|&n| n as usize) {
+        if NodeState::of_flags(&part.nodes.flags, at) != NodeState::Slip {
+            continue;
+        }
+        let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, at));
+        let bound = law.bound_at(&part.nodes, at);
+        let traction = &mut part.nodes.history.values_mut(variable, 0)[3 * at..3 * at + 3];
+        let whole = [traction[0], traction[1], traction[2]];
+        let (pressure, along) = (dot(whole, normal), tangential(whole, normal));
+        let limit = bound.at(scale_factor * pressure).max(0.0) / scale_factor;
+        if norm(along) > 0.0 {
+            traction.copy_from_slice(&add(scale(normal, pressure), scale(along, limit / norm(along))));
+        }
+    }
+}
+
+/// The warning that friction pushes sliding nodes along the slip of the accepted step, as where no contact states fulfil all
+/// conditions.
 pub(super) fn warn_of_pushing(
     part: &ModelPart,
     slaves: &[u32],
@@ -115,8 +137,7 @@ pub(super) fn warn_of_pushing(
         part.info.step,
         nodes.len()
     );
-    Some(
-        Diagnostic::warning("friction-direction", fact)
-            .remedy("shorten \"time_step\": the surfaces turn too far in it"),
-    )
+    Some(Diagnostic::warning("friction-direction", fact).remedy(
+        "look at the nodes named: their tractions are wrong; a finer mesh or another \"time_step\" may avoid it",
+    ))
 }

@@ -1,6 +1,6 @@
-//! Facets that came through each other within a step although the search at its start left them out.
+//! Facets that have come to face each other within a step although the search at its start left them out.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use zelus_core::Result;
@@ -14,20 +14,47 @@ use super::pairing::{Pairing, add_up_nodes, searching};
 use super::step_parameters::StepParameters;
 use crate::interface::{Facet, centre_normal};
 use crate::pairs::Pair;
-use crate::variables::{NODAL_AREA, WEIGHTED_GAP};
+use crate::resolution::Resolution;
+use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP};
 
-/// What a search in a converged state finds.
+/// Share of a node's area that a pair must integrate to be missed, and of a mesh size, or of its square in space, that it must face to be in
+/// a master. Less than that is a sliver at the edge of a surface.
+const LEAST_SHARE: f64 = 0.01;
+
+/// What a search within a step is for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted {
+    /// Depth beyond which a node without contact is in a master (length).
+    pub depth: f64,
+    /// Share of its mesh size that such a node must face.
+    pub facing: f64,
+    /// Share of its area that a pair must integrate to be missed at a node in contact.
+    pub share: f64,
+}
+
+impl Wanted {
+    /// All that matters.
+    pub(super) fn facing(resolution: Resolution) -> Self {
+        Self { depth: resolution.length, facing: LEAST_SHARE, share: LEAST_SHARE }
+    }
+
+    /// What nodes have come through by more than `depth`; all pairs once some have been found.
+    pub(super) fn lost(depth: f64, all: bool) -> Self {
+        Self { depth, facing: 0.0, share: if all { 0.0 } else { f64::INFINITY } }
+    }
+}
+
+/// What a search within a step finds.
 #[derive(Default)]
 pub(super) struct Late {
     /// Nodes that are not in contact though, with the pairs found, they are in a master.
     pub nodes: Vec<u32>,
-    /// Pairs of these nodes; all pairs found, where those were asked for.
+    /// Pairs of these nodes, and pairs of nodes in contact that integrate a part of their area.
     pub missed: Vec<Pair>,
-    /// Number of other facets in each other.
-    pub others: usize,
 }
 
-/// Facets that are in each other by more than `depth` now and are no pair.
+/// Facets that face each other now and are no pair, where that matters: at nodes in contact, and at nodes that they show to
+/// be in a master.
 ///
 /// They are those that a search would find now, within `limit`, and, however deep, those that crossed in the step. Weighted
 /// gaps and areas of the nodes must be those of the present state.
@@ -40,59 +67,59 @@ pub(super) fn late_pairs(
     settings: &ContactSettings,
     parameters: &Arc<StepParameters>,
     limit: f64,
-    depth: f64,
-    all: bool,
+    wanted: Wanted,
 ) -> Result<Late> {
     let known: BTreeSet<_> = pairing.keys().into_iter().collect();
-    let near = pairing.candidates(part, settings).into_iter().filter(|(key, _)| !known.contains(key));
-    let within_reach: BTreeMap<_, bool> = near.collect();
-    let (crossed, rest): (Vec<Pair>, Vec<Pair>) = within_reach
-        .keys()
-        .map(|&key| pairing.pair(part, key))
+    let near = pairing.candidates(part, settings).into_iter();
+    let near = near.filter_map(|(key, within_reach)| (within_reach && !known.contains(&key)).then_some(key));
+    let (crossed, rest): (Vec<Pair>, Vec<Pair>) = near
+        .map(|key| pairing.pair(part, key))
         .partition(|pair| have_crossed(part, pairing.slave(pair.key), pairing.master(pair.key)));
     let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;
     blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, limit))?);
     let own = |nodes: &[u32]| part.evaluates_pair(nodes);
-    let (mut pairs, mut flags) = (Vec::new(), Vec::new());
     let mut gap = part.nodes.history.values(&WEIGHTED_GAP, 0).to_vec();
     let mut area = part.nodes.values.values(&NODAL_AREA, 0).to_vec();
     let (mut more_gap, mut more_area) = (vec![0.0; gap.len()], vec![0.0; gap.len()]);
-    for block in &blocks {
-        for (at, integral) in block.integrate(&part.view(), &own).iter().enumerate() {
-            let pair = block.pairs()[at].clone();
-            let reached = integral.overlapping && within_reach[&pair.key];
-            let deep = integral.gap.iter().zip(&integral.area).any(|(gap, area)| *gap < -depth * area.abs());
-            flags.extend([reached, integral.overlapping && deep]);
-            if reached {
-                for (local, &node) in block.slave_nodes(at).iter().enumerate() {
-                    more_gap[node as usize] += integral.gap[local];
-                    more_area[node as usize] += integral.area[local];
-                }
+    let integrals: Vec<_> = blocks.iter().map(|block| block.integrate(&part.view(), &own)).collect();
+    for (block, integrals) in blocks.iter().zip(&integrals) {
+        for (at, integral) in integrals.iter().enumerate().filter(|(_, integral)| integral.overlapping) {
+            for (local, &node) in block.slave_nodes(at).iter().enumerate() {
+                more_gap[node as usize] += integral.gap[local];
+                more_area[node as usize] += integral.area[local];
             }
-            pairs.push(pair);
         }
     }
     let slaves = pairing.slaves();
     if part.share.is_some() {
-        world().any_of(&mut flags);
         add_up_nodes(part, &slaves, &mut [(1, &mut more_gap[..]), (1, &mut more_area[..])]);
     }
     gap.iter_mut().zip(&more_gap).for_each(|(sum, more)| *sum += more);
     area.iter_mut().zip(&more_area).for_each(|(sum, more)| *sum += more);
+    let sizes = part.nodes.values.values(&NODAL_H, 0);
+    let active = |n: u32| part.nodes.flags.is(ACTIVE, n as usize);
     let inside = |&n: &u32| {
         let at = n as usize;
-        !part.nodes.flags.is(ACTIVE, at) && more_area[at] > 0.0 && gap[at] < -depth * area[at]
+        let whole = sizes[at].powi(part.info.domain_size as i32 - 1);
+        !active(n) && more_area[at] > wanted.facing * whole && gap[at] < -wanted.depth * area[at]
     };
     let nodes: BTreeSet<u32> = slaves.iter().copied().filter(inside).collect();
-    let mut late = Late { nodes: nodes.iter().copied().collect(), ..Late::default() };
-    for (pair, flags) in pairs.into_iter().zip(flags.chunks_exact(2)) {
-        if flags[0] && (all || pairing.slave(pair.key).nodes.iter().any(|n| nodes.contains(n))) {
-            late.missed.push(pair);
-        } else if flags[1] {
-            late.others += 1;
+    let (mut pairs, mut missed) = (Vec::new(), Vec::new());
+    for (block, integrals) in blocks.iter().zip(&integrals) {
+        for (at, integral) in integrals.iter().enumerate() {
+            let matters = |(local, node): (usize, &u32)| {
+                nodes.contains(node)
+                    || active(*node) && integral.area[local].abs() > wanted.share * area[*node as usize].abs()
+            };
+            missed.push(integral.overlapping && block.slave_nodes(at).iter().enumerate().any(matters));
+            pairs.push(&block.pairs()[at]);
         }
     }
-    Ok(late)
+    if part.share.is_some() {
+        world().any_of(&mut missed);
+    }
+    let missed = pairs.into_iter().zip(missed).filter_map(|(pair, missed)| missed.then(|| pair.clone()));
+    Ok(Late { missed: missed.collect(), nodes: nodes.into_iter().collect() })
 }
 
 /// Whether the centre of the slave has gone from the front of the master's plane to its back in the step.

@@ -14,8 +14,8 @@ use zelus_core::registry::Build;
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search, without_computing_part};
+use crate::active_set::Margin;
 use crate::compatibility::{Refusal, Use, refusal};
-use crate::formulations::Augmentation;
 use crate::interaction::{
     AdaptationSettings, ContactInteraction, ContactSettings, ExplicitGap, FrictionSettings, NormalVariation,
     UzawaSettings,
@@ -24,7 +24,7 @@ use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
 use crate::pairs::{Family, find_family};
 use crate::penalty_adaptation::PenaltyRule;
-use crate::search::{GapCheck, SearchDistance, SearchSettings};
+use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 
 #[derive(Debug, Deserialize)]
 struct Search {
@@ -33,6 +33,7 @@ struct Search {
     dynamic_search: bool,
     search_factor: f64,
     search_distance: SearchDistance,
+    search_within_step: WithinStep,
     active_check_factor: f64,
     database_step_update: usize,
     normal_orientation_threshold: f64,
@@ -67,8 +68,6 @@ struct Whole {
     assume_master_slave: BTreeMap<String, Vec<String>>,
     contact_type: String,
     normal_variation: NormalVariation,
-    /// Processes whose families have their forces from penalties lack it.
-    augmentation: Option<Augmentation>,
     clear_inactive_for_post: bool,
     zero_tolerance_factor: f64,
     integration_order: usize,
@@ -78,6 +77,17 @@ struct Whole {
     alternative_formulations: Alternatives,
 }
 
+/// In which direction a sliding node goes on, in the plane.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum SlidingDirection {
+    /// In which it began to slide.
+    #[default]
+    Kept,
+    /// Of the tangential multiplier of each iterate.
+    OfMultiplier,
+}
+
 /// The keys of friction; processes whose families have none lack them.
 #[derive(Debug, Deserialize)]
 struct FrictionKeys {
@@ -85,6 +95,8 @@ struct FrictionKeys {
     not_normal_update_frictional: bool,
     slip_augmentation_coefficient: f64,
     slip_threshold: f64,
+    #[serde(default)]
+    sliding_direction: SlidingDirection,
     slip_step_reset_frequency: i64,
     tangent_factor: f64,
     operator_threshold: f64,
@@ -139,19 +151,16 @@ fn interaction(
         Some(keys) => FrictionSettings {
             law: friction_law(settings, family.frictional(), request)?,
             coefficients: keys.friction_coefficients.clone(),
-            slip_augmentation: keys.slip_augmentation_coefficient,
-            slip_threshold: keys.slip_threshold,
+            margin: Margin { augmentation: keys.slip_augmentation_coefficient, threshold: keys.slip_threshold },
+            keeps_direction: keys.sliding_direction == SlidingDirection::Kept,
             reset_frequency: usize::try_from(keys.slip_step_reset_frequency).ok().filter(|f| *f > 0),
         },
     };
     let keeps_normals = keys.as_ref().is_some_and(|keys| keys.not_normal_update_frictional);
     let normal_variation = match whole.normal_variation {
         NormalVariation::None if updated || (family.frictional() && !keeps_normals) => NormalVariation::Update,
-        NormalVariation::Exact if family.frictional() && keeps_normals => NormalVariation::None,
         other => other,
     };
-    let augmentation = whole.augmentation.unwrap_or(Augmentation::Pair);
-    let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
     let rule = whole.parameters.adaptation_rule.unwrap_or(PenaltyRule::AugmentedLagrangian);
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
@@ -159,10 +168,10 @@ fn interaction(
         family,
         interval: Interval::from_node(settings.get("interval")?)?,
         normal_variation,
-        augmentation,
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             distance: whole.search_parameters.search_distance,
+            within_step: whole.search_parameters.search_within_step,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             check: whole.search_parameters.check_gap,
             dynamic: whole.search_parameters.dynamic_search,
@@ -181,8 +190,7 @@ fn interaction(
         uzawa: uzawa(settings)?,
         explicit: explicit_gap(settings, request)?,
         use_scale_factor: whole.parameters.use_scale_factor,
-        // Where slips only decide, they count no more than gaps.
-        tangent_factor: if augmentation == Augmentation::Node { tangent_factor.min(1.0) } else { tangent_factor },
+        tangent_factor: keys.as_ref().map_or(1.0, |keys| keys.tangent_factor),
         operator_threshold: keys.as_ref().map_or(0.0, |keys| keys.operator_threshold),
         friction,
         adaptation: AdaptationSettings {

@@ -14,7 +14,7 @@ use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
 use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings, Weights};
-use crate::search::{GapCheck, SearchDistance, SearchSettings};
+use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 
 /// Names of `contact_type`, each also with the ending of [`UPDATED`].
 const TYPES: [(&str, MpcKind, bool); 4] = [
@@ -75,6 +75,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             distance: SearchDistance::BetweenFacets,
+            within_step: WithinStep::Lost,
             normal_orientation_threshold: whole.search_parameters.normal_orientation_threshold,
             check: GapCheck::CheckMapping,
             dynamic: false,

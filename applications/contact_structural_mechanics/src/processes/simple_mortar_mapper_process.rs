@@ -14,7 +14,7 @@ use super::interface_settings::{check_positive, segmentation};
 use crate::interface::{Interface, interfaces, nodal_normals};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{FacetPair, overlapping_pairs};
-use crate::search::{GapCheck, SearchDistance, SearchSettings};
+use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 
 /// Least difference of unit normals of facets that face each other.
 const FACING: f64 = 0.1;
@@ -111,6 +111,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         search: SearchSettings {
             factor: settings.get_f64("search_parameters.search_factor")?,
             distance: SearchDistance::BetweenFacets,
+            within_step: WithinStep::Lost,
             normal_orientation_threshold: FACING,
             check: GapCheck::CheckMapping,
             dynamic: false,

@@ -30,6 +30,16 @@ pub enum SearchDistance {
     BetweenCentres,
 }
 
+/// Which pairs that bodies come to within a step are taken in before it ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WithinStep {
+    /// All that face nodes in contact or show nodes to be in a master.
+    Facing,
+    /// Those of nodes that are in a master by more than the gap at which nodes start in contact.
+    Lost,
+}
+
 /// What decides whether a pair is a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
@@ -39,6 +49,8 @@ pub struct SearchSettings {
     pub distance: SearchDistance,
     /// Least difference of the unit normals: facets that face the same way are not a pair.
     pub normal_orientation_threshold: f64,
+    /// What is looked for within a step.
+    pub within_step: WithinStep,
     /// How contact starts.
     pub check: GapCheck,
     /// Whether nodes are looked for where their velocities take them (`dynamic_search`).

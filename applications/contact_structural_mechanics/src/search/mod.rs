@@ -7,7 +7,7 @@ mod reach;
 mod self_contact;
 mod tree;
 
-pub use candidates::{Candidate, GapCheck, SearchDistance, SearchSettings, candidates};
+pub use candidates::{Candidate, GapCheck, SearchDistance, SearchSettings, WithinStep, candidates};
 pub use direct_check::touching_nodes;
 pub use prediction::predicted_positions;
 pub use reach::{warn_of_late_pairs, warn_of_reach};

@@ -15,11 +15,8 @@ pub fn warn_of_reach(part: &mut ModelPart, lost: usize, warned: &mut bool) {
     }
 }
 
-/// What is said when facets that the searches of the step left out have come through each other by its end.
-pub fn warn_of_late_pairs(count: usize, depth: f64) -> Diagnostic {
-    let fact = format!(
-        "{count} pairs of facets that were apart when the step began are deeper in each other than {depth:.1e} at its end; \
-         contact is missing there in this step"
-    );
-    Diagnostic::warning("late-contact", fact).remedy("shorten the step, or raise \"search_parameters.search_factor\"")
+/// What is said when searches within a step went on to find pairs.
+pub fn warn_of_late_pairs(count: usize, searches: usize) -> Diagnostic {
+    let fact = format!("after {searches} searches within the step {count} pairs more are found; they are left out");
+    Diagnostic::warning("late-contact", fact).remedy("shorten the step")
 }

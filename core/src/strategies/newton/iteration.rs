@@ -79,9 +79,6 @@ impl NewtonRaphson {
             interaction.begin_step(part)?;
         }
         self.assembler.begin_step(part, interactions)?;
-        if self.scheme.has_inertia() {
-            self.redistribute_mass(part, interactions)?;
-        }
         if let Some(past) = self.scheme.past_inertia(part) {
             let forces = self.assembler.inertia_forces(part, &past)?;
             self.scheme.keep(forces);
@@ -120,7 +117,7 @@ impl NewtonRaphson {
         }
         let solved = match self.solve_tangent(iteration, step, part, interactions) {
             Ok(solved) => solved,
-            Err(failed) => return self.give_up(failed, iteration, &step.residual, part, interactions),
+            Err(failed) => return self.give_up(failed, iteration, part, interactions),
         };
         if let Some(why) = &solved.fallback {
             monitor.note(&format!("linear solver: {why}"));
@@ -181,6 +178,31 @@ impl NewtonRaphson {
         part: &mut ModelPart,
         interactions: &mut [Box<dyn Interaction>],
     ) -> Result<Solved, Failed> {
+        let mut solved = self.solve_once(iteration, step, part, interactions);
+        while matches!(solved, Err(Failed::Singular(_))) && reach_out(interactions, part) {
+            step.residual = self.residual(part, interactions)?;
+            if iteration == 1 {
+                step.references.start.clear();
+            }
+            solved = self.solve_once(iteration, step, part, interactions);
+        }
+        let (Err(Failed::Singular(why)), None, Some(amount)) = (&solved, step.relaxed, step.relaxation) else {
+            return solved;
+        };
+        part.messages.extend(self.warn_of_redundancy(why));
+        step.relaxed = Some(amount);
+        self.assembler.relax_multipliers(&part.dofs, amount);
+        let rhs = self.assembler.equations().reduce(&step.residual);
+        self.solve(part, &rhs)
+    }
+
+    fn solve_once(
+        &mut self,
+        iteration: usize,
+        step: &mut Step,
+        part: &mut ModelPart,
+        interactions: &mut [Box<dyn Interaction>],
+    ) -> Result<Solved, Failed> {
         let inertia = self.scheme.inertia(part);
         self.assembler.tangents(part, interactions, inertia.as_ref())?;
         if let Some(amount) = step.relaxed {
@@ -196,13 +218,6 @@ impl NewtonRaphson {
         if iteration == 1 {
             interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
         }
-        let solved = self.solve(part, &rhs);
-        let (Err(Failed::Singular(why)), None, Some(amount)) = (&solved, step.relaxed, step.relaxation) else {
-            return solved;
-        };
-        part.messages.extend(self.warn_of_redundancy(why));
-        step.relaxed = Some(amount);
-        self.assembler.relax_multipliers(&part.dofs, amount);
         self.solve(part, &rhs)
     }
 
@@ -214,7 +229,6 @@ impl NewtonRaphson {
         &mut self,
         failed: Failed,
         iteration: usize,
-        residual: &[f64],
         part: &ModelPart,
         interactions: &[Box<dyn Interaction>],
     ) -> Result<Turn> {
@@ -224,10 +238,7 @@ impl NewtonRaphson {
                 self.singular = true;
                 Ok(Turn::Failed(why))
             }
-            Failed::Inaccurate(why) if !interactions.is_empty() => {
-                let worst = self.largest_residual(part, &self.assembler.equations().balanced(residual));
-                Ok(Turn::Failed(why + &worst.unwrap_or_default()))
-            }
+            Failed::Inaccurate(why) if !interactions.is_empty() => Ok(Turn::Failed(why)),
             // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
             Failed::Singular(why)
                 if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>
@@ -274,7 +285,7 @@ impl NewtonRaphson {
             let residual = self.residual(part, interactions)?;
             write_reactions(part, &residual);
         }
-        let constraints = constraints_version(interactions);
+        let (constraints, graph) = (constraints_version(interactions), graph_version(interactions));
         let change = if afresh {
             interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
             SetChange::default()
@@ -284,6 +295,8 @@ impl NewtonRaphson {
         if constraints != constraints_version(interactions) {
             self.assembler.begin_step(part, interactions)?;
             step.prescribed = self.constraint_increment(part);
+        } else if graph != graph_version(interactions) {
+            self.assembler.begin_step(part, interactions)?;
         }
         step.residual = self.residual(part, interactions)?;
         Ok(change)
@@ -353,6 +366,15 @@ fn agree(iteration: usize, change: &SetChange, converged: bool) -> Result<()> {
     }
     let fact = format!("iteration {iteration}: the ranks have come to different decisions");
     Err(Error::System(format!("{fact}\n    run them on machines of one kind, or on fewer ranks")))
+}
+
+/// Whether any interaction takes hold of bodies that are free to move.
+fn reach_out(interactions: &mut [Box<dyn Interaction>], part: &mut ModelPart) -> bool {
+    interactions.iter_mut().fold(false, |any, interaction| interaction.reach_out(part) || any)
+}
+
+fn graph_version(interactions: &[Box<dyn Interaction>]) -> u64 {
+    interactions.iter().fold(0, |sum, interaction| sum.wrapping_mul(31).wrapping_add(interaction.graph_version()))
 }
 
 fn constraints_version(interactions: &[Box<dyn Interaction>]) -> u64 {
