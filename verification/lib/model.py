@@ -34,7 +34,12 @@ def ramp(begin, end):
 
 
 class ExactMesh(Mesh):
-    """A mesh whose coordinates are written with all their digits."""
+    """A mesh whose coordinates are written with all their digits, and whose nodes may be taken away again."""
+
+    def add_node(self, at):
+        self.last = number = getattr(self, "last", 0) + 1
+        self.nodes[number] = tuple(at) + (0.0,) * (3 - len(at))
+        return number
 
     def text(self):
         rows = "".join(f"{i} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in self.nodes.items())
@@ -57,6 +62,8 @@ class Model:
         if wrap:
             self._join(body, wrap)
         self.bodies.append(body)
+        if element.startswith("Axisym"):  # forces are those of the whole turn
+            self.force_scale = self.stress * self.length ** 2
         return body
 
     def graded(self, name, shape, stations, mapping=None, **more):
@@ -69,9 +76,10 @@ class Model:
 
     def _join(self, body, axis):
         mesh, into = self.mesh, {}
-        low = {tuple(round(c, 9) for c in mesh.nodes[i]): i for i in body.side_nodes[axis + "0"]}
+        beside = lambda i: tuple(c for c, letter in zip(body.reference[i], "xyz") if letter != axis)
+        low = {beside(i): i for i in body.side_nodes[axis + "0"]}
         for i in body.side_nodes[axis + "1"]:
-            into[i] = low[tuple(round(c, 9) for c in mesh.nodes[i])]
+            into[i] = low[beside(i)]
             del mesh.nodes[i]
         change = lambda ids: tuple(into.get(i, i) for i in ids)
         for number in body.elements:
