@@ -6,7 +6,7 @@ mod support;
 mod stacks;
 
 use stacks::Stack;
-use support::{Results, said, zelus};
+use support::{Results, read_json, said, zelus};
 
 const ALM: (&str, &str) = ("ALMContactFrictional", "alm_contact_process");
 const SMOOTH: (&str, &str) = ("ALMContactFrictionless", "alm_contact_process");
@@ -115,4 +115,20 @@ fn blocks_with_a_gap_in_space() {
         }
     }
     assert!(sweep(&stacks) >= 3);
+}
+
+/// Without a gap, friction or curvature a shorter step is the same problem: cutting ends with the second attempt.
+#[test]
+fn steps_that_only_scale_are_cut_once() {
+    let stack = Stack { divisions: [5, 7], family: SMOOTH, guided: false, ..PATCH };
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    stack.write(folder.path(), |_| {});
+    let output = zelus(folder.path(), &["run", "ProjectParameters.json", "--report", "report.json", "--threads", "1"]);
+    let report = read_json(&folder.path().join("report.json")).expect("the report");
+    assert!(matches!(output.status.code(), Some(3 | 4)), "{}", said(&output));
+    assert!(said(&output).contains("it is the same problem"), "{}", said(&output));
+    assert_eq!(report["steps"].as_array().map(Vec::len), Some(2), "{}", said(&output));
+    // Penalty and scale factor stand in the report and are printed once.
+    let factor = report["parameters"]["scale factor k"].as_f64().expect("the scale factor");
+    assert!(factor > stacks::YOUNG && said(&output).matches("scale factor k").count() == 1);
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::active_set::SlipRule;
+use zelus::contact_structural_mechanics::formulations::Augmentation;
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, SegmentationSettings};
@@ -10,7 +11,7 @@ use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name,
 };
 use zelus::contact_structural_mechanics::variables::{
-    DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NORMAL_LENGTH, TANGENT_XI,
+    DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
 use zelus_core::entities::{EntityBlock, LocalSystems, Want};
 use zelus_core::geometry::Shape;
@@ -173,7 +174,6 @@ impl Setting {
         part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(20.0);
         part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(0.8);
         part.nodes.values.values_mut(&FRICTION_COEFFICIENT, 0).fill(0.4);
-        part.nodes.values.values_mut(&NORMAL_LENGTH, 0).fill(1.0);
         for (j, &(active, slip)) in self.states.iter().enumerate() {
             part.nodes.flags.set(ACTIVE, masters + j, active);
             part.nodes.flags.set(SLIP, masters + j, slip);
@@ -189,6 +189,7 @@ impl Setting {
             tangent_factor: 0.3,
             operator_threshold: self.operator_threshold,
             normal_variation: NormalVariation::Update,
+            augmentation: Augmentation::Node,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded { augmentation: 0.0, threshold: 0.02 },
         };
@@ -204,6 +205,8 @@ impl Setting {
             entry: entry.unwrap_or(entries()[0]),
             pairs: vec![pair],
             nodes: (0..count as u32).collect(),
+            around: 0,
+            patches: Arc::default(),
             parameters: Arc::new(parameters),
         };
         let block = (family.block)(slave, master, request);

@@ -1,5 +1,6 @@
 //! Two blocks on each other, written as a deck: the interface tilted, with a gap, turned, on or off supports, in the plane and
 //! in space.
+#![allow(dead_code, reason = "each test binary uses its part")]
 
 use serde_json::{Value, json};
 use std::fmt::Write as _;

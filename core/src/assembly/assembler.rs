@@ -5,6 +5,7 @@
 //! tangents of follower forces are small and not symmetric.
 
 mod inertia;
+mod massless;
 mod ranks;
 mod tangents;
 
@@ -21,6 +22,7 @@ use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use super::numbering::Numbering;
 use super::reach::{is_displacement, reach};
+use super::redistribution::Redistribution;
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
@@ -62,6 +64,7 @@ pub struct Assembler {
     reduced_graph: u64,
     tangent_key: Option<[f64; 4]>,
     damping: Option<([f64; 2], Vec<f64>)>,
+    redistribution: Redistribution,
     traits: Traits,
     distribution: Option<Distribution>,
     numbering: Option<Numbering>,
@@ -131,27 +134,15 @@ impl Assembler {
         let numbers = |blocks: &[Box<dyn EntityBlock>]| -> Vec<Vec<u32>> {
             blocks.iter().map(|block| block_numbers(block.as_ref(), &part.dofs)).collect()
         };
-        let pattern_blocks = || part.element_blocks.iter().chain(&part.condition_blocks).map(AsRef::as_ref);
         let distribution = Distribution::new(&part.dofs, part);
-        let pattern = BulkPattern::new(
-            &part.dofs,
-            part.nodes.len(),
-            pattern_blocks().filter(|b| b.tangent() != Tangent::Zero),
-            |node| part.owns_node(node),
-        );
+        let pattern = bulk_pattern(part, &[]);
         let loads: Blocks<'_> = load_blocks(part);
         let interaction_unknowns: Vec<u32> =
             (0..part.dofs.len() as u32).filter(|&n| part.dofs.dofs()[n as usize].multiplier).collect();
         Self {
             element_numbers: numbers(&part.element_blocks),
             condition_numbers: numbers(&part.condition_blocks),
-            // Cloned zeros are written to memory, new ones are not.
-            bulk: Csr {
-                rows: pattern.zero.rows,
-                row_starts: pattern.zero.row_starts.clone(),
-                columns: pattern.zero.columns.clone(),
-                values: vec![0.0; pattern.zero.entries()],
-            },
+            bulk: zero_matrix(&pattern),
             loads: GroupMatrix::new(&part.dofs, &loads, &[], |_| true),
             pattern,
             lumped: lumped_mass,
@@ -378,6 +369,23 @@ impl Assembler {
             self.seconds.bulk += start.elapsed().as_secs_f64();
         }
         Ok(())
+    }
+}
+
+/// The pattern of elements and conditions, and of `groups` of nodes beside them.
+fn bulk_pattern(part: &ModelPart, groups: &[Vec<u32>]) -> BulkPattern {
+    let blocks = part.element_blocks.iter().chain(&part.condition_blocks).map(AsRef::as_ref);
+    let blocks = blocks.filter(|b: &&dyn EntityBlock| b.tangent() != Tangent::Zero);
+    BulkPattern::new(&part.dofs, part.nodes.len(), blocks, groups, |node| part.owns_node(node))
+}
+
+/// A matrix of this pattern; cloned zeros are written to memory, new ones are not.
+fn zero_matrix(pattern: &BulkPattern) -> Csr {
+    Csr {
+        rows: pattern.zero.rows,
+        row_starts: pattern.zero.row_starts.clone(),
+        columns: pattern.zero.columns.clone(),
+        values: vec![0.0; pattern.zero.entries()],
     }
 }
 

@@ -30,11 +30,13 @@ pub struct BulkPattern {
 impl BulkPattern {
     /// The pattern of these blocks.
     ///
-    /// A node that no block touches has its own unknowns in its rows where `keeps` says so.
+    /// A node that no block touches has its own unknowns in its rows where `keeps` says so; `groups` are nodes that share
+    /// more than elements.
     pub fn new<'a>(
         dofs: &DofTable,
         nodes: usize,
         blocks: impl Iterator<Item = &'a dyn EntityBlock>,
+        groups: &[Vec<u32>],
         keeps: impl Fn(usize) -> bool,
     ) -> Self {
         let mut count = vec![0_u8; nodes];
@@ -53,6 +55,9 @@ impl BulkPattern {
                     lists[a as usize].extend_from_slice(members);
                 }
             }
+        }
+        for group in groups {
+            group.iter().for_each(|&a| lists[a as usize].extend_from_slice(group));
         }
         lists.par_iter_mut().with_min_len(256).for_each(|list| {
             list.sort_unstable();

@@ -9,6 +9,8 @@ mod group_matrix;
 mod local;
 mod numbering;
 mod reach;
+mod redistribution;
+mod supports;
 
 pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties, strongest_damping};
 pub use distribution::Distribution;

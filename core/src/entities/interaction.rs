@@ -142,6 +142,12 @@ pub trait Interaction: Send + Sync {
     /// Called in place of [`Interaction::after_update`]; [`Interaction::after_prediction`] follows.
     fn keep_first_iterate(&mut self, _part: &mut ModelPart) {}
 
+    /// Step start, in motion with inertia: nodes that others carry the mass of, ascending, since forces on them come and go at
+    /// once.
+    fn massless_nodes(&self, _part: &ModelPart) -> Vec<u32> {
+        Vec::new()
+    }
+
     /// Keeps what a retried step must restore.
     fn save(&mut self);
 

@@ -81,6 +81,11 @@ pub fn is_round_off(residual: f64, round_off: f64) -> bool {
     residual <= 16.0 * round_off
 }
 
+/// Whether an increment is no more than the last digits of what it is added to.
+pub fn is_last_digit(increment: f64, value: f64) -> bool {
+    increment <= 16.0 * f64::EPSILON * value
+}
+
 /// One measured block.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Check {

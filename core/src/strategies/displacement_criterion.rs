@@ -1,6 +1,8 @@
 //! Converged when the increment of the iteration is small.
 
-use super::criterion::{Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict};
+use super::criterion::{
+    Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, is_last_digit,
+};
 use crate::diagnostics::Result;
 use crate::register;
 use crate::registry::Build;
@@ -33,7 +35,7 @@ impl ConvergenceCriterion for DisplacementCriterion {
         let (total, _) = measures.block(measures.values, Block::All);
         let ratio = if increment == 0.0 { 0.0 } else { increment / if total > 0.0 { total } else { increment } };
         let absolute = increment / (count.max(1) as f64).sqrt();
-        let converged = ratio <= self.relative || absolute <= self.absolute;
+        let converged = ratio <= self.relative || absolute <= self.absolute || is_last_digit(increment, total);
         Verdict::all(vec![Check {
             label: "displacement",
             ratio,

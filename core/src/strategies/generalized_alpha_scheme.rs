@@ -95,6 +95,10 @@ impl Scheme for GeneralizedAlphaScheme {
     fn keep(&mut self, forces: Vec<f64>) {
         self.forces = Some(forces);
     }
+
+    fn kept(&mut self) -> Option<&mut Vec<f64>> {
+        self.forces.as_mut()
+    }
 }
 
 register! { Scheme "generalized_alpha",

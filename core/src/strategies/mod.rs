@@ -39,7 +39,7 @@ pub(crate) use condensing::multipliers;
 pub use condensing::{CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE};
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
-    is_round_off,
+    is_last_digit, is_round_off,
 };
 pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{ExplicitSettings, ExplicitStrategy};

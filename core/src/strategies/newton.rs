@@ -91,6 +91,7 @@ impl SolutionStrategy for NewtonRaphson {
             let forces = self.assembler.inertia_forces(part, &inertia)?;
             self.scheme.keep(forces);
         }
+        self.assembler.extrapolate_rates(part);
         accept(part)
     }
 }
@@ -277,17 +278,23 @@ impl NewtonRaphson {
         }
     }
 
+    /// The largest entry of what is out of balance and its unknown, in words; collective.
+    pub(super) fn largest_residual(&self, part: &ModelPart, balanced: &[f64]) -> Option<String> {
+        let size = |n: u32| balanced[n as usize].abs();
+        let unknowns = self.assembler.equations().unknowns().iter().copied();
+        let worst = unknowns.max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        let largest = world().gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
+        let said = worst.filter(|&n| size(n) >= largest).map(|n| {
+            let value = balanced[n as usize];
+            format!("; largest residual {value:.3e} at {}", Meaning::of(&part.dofs, &part.nodes, n))
+        });
+        world().first_to_say(said)
+    }
+
     pub(super) fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {
         let equations = self.assembler.equations();
         let residual = equations.balanced(residual);
-        let size = |n: u32| residual[n as usize].abs();
-        let worst = equations.unknowns().iter().copied().max_by(|&a, &b| size(a).total_cmp(&size(b)));
-        let largest = world().gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
-        let worst = worst.filter(|&n| size(n) >= largest).map(|n| {
-            let value = residual[n as usize];
-            format!("; largest residual {value:.3e} at {}", Meaning::of(&part.dofs, &part.nodes, n))
-        });
-        let worst = world().first_to_say(worst);
+        let worst = self.largest_residual(part, &residual);
         let last = records.last();
         let cycling = last.filter(|r| r.active_set_changes + r.stick_slip_changes > 0).map(|r| {
             let nodes: Vec<String> = r.changed_nodes.iter().map(ToString::to_string).collect();

@@ -30,6 +30,10 @@ impl PseudoStaticScheme {
 }
 
 impl Scheme for PseudoStaticScheme {
+    fn has_inertia(&self) -> bool {
+        false
+    }
+
     fn prepare(&self, part: &mut ModelPart) {
         part.nodes.history.add(&VELOCITY);
         part.nodes.history.add(&ACCELERATION);

@@ -23,6 +23,11 @@ pub trait Scheme: Send {
         false
     }
 
+    /// Whether mass resists the motion.
+    fn has_inertia(&self) -> bool {
+        !self.is_static()
+    }
+
     /// Step start: first guess of the unknowns that are free.
     ///
     /// # Errors
@@ -53,6 +58,11 @@ pub trait Scheme: Send {
 
     /// The forces that inertia and damping took up at the end of an accepted step, a number an unknown.
     fn keep(&mut self, _forces: Vec<f64>) {}
+
+    /// Step start: what it keeps of forces, for changes.
+    fn kept(&mut self) -> Option<&mut Vec<f64>> {
+        None
+    }
 }
 
 /// One number an unknown: `value` at the place of its component in a vector column, 0 for all but displacements.

@@ -6,7 +6,9 @@
 
 use zelus_core::Result;
 use zelus_core::model::variables::NORMAL;
-use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_round_off};
+use zelus_core::strategies::{
+    Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_last_digit, is_round_off,
+};
 use zelus_core::vector3::{dot, sub};
 
 use super::measure::{Form, Tolerance, check};
@@ -150,7 +152,7 @@ impl ConvergenceCriterion for FrictionalCriterion {
             let reference = if reference > 0.0 { reference } else { size };
             let ratio = if size > 0.0 { size / reference } else { 0.0 };
             let tolerance = self.tolerances[part];
-            let converged = round_off.is_some_and(|r| is_round_off(size, r.norm(part)))
+            let converged = round_off.map_or(is_last_digit(size, reference), |r| is_round_off(size, r.norm(part)))
                 || tolerance.met(ratio, absolute)
                 || (part > 0 && absolute <= self.threshold * normal);
             checks.push(Check {

@@ -2,7 +2,7 @@
 
 use zelus_core::Result;
 use zelus_core::parameters::Settings;
-use zelus_core::strategies::{Block, Check, Measures, is_round_off};
+use zelus_core::strategies::{Block, Check, Measures, is_last_digit, is_round_off};
 
 /// What of a block is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,13 +51,16 @@ pub(super) fn check(measures: &Measures<'_>, block: Block, (form, tolerance): (F
         Form::Residual => {
             let (residual, count) = measures.block(measures.residual, block);
             let (round_off, _) = measures.block(measures.round_off, block);
-            let reference = measures.references.iter().map(|r| measures.block(r, block).0).fold(0.0, f64::max);
+            let of_start = measures.references.iter().map(|r| measures.block(r, block).0).fold(0.0, f64::max);
+            // Equations that nothing acted in at the start refer to what the last change of state left of them.
+            let of_switch = measures.switched.map_or(0.0, |r| measures.block(r, block).0);
+            let reference = [of_start, of_switch, residual].into_iter().find(|size| *size > 0.0).unwrap_or(0.0);
             (residual, count, reference, is_round_off(residual, round_off))
         }
         Form::Increment => {
             let (increment, count) = measures.block(measures.increment, block);
             let (total, _) = measures.block(measures.values, block);
-            (increment, count, if total > 0.0 { total } else { increment }, false)
+            (increment, count, if total > 0.0 { total } else { increment }, is_last_digit(increment, total))
         }
     };
     let ratio = if size > 0.0 && reference > 0.0 { size / reference } else { 0.0 };

@@ -16,6 +16,7 @@ impl PairFormulation for AlmFrictional {
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,
             operator_threshold: parameters.operator_threshold,
+            augmentation: parameters.augmentation,
         }
     }
 

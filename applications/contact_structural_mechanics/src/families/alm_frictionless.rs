@@ -12,7 +12,7 @@ use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
 impl PairFormulation for AlmFrictionless {
     fn new(parameters: &StepParameters) -> Self {
-        Self { scale_factor: parameters.scale_factor }
+        Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
 
     fn multiplier() -> Multiplier {

@@ -12,7 +12,7 @@ use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
 
 impl PairFormulation for AlmFrictionlessComponents {
     fn new(parameters: &StepParameters) -> Self {
-        Self { scale_factor: parameters.scale_factor }
+        Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
 
     fn multiplier() -> Multiplier {

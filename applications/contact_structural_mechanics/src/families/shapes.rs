@@ -11,11 +11,11 @@ pub(super) fn block<F: PairFormulation>(
     request: PairRequest,
 ) -> Option<Box<dyn ContactBlock>> {
     Some(match (slave, master) {
-        (Shape::Line2, Shape::Line2) => PairBlock::<F, 2, 2, 8>::boxed(request),
-        (Shape::Tri3, Shape::Tri3) => PairBlock::<F, 3, 3, 18>::boxed(request),
-        (Shape::Tri3, Shape::Quad4) => PairBlock::<F, 3, 4, 21>::boxed(request),
-        (Shape::Quad4, Shape::Tri3) => PairBlock::<F, 4, 3, 21>::boxed(request),
-        (Shape::Quad4, Shape::Quad4) => PairBlock::<F, 4, 4, 24>::boxed(request),
+        (Shape::Line2, Shape::Line2) => PairBlock::<F, 2, 2, 8, 4>::boxed(request),
+        (Shape::Tri3, Shape::Tri3) => PairBlock::<F, 3, 3, 18, 9>::boxed(request),
+        (Shape::Tri3, Shape::Quad4) => PairBlock::<F, 3, 4, 21, 9>::boxed(request),
+        (Shape::Quad4, Shape::Tri3) => PairBlock::<F, 4, 3, 21, 12>::boxed(request),
+        (Shape::Quad4, Shape::Quad4) => PairBlock::<F, 4, 4, 24, 12>::boxed(request),
         _ => return None,
     })
 }

@@ -1,18 +1,20 @@
 //! Friction by the augmented Lagrangian with a vector multiplier.
 //!
-//! - inactive: p = 0, b_λ = −k² (A/c) [(λ·n) n + P λ/κ];
-//! - slip: p = f (k λ + ε g̃ n), b_λ = k g̃ n − k² (A/c) (P λ − P q/k) with q = b(k λ·n + ε g̃) τ, b the bound of the law
+//! - inactive: p = 0, b_λ = −k² (A/c) [(λ·n) n + P λ/κ], with n and A constant: a multiplier is to vanish at once;
+//! - slip: p = f (k λ + ε̂ g̃ n), b_λ = k g̃ n − k (A/c) (k P λ − P q) with q = b(k λ·n + ε̂ g̃) τ, b the bound of the law
 //!   of friction;
-//! - stick: p = f (k λ + ε g̃ n + κ ε s), b_λ = k g̃ n + k s.
+//! - stick: p = f (k λ + ε̂ g̃ n + κ ε̂ s), b_λ = k g̃ n + k s.
 //!
+//! Over the pairs of a node A adds up to the area of the node and g̃ and s to its gap and slip: the equations of a node do
+//! not depend on the number of its pairs.
 //! In space the direction τ of sliding turns with the trial traction, which the tangent knows.
 //! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
 //! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference.
 
-use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode, Turning};
+use super::{Augmentation, Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode, Turning};
 use crate::mortar::{Operators, incremental_slip, is_objective, objective_slip, tangential};
 use zelus_core::scalar::Real;
-use zelus_core::vector3::dot;
+use zelus_core::vector3::{constant, dot, value};
 
 /// Augmented Lagrangian with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +25,8 @@ pub struct AlmFrictional {
     pub tangent_factor: f64,
     /// Change of D and of M (Frobenius norm) beyond which the slip is taken as objective.
     pub operator_threshold: f64,
+    /// Where gap and slip augment the force.
+    pub augmentation: Augmentation,
 }
 
 /// A pair as it was when slip began to be counted.
@@ -53,16 +57,10 @@ impl AlmFrictional {
     }
 }
 
-/// What the turning of the direction of sliding adds to the traction of a pair: nothing but a derivative, for the direction
-/// itself is that of the present state.
-fn turned<T: Real>(node: &SlaveNode, lambda_t: [T; 3], slip: [T; 3], bound: f64) -> [T; 3] {
-    let Turning { by_slip, by_multiplier } = node.turning;
-    if by_slip == 0.0 {
-        return [T::zero(); 3];
-    }
-    let change: [T; 3] = std::array::from_fn(|c| {
-        (slip[c] - slip[c].value()) * by_slip + (lambda_t[c] - lambda_t[c].value()) * (by_multiplier * bound)
-    });
+/// The part across the direction of sliding of what a vector changes by: nothing but a derivative, for the direction itself
+/// is that of the present state.
+fn across<T: Real>(vector: [T; 3], node: &SlaveNode) -> [T; 3] {
+    let change = vector.map(|x| x - x.value());
     let along = change[0] * node.tangent[0] + change[1] * node.tangent[1] + change[2] * node.tangent[2];
     std::array::from_fn(|c| change[c] - along * node.tangent[c])
 }
@@ -82,23 +80,33 @@ impl Formulation for AlmFrictional {
         let slip = self.slip(pair, history);
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate() {
-            let (lambda, n, penalty) = (pair.multipliers[j], pair.normals[j], node.penalty);
+            let (lambda, n, penalty) = (pair.multipliers[j], pair.normals[j], self.augmentation.penalty(node));
             let lambda_n = dot(lambda, n);
             let lambda_t = tangential(lambda, n);
             let augmentation = gap[j] * penalty;
             let held = match node.state {
                 NodeState::Inactive => {
-                    let normal = -k * k * node.softness;
+                    let n = constant::<T>(value(n));
+                    let normal = -k * k * node.area / node.stiffness;
                     let tangent = normal / self.tangent_factor;
+                    let (lambda_n, lambda_t) = (dot(lambda, n), tangential(lambda, n));
                     out.multipliers[j] = std::array::from_fn(|c| n[c] * lambda_n * normal + lambda_t[c] * tangent);
                     continue;
                 }
                 NodeState::Slip => {
                     let bound = node.friction.at(lambda_n * k + augmentation);
-                    let turning = turned(node, lambda_t, slip[j], bound.value());
-                    let q = tangential(std::array::from_fn(|c| bound * node.tangent[c] + turning[c]), n);
+                    let mut q = node.tangent.map(|t| bound * t);
+                    let mut turning = [T::zero(); 3];
+                    let Turning { by_slip, by_multiplier } = node.turning;
+                    if by_slip != 0.0 || by_multiplier != 0.0 {
+                        let by_multiplier = by_multiplier * bound.value();
+                        (0..3).for_each(|c| q[c].add_scaled(across(lambda_t, node)[c], by_multiplier));
+                        turning = tangential(across(slip[j], node).map(|s| s * by_slip), n);
+                    }
+                    let q = tangential(q, n);
+                    let softness = pair.area(j) / node.stiffness;
                     out.multipliers[j] =
-                        std::array::from_fn(|c| n[c] * gap[j] * k - (lambda_t[c] * k - q[c]) * (k * node.softness));
+                        std::array::from_fn(|c| (n[c] * gap[j] + turning[c] - (lambda_t[c] * k - q[c]) * softness) * k);
                     0.0
                 }
                 NodeState::Stick => {

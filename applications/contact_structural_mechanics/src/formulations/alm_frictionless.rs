@@ -1,8 +1,8 @@
 //! Frictionless contact by the augmented Lagrangian with a scalar multiplier (eq. 4.9, D.11).
 //!
-//! Active: p = f (k λ + ε g̃) n and b_λ = k g̃. Inactive: p = 0 and b_λ = −k²/ε λ. λ < 0 in compression.
+//! Active: p = f (k λ + ε̂ g̃) n and b_λ = k g̃. Inactive: p = 0 and b_λ = −k²/ε λ. λ < 0 in compression.
 
-use super::{Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
+use super::{Augmentation, Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
@@ -11,6 +11,8 @@ use zelus_core::vector3::scale;
 pub struct AlmFrictionless {
     /// Scale factor k of the multipliers: pressure = k λ.
     pub scale_factor: f64,
+    /// Where the gap augments the force.
+    pub augmentation: Augmentation,
 }
 
 impl Formulation for AlmFrictionless {
@@ -29,7 +31,7 @@ impl Formulation for AlmFrictionless {
         for (j, node) in nodes.iter().enumerate() {
             let lambda = pair.multipliers[j][0];
             if node.state.is_active() {
-                let pressure = (lambda * k + gap[j] * node.penalty) * node.dynamic_factor;
+                let pressure = (lambda * k + gap[j] * self.augmentation.penalty(node)) * node.dynamic_factor;
                 out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
                 out.multipliers[j][0] = gap[j] * k;
             } else {

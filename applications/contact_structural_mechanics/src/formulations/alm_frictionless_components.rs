@@ -1,9 +1,9 @@
 //! Frictionless contact by the augmented Lagrangian with a vector multiplier.
 //!
-//! Active: p = f (k λ + ε g̃ n) and b_λ = k g̃ n − k²/ε P λ, which drives the tangential part to zero.
+//! Active: p = f (k λ + ε̂ g̃ n) and b_λ = k g̃ n − k²/ε P λ, which drives the tangential part to zero.
 //! Inactive: p = 0 and b_λ = −k²/ε λ.
 
-use super::{Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
+use super::{Augmentation, Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use crate::mortar::tangential;
 use zelus_core::scalar::Real;
 
@@ -12,6 +12,8 @@ use zelus_core::scalar::Real;
 pub struct AlmFrictionlessComponents {
     /// Scale factor k of the multipliers: traction = k λ.
     pub scale_factor: f64,
+    /// Where the gap augments the force.
+    pub augmentation: Augmentation,
 }
 
 impl Formulation for AlmFrictionlessComponents {
@@ -31,7 +33,7 @@ impl Formulation for AlmFrictionlessComponents {
             let (lambda, n) = (pair.multipliers[j], pair.normals[j]);
             let release = -k * k / node.penalty;
             if node.state.is_active() {
-                let normal = gap[j] * node.penalty;
+                let normal = gap[j] * self.augmentation.penalty(node);
                 let traction = std::array::from_fn(|c| (lambda[c] * k + n[c] * normal) * node.dynamic_factor);
                 out.add_nodal_force(&pair.operators, j, traction);
                 let sliding = tangential(lambda, n);

@@ -8,10 +8,13 @@
 //! Order of local unknowns: displacements of master nodes, displacements of slave nodes, multipliers of slave nodes;
 //! node by node, each with its components.
 //!
-//! Notation in the files of the families: k scale factor, ε nodal penalty, A area of the node, c
-//! stiffness by length, f dynamic factor, n nodal normal,
+//! The functional is that of the pair; where forces are augmented by node ([`Augmentation`]), the term of the gap is left to
+//! the decision of the active set, which knows the gap of the whole node.
+//!
+//! Notation in the files of the families: k scale factor, ε nodal penalty (ε̂ is ε where pairs augment, 0 where nodes do),
+//! A = Σ D_jk area that the pair has of the node, c stiffness by length, f dynamic factor, n nodal normal,
 //! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, b bound of the tangential traction, τ
-//! unit tangent. All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
+//! unit tangent. All but D, M, g̃, s, A (and normals given with derivatives) are constant in the tangent.
 
 pub mod alm_frictional;
 pub mod alm_frictionless;
@@ -32,7 +35,7 @@ pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
 pub use penalty_frictional::PenaltyFrictional;
 pub use penalty_frictionless::PenaltyFrictionless;
 pub use perturbed_lagrangian_frictionless::PerturbedLagrangianFrictionless;
-pub use system::{OperatorTangent, local_size, residual, tangent};
+pub use system::{OperatorTangent, by_normals, local_size, residual, tangent};
 pub use uzawa_frictionless::UzawaFrictionless;
 
 use zelus_core::scalar::Real;
@@ -55,6 +58,30 @@ impl Multipliers {
             Self::None => 0,
             Self::Normal => 1,
             Self::Vector => dim,
+        }
+    }
+}
+
+/// Where a gap augments the force of an augmented Lagrangian.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Augmentation {
+    /// In the decision of the active set only, with the gap of the whole node. In contact that gap is zero, so it adds
+    /// nothing to the force: penalties have no part in the converged state.
+    #[default]
+    Node,
+    /// In the force too, pair by pair as in the reference program. The gaps of the pairs of a node add up to zero, but each
+    /// acts through operators of its own: a little of the penalty stays in the converged state.
+    Pair,
+}
+
+impl Augmentation {
+    /// The penalty with which the gap of a pair enters the force of a node.
+    #[inline]
+    pub fn penalty(self, node: &SlaveNode) -> f64 {
+        match self {
+            Self::Node => 0.0,
+            Self::Pair => node.penalty,
         }
     }
 }

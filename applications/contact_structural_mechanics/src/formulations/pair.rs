@@ -42,8 +42,10 @@ pub struct SlaveNode {
     pub state: NodeState,
     /// Penalty ε > 0.
     pub penalty: f64,
-    /// A/c > 0: weighted gap by traction, for rows that state tractions beside others that state gaps and slips.
-    pub softness: f64,
+    /// c > 0: stiffness by length, for rows that state tractions beside others that state gaps and slips.
+    pub stiffness: f64,
+    /// A > 0: area over all pairs.
+    pub area: f64,
     /// Factor f on nodal forces, 1 unless the dynamic factor is in use.
     pub dynamic_factor: f64,
     /// Limit of the tangential traction.
@@ -60,9 +62,9 @@ pub struct SlaveNode {
 /// across its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turning {
-    /// κ c B/(A |q̂|) with the bounds B of all pairs of the node together: traction by weighted slip across τ.
+    /// κ b/|q̂|, with the bound b: slip across τ, in shares of the slip that stick would forbid.
     pub by_slip: f64,
-    /// k/|q̂|: traction by multiplier across τ, in shares of the pair's bound.
+    /// k/|q̂|: traction by multiplier across τ, in shares of the bound.
     pub by_multiplier: f64,
 }
 
@@ -86,6 +88,12 @@ impl<T: Real, const NS: usize, const NM: usize> Kinematics<T, NS, NM> {
     #[inline]
     pub fn gap(&self) -> [T; NS] {
         weighted_gap(&self.operators, &self.slave, &self.master, &self.normals)
+    }
+
+    /// The area that this pair has of slave node `j`.
+    #[inline]
+    pub fn area(&self, j: usize) -> T {
+        self.operators.d[j].iter().fold(T::zero(), |sum, d| sum + *d)
     }
 }
 

@@ -32,8 +32,7 @@ impl Formulation for PerturbedLagrangianFrictionless {
             let lambda = pair.multipliers[j][0];
             if node.state.is_active() {
                 out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], lambda * (k * node.dynamic_factor)));
-                let area = pair.operators.d[j].iter().fold(T::zero(), |sum, d| sum + *d);
-                out.multipliers[j][0] = (gap[j] - area * lambda * (k / node.penalty)) * k;
+                out.multipliers[j][0] = (gap[j] - pair.area(j) * lambda * (k / node.penalty)) * k;
             } else {
                 out.multipliers[j][0] = lambda * (-k * k / node.penalty);
             }

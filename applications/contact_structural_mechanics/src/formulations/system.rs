@@ -47,11 +47,12 @@ pub enum OperatorTangent {
     Frozen,
 }
 
-/// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns), row by row; zero without overlap.
-/// `geometry` comes from [`PairGeometry::seeded`]; `NU` is its number of displacement unknowns. Returns the operators.
+/// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns); zero without overlap.
+/// `geometry` comes from [`PairGeometry::seeded`]; `NU` is its number of displacement unknowns. `lhs` has a row for each
+/// unknown, each of `width` numbers that begin with those of the unknowns. Returns the operators.
 ///
 /// # Panics
-/// If `rhs` does not have [`local_size`] entries, or `lhs` not the square of them.
+/// If `rhs` does not have [`local_size`] entries, or `lhs` not `width` for each of them.
 pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize>(
     formulation: &F,
     geometry: &PairGeometry<Dual<NU>, NS, NM>,
@@ -60,12 +61,12 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     nodes: &[SlaveNode; NS],
     multipliers: &[[f64; 3]; NS],
     history: &F::History<NS, NM>,
-    lhs: &mut [f64],
+    (lhs, width): (&mut [f64], usize),
     rhs: &mut [f64],
 ) -> Overlap<Operators<f64, NS, NM>> {
     let n = local_size::<F, NS, NM>();
     assert_eq!(rhs.len(), n, "one entry per local unknown");
-    assert_eq!(lhs.len(), n * n, "one entry per pair of local unknowns");
+    assert_eq!(lhs.len(), n * width, "one row per local unknown");
     lhs.fill(0.0);
     rhs.fill(0.0);
     let found = match knows {
@@ -79,7 +80,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NU>| {
         rhs[row] = b.value;
         for column in 0..NU {
-            lhs[row * n + column] = -b.gradient[column];
+            lhs[row * width + column] = -b.gradient[column];
         }
     });
 
@@ -96,11 +97,33 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
         let out = formulation.residual(&pair, nodes, history);
         for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NS>| {
             for j in 0..NS {
-                lhs[row * n + NU + count * j + c] = -b.gradient[j];
+                lhs[row * width + NU + count * j + c] = -b.gradient[j];
             }
         });
     }
     Overlap::Cells(plain)
+}
+
+/// Visits the rows of a pair with ∂b/∂n: the derivatives by the components of the normals of its slave nodes, node by node;
+/// nothing without overlap.
+pub fn by_normals<F: Formulation, const NS: usize, const NM: usize, const NN: usize>(
+    formulation: &F,
+    geometry: &PairGeometry<f64, NS, NM>,
+    settings: &SegmentationSettings,
+    nodes: &[SlaveNode; NS],
+    multipliers: &[[f64; 3]; NS],
+    history: &F::History<NS, NM>,
+    mut visit: impl FnMut(usize, &[f64; NN]),
+) {
+    let dim = dimension(NS);
+    assert_eq!(NN, dim * NS, "one variable per component of a normal");
+    let mut seeded: PairGeometry<Dual<NN>, NS, NM> = geometry.as_constants();
+    for (j, normal) in seeded.nodal_normals.iter_mut().enumerate() {
+        (0..dim).for_each(|c| normal[c] = Dual::variable(normal[c].value, dim * j + c));
+    }
+    let Some(operators) = operators(&seeded, settings).cells() else { return };
+    let out = formulation.residual(&kinematics(&seeded, operators, multipliers), nodes, history);
+    for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b| visit(row, &b.gradient));
 }
 
 fn kinematics<T: Real, const NS: usize, const NM: usize>(

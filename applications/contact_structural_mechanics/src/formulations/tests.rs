@@ -6,8 +6,9 @@ use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
 use crate::mortar::{Habit, Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential};
 use zelus_core::vector3::normalised;
 
-const ALM: AlmFrictionless = AlmFrictionless { scale_factor: 1.7 };
-const COMPONENTS: AlmFrictionlessComponents = AlmFrictionlessComponents { scale_factor: 1.7 };
+const PAIR: Augmentation = Augmentation::Pair;
+const ALM: AlmFrictionless = AlmFrictionless { scale_factor: 1.7, augmentation: PAIR };
+const COMPONENTS: AlmFrictionlessComponents = AlmFrictionlessComponents { scale_factor: 1.7, augmentation: PAIR };
 const PENALTY: PenaltyFrictional = PenaltyFrictional { tangent_factor: 0.3 };
 
 /// States of the slave nodes, starting with `first`.
@@ -16,7 +17,8 @@ fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, stat
     std::array::from_fn(|j| SlaveNode {
         state: states[j % 3],
         penalty: 20.0 + 5.0 * noise.next(),
-        softness: 0.05,
+        stiffness: 20.0,
+        area: 1.3,
         dynamic_factor: 0.8 + 0.1 * noise.next(),
         friction: Bound { coefficient: 0.4, threshold: 0.0 },
         tangent: normalised(tangential(
@@ -63,7 +65,7 @@ fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usi
                 &nodes,
                 &lambda,
                 &history,
-                &mut lhs,
+                (&mut lhs, n),
                 &mut rhs,
             );
             residual(formulation, &pair, &settings, &nodes, &lambda, &history, &mut plain);
@@ -122,13 +124,18 @@ fn slip_history<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, N
 }
 
 fn frictional(operator_threshold: f64) -> AlmFrictional {
-    AlmFrictional { scale_factor: 1.7, tangent_factor: 0.3, operator_threshold }
+    AlmFrictional { scale_factor: 1.7, tangent_factor: 0.3, operator_threshold, augmentation: PAIR }
 }
 
 fn all_families<const NS: usize, const NM: usize, const NU: usize>() {
     check_tangent::<_, NS, NM, NU>(&ALM, |_| ());
     check_tangent::<_, NS, NM, NU>(&COMPONENTS, |_| ());
     check_tangent::<_, NS, NM, NU>(&frictional(0.0), slip_history);
+    check_tangent::<_, NS, NM, NU>(
+        &AlmFrictional { augmentation: Augmentation::Node, ..frictional(0.0) },
+        slip_history,
+    );
+    check_tangent::<_, NS, NM, NU>(&AlmFrictionless { augmentation: Augmentation::Node, ..ALM }, |_| ());
     check_tangent::<_, NS, NM, NU>(&frictional(1e9), slip_history);
     check_tangent::<_, NS, NM, NU>(&PenaltyFrictionless, |_| ());
     check_tangent::<_, NS, NM, NU>(&PENALTY, earlier);
@@ -144,10 +151,13 @@ fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec
     for line in lines {
         let vector = |i: usize| [line[3 * i], line[3 * i + 1], line[3 * i + 2]];
         let pair = PairGeometry { nodal_normals: [vector(4), vector(5)], ..line_pair(line, start) };
+        let areas = operators(&pair, &SegmentationSettings::default()).cells().unwrap().d.map(|row| row[0] + row[1]);
         let nodes = std::array::from_fn(|j| SlaveNode {
             state: [NodeState::Inactive, NodeState::Stick, NodeState::Slip][line[30 + j] as usize],
             penalty: line[32 + j],
-            softness: line[32 + j].recip(),
+            // The reference program divides by the penalty, whatever the area.
+            stiffness: line[32 + j] * areas[j],
+            area: areas[j],
             dynamic_factor: line[34 + j],
             friction: Bound { coefficient: 0.4, threshold: 0.0 },
             tangent: vector(8 + j),
@@ -241,7 +251,8 @@ fn sign_of_the_contact_force() {
     let node = SlaveNode {
         state: NodeState::Slip,
         penalty: 50.0,
-        softness: 0.02,
+        stiffness: 12.5,
+        area: 0.25,
         dynamic_factor: 1.0,
         friction: Bound::default(),
         tangent: [1.0, 0.0, 0.0],
@@ -318,7 +329,7 @@ fn cost_of_local_systems() {
                     nodes,
                     lambda,
                     history,
-                    &mut lhs,
+                    (&mut lhs, n),
                     &mut rhs,
                 );
             }

@@ -22,12 +22,12 @@ use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
 use crate::active_set::SlipRule;
-use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals};
+use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
 use crate::resolution::Resolution;
 use crate::search::{GapCheck, WithinStep, assign_roles, warn_of_late_pairs};
-use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
+use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
     WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -53,8 +53,6 @@ pub struct ContactInteraction {
     uzawa: Uzawa,
     /// Gap at which explicit steps stiffen the penalty; 0 in implicit ones (length).
     max_gap: f64,
-    /// Overlapping pairs of every node.
-    pair_counts: Vec<u32>,
     cycles: CycleGuard,
     /// Times in this step that open interfaces took hold because a body was free to move, and which they are.
     reached: usize,
@@ -81,10 +79,11 @@ impl ContactInteraction {
             friction_law: settings.friction.law,
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
+            augmentation: settings.augmentation,
         });
         Ok(Self {
             settings,
-            pairing: Pairing::new(interfaces),
+            pairing: Pairing::new(interfaces, part),
             slaves: Vec::new(),
             parameters,
             threshold: f64::INFINITY,
@@ -96,7 +95,6 @@ impl ContactInteraction {
             resolution: Resolution::default(),
             uzawa: Uzawa::default(),
             max_gap: 0.0,
-            pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             reached: 0,
             open: BTreeSet::new(),
@@ -147,7 +145,8 @@ impl ContactInteraction {
             }
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.pairing.carriers());
-        nodal_normals(part, &self.pairing.interfaces);
+        self.pairing.find_patches(part);
+        self.pairing.patches.write(part);
     }
 
     /// Recomputes overlaps, weighted gaps and areas in the present configuration.
@@ -157,7 +156,7 @@ impl ContactInteraction {
         let count = part.nodes.len();
         let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-        let mut pairs = vec![0_u32; count];
+        let mut faced = vec![false; count];
         for (block, integrals) in self.pairing.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
                 let overlaps = meetings.next().is_some_and(|meeting| meeting.overlapping);
@@ -167,7 +166,7 @@ impl ContactInteraction {
                 }
                 for (local, &node) in block.slave_nodes(at).iter().enumerate() {
                     let node = node as usize;
-                    pairs[node] += 1;
+                    faced[node] = true;
                     gap[node] += integral.gap[local];
                     mean[node] += integral.gap[local] * integral.area[local];
                     area[node] += integral.area[local];
@@ -180,9 +179,8 @@ impl ContactInteraction {
         let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
         add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         for &node in &self.slaves {
-            part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
+            part.nodes.flags.set(ISOLATED, node as usize, !faced[node as usize]);
         }
-        self.pair_counts = pairs;
         mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
         self.mean_gaps = mean;
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
@@ -295,9 +293,8 @@ impl ContactInteraction {
 
     fn write_tangents(&self, part: &mut ModelPart) {
         if self.settings.family.frictional() {
-            let (family, counts) = (self.settings.family, &self.pair_counts);
-            let keeps = self.settings.friction.keeps_direction;
-            sliding::write_tangents(part, &self.slaves, family, &self.parameters, self.resolution, counts, keeps);
+            let (family, keeps) = (self.settings.family, self.settings.friction.keeps_direction);
+            sliding::write_tangents(part, &self.slaves, family, &self.parameters, self.resolution, keeps);
         }
     }
 
@@ -356,7 +353,7 @@ impl Interaction for ContactInteraction {
         for node in self.pairing.carriers() {
             part.nodes.flags.set(ACTIVE, node as usize, false);
         }
-        nodal_normals(part, &self.pairing.interfaces);
+        self.pairing.patches.write(part);
         Ok(())
     }
 
@@ -377,7 +374,7 @@ impl Interaction for ContactInteraction {
             return Ok(());
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
-        nodal_normals(part, &self.pairing.interfaces);
+        self.pairing.patches.write(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.settings.database_step_update {
             self.assign_open_roles(part);
@@ -409,7 +406,7 @@ impl Interaction for ContactInteraction {
 
     fn keep_first_iterate(&mut self, part: &mut ModelPart) {
         if self.acting {
-            nodal_normals(part, &self.pairing.interfaces);
+            self.pairing.patches.write(part);
         }
     }
 
@@ -418,7 +415,7 @@ impl Interaction for ContactInteraction {
             return Ok(SetChange::default());
         }
         if iteration == 1 || self.updates_normals() {
-            nodal_normals(part, &self.pairing.interfaces);
+            self.pairing.patches.write(part);
         }
         if self.updates_normals() {
             self.pairing.refresh_normals(part, true);
@@ -528,6 +525,10 @@ impl Interaction for ContactInteraction {
 
     fn relaxation(&self) -> Option<f64> {
         Some(RELAXATION * self.parameters.scale_factor)
+    }
+
+    fn massless_nodes(&self, part: &ModelPart) -> Vec<u32> {
+        if self.acting && !part.info.is(KEEP_MASS) { self.pairing.nodes() } else { Vec::new() }
     }
 
     fn save(&mut self) {

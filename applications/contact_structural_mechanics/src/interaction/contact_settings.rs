@@ -8,6 +8,7 @@ use super::adaptation::{AdaptationSettings, ExplicitGap};
 use super::friction::FrictionSettings;
 use super::step_parameters::NormalVariation;
 use super::uzawa::UzawaSettings;
+use crate::formulations::Augmentation;
 use crate::interface::AlmParameters;
 use crate::mortar::IntegrationOrder;
 use crate::pairs::Family;
@@ -26,6 +27,8 @@ pub struct ContactSettings {
     pub interval: Interval,
     /// When normals follow the iteration.
     pub normal_variation: NormalVariation,
+    /// Where gaps augment the forces of augmented Lagrangians.
+    pub augmentation: Augmentation,
     /// Which facets are looked at.
     pub search: SearchSettings,
     /// Gap, in mesh sizes, below which a node starts active.

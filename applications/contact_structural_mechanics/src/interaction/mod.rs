@@ -14,6 +14,8 @@ mod nodal_forces;
 mod pairing;
 mod sliding;
 mod step_parameters;
+#[cfg(test)]
+mod tangent_tests;
 mod tying_interaction;
 mod uzawa;
 

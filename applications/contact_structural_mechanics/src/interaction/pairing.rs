@@ -12,17 +12,22 @@ use zelus_core::model::ModelPart;
 use zelus_core::registry::{self, Kind};
 
 use super::contact_settings::ContactSettings;
-use super::step_parameters::StepParameters;
-use crate::interface::{Facet, Interface, Roles, centre_normal, positions, slave_nodes};
+use super::step_parameters::{NormalVariation, StepParameters};
+use crate::interface::{Facet, Interface, NormalPatches, Roles, centre_normal, positions, slave_nodes};
 use crate::mortar::{Habit, SegmentationSettings};
-use crate::pairs::{ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes};
+use crate::pairs::{
+    ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes,
+    group_by_surroundings,
+};
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
 
 /// Pairs of facets and the blocks that evaluate them.
 pub(super) struct Pairing {
     /// The interfaces the facets belong to.
     pub interfaces: Vec<Interface>,
-    /// The pairs, by shape of slave and master.
+    /// The facets that make the normals of nodes.
+    pub patches: Arc<NormalPatches>,
+    /// The pairs, by shape of slave and master and by the number of nodes around them.
     pub blocks: Vec<Box<dyn ContactBlock>>,
     /// Slave nodes that the direct check found on a master.
     pub touching: BTreeSet<u32>,
@@ -45,8 +50,9 @@ pub(super) struct Meeting {
 
 impl Pairing {
     /// No pairs yet between the facets of these interfaces.
-    pub(super) fn new(interfaces: Vec<Interface>) -> Self {
+    pub(super) fn new(interfaces: Vec<Interface>, part: &ModelPart) -> Self {
         Self {
+            patches: Arc::new(NormalPatches::new(part.nodes.len(), &interfaces)),
             interfaces,
             blocks: Vec::new(),
             touching: BTreeSet::new(),
@@ -54,6 +60,15 @@ impl Pairing {
             moved: 0,
             saved: Vec::new(),
             warned_of_reach: false,
+        }
+    }
+
+    /// Finds the facets around nodes anew, after the sides of facets have changed.
+    pub(super) fn find_patches(&mut self, part: &ModelPart) {
+        let patches = NormalPatches::new(part.nodes.len(), &self.interfaces);
+        if patches != *self.patches {
+            self.patches = Arc::new(patches);
+            self.graph += 1;
         }
     }
 
@@ -212,11 +227,15 @@ impl Pairing {
         for ((slave, master), (pairs, nodes)) in groups {
             let name = condition_name(&stem, slave, master);
             let entry = registry::require(Kind::Condition, &name)?;
-            let request = PairRequest { entry, pairs, nodes, parameters: parameters.clone() };
-            let block = (settings.family.block)(slave, master, request).ok_or_else(|| {
-                Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
-            })?;
-            blocks.push(block);
+            let patches = (parameters.normal_variation == NormalVariation::Exact).then_some(&*self.patches);
+            for (around, (pairs, nodes)) in group_by_surroundings(patches, slave.nodes(), pairs, &nodes) {
+                let (patches, parameters) = (self.patches.clone(), parameters.clone());
+                let request = PairRequest { entry, pairs, nodes, around, patches, parameters };
+                let block = (settings.family.block)(slave, master, request).ok_or_else(|| {
+                    Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
+                })?;
+                blocks.push(block);
+            }
         }
         Ok(blocks)
     }

@@ -10,8 +10,7 @@ use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Multiplier};
 use crate::resolution::Resolution;
 use crate::variables::{
-    INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_GAP,
-    WEIGHTED_SLIP,
+    INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_SLIP,
 };
 
 /// Writes TANGENT_XI and TANGENT_ETA of the slave nodes, and how TANGENT_XI turns.
@@ -19,15 +18,13 @@ use crate::variables::{
 /// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
 /// multipliers, it is that of the weighted slip. For sliding nodes in space, whose direction is more than a sign, it is
 /// that of the trial traction q̂. A node that has none of them above round-off keeps the direction it had: at step
-/// start that is a far better guess than any fixed tangent. In the plane sliding nodes keep theirs, where `keeps_direction`. `pair_counts` holds the number of overlapping pairs of
-/// every node.
+/// start that is a far better guess than any fixed tangent. In the plane sliding nodes keep theirs, where `keeps_direction`.
 pub(super) fn write_tangents(
     part: &mut ModelPart,
     slaves: &[u32],
     family: &Family,
     parameters: &StepParameters,
     resolution: Resolution,
-    pair_counts: &[u32],
     keeps_direction: bool,
 ) {
     let dimension = part.info.domain_size;
@@ -63,7 +60,7 @@ pub(super) fn write_tangents(
                 match state {
                     NodeState::Slip if dimension == 3 => {
                         let trial = Trial::new(part, at, parameters, multiplier, normal);
-                        turnings[position] = trial.turning(pair_counts[at], pure, parameters);
+                        turnings[position] = trial.turning(pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }
                     }
                     NodeState::Inactive if !pure => [0.0; 3],
@@ -103,11 +100,7 @@ pub(super) fn write_tangents(
 struct Trial {
     traction: [f64; 3],
     of_slip: [f64; 3],
-    /// κ c/A: traction by weighted slip.
-    by_slip: f64,
-    pressure: f64,
-    multiplier_pressure: f64,
-    bound: crate::friction_law::Bound,
+    bound: f64,
 }
 
 impl Trial {
@@ -115,31 +108,24 @@ impl Trial {
         let slip = part.nodes.history.get(WEIGHTED_SLIP.name()).map_or([0.0; 3], |field| field.vector(0, at));
         let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
         let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
-        let by_gap = parameters.nodal_stiffness(penalty, area) / if area > 0.0 { area } else { 1.0 };
-        let by_slip = parameters.tangent_factor * by_gap;
-        let of_slip = scale(slip, by_slip);
-        let multiplier_pressure = parameters.scale_factor * dot(multiplier, normal);
+        let by_slip = parameters.nodal_stiffness(penalty, area) / if area > 0.0 { area } else { 1.0 };
+        let of_slip = scale(slip, parameters.tangent_factor * by_slip);
+        let pressure = parameters.scale_factor * dot(multiplier, normal);
         Self {
             traction: add(scale(tangential(multiplier, normal), parameters.scale_factor), of_slip),
             of_slip,
-            by_slip,
-            pressure: multiplier_pressure + by_gap * part.nodes.history.values(&WEIGHTED_GAP, 0)[at],
-            multiplier_pressure,
-            bound: parameters.friction_law.bound_at(&part.nodes, at),
+            bound: parameters.friction_law.bound_at(&part.nodes, at).at(pressure),
         }
     }
 
     /// Trial tractions within the bound belong to nodes about to stick; there the direction turns as at the bound.
-    fn turning(&self, pairs: u32, pure: bool, parameters: &StepParameters) -> Turning {
-        let bound = self.bound.at(self.pressure);
-        let size = norm(if pure { self.of_slip } else { self.traction }).max(bound);
-        if size <= 0.0 || bound <= 0.0 {
+    fn turning(&self, pure: bool, parameters: &StepParameters) -> Turning {
+        let size = norm(if pure { self.of_slip } else { self.traction }).max(self.bound);
+        if size <= 0.0 || self.bound <= 0.0 {
             return Turning::default();
         }
-        // Each pair states the law with the whole multiplier and its own gap.
-        let all = bound + (f64::from(pairs) - 1.0).max(0.0) * self.bound.at(self.multiplier_pressure);
         Turning {
-            by_slip: all.max(0.0) * self.by_slip / size,
+            by_slip: parameters.tangent_factor * self.bound / size,
             by_multiplier: if pure { 0.0 } else { parameters.scale_factor / size },
         }
     }

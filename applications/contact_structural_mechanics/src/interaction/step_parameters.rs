@@ -1,6 +1,7 @@
 //! What every pair of a run shares.
 
 use crate::active_set::SlipRule;
+use crate::formulations::Augmentation;
 use crate::friction_law::FrictionLaw;
 use crate::mortar::SegmentationSettings;
 
@@ -19,9 +20,24 @@ pub enum NormalVariation {
     /// As [`NormalVariation::Update`], with the variation of the facet's normal in the tangent.
     #[serde(rename = "elemental_derivatives")]
     Elemental,
-    /// As [`NormalVariation::Elemental`], with the variation of the nodal normals too.
+    /// As [`NormalVariation::Elemental`], with the variation of the nodal normals by the facet of the pair too.
     #[serde(rename = "nodal_elemental_derivatives")]
     NodalElemental,
+    /// Normals of each iteration with their whole variation, by all facets around a node.
+    #[serde(rename = "exact_derivatives")]
+    Exact,
+}
+
+impl NormalVariation {
+    /// Whether the tangent knows how the normals of facets turn.
+    pub fn knows_facets(self) -> bool {
+        matches!(self, Self::Elemental | Self::NodalElemental | Self::Exact)
+    }
+
+    /// Whether the tangent knows how the normals of nodes turn.
+    pub fn knows_nodes(self) -> bool {
+        matches!(self, Self::NodalElemental | Self::Exact)
+    }
 }
 
 /// Settings and numbers that the conditions read.
@@ -43,13 +59,19 @@ pub struct StepParameters {
     pub slip_rule: SlipRule,
     /// When normals follow the iteration.
     pub normal_variation: NormalVariation,
+    /// Where gaps augment the forces of augmented Lagrangians.
+    pub augmentation: Augmentation,
 }
 
 impl StepParameters {
     /// c: what gaps and slips of a node of this penalty and area count with against tractions (stress by length).
     ///
-    /// Weighted gaps enter forces with the penalty, which is the larger part where areas are large numbers.
+    /// Where forces are augmented, weighted gaps enter them with the penalty, which is the larger part where areas are large
+    /// numbers. Where they are not, that of the bodies counts alone: whatever a deck says of penalties, contact is the same.
     pub fn nodal_stiffness(&self, penalty: f64, area: f64) -> f64 {
-        self.stiffness.max(penalty * area)
+        match self.augmentation {
+            Augmentation::Node => self.stiffness,
+            Augmentation::Pair => self.stiffness.max(penalty * area),
+        }
     }
 }

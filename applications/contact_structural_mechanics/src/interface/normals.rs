@@ -1,15 +1,17 @@
-//! Normals of contact surfaces.
+//! Normals of contact surfaces, and how they turn when nodes move.
 //!
 //! The normal of a node is the sum of the unit normals of its facets, taken at the node, normalised; facets are not
-//! weighted by their area. Everything in the present configuration, outward.
+//! weighted by their area. Everything in the present configuration, outward. At node j of a facet whose next and previous
+//! nodes lie along the edges a and b, the unit normal is m = a × b/|a × b| (in the plane a line has one edge, the other is
+//! the axis z), and with S = Σ m, n = S/|S|:
+//! dn = (I − n⊗n)/|S| Σ (I − m⊗m)/|a × b| (da × b + a × db).
 
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::norm;
+use zelus_core::vector3::{cross, norm, scale, sub};
 
 use super::facets::{Facet, Interface, Roles};
-use crate::variables::NORMAL_LENGTH;
 
 /// Unit normal at the centre of a facet; `None` when it has no area.
 pub fn centre_normal(shape: Shape, points: &[[f64; 3]]) -> Option<[f64; 3]> {
@@ -24,34 +26,234 @@ pub fn positions<'a>(facet: &Facet, part: &ModelPart, buffer: &'a mut [[f64; 3];
     &buffer[..facet.nodes.len()]
 }
 
-/// Writes NORMAL at the nodes of the interfaces.
+/// The edge that a line has not.
+const AXIS: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// A facet as one of its nodes sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Corner {
+    /// Interface and facet, by their positions.
+    pub facet: [u32; 2],
+    /// The node that follows; none at the end of a line.
+    next: Option<u32>,
+    /// The node before; none at the beginning of a line.
+    previous: Option<u32>,
+}
+
+impl Corner {
+    fn new(facet: [u32; 2], nodes: &[u32], local: usize) -> Self {
+        let count = nodes.len();
+        match (count, local) {
+            (2, 0) => Self { facet, next: Some(nodes[1]), previous: None },
+            (2, _) => Self { facet, next: None, previous: Some(nodes[0]) },
+            _ => Self {
+                facet,
+                next: Some(nodes[(local + 1) % count]),
+                previous: Some(nodes[(local + count - 1) % count]),
+            },
+        }
+    }
+
+    /// The edges a and b at a node.
+    fn edges(self, node: u32, places: &[[f64; 3]]) -> [[f64; 3]; 2] {
+        [self.next, self.previous].map(|end| end.map_or(AXIS, |end| sub(places[end as usize], places[node as usize])))
+    }
+
+    /// m and |a × b|; `None` without area.
+    fn normal(self, node: u32, places: &[[f64; 3]]) -> Option<([f64; 3], f64)> {
+        let [a, b] = self.edges(node, places);
+        let across = cross(a, b);
+        let size = norm(across);
+        (size > 0.0).then(|| (scale(across, 1.0 / size), size))
+    }
+}
+
+/// The facets that make the normal of every node of the interfaces.
 ///
 /// Where each search decides the sides, facets that meet nothing do not turn the normals of those that do: the edge of a
 /// block found by its skin would otherwise be pressed askew.
-pub fn nodal_normals(part: &mut ModelPart, interfaces: &[Interface]) {
-    let mut sums = vec![[0.0; 3]; part.nodes.len()];
-    let mut buffer = [[0.0; 3]; 4];
-    let mut met = vec![false; part.nodes.len()];
-    let meeting = interfaces.iter().filter(|i| i.open).flat_map(|i| &i.facets).filter(|f| f.role != Roles::Open);
-    meeting.flat_map(|f| &f.nodes).for_each(|&node| met[node as usize] = true);
-    for facet in interfaces.iter().flat_map(|i| &i.facets) {
-        let points = positions(facet, part, &mut buffer);
-        for (local, &node) in facet.nodes.iter().enumerate() {
-            if facet.role == Roles::Open && met[node as usize] {
-                continue;
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct NormalPatches {
+    /// Nodes of the interfaces.
+    nodes: Vec<u32>,
+    /// First corner of each node, and the end.
+    starts: Vec<u32>,
+    corners: Vec<Corner>,
+}
+
+impl NormalPatches {
+    /// Those of a model part with `count` nodes.
+    pub fn new(count: usize, interfaces: &[Interface]) -> Self {
+        let mut met = vec![false; count];
+        let meeting = interfaces.iter().filter(|i| i.open).flat_map(|i| &i.facets).filter(|f| f.role != Roles::Open);
+        meeting.flat_map(|f| &f.nodes).for_each(|&node| met[node as usize] = true);
+        let mut at_nodes: Vec<(u32, Corner)> = Vec::new();
+        for (i, interface) in interfaces.iter().enumerate() {
+            for (f, facet) in interface.facets.iter().enumerate() {
+                for (local, &node) in facet.nodes.iter().enumerate() {
+                    if facet.role != Roles::Open || !met[node as usize] {
+                        at_nodes.push((node, Corner::new([i as u32, f as u32], &facet.nodes, local)));
+                    }
+                }
             }
-            if let Some(normal) = unit_normal(facet.shape, points, facet.shape.cell().points[local]) {
-                (0..3).for_each(|c| sums[node as usize][c] += normal[c]);
+        }
+        at_nodes.sort_by_key(|(node, _)| *node);
+        let mut starts = vec![0_u32; count + 1];
+        at_nodes.iter().for_each(|(node, _)| starts[*node as usize + 1] += 1);
+        (0..count).for_each(|node| starts[node + 1] += starts[node]);
+        let nodes = (0..count as u32).filter(|&node| starts[node as usize] < starts[node as usize + 1]).collect();
+        Self { nodes, starts, corners: at_nodes.into_iter().map(|(_, corner)| corner).collect() }
+    }
+
+    /// The facets of a node.
+    pub fn corners(&self, node: u32) -> &[Corner] {
+        match self.starts.get(node as usize..node as usize + 2) {
+            Some(&[from, to]) => &self.corners[from as usize..to as usize],
+            _ => &[],
+        }
+    }
+
+    /// The nodes, beside itself, that turn the normal of a node.
+    pub fn neighbours(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
+        self.corners(node).iter().flat_map(|corner| [corner.next, corner.previous]).flatten()
+    }
+
+    /// S, the sum of the unit normals of a node.
+    fn sum(&self, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (normal, _) in self.corners(node).iter().filter_map(|corner| corner.normal(node, places)) {
+            (0..3).for_each(|c| sum[c] += normal[c]);
+        }
+        sum
+    }
+
+    /// Visits nodes with ∂n/∂x, row by row, of the normal of `node`; the derivative by a node is the sum of its visits.
+    ///
+    /// Only facets that `knows` says yes to move; all of them count in the normal.
+    pub fn variation(
+        &self,
+        node: u32,
+        places: &[[f64; 3]],
+        knows: impl Fn(&Corner) -> bool,
+        mut visit: impl FnMut(u32, [[f64; 3]; 3]),
+    ) {
+        let sum = self.sum(node, places);
+        let length = norm(sum);
+        if length == 0.0 {
+            return;
+        }
+        let outer = projector(scale(sum, 1.0 / length), length);
+        for corner in self.corners(node).iter().filter(|corner| knows(corner)) {
+            let Some((normal, size)) = corner.normal(node, places) else { continue };
+            let turned = product(outer, projector(normal, size));
+            let [a, b] = corner.edges(node, places);
+            let mut own = [[0.0; 3]; 3];
+            // δ × b = −b × δ and a × δ.
+            for (end, edge) in [(corner.next, scale(b, -1.0)), (corner.previous, a)] {
+                let Some(end) = end else { continue };
+                let by_end = product(turned, crossing(edge));
+                (0..3).for_each(|r| (0..3).for_each(|c| own[r][c] -= by_end[r][c]));
+                visit(end, by_end);
+            }
+            visit(node, own);
+        }
+    }
+
+    /// Writes NORMAL at the nodes of the interfaces.
+    pub fn write(&self, part: &mut ModelPart) {
+        let normals: Vec<[f64; 3]> = self.nodes.iter().map(|&node| self.sum(node, &part.nodes.current)).collect();
+        let column = part.nodes.history.values_mut(&NORMAL, 0);
+        for (&node, sum) in self.nodes.iter().zip(normals) {
+            let size = norm(sum);
+            if size > 0.0 {
+                (0..3).for_each(|c| column[3 * node as usize + c] = sum[c] / size);
             }
         }
     }
-    let lengths: Vec<f64> = sums.iter().map(|sum| norm(*sum)).collect();
-    part.nodes.values.values_mut(&NORMAL_LENGTH, 0).copy_from_slice(&lengths);
-    let column = part.nodes.history.values_mut(&NORMAL, 0);
-    for &node in interfaces.iter().flat_map(|i| &i.nodes) {
-        let (sum, size) = (sums[node as usize], lengths[node as usize]);
-        if size > 0.0 {
-            (0..3).for_each(|c| column[3 * node as usize + c] = sum[c] / size);
+}
+
+/// (I − n⊗n)/length.
+fn projector(n: [f64; 3], length: f64) -> [[f64; 3]; 3] {
+    std::array::from_fn(|r| std::array::from_fn(|c| (f64::from(u8::from(r == c)) - n[r] * n[c]) / length))
+}
+
+/// The matrix of v ↦ a × v.
+fn crossing([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
+    [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+}
+
+fn product(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    std::array::from_fn(|r| std::array::from_fn(|c| (0..3).map(|k| a[r][k] * b[k][c]).sum()))
+}
+
+/// Writes NORMAL at the nodes of the interfaces.
+pub fn nodal_normals(part: &mut ModelPart, interfaces: &[Interface]) {
+    NormalPatches::new(part.nodes.len(), interfaces).write(part);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interface::FacetSource;
+    use crate::mortar::tests::Noise;
+
+    fn interface(facets: &[&[u32]]) -> Interface {
+        let facet = |nodes: &&[u32]| Facet {
+            nodes: nodes.to_vec(),
+            shape: [Shape::Line2, Shape::Tri3, Shape::Quad4][nodes.len() - 2],
+            source: FacetSource::Face(0),
+            properties: 0,
+            role: Roles::Slave,
+        };
+        Interface { facets: facets.iter().map(facet).collect(), ..Interface::default() }
+    }
+
+    fn normal(patches: &NormalPatches, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
+        let sum = patches.sum(node, places);
+        scale(sum, 1.0 / norm(sum))
+    }
+
+    /// Every entry against central differences, for lines and for triangles beside quadrilaterals.
+    #[test]
+    fn variations_match_differences() {
+        let mut noise = Noise::new(3);
+        let line = [[0.0, 0.0, 0.0], [1.0, 0.2, 0.0], [1.7, -0.1, 0.0]];
+        let mut sheet =
+            [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]].map(|[x, y]| [x, y, 0.0]);
+        sheet.iter_mut().for_each(|x| (0..3).for_each(|c| x[c] += 0.2 * noise.next()));
+        let cases: [(&[&[u32]], &[[f64; 3]], usize); 2] =
+            [(&[&[0, 1], &[1, 2]], &line, 2), (&[&[0, 1, 4, 3], &[1, 2, 4], &[2, 5, 4]], &sheet, 3)];
+        for (facets, places, space) in cases {
+            let patches = NormalPatches::new(places.len(), &[interface(facets)]);
+            for node in 0..places.len() as u32 {
+                let mut exact = vec![[[0.0; 3]; 3]; places.len()];
+                patches.variation(
+                    node,
+                    places,
+                    |_| true,
+                    |by, matrix| {
+                        (0..3).for_each(|r| (0..3).for_each(|c| exact[by as usize][r][c] += matrix[r][c]));
+                    },
+                );
+                for by in 0..places.len() {
+                    for c in 0..space {
+                        let at = |step: f64| {
+                            let mut moved = places.to_vec();
+                            moved[by][c] += step;
+                            normal(&patches, node, &moved)
+                        };
+                        let (plus, minus) = (at(1e-6), at(-1e-6));
+                        for r in 0..3 {
+                            let slope = (plus[r] - minus[r]) / 2e-6;
+                            assert!(
+                                (slope - exact[by][r][c]).abs() < 1e-8,
+                                "{node} by {by}: {slope} {}",
+                                exact[by][r][c]
+                            );
+                        }
+                    }
+                }
+            }
         }
     }
 }

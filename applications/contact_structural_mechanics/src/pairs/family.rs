@@ -11,6 +11,7 @@ use zelus_core::{Result, diagnostics::Diagnostic};
 use super::contact_block::ContactBlock;
 use super::pair::Pair;
 use crate::interaction::StepParameters;
+use crate::interface::NormalPatches;
 
 /// The multipliers of a family.
 #[derive(Clone, Copy)]
@@ -58,8 +59,12 @@ pub struct PairRequest {
     pub entry: &'static Entry,
     /// The pairs.
     pub pairs: Vec<Pair>,
-    /// Node indices of each pair: master nodes, then slave nodes.
+    /// Node indices of each pair: those around it, master nodes, slave nodes.
     pub nodes: Vec<u32>,
+    /// Number of nodes around each pair, which turn the normals of its slave nodes with it.
+    pub around: usize,
+    /// The facets around nodes.
+    pub patches: Arc<NormalPatches>,
     /// Settings and numbers of the step.
     pub parameters: Arc<StepParameters>,
 }

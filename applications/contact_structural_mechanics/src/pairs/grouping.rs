@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use zelus_core::geometry::Shape;
 
 use super::pair::PairKey;
-use crate::interface::Interface;
+use crate::interface::{Interface, NormalPatches};
 
 /// Pairs of the same shapes (slave, master), and their node indices: master nodes, then slave nodes.
 pub type Groups<T> = BTreeMap<(Shape, Shape), (Vec<T>, Vec<u32>)>;
@@ -28,6 +28,36 @@ pub fn group_by_shapes<T>(
     }
     groups
 }
+
+/// Sorts pairs of like shapes by the number of nodes around them, and puts those before the `nodes` of each pair.
+///
+/// Around a pair are the nodes, beside its own, that turn the normals of its slave nodes; none without `patches`. Numbers
+/// are rounded up to few: a node that fills a place is one of the pair.
+pub fn group_by_surroundings<T>(
+    patches: Option<&NormalPatches>,
+    slaves: usize,
+    pairs: Vec<T>,
+    nodes: &[u32],
+) -> BTreeMap<usize, (Vec<T>, Vec<u32>)> {
+    let size = nodes.len() / pairs.len().max(1);
+    let mut groups: BTreeMap<usize, (Vec<T>, Vec<u32>)> = BTreeMap::new();
+    for (pair, own) in pairs.into_iter().zip(nodes.chunks_exact(size.max(1))) {
+        let turned = &own[size - slaves..];
+        let mut around: Vec<u32> = patches.map_or_else(Vec::new, |patches| {
+            turned.iter().flat_map(|&node| patches.neighbours(node)).filter(|node| !own.contains(node)).collect()
+        });
+        around.sort_unstable();
+        around.dedup();
+        around.resize(around.len().next_multiple_of(PLACES), own[0]);
+        let (group, nodes) = groups.entry(around.len()).or_default();
+        nodes.extend(around.iter().chain(own));
+        group.push(pair);
+    }
+    groups
+}
+
+/// Numbers of nodes around pairs are multiples of this.
+const PLACES: usize = 2;
 
 /// Kratos' name of the condition of a pair of shapes; `stem` is the name up to the shape.
 pub fn condition_name(stem: &str, slave: Shape, master: Shape) -> String {

@@ -13,7 +13,7 @@ pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlappin
 pub use family::{
     Family, Friction, Multiplier, PairRequest, TyingFamily, find_family, find_tying_family, variables_of,
 };
-pub use grouping::{Groups, condition_name, group_by_shapes};
+pub use grouping::{Groups, condition_name, group_by_shapes, group_by_surroundings};
 pub use pair::{Integral, Pair, PairKey, Previous};
 pub use pair_block::{PairBlock, PairFormulation};
 pub use tying_block::{TyingRequest, tying_block};

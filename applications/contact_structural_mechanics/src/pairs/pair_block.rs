@@ -15,9 +15,10 @@ use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
 use crate::interaction::{NormalVariation, StepParameters};
+use crate::interface::{Corner, NormalPatches};
 use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
-    DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NORMAL_LENGTH, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+    DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
 };
 
 /// A formulation as the blocks use it.
@@ -45,40 +46,52 @@ pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
     }
 }
 
-/// Pairs with `NS` slave and `NM` master nodes and `NU` displacement unknowns.
-pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize> {
+/// Pairs with `NS` slave and `NM` master nodes, `NU` displacement unknowns and `NN` components of nodal normals.
+///
+/// Their rows are those of the formulation; nodes around a pair follow as columns, for they turn its normals.
+pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize, const NN: usize> {
     entry: &'static Entry,
     pairs: Vec<Pair>,
     nodes: Vec<u32>,
+    around: usize,
+    patches: Arc<NormalPatches>,
     parameters: Arc<StepParameters>,
     formulation: F,
     unknowns: Vec<LocalUnknown>,
 }
 
-impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> PairBlock<F, NS, NM, NU> {
+impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize>
+    PairBlock<F, NS, NM, NU, NN>
+{
     /// The block of a request.
     pub fn boxed(request: PairRequest) -> Box<dyn ContactBlock> {
+        let PairRequest { entry, pairs, nodes, around, patches, parameters } = request;
         let dim = dimension(NS);
-        let mut unknowns: Vec<LocalUnknown> = (0..NM + NS)
-            .flat_map(|node| {
+        let displacements = |nodes: Range<usize>| {
+            nodes.flat_map(move |node| {
                 (0..dim as u8).map(move |c| LocalUnknown { node: node as u8, variable: DISPLACEMENT.component(c) })
             })
-            .collect();
+        };
+        let mut unknowns: Vec<LocalUnknown> = displacements(around..around + NM + NS).collect();
         let multipliers: Vec<ScalarVariable> = F::multiplier().unknowns(dim);
-        for node in NM..NM + NS {
+        for node in around + NM..around + NM + NS {
             unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
         }
-        let formulation = F::new(&request.parameters);
-        let PairRequest { entry, pairs, nodes, parameters } = request;
-        Box::new(Self { entry, pairs, nodes, parameters, formulation, unknowns })
+        unknowns.extend(displacements(0..around));
+        let formulation = F::new(&parameters);
+        Box::new(Self { entry, pairs, nodes, around, patches, parameters, formulation, unknowns })
+    }
+
+    fn first(&self, at: usize) -> usize {
+        at * (self.around + NM + NS) + self.around
     }
 
     fn masters(&self, at: usize) -> [u32; NM] {
-        std::array::from_fn(|n| self.nodes[at * (NM + NS) + n])
+        std::array::from_fn(|n| self.nodes[self.first(at) + n])
     }
 
     fn slaves(&self, at: usize) -> [u32; NS] {
-        std::array::from_fn(|n| self.nodes[at * (NM + NS) + NM + n])
+        std::array::from_fn(|n| self.nodes[self.first(at) + NM + n])
     }
 
     fn geometry(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
@@ -94,28 +107,58 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
         }
     }
 
-    /// The pair with displacements as variables, and normals too where the settings ask for it.
-    fn seeded(
-        &self,
-        at: usize,
-        geometry: &PairGeometry<f64, NS, NM>,
-        view: &StepView<'_>,
-    ) -> PairGeometry<Dual<NU>, NS, NM> {
+    /// The pair with displacements as variables, and normals of facets too where the settings ask for it.
+    fn seeded(&self, geometry: &PairGeometry<f64, NS, NM>) -> PairGeometry<Dual<NU>, NS, NM> {
         let mut seeded = geometry.seeded::<NU>();
-        if matches!(self.parameters.normal_variation, NormalVariation::Elemental | NormalVariation::NodalElemental) {
-            seeded.slave_normal = facet_normal(&seeded.slave, None);
-            seeded.master_normal = facet_normal(&seeded.master, None);
-        }
-        if self.parameters.normal_variation == NormalVariation::NodalElemental {
-            let lengths = view.nodes.values.values(&NORMAL_LENGTH, 0);
-            for (j, node) in self.slaves(at).into_iter().enumerate() {
-                let own = facet_normal(&seeded.slave, Some(j));
-                let length = lengths[node as usize];
-                let sum = std::array::from_fn(|c| own[c] - own[c].value() + geometry.nodal_normals[j][c] * length);
-                seeded.nodal_normals[j] = normalised(sum);
-            }
+        if self.parameters.normal_variation.knows_facets() {
+            seeded.slave_normal = facet_normal(&seeded.slave);
+            seeded.master_normal = facet_normal(&seeded.master);
         }
         seeded
+    }
+
+    /// Adds to the tangent of a pair what the turning of its nodal normals does: −∂b/∂n ∂n/∂x.
+    fn add_turning(
+        &self,
+        at: usize,
+        view: &StepView<'_>,
+        geometry: &PairGeometry<f64, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        multipliers: &[[f64; 3]; NS],
+        history: &F::History<NS, NM>,
+        (lhs, width): (&mut [f64], usize),
+    ) {
+        let mut by_normals = [[0.0; NN]; MOST_ROWS];
+        let keep = |row: usize, derivatives: &[f64; NN]| by_normals[row] = *derivatives;
+        formulations::by_normals(
+            &self.formulation,
+            geometry,
+            &self.parameters.segmentation,
+            nodes,
+            multipliers,
+            history,
+            keep,
+        );
+        let (dim, rows) = (dimension(NS), width - dimension(NS) * self.around);
+        let own = self.pairs[at].key;
+        let whole = self.parameters.normal_variation == NormalVariation::Exact;
+        let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
+        let local = self.nodes(at);
+        for (j, node) in self.slaves(at).into_iter().enumerate() {
+            self.patches.variation(node, &view.nodes.current, knows, |by, matrix| {
+                let place = local.iter().rposition(|&n| n == by).expect("the nodes of its patch are around a pair");
+                let column = match place.checked_sub(self.around) {
+                    Some(place) => dim * place,
+                    None => rows + dim * place,
+                };
+                for (row, derivatives) in by_normals[..rows].iter().enumerate() {
+                    let entries = &mut lhs[row * width + column..row * width + column + dim];
+                    for (c, entry) in entries.iter_mut().enumerate() {
+                        *entry -= (0..dim).map(|r| derivatives[dim * j + r] * matrix[r][c]).sum::<f64>();
+                    }
+                }
+            });
+        }
     }
 
     /// Where the first iteration decides the normals of the step, the reference program's derivative is followed.
@@ -157,7 +200,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Pair
             SlaveNode {
                 state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
-                softness: area(node) / self.parameters.nodal_stiffness(penalty[node], area(node)),
+                stiffness: self.parameters.nodal_stiffness(penalty[node], area(node)),
+                area: area(node),
                 dynamic_factor: factor[node],
                 friction: self.parameters.friction_law.bound_at(view.nodes, node),
                 tangent: if tangent.is_empty() { [0.0; 3] } else { vector(tangent, n) },
@@ -186,20 +230,24 @@ fn vector(column: &[f64], node: u32) -> [f64; 3] {
     [column[at], column[at + 1], column[at + 2]]
 }
 
-/// Unit normal of a facet at its centre, or at one of its nodes.
-fn facet_normal<T: Real, const N: usize>(x: &[[T; 3]; N], node: Option<usize>) -> [T; 3] {
-    match (N, node) {
-        (2, _) => {
+/// Rows of the largest pair: displacements and multipliers of two quadrilaterals in space.
+const MOST_ROWS: usize = 36;
+
+/// Unit normal of a facet at its centre.
+fn facet_normal<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
+    match N {
+        2 => {
             let t = sub(x[1], x[0]);
             normalised([t[1], -t[0], T::zero()])
         }
-        (4, Some(j)) => normalised(cross(sub(x[(j + 1) % 4], x[j]), sub(x[(j + 3) % 4], x[j]))),
-        (4, None) => normalised(cross(sub(x[2], x[0]), sub(x[3], x[1]))),
+        4 => normalised(cross(sub(x[2], x[0]), sub(x[3], x[1]))),
         _ => normalised(cross(sub(x[1], x[0]), sub(x[2], x[0]))),
     }
 }
 
-impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> EntityBlock for PairBlock<F, NS, NM, NU> {
+impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> EntityBlock
+    for PairBlock<F, NS, NM, NU, NN>
+{
     fn entry(&self) -> &'static Entry {
         self.entry
     }
@@ -213,7 +261,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Enti
     }
 
     fn nodes(&self, at: usize) -> &[u32] {
-        &self.nodes[at * (NM + NS)..(at + 1) * (NM + NS)]
+        let size = self.around + NM + NS;
+        &self.nodes[at * size..(at + 1) * size]
     }
 
     fn unknowns(&self) -> &[LocalUnknown] {
@@ -244,21 +293,26 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Enti
             let multipliers = self.multipliers(at, view);
             let history = F::history(&self.pairs[at], &self.previous(at, view));
             let settings = &self.parameters.segmentation;
+            let (width, rows) = (out.size, out.size - dimension(NS) * self.around);
             let (lhs, rhs) = out.entity(slot);
+            let rhs = &mut rhs[..rows];
             if want == Want::Both {
-                let seeded = self.seeded(at, &geometry, view);
-                let knows = self.operator_tangent(view);
+                let lhs = &mut lhs[..rows * width];
                 formulations::tangent(
                     &self.formulation,
-                    &seeded,
+                    &self.seeded(&geometry),
                     settings,
-                    knows,
+                    self.operator_tangent(view),
                     &nodes,
                     &multipliers,
                     &history,
-                    lhs,
+                    (lhs, width),
                     rhs,
                 );
+                let acts = nodes.iter().any(|node| node.state.is_active());
+                if acts && self.parameters.normal_variation.knows_nodes() {
+                    self.add_turning(at, view, &geometry, &nodes, &multipliers, &history, (lhs, width));
+                }
             } else {
                 formulations::residual(&self.formulation, &geometry, settings, &nodes, &multipliers, &history, rhs);
             }
@@ -267,7 +321,9 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Enti
     }
 }
 
-impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> ContactBlock for PairBlock<F, NS, NM, NU> {
+impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> ContactBlock
+    for PairBlock<F, NS, NM, NU, NN>
+{
     fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
@@ -277,7 +333,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize> Cont
     }
 
     fn slave_nodes(&self, at: usize) -> &[u32] {
-        &self.nodes[at * (NM + NS) + NM..(at + 1) * (NM + NS)]
+        &self.nodes[self.first(at) + NM..self.first(at) + NM + NS]
     }
 
     fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral> {

@@ -16,6 +16,7 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search, without_computing_part};
 use crate::active_set::Margin;
 use crate::compatibility::{Refusal, Use, refusal};
+use crate::formulations::Augmentation;
 use crate::interaction::{
     AdaptationSettings, ContactInteraction, ContactSettings, ExplicitGap, FrictionSettings, NormalVariation,
     UzawaSettings,
@@ -68,6 +69,8 @@ struct Whole {
     assume_master_slave: BTreeMap<String, Vec<String>>,
     contact_type: String,
     normal_variation: NormalVariation,
+    /// Processes whose families have their forces from penalties lack it.
+    augmentation: Option<Augmentation>,
     clear_inactive_for_post: bool,
     zero_tolerance_factor: f64,
     integration_order: usize,
@@ -159,8 +162,11 @@ fn interaction(
     let keeps_normals = keys.as_ref().is_some_and(|keys| keys.not_normal_update_frictional);
     let normal_variation = match whole.normal_variation {
         NormalVariation::None if updated || (family.frictional() && !keeps_normals) => NormalVariation::Update,
+        NormalVariation::Exact if family.frictional() && keeps_normals => NormalVariation::None,
         other => other,
     };
+    let augmentation = whole.augmentation.unwrap_or(Augmentation::Pair);
+    let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
     let rule = whole.parameters.adaptation_rule.unwrap_or(PenaltyRule::AugmentedLagrangian);
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
@@ -168,6 +174,7 @@ fn interaction(
         family,
         interval: Interval::from_node(settings.get("interval")?)?,
         normal_variation,
+        augmentation,
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             distance: whole.search_parameters.search_distance,
@@ -190,7 +197,8 @@ fn interaction(
         uzawa: uzawa(settings)?,
         explicit: explicit_gap(settings, request)?,
         use_scale_factor: whole.parameters.use_scale_factor,
-        tangent_factor: keys.as_ref().map_or(1.0, |keys| keys.tangent_factor),
+        // Where slips only decide, they count no more than gaps.
+        tangent_factor: if augmentation == Augmentation::Node { tangent_factor.min(1.0) } else { tangent_factor },
         operator_threshold: keys.as_ref().map_or(0.0, |keys| keys.operator_threshold),
         friction,
         adaptation: AdaptationSettings {

@@ -13,6 +13,8 @@ use crate::pairs::variables_of;
 pub const ENSURE_CONTACT: &str = "ENSURE_CONTACT";
 /// Contact forces are scaled in the step in which a gap closes.
 pub const COMPUTE_DYNAMIC_FACTOR: &str = "COMPUTE_DYNAMIC_FACTOR";
+/// Nodes of contact keep their mass in motion.
+pub const KEEP_MASS: &str = "KEEP_MASS";
 /// Factor of explicit steps while there is contact.
 const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
 /// The deck asks for an active set that changes only between complete Newton loops.
@@ -33,6 +35,15 @@ register! { SolverExtension "contact_settings",
         },
         marks: |settings| {
             let mut marks = Vec::new();
+            match settings.get_str("contact_stabilisation")? {
+                "mass_redistribution" => {}
+                "none" => marks.push(KEEP_MASS),
+                other => {
+                    let fact = format!("\"contact_stabilisation\" is {other:?}");
+                    let problem = settings.error("contact_stabilisation", "contact-stabilisation", fact);
+                    return Err(problem.remedy("use \"mass_redistribution\" or \"none\"").into());
+                }
+            }
             for (key, wanted, mark) in [
                 ("ensure_contact", true, ENSURE_CONTACT),
                 ("compute_dynamic_factor", true, COMPUTE_DYNAMIC_FACTOR),

@@ -3,5 +3,5 @@
 mod contact_settings;
 mod mpc_contact_settings;
 
-pub(crate) use contact_settings::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
+pub(crate) use contact_settings::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 pub(crate) use mpc_contact_settings::UPDATE_EACH_ITERATION;

@@ -113,7 +113,7 @@ impl Assembler {
         Ok(values)
     }
 
-    /// The mass matrix on the bulk pattern, that of the initial positions.
+    /// The mass matrix on the bulk pattern, that of the initial positions, without what [`Assembler::redistribute`] took off.
     ///
     /// # Errors
     /// An entity that cannot be computed.
@@ -127,6 +127,7 @@ impl Assembler {
                 let compute = |range, out: &mut LocalSystems| block.mass(&view, range, lumped, out).map(|_| ());
                 self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
             }
+            self.redistribution.apply(&self.pattern.zero, &mut values);
             self.mass = Some(values);
         }
         Ok(self.mass.as_ref().expect("just made"))

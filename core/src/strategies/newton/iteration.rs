@@ -79,6 +79,9 @@ impl NewtonRaphson {
             interaction.begin_step(part)?;
         }
         self.assembler.begin_step(part, interactions)?;
+        if self.scheme.has_inertia() {
+            self.redistribute_mass(part, interactions)?;
+        }
         if let Some(past) = self.scheme.past_inertia(part) {
             let forces = self.assembler.inertia_forces(part, &past)?;
             self.scheme.keep(forces);
@@ -117,7 +120,7 @@ impl NewtonRaphson {
         }
         let solved = match self.solve_tangent(iteration, step, part, interactions) {
             Ok(solved) => solved,
-            Err(failed) => return self.give_up(failed, iteration, part, interactions),
+            Err(failed) => return self.give_up(failed, iteration, &step.residual, part, interactions),
         };
         if let Some(why) = &solved.fallback {
             monitor.note(&format!("linear solver: {why}"));
@@ -229,6 +232,7 @@ impl NewtonRaphson {
         &mut self,
         failed: Failed,
         iteration: usize,
+        residual: &[f64],
         part: &ModelPart,
         interactions: &[Box<dyn Interaction>],
     ) -> Result<Turn> {
@@ -238,7 +242,10 @@ impl NewtonRaphson {
                 self.singular = true;
                 Ok(Turn::Failed(why))
             }
-            Failed::Inaccurate(why) if !interactions.is_empty() => Ok(Turn::Failed(why)),
+            Failed::Inaccurate(why) if !interactions.is_empty() => {
+                let worst = self.largest_residual(part, &self.assembler.equations().balanced(residual));
+                Ok(Turn::Failed(why + &worst.unwrap_or_default()))
+            }
             // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
             Failed::Singular(why)
                 if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>

@@ -8,6 +8,23 @@ use crate::entities::Interaction;
 use crate::model::ModelPart;
 
 impl NewtonRaphson {
+    /// Takes the mass off the nodes that interactions name.
+    pub(super) fn redistribute_mass(
+        &mut self,
+        part: &mut ModelPart,
+        interactions: &[Box<dyn Interaction>],
+    ) -> Result<()> {
+        let mut nodes: Vec<u32> =
+            interactions.iter().flat_map(|interaction| interaction.massless_nodes(part)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        self.assembler.redistribute(part, &nodes)?;
+        if let Some(forces) = self.scheme.kept() {
+            self.assembler.hand_on(forces);
+        }
+        Ok(())
+    }
+
     /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
     /// left at their old values: the first solve takes them on through the tangent.
     ///

@@ -1,0 +1,292 @@
+//! The tangent of whole curved interfaces against differences, normals of nodes that follow the motion included.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use zelus_core::entities::{LocalSystems, LocalUnknown, Want};
+use zelus_core::geometry::Shape;
+use zelus_core::model::flags::{ACTIVE, SLIP};
+use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
+use zelus_core::model::{ModelPart, Nodes};
+use zelus_core::registry::{Kind, require};
+use zelus_core::vector3::add;
+
+use super::sliding::write_tangents;
+use super::{NormalVariation, StepParameters};
+use crate::active_set::SlipRule;
+use crate::formulations::Augmentation;
+use crate::friction_law::COULOMB;
+use crate::interface::{Facet, FacetSource, Interface, NormalPatches, Roles, centre_normal};
+use crate::mortar::tests::Noise;
+use crate::mortar::{Habit, SegmentationSettings};
+use crate::pairs::{
+    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Previous, condition_name, find_family, group_by_shapes,
+    group_by_surroundings,
+};
+use crate::resolution::Resolution;
+use crate::variables::{
+    DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA, VECTOR_LAGRANGE_MULTIPLIER, WEIGHTED_SLIP,
+};
+
+/// Facets of two sides that overlap in several pairs a node, and all that their forces depend on.
+struct Contact {
+    family: &'static Family,
+    parameters: Arc<StepParameters>,
+    part: ModelPart,
+    interface: Interface,
+    blocks: Vec<Box<dyn ContactBlock>>,
+    patches: Arc<NormalPatches>,
+}
+
+/// A node whose multiplier is zero.
+const OUT_OF_CONTACT: usize = 2;
+
+fn facet(nodes: &[u32], role: Roles) -> Facet {
+    let shape = [Shape::Line2, Shape::Tri3, Shape::Quad4][nodes.len() - 2];
+    Facet { nodes: nodes.to_vec(), shape, source: FacetSource::Face(0), properties: 0, role }
+}
+
+/// A curved slave below a curved master, both uneven; quadrilaterals and triangles in space.
+fn surfaces(space: usize) -> (Vec<[f64; 3]>, Interface) {
+    let mut noise = Noise::new(11);
+    let mut shaken = |x: [f64; 3]| std::array::from_fn(|c| if c < space { x[c] + 0.05 * noise.next() } else { 0.0 });
+    let (slaves, masters): (Vec<Vec<u32>>, Vec<Vec<u32>>);
+    let mut places = Vec::new();
+    if space == 2 {
+        places.extend((0..5).map(|n| f64::from(n) - 2.0).map(|x| shaken([x, -0.1 * x * x, 0.0])));
+        places.extend((0..5).map(|n| 1.1 * f64::from(n) - 2.0).map(|x| shaken([x, -0.11 * x * x - 0.03, 0.0])));
+        slaves = (0..4).map(|n| vec![n + 1, n]).collect();
+        masters = (5..9).map(|n| vec![n, n + 1]).collect();
+    } else {
+        let sheet = |pitch: f64, height: f64| {
+            (0..9)
+                .map(move |n| [f64::from(n % 3) - 1.0, f64::from(n / 3) - 1.0].map(|x| pitch * x))
+                .map(move |[x, y]| [x + 0.1, y - 0.07, height - 0.15 * x * x - 0.1 * y * y])
+        };
+        places.extend(sheet(1.0, 0.0).map(&mut shaken));
+        places.extend(sheet(1.2, -0.03).map(&mut shaken));
+        slaves = vec![vec![0, 1, 4, 3], vec![1, 2, 5], vec![1, 5, 4], vec![3, 4, 7, 6], vec![4, 5, 8, 7]];
+        masters =
+            vec![vec![12, 13, 10, 9], vec![13, 14, 11, 10], vec![15, 16, 13], vec![15, 13, 12], vec![16, 17, 14, 13]];
+    }
+    let facets = slaves.iter().map(|nodes| facet(nodes, Roles::Slave));
+    let facets = facets.chain(masters.iter().map(|nodes| facet(nodes, Roles::Master))).collect();
+    let nodes = (0..places.len() as u32).collect();
+    (places, Interface { facets, nodes, ..Interface::default() })
+}
+
+impl Contact {
+    fn new(family: &'static Family, space: usize, augmentation: Augmentation) -> Self {
+        let (places, interface) = surfaces(space);
+        let mut noise = Noise::new(5);
+        let count = places.len();
+        let mut part = ModelPart::new("interface");
+        part.info.domain_size = space;
+        part.nodes = Nodes::new((1..=count).collect(), places);
+        part.nodes.history.set_levels(2);
+        part.nodes.history.add(&DISPLACEMENT);
+        part.nodes.history.add(&NORMAL);
+        family.variables.iter().for_each(|&(name, components)| part.nodes.history.add_named(name, components));
+        let mut vector =
+            |size: f64| -> [f64; 3] { std::array::from_fn(|c| if c < space { size * noise.next() } else { 0.0 }) };
+        let start: Vec<[f64; 3]> = (0..count).map(|_| vector(0.05)).collect();
+        part.nodes.history.values_mut(&DISPLACEMENT, 1).copy_from_slice(start.as_flattened());
+        part.move_mesh();
+        let patches = Arc::new(NormalPatches::new(count, std::slice::from_ref(&interface)));
+        patches.write(&mut part);
+        part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(20.0);
+        part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(0.8);
+        part.nodes.values.values_mut(&FRICTION_COEFFICIENT, 0).fill(0.1);
+        part.nodes.values.values_mut(&NODAL_AREA, 0).fill(1.3);
+        for node in 0..count {
+            part.nodes.flags.set(ACTIVE, node, node != OUT_OF_CONTACT);
+            part.nodes.flags.set(SLIP, node, node % 2 == 0);
+        }
+        let parameters = Arc::new(StepParameters {
+            segmentation: SegmentationSettings::default(),
+            scale_factor: 1.7,
+            stiffness: 20.0,
+            tangent_factor: 0.3,
+            operator_threshold: 0.0,
+            normal_variation: NormalVariation::Exact,
+            augmentation,
+            friction_law: &COULOMB,
+            slip_rule: SlipRule::Bounded { augmentation: 0.0, threshold: 0.02 },
+        });
+        let mut contact = Self { family, parameters, part, interface, blocks: Vec::new(), patches };
+        contact.make_blocks();
+        contact.leave_start();
+        contact
+    }
+
+    fn make_blocks(&mut self) {
+        let family = self.family;
+        let of_role = |role| {
+            let facets = self.interface.facets.iter().enumerate();
+            facets.filter(move |(_, facet)| facet.role == role).map(|(at, _)| at as u32)
+        };
+        let pairs: Vec<Pair> = of_role(Roles::Slave)
+            .flat_map(|slave| of_role(Roles::Master).map(move |master| PairKey { interface: 0, slave, master }))
+            .map(|key| Pair {
+                key,
+                slave_normal: [0.0; 3],
+                master_normal: [0.0; 3],
+                overlapping: true,
+                previous: Previous::default(),
+                habit: Habit::default(),
+            })
+            .collect();
+        for ((slave, master), (pairs, nodes)) in
+            group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
+        {
+            let entry = require(Kind::Condition, &condition_name(family.condition, slave, master)).unwrap();
+            for (around, (pairs, nodes)) in group_by_surroundings(Some(&self.patches), slave.nodes(), pairs, &nodes) {
+                let (patches, parameters) = (self.patches.clone(), self.parameters.clone());
+                let request = PairRequest { entry, pairs, nodes, around, patches, parameters };
+                self.blocks.push((family.block)(slave, master, request).unwrap());
+            }
+        }
+        self.follow();
+        for block in &mut self.blocks {
+            block.keep_operators(&self.part.view(), &|_| true);
+        }
+    }
+
+    /// Moves somewhere else than at the start of the step, with multipliers of its own.
+    fn leave_start(&mut self) {
+        let family = self.family;
+        let mut noise = Noise::new(23);
+        let space = self.part.info.domain_size;
+        let mut vector =
+            |size: f64| -> [f64; 3] { std::array::from_fn(|c| if c < space { size * noise.next() } else { 0.0 }) };
+        let count = self.part.nodes.len();
+        let moved: Vec<[f64; 3]> = (0..count).map(|_| vector(0.03)).collect();
+        self.part.nodes.history.values_mut(&DISPLACEMENT, 0).copy_from_slice(moved.as_flattened());
+        if family.variables.iter().any(|(name, _)| *name == "VECTOR_LAGRANGE_MULTIPLIER") {
+            let down = if space == 2 { [0.3, -1.0, 0.0] } else { [0.3, 0.2, -1.0] };
+            let multipliers: Vec<[f64; 3]> = (0..count).map(|_| add(vector(0.1), down)).collect();
+            let column = self.part.nodes.history.values_mut(&VECTOR_LAGRANGE_MULTIPLIER, 0);
+            column.copy_from_slice(multipliers.as_flattened());
+            column[3 * OUT_OF_CONTACT..3 * OUT_OF_CONTACT + 3].fill(0.0);
+        } else {
+            let variable = family.multiplier.unknowns(space)[0];
+            let field = self.part.nodes.history.get_mut(variable.column).unwrap();
+            field.levels[0].iter_mut().enumerate().for_each(|(n, x)| *x = -1.0 - 0.1 * n as f64);
+        }
+        self.follow();
+        // Areas stay those of this state: they weigh slips in the direction of sliding only.
+        let areas = self.sums(|integral, j| [integral.area[j], 0.0, 0.0]);
+        let column = self.part.nodes.values.values_mut(&NODAL_AREA, 0);
+        column.iter_mut().zip(areas).for_each(|(area, [sum, ..])| *area = sum);
+        self.follow();
+    }
+
+    /// Over the pairs of each node.
+    fn sums(&self, of: impl Fn(&Integral, usize) -> [f64; 3]) -> Vec<[f64; 3]> {
+        let mut sums = vec![[0.0; 3]; self.part.nodes.len()];
+        for block in &self.blocks {
+            for (at, integral) in block.integrate(&self.part.view(), &|_| true).iter().enumerate() {
+                for (j, &node) in block.slave_nodes(at).iter().enumerate() {
+                    sums[node as usize] = add(sums[node as usize], of(integral, j));
+                }
+            }
+        }
+        sums
+    }
+
+    /// Positions, normals and directions of sliding after displacements.
+    fn follow(&mut self) {
+        self.part.move_mesh();
+        self.patches.write(&mut self.part);
+        for pair in self.blocks.iter_mut().flat_map(|block| block.pairs_mut()) {
+            let normal = |facet: u32| {
+                let facet = &self.interface.facets[facet as usize];
+                let places: Vec<[f64; 3]> = facet.nodes.iter().map(|&n| self.part.nodes.current[n as usize]).collect();
+                centre_normal(facet.shape, &places).unwrap()
+            };
+            (pair.slave_normal, pair.master_normal) = (normal(pair.key.slave), normal(pair.key.master));
+        }
+        if self.family.frictional() {
+            let slips = self.sums(|integral, j| integral.slip[j]);
+            self.part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slips.as_flattened());
+            let slaves = self.interface.nodes_of(Roles::Slave);
+            write_tangents(&mut self.part, &slaves, self.family, &self.parameters, Resolution::default());
+        }
+    }
+
+    /// Visits the entries of residual and tangent, the latter with its column.
+    fn each(&self, want: Want, mut visit: impl FnMut((u32, LocalUnknown), Option<(u32, LocalUnknown)>, f64)) {
+        for block in &self.blocks {
+            let mut out = LocalSystems::default();
+            out.reset(block.len(), block.unknowns().len(), want);
+            block.local_systems(&self.part.view(), 0..block.len(), want, &mut out).unwrap();
+            for at in 0..block.len() {
+                let nodes = block.nodes(at).to_vec();
+                let place = |u: &LocalUnknown| (nodes[u.node as usize], LocalUnknown { node: 0, variable: u.variable });
+                let rows: Vec<_> = block.unknowns().iter().map(place).collect();
+                let (lhs, rhs) = out.entity(at);
+                for (i, &row) in rows.iter().enumerate() {
+                    visit(row, None, rhs[i]);
+                    if want == Want::Both {
+                        (0..rows.len()).for_each(|j| visit(row, Some(rows[j]), lhs[i * rows.len() + j]));
+                    }
+                }
+            }
+        }
+    }
+}
+
+type Place = (u32, &'static str, usize);
+
+fn place((node, unknown): (u32, LocalUnknown)) -> Place {
+    (node, unknown.variable.column, unknown.variable.offset())
+}
+
+fn check(family: &str, space: usize, augmentation: Augmentation) {
+    let mut contact = Contact::new(find_family(family).unwrap(), space, augmentation);
+    let (mut tangent, mut forces) = (BTreeMap::<(Place, Place), f64>::new(), BTreeMap::<Place, f64>::new());
+    contact.each(Want::Both, |row, column, value| match column {
+        Some(column) => *tangent.entry((place(row), place(column))).or_default() += value,
+        None => *forces.entry(place(row)).or_default() += value,
+    });
+    let largest = tangent.values().fold(0.0_f64, |most, value| most.max(value.abs()));
+    assert!(largest > 1.0 && forces.len() > 10);
+    for node in 0..contact.part.nodes.len() {
+        for c in 0..space {
+            let mut slopes: BTreeMap<Place, f64> = BTreeMap::new();
+            for (step, sign) in [(1e-6, 1.0), (-2e-6, -1.0)] {
+                contact.part.nodes.history.values_mut(&DISPLACEMENT, 0)[3 * node + c] += step;
+                contact.follow();
+                contact.each(Want::Residual, |row, _, value| {
+                    *slopes.entry(place(row)).or_default() -= sign * value / 2e-6;
+                });
+            }
+            contact.part.nodes.history.values_mut(&DISPLACEMENT, 0)[3 * node + c] += 1e-6;
+            let column = (node as u32, DISPLACEMENT.component(c as u8).column, c);
+            for (row, slope) in slopes {
+                let exact = tangent.get(&(row, column)).copied().unwrap_or(0.0);
+                assert!(
+                    (slope - exact).abs() < 2e-7 * largest,
+                    "{family} {space}D {augmentation:?}: {row:?} by {column:?}: {slope} {exact} of {largest}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn tangents_of_curved_interfaces_match_differences() {
+    for space in [2, 3] {
+        for augmentation in [Augmentation::Node, Augmentation::Pair] {
+            for family in [
+                "ALMContactFrictionless",
+                "ALMContactFrictionlessComponents",
+                "ALMContactFrictional",
+                "ALMContactFrictionalPureSlip",
+            ] {
+                check(family, space, augmentation);
+            }
+        }
+        check("PerturbedLagrangianContactFrictionless", space, Augmentation::Pair);
+    }
+}

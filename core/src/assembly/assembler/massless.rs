@@ -1,0 +1,122 @@
+//! Nodes without mass: the system takes them on, and velocities and accelerations follow.
+
+use super::{Assembler, bulk_pattern, zero_matrix};
+use crate::assembly::Dof;
+use crate::assembly::redistribution::diagonal;
+use crate::diagnostics::Result;
+use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
+use crate::model::{ModelPart, Variable};
+
+/// Iterations after which the projection stops.
+const MOST_ITERATIONS: usize = 500;
+/// Share of what is projected that may be left.
+const TOLERANCE: f64 = 1e-15;
+
+impl Assembler {
+    /// Step start: takes the mass off `nodes` (ascending), where others can carry it, and hands on what their velocities and
+    /// accelerations have beyond those of the others, so that momentum stays and energy does not grow. Collective.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn redistribute(&mut self, part: &mut ModelPart, nodes: &[u32]) -> Result<()> {
+        if self.redistribution.choose(part, nodes) {
+            self.pattern = bulk_pattern(part, &self.redistribution.groups(part));
+            self.bulk = zero_matrix(&self.pattern);
+            (self.constant, self.damping) = (None, None);
+            (self.mass, self.tangent_key) = (None, None);
+            self.stamps.bulk_graph += 1;
+        }
+        let equations = &self.equations;
+        if self.redistribution.choose_unknowns(&part.dofs, |number| equations.is_free(number)) {
+            (self.mass, self.tangent_key) = (None, None);
+        }
+        if !self.redistribution.is_empty() {
+            for variable in [&VELOCITY, &ACCELERATION] {
+                for level in 1..part.nodes.history.levels() {
+                    self.project(part, variable, level)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes present velocities and accelerations of massless unknowns those of the nodes below.
+    pub fn extrapolate_rates(&self, part: &mut ModelPart) {
+        if self.redistribution.is_empty() {
+            return;
+        }
+        for variable in [&VELOCITY, &ACCELERATION] {
+            let mut values = rates(part, variable, 0);
+            self.redistribution.extrapolate(&mut values);
+            write(part, variable, 0, &values);
+        }
+    }
+
+    /// Forces on massless unknowns handed on to the nodes below, as their accelerations are.
+    pub fn hand_on(&self, forces: &mut [f64]) {
+        self.redistribution.hand_on(forces);
+    }
+
+    /// The nearest motion that the masses can have: P w with M_r (w − v) = Pᵀ M (v − P v), by conjugate gradients.
+    fn project(&mut self, part: &mut ModelPart, variable: &Variable<[f64; 3]>, level: usize) -> Result<()> {
+        let mut values = rates(part, variable, level);
+        self.mass(part)?;
+        let mut residual = self.redistribution.excess(&values);
+        self.add_up(&mut residual);
+        let mass = self.mass.as_ref().expect("just made");
+        let diagonal = {
+            let mut diagonal = diagonal(&self.pattern.zero, mass);
+            self.add_up(&mut diagonal);
+            diagonal
+        };
+        let moves = |number: usize| diagonal[number] > 0.0 && self.equations.is_free(number);
+        let scaled = |residual: &[f64]| -> Vec<f64> {
+            (0..residual.len()).map(|n| if moves(n) { residual[n] / diagonal[n] } else { 0.0 }).collect()
+        };
+        let mut z = scaled(&residual);
+        let mut error = self.dot(&residual, &z);
+        let of_all: Vec<f64> = values.iter().zip(&diagonal).map(|(v, m)| m * v).collect();
+        let negligible = f64::EPSILON.powi(2) * self.dot(&values, &of_all);
+        let enough = (TOLERANCE * TOLERANCE * error).max(negligible);
+        let mut direction = z;
+        for _ in 0..MOST_ITERATIONS {
+            if error <= enough {
+                break;
+            }
+            let minus: Vec<f64> = direction.iter().map(|d| -d).collect();
+            let mut product = vec![0.0; minus.len()];
+            self.mul_subtract(mass, &minus, &mut product);
+            self.add_up(&mut product);
+            let step = error / self.dot(&direction, &product);
+            for n in 0..values.len() {
+                values[n] += step * direction[n];
+                residual[n] -= step * product[n];
+            }
+            z = scaled(&residual);
+            let next = self.dot(&residual, &z);
+            direction.iter_mut().zip(&z).for_each(|(d, z)| *d = z + next / error * *d);
+            error = next;
+        }
+        self.redistribution.extrapolate(&mut values);
+        write(part, variable, level, &values);
+        Ok(())
+    }
+}
+
+/// A rate of displacements, a number an unknown, 0 for all others.
+fn rates(part: &ModelPart, variable: &Variable<[f64; 3]>, level: usize) -> Vec<f64> {
+    let column = part.nodes.history.values(variable, level);
+    let displacement = |dof: &Dof| dof.variable.column == DISPLACEMENT.name();
+    let dofs = part.dofs.dofs().iter();
+    dofs.map(|dof| if displacement(dof) { column[3 * dof.node as usize + dof.variable.offset()] } else { 0.0 })
+        .collect()
+}
+
+fn write(part: &mut ModelPart, variable: &Variable<[f64; 3]>, level: usize, values: &[f64]) {
+    let column = part.nodes.history.values_mut(variable, level);
+    for (dof, value) in part.dofs.dofs().iter().zip(values) {
+        if dof.variable.column == DISPLACEMENT.name() {
+            column[3 * dof.node as usize + dof.variable.offset()] = *value;
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Mass taken off nodes and handed on to the nodes below them.
+//!
+//! Forces that come and go at once, as those of contact, make velocities of nodes with mass jump, and time integration makes
+//! energy of the jumps. Without mass such nodes follow in balance, and the motion is one of smooth forces (Khenous, Laborde,
+//! Renard 2008; Hager, Hüeber, Wohlmuth 2008). Velocities there are those of the nodes below, extrapolated,
+//!
+//! v = P w, v_c = Σ w_ci v_i with Σ w_ci = 1 and Σ w_ci x_i = x_c, M_r = Pᵀ M P,
+//!
+//! so that mass, centre, inertia tensor, linear and angular momentum and kinetic energy of M_r and w are those of M and P w.
+
+use rustc_hash::FxHashMap;
+use zelus_linear_algebra::Csr;
+
+use super::dof_table::DofTable;
+use super::supports::supports;
+use crate::model::ModelPart;
+
+/// Massless nodes and unknowns, and what stands in for them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Redistribution {
+    /// The nodes asked for, ascending.
+    wanted: Vec<u32>,
+    /// Massless nodes, with the nodes below them and their weights.
+    nodes: Vec<(u32, Vec<(u32, f64)>)>,
+    /// Massless unknowns, with those below them and their weights.
+    unknowns: Vec<(u32, Vec<(u32, f64)>)>,
+    /// The rows of the massless unknowns in this rank's M.
+    rows: Vec<Vec<(u32, f64)>>,
+}
+
+impl Redistribution {
+    /// Takes the mass off those of the `wanted` nodes that have enough other nodes below them; whether anything changes.
+    pub(super) fn choose(&mut self, part: &ModelPart, wanted: &[u32]) -> bool {
+        if self.wanted == wanted {
+            return false;
+        }
+        self.wanted = wanted.to_vec();
+        let nodes = supports(part, wanted);
+        let changed = nodes != self.nodes;
+        self.nodes = nodes;
+        changed
+    }
+
+    /// Takes the mass off the unknowns of the massless nodes that are `free`; whether anything changes.
+    pub(super) fn choose_unknowns(&mut self, dofs: &DofTable, free: impl Fn(usize) -> bool) -> bool {
+        let mut unknowns = Vec::new();
+        let of_node: FxHashMap<u32, &Vec<(u32, f64)>> = self.nodes.iter().map(|(node, list)| (*node, list)).collect();
+        if !of_node.is_empty() {
+            for (number, dof) in dofs.dofs().iter().enumerate().filter(|(_, dof)| !dof.multiplier) {
+                let Some(below) = of_node.get(&dof.node).filter(|_| free(number)) else { continue };
+                let numbers = below.iter().map(|&(node, weight)| Some((dofs.number_of(dof.variable, node)?, weight)));
+                if let Some(list) = numbers.collect::<Option<Vec<_>>>() {
+                    unknowns.push((number as u32, list));
+                }
+            }
+        }
+        let changed = unknowns != self.unknowns;
+        self.unknowns = unknowns;
+        changed
+    }
+
+    /// Whether all nodes have their own mass.
+    pub(super) fn is_empty(&self) -> bool {
+        self.unknowns.is_empty()
+    }
+
+    /// Nodes that carry a mass together, beside those of elements.
+    pub(super) fn groups(&self, part: &ModelPart) -> Vec<Vec<u32>> {
+        let below: FxHashMap<u32, &Vec<(u32, f64)>> = self.nodes.iter().map(|(node, list)| (*node, list)).collect();
+        let mut out = Vec::new();
+        for at in 0..part.elements.len() as u32 {
+            let nodes = part.elements.nodes(at);
+            if nodes.iter().any(|node| below.contains_key(node)) {
+                let mut group = nodes.to_vec();
+                let massless = nodes.iter().filter_map(|node| below.get(node));
+                massless.for_each(|list| group.extend(list.iter().map(|(node, _)| *node)));
+                group.sort_unstable();
+                group.dedup();
+                out.push(group);
+            }
+        }
+        out
+    }
+
+    /// M becomes M_r = Pᵀ M P.
+    pub(super) fn apply(&mut self, pattern: &Csr, values: &mut [f64]) {
+        let below: FxHashMap<u32, &Vec<(u32, f64)>> = self.unknowns.iter().map(|(n, list)| (*n, list)).collect();
+        self.rows.clear();
+        for &(number, _) in &self.unknowns {
+            let range = pattern.row_starts[number as usize]..pattern.row_starts[number as usize + 1];
+            let entries = range.map(|at| (pattern.columns[at], values[at])).filter(|(_, value)| *value != 0.0);
+            self.rows.push(entries.collect());
+        }
+        let at = |i: u32, j: u32| place(pattern, i as usize, j as usize).expect("the pattern holds the groups");
+        for ((number, own), row) in self.unknowns.iter().zip(&self.rows) {
+            for &(column, value) in row {
+                values[at(*number, column)] = 0.0;
+                match below.get(&column) {
+                    Some(others) => own.iter().for_each(|&(i, weight)| {
+                        others.iter().for_each(|&(j, other)| values[at(i, j)] += value * weight * other);
+                    }),
+                    None => {
+                        values[at(column, *number)] = 0.0;
+                        for &(i, weight) in own {
+                            values[at(i, column)] += value * weight;
+                            values[at(column, i)] += value * weight;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// v_c = Σ w_ci v_i: values of the massless unknowns from those below.
+    pub(super) fn extrapolate(&self, values: &mut [f64]) {
+        for (number, below) in &self.unknowns {
+            values[*number as usize] = below.iter().map(|&(i, weight)| weight * values[i as usize]).sum();
+        }
+    }
+
+    /// Pᵀ M (v − P v): the momentum of what the massless unknowns have beyond what is extrapolated to them, handed on.
+    pub(super) fn excess(&self, values: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; values.len()];
+        for ((number, below), row) in self.unknowns.iter().zip(&self.rows) {
+            let extrapolated: f64 = below.iter().map(|&(i, weight)| weight * values[i as usize]).sum();
+            let excess = values[*number as usize] - extrapolated;
+            row.iter().for_each(|&(column, mass)| out[column as usize] += mass * excess);
+        }
+        self.hand_on(&mut out);
+        out
+    }
+
+    /// Pᵀ f: forces on massless unknowns handed on to those below.
+    pub(super) fn hand_on(&self, forces: &mut [f64]) {
+        for (number, below) in &self.unknowns {
+            let force = std::mem::take(&mut forces[*number as usize]);
+            below.iter().for_each(|&(i, weight)| forces[i as usize] += weight * force);
+        }
+    }
+}
+
+/// Place of an entry of the matrix.
+fn place(pattern: &Csr, row: usize, column: usize) -> Option<usize> {
+    let range = pattern.row_starts[row]..pattern.row_starts[row + 1];
+    let at = pattern.columns[range.clone()].binary_search(&(column as u32)).ok()?;
+    Some(range.start + at)
+}
+
+/// The diagonal of a matrix with this pattern; zero where it has none.
+pub(super) fn diagonal(pattern: &Csr, values: &[f64]) -> Vec<f64> {
+    (0..pattern.rows).map(|row| place(pattern, row, row).map_or(0.0, |at| values[at])).collect()
+}
