@@ -52,7 +52,7 @@ impl Container {
 pub struct EntityComponent {
     /// The number.
     pub variable: ScalarVariable,
-    /// Its value; functions see the centre of the entity.
+    /// Its value; functions see the centre of the entity, where it is (`x y z`) and where it was (`X Y Z`).
     pub value: ScalarValue,
 }
 
@@ -97,8 +97,10 @@ impl AssignToEntities {
 
     fn set_table(&self, table: &mut EntityTable, selected: &[u32], nodes: &Nodes, time: f64, word: &str) -> Result<()> {
         let mut data = std::mem::take(&mut table.data);
-        let at =
-            |n: usize| SpaceTime { current: centre(table.nodes(n as u32), &nodes.current), initial: [0.0; 3], time };
+        let at = |n: usize| {
+            let of = table.nodes(n as u32);
+            SpaceTime { current: centre(of, &nodes.current), initial: centre(of, &nodes.initial), time }
+        };
         let done = self.set(&mut data, selected, time, at, |n| format!("{word} {}", table.ids[n]));
         table.data = data;
         done

@@ -196,19 +196,19 @@ fn fixing_leaves_values_alone() {
 }
 
 #[test]
-fn conditions_see_functions_at_their_present_centre() {
+fn conditions_see_functions_at_their_present_and_initial_centre() {
     let mut model = model();
     part(&mut model).nodes.current[2] = [5.0, 2.0, 0.0];
-    let text = r#"{"model_part_name": "Structure.Edge", "variable_name": "TEST_PRESSURE", "value": "10*x + y*t + X", "interval": [0.0, 0.3]}"#;
+    let text = r#"{"model_part_name": "Structure.Edge", "variable_name": "TEST_PRESSURE", "value": "10*x + y*t + X/sqrt(X*X+Y*Y)", "interval": [0.0, 0.3]}"#;
     let mut process = make("assign_scalar_variable_to_conditions_process", text, &mut model).unwrap();
     process.before_loop(&mut model).unwrap();
     assert!(!part(&mut model).conditions.data.has("TEST_PRESSURE"));
     step(&mut *process, &mut model, 0.25).unwrap();
     let data = |model: &mut Model| part(model).conditions.data.get("TEST_PRESSURE").unwrap().levels[0].clone();
-    assert_eq!(data(&mut model), [0.0, 30.25]);
+    assert_eq!(data(&mut model), [0.0, 31.25]);
     process.end_step(&mut model).unwrap();
     step(&mut *process, &mut model, 0.35).unwrap();
-    assert_eq!(data(&mut model), [0.0, 30.25]);
+    assert_eq!(data(&mut model), [0.0, 31.25]);
 }
 
 #[test]

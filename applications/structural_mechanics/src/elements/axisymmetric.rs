@@ -1,8 +1,8 @@
 //! Solids of revolution: x is the radius, y the axis; volumes are those of the full circle, THICKNESS plays no part.
 //!
-//! The small-displacement element takes the present radius both in the hoop strain u_r/r and in the volume 2πr dA, as
-//! in Kratos; its tangent holds the radius fixed. The total Lagrangian element has the initial radius in its volume and
-//! F_tt = r/R, the updated one the present radius.
+//! The small-displacement element has the initial radius R in its hoop strain u_r/R and in its volume 2πR dA, so that it
+//! is linear. The total Lagrangian element has the initial radius in its volume and F_tt = r/R, the updated one the
+//! present radius.
 
 use super::register_solids;
 use super::small_displacement::SmallDisplacement;
@@ -10,7 +10,7 @@ use super::total_lagrangian::TotalLagrangian;
 use super::updated_lagrangian::UpdatedLagrangian;
 
 register_solids! { "AxisymSmallDisplacementElement", SmallDisplacement, 4,
-"Solid of revolution for small displacements", "∫ δε : σ 2πr dA, ε_tt = u_r/r";
+"Solid of revolution for small displacements", "∫ δε : σ 2πR dA, ε_tt = u_r/R";
 2: "2D3N" 3, "2D4N" 4, "2D6N" 6, "2D8N" 8, "2D9N" 9 }
 
 register_solids! { "AxisymTotalLagrangianElement", TotalLagrangian, 4,

@@ -89,7 +89,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let shape = Shape::of(DIM, NODES).expect("solids are registered for known shapes only");
         let materials = Material::all(request, shape, DIM == 2 && !Self::AXISYMMETRIC, F::CONSTANT_PRESSURE)?;
-        let constant = !F::FINITE && !Self::AXISYMMETRIC && materials.iter().all(|m| m.law.is_linear());
+        let constant = !F::FINITE && materials.iter().all(|m| m.law.is_linear());
         let tangent = if constant {
             Tangent::Constant
         } else if materials.iter().any(|m| !m.law.is_symmetric(!F::FINITE)) {
@@ -220,7 +220,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         for g in 0..table.len() {
             let n = &table.n::<NODES>()[g];
             let (_, det) = physical_gradients(positions, &table.dn::<NODES, DIM>()[g]);
-            let turn = if Self::AXISYMMETRIC { 2.0 * PI * radius(n, &entity.current) } else { material.thickness };
+            let turn = if Self::AXISYMMETRIC { 2.0 * PI * radius(n, positions) } else { material.thickness };
             let mass = material.density * table.weight(g) * det * turn;
             for i in 0..NODES {
                 for j in 0..NODES {

@@ -113,7 +113,6 @@ fn constant_strain_is_reproduced_on_distorted_cells() {
             .values
             .chunks(strain.components)
             .fold(0.0_f64, |m, point| point.iter().zip(first).fold(m, |m, (a, b)| m.max((a - b).abs())));
-        // only the small-displacement element of revolution mixes initial gradients with present radii
         assert!(spread < 1e-14, "{name} {law}: {spread:e}");
         if name.starts_with("SmallDisplacement") {
             assert!(near(first[0], grad[0][0], 1e-14) && near(first[1], grad[1][1], 1e-14));
@@ -301,6 +300,27 @@ fn tube_under_uniform_expansion() {
     assert_eq!(strain.components, 6);
     let green = 0.5 * (1.1f64 * 1.1 - 1.0);
     assert!(near(strain.values[0], green, 1e-14) && near(strain.values[2], green, 1e-14));
+}
+
+#[test]
+fn solids_of_revolution_are_linear_under_small_displacements() {
+    // σ_rr = σ_tt = 2 a (λ + μ), σ_zz = 2 a λ of u_r = a R: forces on faces of the initial ring, in proportion to a
+    let x = [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    let mut single = element("AxisymSmallDisplacementElement2D4N", "LinearElasticAxisym2DLaw", &x);
+    assert_eq!(single.block().tangent(), Tangent::Constant);
+    let (lambda, mu) = (100.0 * 0.3 / (1.3 * 0.4), 100.0 / 2.6);
+    for a in [1e-6, 0.1] {
+        single.displace(&x.map(|p| [a * p[0], 0.0, 0.0]));
+        let (forces, pi) = (single.residual(), std::f64::consts::PI);
+        let stress = single.gauss("CAUCHY_STRESS_VECTOR");
+        for point in stress.values.chunks(stress.components) {
+            let exact = [2.0 * a * (lambda + mu), 2.0 * a * lambda, 2.0 * a * (lambda + mu)];
+            assert!(point.iter().zip(exact).all(|(s, e)| near(*s, e, 1e-13 * e)), "{point:?}");
+        }
+        let outer = -(forces[2] + forces[4]) / (2.0 * pi * 3.0);
+        let inner = (forces[0] + forces[6]) / (2.0 * pi);
+        assert!([inner, outer].iter().all(|s| near(*s, 2.0 * a * (lambda + mu), 1e-12 * a * mu)), "{inner} {outer}");
+    }
 }
 
 /// The element remembers plastic strain once its step is accepted, and then has the same forces without flowing again.

@@ -144,11 +144,10 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         let mut hoop = [0.0; NODES];
         let mut turn = material.thickness;
         if Self::AXISYMMETRIC {
-            let present = radius(n, &entity.current);
-            let strained = if F::FINITE { radius(n, &entity.initial) } else { present };
-            h[2][2] = radius(n, u) / strained;
+            let initial = radius(n, &entity.initial);
+            h[2][2] = radius(n, u) / initial;
             f[2][2] += h[2][2];
-            let r = if F::FINITE && !F::PRESENT { strained } else { present };
+            let r = if F::PRESENT { radius(n, &entity.current) } else { initial };
             if r <= 0.0 || r.is_nan() {
                 return Err(format!("the radius at Gauss point {} is {r}, not positive", g + 1));
             }
