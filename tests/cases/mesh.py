@@ -125,6 +125,7 @@ class Mesh:
 
     def __init__(self):
         self.nodes, self.elements, self.condition_list, self.parts, self.nodal_data = {}, [], [], {}, {}
+        self.digits = 12
 
     def add_node(self, at):
         self.nodes[len(self.nodes) + 1] = tuple(at) + (0.0,) * (3 - len(at))
@@ -166,7 +167,7 @@ class Mesh:
     def text(self):
         """The mesh as mdpa; every entity has property 0, the materials file gives the others."""
         out = ["Begin ModelPartData\nEnd ModelPartData\n\nBegin Properties 0\nEnd Properties\n\nBegin Nodes\n"]
-        out += [f"{i} {x:.12g} {y:.12g} {z:.12g}\n" for i, (x, y, z) in self.nodes.items()]
+        out += ["{} {:.{d}g} {:.{d}g} {:.{d}g}\n".format(i, *at, d=self.digits) for i, at in self.nodes.items()]
         out.append("End Nodes\n")
         for kind, rows in (("Elements", self.elements), ("Conditions", self.condition_list)):
             numbered = list(enumerate(rows, 1))

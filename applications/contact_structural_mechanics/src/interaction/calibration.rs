@@ -56,9 +56,8 @@ pub(super) fn calibrate(
     let parameters = StepParameters {
         segmentation: SegmentationSettings {
             distance_threshold: if part.info.domain_size == 2 { FAR } else { limit(settings, threshold) },
-            zero_tolerance_factor: settings.zero_tolerance_factor,
-            integration_order: settings.integration_order,
             axisymmetric: settings.axisymmetric.then(|| thickness(part, interfaces)),
+            ..settings.segmentation
         },
         scale_factor: chosen.scale_factor,
         operator_threshold: settings.operator_threshold * measure,

@@ -392,7 +392,7 @@ impl Interaction for ContactInteraction {
         activation::start(part, &self.slaves, start, &self.at_origin, friction);
         friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, &self.settings.friction);
         self.pairing.refresh_normals(part, self.updates_normals());
-        self.pairing.begin_step(part);
+        self.pairing.begin_step(part, &self.slaves, self.settings.segmentation.slivers);
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use super::step_parameters::NormalVariation;
 use super::uzawa::UzawaSettings;
 use crate::formulations::Augmentation;
 use crate::interface::AlmParameters;
-use crate::mortar::IntegrationOrder;
+use crate::mortar::SegmentationSettings;
 use crate::pairs::Family;
 use crate::search::SearchSettings;
 
@@ -63,10 +63,8 @@ pub struct ContactSettings {
     pub uzawa: UzawaSettings,
     /// How explicit steps adapt the penalty; `None` in implicit ones.
     pub explicit: Option<ExplicitGap>,
-    /// Multiple of the geometric tolerance.
-    pub zero_tolerance_factor: f64,
-    /// Gauss rule on the cells.
-    pub integration_order: IntegrationOrder,
+    /// How overlaps are cut and integrated.
+    pub segmentation: SegmentationSettings,
     /// Whether the plane is rotated about the y axis.
     pub axisymmetric: bool,
 }

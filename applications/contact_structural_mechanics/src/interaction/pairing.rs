@@ -272,9 +272,27 @@ impl Pairing {
         self.blocks = blocks;
     }
 
-    /// Step start: keeps the operators against which slip is measured, and forgets the habits of the last step.
-    pub(super) fn begin_step(&mut self, part: &ModelPart) {
+    /// Step start: keeps the operators against which slip is measured, and forgets the habits of the last step. Slivers count
+    /// where `slivers` holds and the nodes of their slave, among `slaves`, have other overlaps; a node that only slivers
+    /// reach is beside the master.
+    pub(super) fn begin_step(&mut self, part: &ModelPart, slaves: &[u32], slivers: bool) {
         self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.habit = Habit::default());
+        if slivers {
+            let mut area = vec![0.0; part.nodes.len()];
+            for (block, integrals) in self.blocks.iter().zip(&self.integrals(part).0) {
+                for (at, integral) in integrals.iter().enumerate() {
+                    for (local, &node) in block.slave_nodes(at).iter().enumerate() {
+                        area[node as usize] += integral.area[local];
+                    }
+                }
+            }
+            add_up_nodes(part, slaves, &mut [(1, &mut area)]);
+            for block in &mut self.blocks {
+                let covered = |at: usize| block.slave_nodes(at).iter().all(|&node| area[node as usize] > 0.0);
+                let covered: Vec<bool> = (0..block.len()).map(covered).collect();
+                block.pairs_mut().iter_mut().zip(covered).for_each(|(pair, covered)| pair.habit.slivers = covered);
+            }
+        }
         for block in &mut self.blocks {
             block.keep_operators(&part.view(), &|nodes| part.evaluates_pair(nodes));
         }

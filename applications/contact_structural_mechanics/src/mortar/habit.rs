@@ -11,7 +11,7 @@ pub struct Habit {
     pub origin: Option<[f64; 2]>,
     /// Whether plain functions stand in for dual ones.
     pub plain: bool,
-    /// Whether slivers count.
+    /// Whether slivers count: an overlap with one triangle more or less then changes nothing by a jump, and no area is lost.
     pub slivers: bool,
 }
 

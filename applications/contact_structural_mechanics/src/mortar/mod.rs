@@ -15,7 +15,7 @@
 //! All of it is continuous in the positions but for a few choices, which a pair can keep: [`habit`].
 //!
 //! With normals that belong to the present geometry, D, M and g̃ agree with the reference program to 1e-10 (its inverse
-//! maps stop there). Three deliberate differences: a lagging slave normal tilts the direction of projection but does
+//! maps stop there). Four deliberate differences: slivers may count; a lagging slave normal tilts the direction of projection but does
 //! not shrink the facet; a quadrilateral master inside a triangular slave is cut into (0,1,2), (0,2,3), which covers it
 //! once; local coordinates on a warped slave are always those of the flattened one.
 //!

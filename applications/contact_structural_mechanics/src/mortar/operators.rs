@@ -17,8 +17,8 @@ use super::shape;
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{cross, dot, norm, sub, value};
 
-/// Share of the slave's measure below which an overlap does not count.
-const LEAST_OVERLAP: f64 = 1e-5;
+/// Share of the slave's measure below which an overlap is a sliver.
+pub(crate) const SLIVER: f64 = 1e-5;
 /// Share of the slave's measure below which a cell is skipped: its normal would be rounding noise.
 const LEAST_CELL: f64 = 1e-13;
 /// Condition number (Frobenius) of Me beyond which the plain shape functions serve as Φ.
@@ -102,7 +102,7 @@ fn integrated<T: Real, const NS: usize, const NM: usize>(
     } else {
         Polygon::new(pair, settings).map_or(0.0, |polygon| sums.integrate_polygon(&polygon, settings, whole))
     };
-    let least = if pair.habit.slivers { 0.0 } else { LEAST_OVERLAP * whole };
+    let least = if pair.habit.slivers { 0.0 } else { SLIVER * whole };
     match covered {
         covered if covered > least => Overlap::Cells(sums.finish()),
         covered if covered > 0.0 => Overlap::Sliver,

@@ -10,6 +10,8 @@ pub struct SegmentationSettings {
     pub distance_threshold: f64,
     /// Multiple of the built-in geometric tolerance; 1 unless a deck says otherwise.
     pub zero_tolerance_factor: f64,
+    /// Whether slivers count where the nodes of their slave have other overlaps.
+    pub slivers: bool,
     /// Gauss rule on each cell of the overlap.
     pub integration_order: IntegrationOrder,
     /// Thickness of the pair in a model rotated about the y axis; `None` for planar and solid models.
@@ -21,6 +23,7 @@ impl Default for SegmentationSettings {
         Self {
             distance_threshold: 1e24,
             zero_tolerance_factor: 1.0,
+            slivers: true,
             integration_order: IntegrationOrder::default(),
             axisymmetric: None,
         }
@@ -37,7 +40,7 @@ impl SegmentationSettings {
 
 /// Gauss rule of a cell, by its number 1 to 5.
 /// A line gets that many points; a triangle 1, 3, 4, 6 or 12.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct IntegrationOrder(u8);
 
 impl IntegrationOrder {

@@ -1,11 +1,15 @@
 //! D and M of two facets, for what does not need their derivatives: ties, constraints, mapping.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 use zelus_core::geometry::Shape;
 use zelus_core::model::{ModelPart, variables::NORMAL};
 
 use super::pair::PairKey;
 use crate::interface::{Facet, Interface, centre_normal, positions};
+use crate::mortar::operators::SLIVER;
+use crate::mortar::shape;
 use crate::mortar::{Habit, Overlap, PairGeometry, SegmentationSettings, operators};
 use crate::search::{Candidate, SearchSettings, candidates};
 
@@ -16,6 +20,8 @@ pub struct FacetOperators {
     pub d: [[f64; 4]; 4],
     /// M_jl, slave on master.
     pub m: [[f64; 4]; 4],
+    /// Whether the overlap is a sliver.
+    pub sliver: bool,
 }
 
 impl FacetOperators {
@@ -26,6 +32,11 @@ impl FacetOperators {
         let mut out = [0.0; 4];
         (0..masters).for_each(|l| out[l] = self.m[j][l] / d);
         out
+    }
+
+    /// Whether D is diagonal, so that dual functions were in use.
+    pub fn is_diagonal(&self) -> bool {
+        (0..4).all(|j| (0..4).all(|k| j == k || self.d[j][k] == 0.0))
     }
 
     /// (D v¹ − M v²)_j of nodal vectors.
@@ -83,7 +94,7 @@ fn of_shapes<const NS: usize, const NM: usize>(
         nodal_normals: std::array::from_fn(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
         slave_normal: centre_normal(slave.shape, positions(slave, part, &mut buffer))?,
         master_normal: centre_normal(master.shape, positions(master, part, &mut buffer))?,
-        habit: Habit::default(),
+        habit: Habit { slivers: settings.slivers, ..Habit::default() },
     };
     let found = match operators(&geometry, settings) {
         Overlap::Cells(found) => found,
@@ -94,10 +105,14 @@ fn of_shapes<const NS: usize, const NM: usize>(
         out.d[j][..NS].copy_from_slice(&found.d[j]);
         out.m[j][..NM].copy_from_slice(&found.m[j]);
     }
+    let covered: f64 = found.d.as_flattened().iter().sum();
+    out.sliver = covered < SLIVER * shape::measure(&geometry.slave);
     Some(out)
 }
 
 /// Pairs that overlap now, ascending, without those `known` already.
+/// Slivers are among them where all nodes of their slave have other overlaps; a node that only slivers reach is beside the
+/// master.
 pub fn overlapping_pairs(
     part: &ModelPart,
     interfaces: &[Interface],
@@ -107,15 +122,19 @@ pub fn overlapping_pairs(
 ) -> Vec<FacetPair> {
     let mut pairs = Vec::new();
     for (at, interface) in interfaces.iter().enumerate() {
-        pairs.par_extend(candidates(part, interface, search).into_par_iter().with_min_len(32).filter_map(
-            |candidate| {
-                let Candidate { slave, master, .. } = candidate;
-                let key = PairKey { interface: at as u32, slave, master };
-                let (slave, master) = (&interface.facets[slave as usize], &interface.facets[master as usize]);
-                let operators = if known(&key) { None } else { facet_operators(part, slave, master, segmentation) };
-                Some(FacetPair { key, operators: operators? })
-            },
-        ));
+        let slave_nodes = |pair: &FacetPair| &interface.facets[pair.key.slave as usize].nodes;
+        let found = candidates(part, interface, search).into_par_iter().with_min_len(32).filter_map(|candidate| {
+            let Candidate { slave, master, .. } = candidate;
+            let key = PairKey { interface: at as u32, slave, master };
+            let (slave, master) = (&interface.facets[slave as usize], &interface.facets[master as usize]);
+            let operators = if known(&key) { None } else { facet_operators(part, slave, master, segmentation) };
+            Some(FacetPair { key, operators: operators? })
+        });
+        let found: Vec<FacetPair> = found.collect();
+        let whole = found.iter().filter(|pair| !pair.operators.sliver);
+        let covered: BTreeSet<u32> = whole.flat_map(slave_nodes).copied().collect();
+        let counts = |pair: &FacetPair| !pair.operators.sliver || slave_nodes(pair).iter().all(|n| covered.contains(n));
+        pairs.extend(found.into_iter().filter(counts));
     }
     pairs
 }

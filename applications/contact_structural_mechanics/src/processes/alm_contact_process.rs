@@ -13,7 +13,7 @@ use zelus_core::registry::Build;
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
-use super::interface_settings::{check_positive, check_search, without_computing_part};
+use super::interface_settings::{check_positive, check_search, segmentation, without_computing_part};
 use crate::active_set::Margin;
 use crate::compatibility::{Refusal, Use, refusal};
 use crate::formulations::Augmentation;
@@ -22,7 +22,6 @@ use crate::interaction::{
     UzawaSettings,
 };
 use crate::interface::AlmParameters;
-use crate::mortar::IntegrationOrder;
 use crate::pairs::{Family, find_family};
 use crate::penalty_adaptation::PenaltyRule;
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
@@ -72,8 +71,6 @@ struct Whole {
     /// Processes whose families have their forces from penalties lack it.
     augmentation: Option<Augmentation>,
     clear_inactive_for_post: bool,
-    zero_tolerance_factor: f64,
-    integration_order: usize,
     search_parameters: Search,
     #[serde(rename = "advance_ALM_parameters")]
     parameters: Parameters,
@@ -138,10 +135,6 @@ fn interaction(
     };
     let family =
         find_family(&format!("{}{stem}", families.name)).map_err(|d| d.at(settings.key_place("contact_type")))?;
-    let integration_order = IntegrationOrder::new(whole.integration_order).ok_or_else(|| {
-        let fact = format!("\"integration_order\" is {}, it must be 1 to 5", whole.integration_order);
-        settings.error("integration_order", "integration-order", fact)
-    })?;
     check_positive(
         settings,
         &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
@@ -208,8 +201,7 @@ fn interaction(
             dynamic_factor: false,
         },
         clear_inactive: whole.clear_inactive_for_post,
-        zero_tolerance_factor: whole.zero_tolerance_factor,
-        integration_order,
+        segmentation: segmentation(settings)?,
         axisymmetric: whole.alternative_formulations.axisymmetric,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;

@@ -87,7 +87,7 @@ pub(super) fn check_slaves(
     }
 }
 
-/// How `integration_order` and `zero_tolerance_factor` cut and integrate overlaps.
+/// How `integration_order`, `zero_tolerance_factor` and `count_slivers` cut and integrate overlaps.
 ///
 /// # Errors
 /// A Gauss rule that does not exist.
@@ -98,5 +98,7 @@ pub(super) fn segmentation(settings: &Settings) -> Result<SegmentationSettings> 
         settings.error("integration_order", "integration-order", fact)
     })?;
     let zero_tolerance_factor = settings.get_f64("zero_tolerance_factor")?;
-    Ok(SegmentationSettings { integration_order, zero_tolerance_factor, ..SegmentationSettings::default() })
+    let slivers = settings.get_bool("count_slivers")?;
+    let defaults = SegmentationSettings::default();
+    Ok(SegmentationSettings { integration_order, zero_tolerance_factor, slivers, ..defaults })
 }
