@@ -9,9 +9,11 @@ register_variable! {
     pub VOLUME_ACCELERATION: [f64; 3] = "Acceleration that acts on the mass, e.g. gravity (length per time squared).";
     pub PRESSURE: f64 = "Pressure on a face; acts as NEGATIVE_FACE_PRESSURE does (force per area).";
     pub POSITIVE_FACE_PRESSURE: f64 =
-        "Pressure on the side the normal points from: a line is pushed to its right, a surface against t1 × t2.";
+        "Pushes a line to its right and a surface against t1 × t2: on faces whose normals point out of the body, positive \
+         values press in space and pull in the plane (force per area).";
     pub NEGATIVE_FACE_PRESSURE: f64 =
-        "Pressure on the other side: a line is pushed to the left of its direction, a surface along t1 × t2.";
+        "Pushes a line to its left and a surface along t1 × t2: on faces whose normals point out of the body, positive \
+         values press in the plane and pull in space (force per area).";
     pub VOLUMETRIC_STRAIN: f64 = "Change of volume per volume, an unknown of the nodes of mixed elements.";
     pub NODAL_MASS: f64 = "Mass at a node.";
     pub NODAL_DISPLACEMENT_STIFFNESS: [f64; 3] = "Stiffness of a spring in each direction (force per length).";

@@ -272,7 +272,11 @@ impl Assembler {
         System {
             layout: &self.equations.layout,
             bulk: &self.reduced_bulk,
-            bulk_symmetry: if self.bulk_general { Symmetry::General } else { Symmetry::PositiveDefinite },
+            bulk_symmetry: if self.bulk_general || !self.equations.keep_symmetry() {
+                Symmetry::General
+            } else {
+                Symmetry::PositiveDefinite
+            },
             bulk_graph: self.stamps.bulk_graph,
             bulk_values: self.stamps.bulk_values,
             coupling: (self.reduced_coupling.entries() > 0).then_some(&self.reduced_coupling),

@@ -2,7 +2,7 @@
 //!
 //! x = T x̄ + g (eq. D.12b); as the values already satisfy the constraints when an iteration starts, increments obey
 //! Δx = T Δx̄ (eq. D.12d) and the solved system is TᵀA T Δx̄ = Tᵀb (eq. D.12e). Without constraints T only drops the fixed
-//! unknowns.
+//! unknowns. Where a constraint says how its slave's force is passed on, that takes the place of Tᵀ in its rows.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -21,8 +21,18 @@ use crate::registry::Build;
 enum Role {
     Free(u32),
     Fixed,
-    /// Follows equations with weights.
-    Slave(Vec<(u32, f64)>),
+    /// Follows equations.
+    Slave(Vec<Follow>),
+}
+
+/// An equation that a slave follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Follow {
+    equation: u32,
+    /// Of its motion.
+    weight: f64,
+    /// Of the slave's force.
+    force: f64,
 }
 
 /// The map between unknowns and equations.
@@ -32,6 +42,7 @@ pub struct Equations {
     /// Unknown of each equation.
     free: Vec<u32>,
     has_slaves: bool,
+    symmetric: bool,
     /// What the equations stand for.
     pub layout: Layout,
 }
@@ -65,20 +76,28 @@ impl Equations {
         }
         for &number in slaves.keys() {
             let mut terms = BTreeMap::new();
-            follow(number, 1.0, &slaves, &roles, dofs, nodes, 0, &mut terms)?;
-            roles[number as usize] = Role::Slave(terms.into_iter().collect());
+            follow(number, [1.0; 2], &slaves, &roles, dofs, nodes, 0, &mut terms)?;
+            let terms = terms.into_iter();
+            roles[number as usize] =
+                Role::Slave(terms.map(|(equation, [weight, force])| Follow { equation, weight, force }).collect());
         }
         let layout = Layout {
             node: free.iter().map(|&n| dofs.dofs()[n as usize].node).collect(),
             multiplier: free.iter().map(|&n| dofs.dofs()[n as usize].multiplier).collect(),
             near_null_space: Vec::new(),
         };
-        Ok(Self { has_slaves: !slaves.is_empty(), roles, free, layout })
+        let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());
+        Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, layout })
     }
 
     /// Whether both lead to the same equations.
     pub fn same_as(&self, other: &Self) -> bool {
         self.roles == other.roles
+    }
+
+    /// Whether forces go the way of motions, so that a symmetric matrix stays so.
+    pub fn keep_symmetry(&self) -> bool {
+        self.symmetric
     }
 
     /// Number of equations.
@@ -117,7 +136,7 @@ impl Equations {
         if self.has_slaves {
             for (role, value) in self.roles.iter().zip(full) {
                 if let Role::Slave(terms) = role {
-                    terms.iter().for_each(|&(equation, weight)| out[equation as usize] += weight * value);
+                    terms.iter().for_each(|term| out[term.equation as usize] += term.force * value);
                 }
             }
         }
@@ -141,7 +160,7 @@ impl Equations {
             .map(|role| match role {
                 Role::Free(equation) => reduced[*equation as usize],
                 Role::Fixed => 0.0,
-                Role::Slave(terms) => terms.iter().map(|&(equation, weight)| weight * reduced[equation as usize]).sum(),
+                Role::Slave(terms) => terms.iter().map(|term| term.weight * reduced[term.equation as usize]).sum(),
             })
             .collect()
     }
@@ -177,10 +196,10 @@ impl Equations {
         }
     }
 
-    fn terms<'a>(&'a self, number: usize, one: &'a mut [(u32, f64); 1]) -> &'a [(u32, f64)] {
+    fn terms<'a>(&'a self, number: usize, one: &'a mut [Follow; 1]) -> &'a [Follow] {
         match &self.roles[number] {
             Role::Free(equation) => {
-                one[0] = (*equation, 1.0);
+                one[0] = Follow { equation: *equation, weight: 1.0, force: 1.0 };
                 &one[..]
             }
             Role::Fixed => &[],
@@ -190,13 +209,14 @@ impl Equations {
 
     fn reduce_constrained(&self, full: &Csr) -> Csr {
         let mut triplets = Vec::with_capacity(full.entries());
-        let (mut left, mut right) = ([(0, 0.0)], [(0, 0.0)]);
+        let none = Follow { equation: 0, weight: 0.0, force: 0.0 };
+        let (mut left, mut right) = ([none], [none]);
         for row in 0..full.rows {
             let (columns, values) = full.row(row);
-            for &(i, wi) in self.terms(row, &mut left) {
+            for to in self.terms(row, &mut left) {
                 for (&column, &value) in columns.iter().zip(values) {
-                    for &(j, wj) in self.terms(column as usize, &mut right) {
-                        triplets.push((i as usize, j as usize, wi * value * wj));
+                    for of in self.terms(column as usize, &mut right) {
+                        triplets.push((to.equation as usize, of.equation as usize, to.force * value * of.weight));
                     }
                 }
             }
@@ -207,20 +227,22 @@ impl Equations {
 
 fn follow(
     number: u32,
-    weight: f64,
+    shares: [f64; 2],
     slaves: &BTreeMap<u32, &MasterSlaveConstraint>,
     roles: &[Role],
     dofs: &DofTable,
     nodes: &Nodes,
     depth: usize,
-    terms: &mut BTreeMap<u32, f64>,
+    terms: &mut BTreeMap<u32, [f64; 2]>,
 ) -> Result<()> {
     let constraint = slaves[&number];
     if depth > slaves.len() {
         let fact = format!("constraint {} depends on itself through other constraints", constraint.id);
         return Err(Diagnostic::error("constraint-circle", fact).remedy("remove one constraint of the circle").into());
     }
-    for &((node, variable), w) in &constraint.masters {
+    for (at, &((node, variable), weight)) in constraint.masters.iter().enumerate() {
+        let force = constraint.forces.as_ref().map_or(weight, |forces| forces[at]);
+        let shares = [shares[0] * weight, shares[1] * force];
         let master = dofs.number_of(variable, node).ok_or_else(|| {
             Diagnostic::error(
                 "constraint-unknown",
@@ -231,9 +253,10 @@ fn follow(
             )
         })?;
         if slaves.contains_key(&master) {
-            follow(master, weight * w, slaves, roles, dofs, nodes, depth + 1, terms)?;
+            follow(master, shares, slaves, roles, dofs, nodes, depth + 1, terms)?;
         } else if let Role::Free(equation) = roles[master as usize] {
-            *terms.entry(equation).or_insert(0.0) += weight * w;
+            let sums = terms.entry(equation).or_insert([0.0; 2]);
+            (0..2).for_each(|at| sums[at] += shares[at]);
         }
     }
     Ok(())
@@ -270,4 +293,41 @@ register! { BuilderAndSolver "block",
 register! { BuilderAndSolver "elimination",
     about: "fixities and constraints are eliminated; every builder gives the same answer",
     build: Build::NameOnly,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{ModelPart, variables::DISPLACEMENT};
+
+    /// Three nodes on a line; the last follows the others by halves and passes its force on as `forces` say.
+    fn equations(forces: Option<Vec<f64>>) -> Equations {
+        let mut part = ModelPart::new("Structure");
+        part.nodes = Nodes::new(vec![1, 2, 3], vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        let x = DISPLACEMENT.component(0);
+        part.nodes.history.add(&DISPLACEMENT);
+        part.dofs.number(&part.nodes, &[(x, false, vec![0, 1, 2])]);
+        let masters = vec![((0, x), 0.5), ((1, x), 0.5)];
+        let constraint = MasterSlaveConstraint { id: 1, slave: (2, x), masters, forces, constant: 0.0, active: true };
+        Equations::new(&part.dofs, &part.nodes, &[constraint]).unwrap()
+    }
+
+    #[test]
+    fn forces_may_go_another_way_than_motions() {
+        let full = Csr::from_triplets(3, &[(0, 0, 2.0), (1, 1, 3.0), (2, 0, 5.0), (2, 2, 4.0)]);
+        for forces in [[0.5, 0.5], [0.8, -0.1]] {
+            let given = equations((forces != [0.5, 0.5]).then(|| forces.to_vec()));
+            assert_eq!(given.keep_symmetry(), forces == [0.5, 0.5]);
+            assert_eq!(given.expand(&[1.0, 3.0]), [1.0, 3.0, 2.0]);
+            assert_eq!(given.reduce(&[1.0, 2.0, 10.0]), [1.0 + 10.0 * forces[0], 2.0 + 10.0 * forces[1]]);
+            let mut reduced = Csr::default();
+            given.reduce_matrix(&full, &mut reduced, false);
+            // The row of the slave over the equations is 5 x₀ + 4 (x₀ + x₁)/2.
+            let [f, g] = forces;
+            let expected = [[2.0 + 7.0 * f, 2.0 * f], [7.0 * g, 3.0 + 2.0 * g]];
+            for (row, expected) in expected.iter().enumerate() {
+                assert_eq!(reduced.row(row).1, expected, "{forces:?}");
+            }
+        }
+    }
 }

@@ -14,6 +14,9 @@ pub struct MasterSlaveConstraint {
     pub slave: NodeUnknown,
     /// The unknowns it follows, with weights.
     pub masters: Vec<(NodeUnknown, f64)>,
+    /// How much of the slave's force each master takes where that is not its weight, as where friction goes with the
+    /// constraint's force.
+    pub forces: Option<Vec<f64>>,
     /// What is added.
     pub constant: f64,
     /// Whether it holds now.

@@ -346,6 +346,7 @@ impl Import<'_> {
                     id: row.id as usize,
                     slave: unknown(row.slave),
                     masters: row.masters.iter().map(|&id| unknown(id)).zip(row.weights.iter().copied()).collect(),
+                    forces: None,
                     constant: row.constant,
                     active: true,
                 });

@@ -95,6 +95,7 @@ impl Process for ImposeRigidMovement {
                     id,
                     slave: (node, slave),
                     masters: vec![((self.master, master), self.relation)],
+                    forces: None,
                     constant: self.constant,
                     active: false,
                 });

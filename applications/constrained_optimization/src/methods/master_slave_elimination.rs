@@ -69,6 +69,7 @@ impl Interaction for EliminationInteraction {
                 id: constraint.id,
                 slave: (slave.0, POSITION.scalar()),
                 masters: others.map(|&(node, a)| ((node, POSITION.scalar()), -a / slave.1)).collect(),
+                forces: None,
                 constant: -constraint.constant / slave.1,
                 active: false,
             });

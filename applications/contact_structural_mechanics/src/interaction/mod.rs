@@ -10,8 +10,8 @@ mod friction;
 mod late_pairs;
 mod mpc_interaction;
 mod mpc_relation;
-mod nodal_forces;
 mod pairing;
+mod slider_forces;
 mod sliding;
 mod step_parameters;
 #[cfg(test)]

@@ -2,7 +2,8 @@
 //!
 //! An active node is held along its normal (without friction, or sliding) or in all components (sticking, tied). It is
 //! released when the constraint would have to pull, and held again when it penetrates. A node sticks while the tangential
-//! force of its constraint is below Coulomb's bound; beyond, that bound acts on it and on its masters instead.
+//! force of its constraint is below the bound of friction; beyond, a force of that size acts on it and on its masters instead,
+//! against the slip ([`slider_forces`](super::slider_forces)).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,24 +13,28 @@ use zelus_core::entities::{EntityBlock, Interaction, MasterSlaveConstraint, SetC
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, SLIP};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::DISPLACEMENT, variables::NORMAL, variables::REACTION};
 use zelus_core::parameters::Interval;
+use zelus_core::registry::Entry;
 use zelus_core::registry::{self, Kind};
 use zelus_core::vector3::{dot, norm, scale, sub};
 
 use super::activation;
 use super::friction::{self, FrictionSettings};
 use super::mpc_relation::{Hold, NodeRelation, PairRelation, Weights, node_relations};
-use super::nodal_forces::NodalForces;
+use super::slider_forces::{Slider, SliderForces};
 use crate::active_set::SlipRule;
+use crate::friction_law::Bound;
 use crate::interface::{Interface, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes};
-use crate::mortar::SegmentationSettings;
+use crate::mortar::{IntegrationOrder, SegmentationSettings, tangential};
 use crate::pairs::{FacetPair, Friction, PairKey, condition_name, facet_operators, overlapping_pairs};
 use crate::resolution::is_more;
 use crate::search::SearchSettings;
 use crate::solver::UPDATE_EACH_ITERATION;
 use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 
-/// Penetration, in mesh sizes, below which a free node stays free: round-off of positions.
-const PENETRATION: f64 = 1e-12;
+/// Stiffness of the trial force, in those of the body: large, so that its direction is that of the slip.
+const DIRECTION: f64 = 1e3;
+/// Gauss rule that tells the functions of every facet apart, so that dual ones exist wherever there is area.
+const FINE: usize = 4;
 
 /// What constraints enforce.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,8 +71,10 @@ pub struct MpcSettings {
     pub reaction_check_stiffness_factor: f64,
     /// Whether relations are made anew at each step.
     pub update_relations: bool,
-    /// By what the rows of a node are divided.
+    /// How the rows of a node make up its relation.
     pub weights: Weights,
+    /// Whether openings stay as they are in the first step of a run.
+    pub keeps_first_opening: bool,
 }
 
 /// Contact by constraints in a model part.
@@ -77,17 +84,20 @@ pub struct MpcInteraction {
     slaves: Vec<u32>,
     pairs: BTreeMap<PairKey, PairRelation>,
     nodes: BTreeMap<u32, NodeRelation>,
-    friction: Option<NodalForces>,
+    sliders: Vec<SliderForces>,
+    entry: Option<&'static Entry>,
+    directions: BTreeMap<u32, [f64; 3]>,
+    graph: u64,
     slip_rule: SlipRule,
     update_each_iteration: bool,
-    release: f64,
+    young: f64,
     first_id: usize,
     version: u64,
     steps_since_search: usize,
     acting: bool,
     warned: bool,
     saved: BTreeMap<PairKey, PairRelation>,
-    saved_forces: Vec<[f64; 3]>,
+    saved_directions: BTreeMap<u32, [f64; 3]>,
 }
 
 impl MpcInteraction {
@@ -104,17 +114,20 @@ impl MpcInteraction {
             interfaces,
             pairs: BTreeMap::new(),
             nodes: BTreeMap::new(),
-            friction: None,
+            sliders: Vec::new(),
+            entry: None,
+            directions: BTreeMap::new(),
+            graph: 1,
             slip_rule: SlipRule::Pure,
             update_each_iteration: false,
-            release: 0.0,
+            young: 0.0,
             first_id: 0,
             version: 0,
             steps_since_search: usize::MAX,
             acting: false,
             warned: false,
             saved: BTreeMap::new(),
-            saved_forces: Vec::new(),
+            saved_directions: BTreeMap::new(),
         })
     }
 
@@ -125,7 +138,7 @@ impl MpcInteraction {
     /// Relations of the pairs that overlap; those that hold a node stay as they were made, unless they are to be renewed.
     fn search(&mut self, part: &mut ModelPart) {
         let holds = |relation: &PairRelation| relation.nodes().any(|n| part.nodes.flags.is(ACTIVE, n as usize));
-        let keep = !self.settings.update_relations;
+        let keep = !self.settings.update_relations || self.tying();
         let (interfaces, segmentation) = (&self.interfaces, &self.settings.segmentation);
         self.pairs.retain(|key, relation| {
             let facets = &interfaces[key.interface as usize].facets;
@@ -140,15 +153,24 @@ impl MpcInteraction {
 
     fn relate(&mut self, part: &ModelPart, pairs: &[FacetPair]) {
         for pair in pairs {
-            self.pairs.insert(pair.key, PairRelation::new(part, &self.interfaces, pair));
+            let facets = &self.interfaces[pair.key.interface as usize].facets;
+            let (slave, master) = (&facets[pair.key.slave as usize], &facets[pair.key.master as usize]);
+            let finer = || {
+                let integration_order = IntegrationOrder::new(FINE)?.max(self.settings.segmentation.integration_order);
+                let segmentation = SegmentationSettings { integration_order, ..self.settings.segmentation };
+                facet_operators(part, slave, master, &segmentation)
+            };
+            let relation = PairRelation::new(part, &self.interfaces, pair, self.settings.weights, finer);
+            self.pairs.insert(pair.key, relation);
         }
         let pairs = self.pairs.iter().map(|(key, relation)| (key.interface, relation));
         self.nodes = node_relations(pairs, &self.interfaces, self.settings.weights);
     }
 
-    /// Nodes that follow several masters pass forces on wrongly, unless the master is held.
+    /// With weights that do not add up to one nodes that follow several masters pass forces on wrongly, unless the master is
+    /// held.
     fn warn_of_unlike_meshes(&mut self, part: &mut ModelPart) {
-        if self.warned {
+        if self.warned || self.settings.weights == Weights::Consistent {
             return;
         }
         let dimension = part.info.domain_size as u8;
@@ -159,9 +181,11 @@ impl MpcInteraction {
             let fact = format!(
                 "constraints join unlike meshes of deformable bodies at {mixed} slave nodes: stresses there are wrong"
             );
-            part.messages.push(Diagnostic::warning("mpc-unlike-meshes", fact).remedy(
-                "use alm_contact_process or mesh_tying_process; \"consistent_weights\" at least keeps rigid motions",
-            ));
+            part.messages.push(
+                Diagnostic::warning("mpc-unlike-meshes", fact).remedy(
+                    "leave \"consistent_weights\" at true: forces are then passed on as by alm_contact_process",
+                ),
+            );
         }
     }
 
@@ -201,11 +225,18 @@ impl MpcInteraction {
         for (&node, relation) in &self.nodes {
             if part.nodes.flags.is(ACTIVE, node as usize) {
                 let hold = match self.settings.kind {
-                    MpcKind::Frictionless => Hold::Normal,
-                    MpcKind::Frictional if part.nodes.flags.is(SLIP, node as usize) => Hold::Normal,
+                    MpcKind::Frictionless => Hold::Normal { push: [0.0; 3] },
+                    MpcKind::Frictional if part.nodes.flags.is(SLIP, node as usize) => {
+                        let bound = self.settings.friction.law.bound_at(&part.nodes, node as usize);
+                        let direction = self.directions.get(&node).copied().unwrap_or_default();
+                        Hold::Normal { push: scale(direction, bound.coefficient) }
+                    }
                     MpcKind::Frictional => Hold::Stick,
-                    MpcKind::MeshTying => Hold::All,
+                    MpcKind::MeshTying if self.settings.weights == Weights::Consistent => Hold::Tied,
+                    MpcKind::MeshTying => Hold::Closed,
                 };
+                let keeps = self.settings.keeps_first_opening && part.info.step <= 1;
+                let relation = if keeps { &relation.keeping_opening() } else { relation };
                 relation.constraints(part, node, hold, &mut next_id, &mut constraints);
             }
         }
@@ -213,31 +244,26 @@ impl MpcInteraction {
         self.version += 1;
     }
 
-    fn clear_forces(&mut self) {
-        if let Some(friction) = &mut self.friction {
-            friction.forces.fill([0.0; 3]);
-        }
-    }
-
     fn switch_off(&mut self, part: &mut ModelPart) {
         self.slaves.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, false));
         self.pairs.clear();
         self.nodes.clear();
-        self.clear_forces();
+        self.set_sliders(Vec::new(), part.info.domain_size);
         self.write_constraints(part);
     }
 
-    /// Contact opens where a constraint pulls and closes where a free node penetrates.
+    /// Contact opens where a constraint pulls and closes where a free node penetrates: the sign of the force that holds a
+    /// node and of its gap times a stiffness together, so that a gap of round-off holds nothing.
     fn update_contact(&self, part: &mut ModelPart, change: &mut SetChange) {
+        let release = self.settings.reaction_check_stiffness_factor * self.young;
         for &node in &self.slaves {
             let at = node as usize;
             let Some(relation) = self.nodes.get(&node) else { continue };
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             let was = part.nodes.flags.is(ACTIVE, at);
+            let held = if was { dot(reaction(part, node), relation.normal) } else { 0.0 };
             let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
-            let penetrates = gap < -PENETRATION * part.nodes.values.values(&NODAL_H, 0)[at] * area;
-            let presses = was && dot(reaction(part, node), relation.normal) < -self.release * area;
-            let now = area > 0.0 && (presses || penetrates);
+            let now = area > 0.0 && held + self.stiffness(part, at) * gap < -release * area;
             if was != now {
                 part.nodes.flags.set(ACTIVE, at, now);
                 if now && self.settings.kind == MpcKind::Frictional {
@@ -250,11 +276,20 @@ impl MpcInteraction {
         }
     }
 
-    /// Coulomb's law at the active nodes: which of them slide, and the forces on those that do.
+    /// Stiffness of the body behind a node (force by volume).
+    fn stiffness(&self, part: &ModelPart, at: usize) -> f64 {
+        let size = part.nodes.values.values(&NODAL_H, 0)[at];
+        if size > 0.0 { self.young / size } else { self.young }
+    }
+
+    /// Friction at the active nodes: which of them slide, and the forces on those that do.
     fn update_friction(&mut self, part: &mut ModelPart, change: &mut SetChange) {
-        let Some(forces) = &mut self.friction else { return };
-        let before = std::mem::replace(&mut forces.forces, vec![[0.0; 3]; part.nodes.len()]);
+        if self.settings.kind != MpcKind::Frictional {
+            return;
+        }
+        let before = std::mem::take(&mut self.directions);
         let mut slips = vec![[0.0; 3]; part.nodes.len()];
+        let mut sliders = Vec::new();
         let resolved = activation::resolved_length(part, &self.slaves);
         for (&node, relation) in &self.nodes {
             let at = node as usize;
@@ -262,45 +297,70 @@ impl MpcInteraction {
                 continue;
             }
             let n = relation.normal;
-            let tangential = |v: [f64; 3]| sub(v, scale(n, dot(v, n)));
-            let moved = tangential(sub(relation.lead(part, node, 0), relation.lead(part, node, 1)));
+            let moved = tangential(sub(relation.lead(part, node, 0), relation.lead(part, node, 1)), n);
+            let moved = if norm(moved) > resolved { moved } else { [0.0; 3] };
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             slips[at] = scale(moved, area);
             let held = reaction(part, node);
-            let bound = self.settings.friction.law.bound_at(&part.nodes, at).at(dot(held, n).min(0.0));
+            let Bound { coefficient, threshold } = self.settings.friction.law.bound_at(&part.nodes, at);
+            let constant = threshold * area;
+            let bound = Bound { coefficient, threshold: constant }.at(dot(held, n).min(0.0));
             let sliding = part.nodes.flags.is(SLIP, at);
-            // A sliding node keeps the direction in which it began, a node that began to slide without one goes against
-            // its motion.
-            let kept = norm(before[at]) > 0.0;
-            let wanted = match (sliding, kept) {
-                (true, true) => tangential(before[at]),
-                (true, false) => scale(moved, -1.0),
-                (false, _) => tangential(held),
+            let stiffness = self.stiffness(part, at) * area;
+            // The friction of a sliding node keeps the direction it had but for what the slip turns it.
+            let kept = direction_along(before.get(&node), n);
+            // A node that slides along with its friction would gain energy: it sticks, or turns where it slides far.
+            let near = stiffness * norm(moved) < 2.0 * bound;
+            let slides = match (self.slip_rule, sliding) {
+                (SlipRule::Pure, _) => true,
+                (_, true) => !near || dot(moved, kept) <= 0.0,
+                (_, false) => is_more(norm(tangential(held, n)), bound),
             };
-            // A node that slides along with its friction would gain energy: it sticks.
-            let slides = if self.slip_rule == SlipRule::Pure {
-                true
-            } else if sliding {
-                bound <= 0.0 || dot(moved, before[at]) <= resolved * norm(before[at])
-            } else {
-                is_more(norm(wanted), bound)
-            };
+            let stiffness = DIRECTION * stiffness;
+            let trial = if sliding { sub(scale(kept, bound), scale(moved, stiffness)) } else { tangential(held, n) };
             if slides != sliding {
                 part.nodes.flags.set(SLIP, at, slides);
                 change.stick_slip.push(part.nodes.ids[at]);
             }
-            let size = norm(wanted);
-            if !slides || size == 0.0 || (sliding && !kept && size <= resolved) {
-                continue;
-            }
-            let force = scale(wanted, bound / size);
-            (0..3).for_each(|c| forces.forces[at][c] += force[c]);
-            for &(master, weight) in &relation.weights {
-                (0..3).for_each(|c| forces.forces[master as usize][c] -= weight * force[c]);
+            if slides {
+                sliders.push(Slider::new(node, relation.weights.clone(), n, trial, [bound, constant], stiffness));
             }
         }
         part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slips.as_flattened());
+        self.set_sliders(sliders, part.info.domain_size);
     }
+
+    fn set_sliders(&mut self, sliders: Vec<Slider>, dimension: usize) {
+        self.directions = sliders.iter().map(|slider| (slider.node, slider.direction)).collect();
+        let Some(entry) = self.entry else { return };
+        let blocks = SliderForces::blocks(entry, sliders, dimension);
+        if !blocks.iter().map(SliderForces::all_nodes).eq(self.sliders.iter().map(SliderForces::all_nodes)) {
+            self.graph += 1;
+        }
+        self.sliders = blocks;
+    }
+
+    /// Nodes that slide from the step before begin in the direction they had.
+    fn slide_on(&mut self, part: &ModelPart) {
+        let before = std::mem::take(&mut self.directions);
+        let flags = &part.nodes.flags;
+        let slides = |at: usize| flags.is(ACTIVE, at) && flags.is(SLIP, at);
+        let sliders = self.nodes.iter().filter(|(node, _)| slides(**node as usize)).map(|(&node, relation)| {
+            let direction = direction_along(before.get(&node), relation.normal);
+            let area = part.nodes.values.values(&NODAL_AREA, 0)[node as usize];
+            let constant = self.settings.friction.law.bound_at(&part.nodes, node as usize).threshold * area;
+            Slider::new(node, relation.weights.clone(), relation.normal, direction, [constant; 2], 0.0)
+        });
+        let sliders = sliders.collect();
+        self.set_sliders(sliders, part.info.domain_size);
+    }
+}
+
+/// The unit vector of the part of a direction in the tangent of a normal; none where there is none.
+fn direction_along(direction: Option<&[f64; 3]>, normal: [f64; 3]) -> [f64; 3] {
+    let along = direction.map_or([0.0; 3], |direction| tangential(*direction, normal));
+    let size = norm(along);
+    if size > 0.0 { scale(along, size.recip()) } else { along }
 }
 
 fn reaction(part: &ModelPart, node: u32) -> [f64; 3] {
@@ -320,21 +380,20 @@ impl Interaction for MpcInteraction {
         part.info.marks.insert(CONTACT, true);
         self.update_each_iteration = part.info.is(UPDATE_EACH_ITERATION);
         self.first_id = part.constraints.iter().map(|c| c.id + 1).max().unwrap_or(1);
-        let young = self.interfaces.iter().flat_map(|i| &i.facets).filter_map(|facet| {
-            part.properties.get(&facet.properties).and_then(|properties| properties.number("YOUNG_MODULUS"))
-        });
-        self.release = self.settings.reaction_check_stiffness_factor * young.fold(0.0, f64::max);
+        let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
+        let young = |id| part.properties.get(id).and_then(|properties| properties.number("YOUNG_MODULUS"));
+        let facets = self.interfaces.iter().flat_map(|i| &i.facets);
+        self.young = largest(&mut facets.filter_map(|facet| young(&facet.properties)));
+        if self.young == 0.0 {
+            self.young = largest(&mut part.properties.keys().filter_map(young));
+        }
         if self.settings.kind == MpcKind::Frictional {
             part.nodes.history.add(&WEIGHTED_SLIP);
             let friction = if self.settings.pure_slip { Friction::PureSlip } else { Friction::Coulomb };
             self.slip_rule = friction::prepare(part, &self.interfaces, &self.settings.friction, friction);
             let facet = &self.interfaces[0].facets[0];
             let name = condition_name("MPCMortarContactCondition", facet.shape, facet.shape);
-            let entry = registry::require(Kind::Condition, &name)?;
-            let mut nodes: Vec<u32> = self.interfaces.iter().flat_map(|i| i.nodes.iter().copied()).collect();
-            nodes.sort_unstable();
-            nodes.dedup();
-            self.friction = Some(NodalForces::new(entry, nodes, part.nodes.len(), part.info.domain_size));
+            self.entry = Some(registry::require(Kind::Condition, &name)?);
         }
         nodal_normals(part, &self.interfaces);
         Ok(())
@@ -352,7 +411,9 @@ impl Interaction for MpcInteraction {
         }
         nodal_normals(part, &self.interfaces);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
-        if self.steps_since_search >= self.settings.database_step_update {
+        if self.tying() && self.settings.weights == Weights::Consistent && !self.pairs.is_empty() {
+            self.relate(part, &[]);
+        } else if self.steps_since_search >= self.settings.database_step_update {
             self.search(part);
             self.steps_since_search = 0;
         }
@@ -364,6 +425,7 @@ impl Interaction for MpcInteraction {
             let friction = (self.settings.friction.law, self.slip_rule);
             activation::start(part, &self.slaves, activation::Start::ShareOfMeshSize, &BTreeSet::new(), friction);
             friction::start_in_stick(part, &self.slaves, self.slip_rule, &self.settings.friction);
+            self.slide_on(part);
         }
         self.write_constraints(part);
         Ok(())
@@ -378,7 +440,7 @@ impl Interaction for MpcInteraction {
         if !self.acting {
             return Ok(change);
         }
-        if self.update_each_iteration {
+        if self.update_each_iteration && !(self.tying() && self.settings.weights == Weights::Consistent) {
             nodal_normals(part, &self.interfaces);
             let keys: Vec<PairKey> = self.pairs.keys().copied().collect();
             let pairs: Vec<FacetPair> = keys
@@ -397,7 +459,7 @@ impl Interaction for MpcInteraction {
             self.update_contact(part, &mut change);
             self.update_friction(part, &mut change);
         }
-        if self.update_each_iteration || change.count() > 0 {
+        if self.update_each_iteration || change.count() > 0 || !self.directions.is_empty() {
             self.write_constraints(part);
         }
         Ok(change)
@@ -408,11 +470,11 @@ impl Interaction for MpcInteraction {
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
-        self.friction.iter().map(|forces| forces as &dyn EntityBlock).collect()
+        self.sliders.iter().map(|forces| forces as &dyn EntityBlock).collect()
     }
 
     fn graph_version(&self) -> u64 {
-        1
+        self.graph
     }
 
     fn constraints_version(&self) -> u64 {
@@ -425,14 +487,12 @@ impl Interaction for MpcInteraction {
 
     fn save(&mut self) {
         self.saved = self.pairs.clone();
-        self.saved_forces = self.friction.as_ref().map(|friction| friction.forces.clone()).unwrap_or_default();
+        self.saved_directions = self.directions.clone();
     }
 
     fn restore(&mut self) {
         self.pairs = std::mem::take(&mut self.saved);
-        if let Some(friction) = &mut self.friction {
-            friction.forces = std::mem::take(&mut self.saved_forces);
-        }
+        self.directions = std::mem::take(&mut self.saved_directions);
         self.steps_since_search = usize::MAX;
     }
 

@@ -1,19 +1,24 @@
-//! How slave nodes follow master facets: u¹ = B u² + offset with B = D⁻¹ M of each pair.
+//! How slave nodes follow master facets: u¹ = B u² + offset, with the rows of B from the D and M of their pairs.
 //!
-//! Rows of B with negative entries extrapolate, since the node is beside the master, and are left out; the rows that
-//! remain at a node are added, each divided by the number of slave facets of the node. On like meshes that is their mean.
-//! On unlike meshes more or fewer rows remain, and the weights do not add up to one unless [`Weights::Consistent`] divides
-//! by the number of rows. The offset closes the gap of the moment the relation is made; in the first step of a run, as in
-//! the reference program, an opening is kept and closes with the second.
+//! A node follows all its pairs together, u¹ = Σ M u² / Σ D, as the multiplier of a mortar family would have it: the weights
+//! add up to one, so that no force is lost, and on flat interfaces B takes the masters to the node itself, so that moments
+//! are kept and a constant stress passes. On curved interfaces B x² is beside x¹ by what the facets are off the surface, and
+//! moments are off by that much.
+//!
+//! The reference program's weights are [`Weights::ByFacets`]: rows of D⁻¹ M of single pairs that have negative entries, since
+//! the node is beside the master, are left out; the rows that remain are added, each divided by the number of slave facets
+//! of the node. On unlike meshes more or fewer rows remain, and the weights do not add up to one.
+//!
+//! The offset closes the gap of the moment the relation is made. Ties keep it.
 
 use std::collections::BTreeMap;
 
 use zelus_core::entities::MasterSlaveConstraint;
 use zelus_core::model::{ModelPart, variables::DISPLACEMENT, variables::NORMAL};
-use zelus_core::vector3::{dot, sub};
+use zelus_core::vector3::{dot, normalised, sub};
 
 use crate::interface::{Interface, Roles};
-use crate::pairs::FacetPair;
+use crate::pairs::{FacetOperators, FacetPair};
 
 /// Entries of B below this are negative.
 const NEGATIVE: f64 = -1e-8;
@@ -32,9 +37,10 @@ pub(super) struct PairRelation {
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     node: u32,
+    area: f64,
     weights: Vec<(u32, f64)>,
-    offset: [f64; 3],
-    opening: [f64; 3],
+    lead: [f64; 3],
+    gap: f64,
     normal: [f64; 3],
 }
 
@@ -43,31 +49,36 @@ struct Row {
 pub(super) struct NodeRelation {
     /// Master nodes and their weights.
     pub weights: Vec<(u32, f64)>,
-    /// What is added to close the gap (length).
-    pub offset: [f64; 3],
-    /// The part of it that closes an opening.
-    pub opening: [f64; 3],
+    /// u¹ − B u² where the relation was made (length).
+    lead: [f64; 3],
+    /// What is added to it to close the gap.
+    closing: [f64; 3],
+    /// The part of that which closes an opening.
+    opening: [f64; 3],
     /// Unit normal of the slave.
     pub normal: [f64; 3],
 }
 
-/// By what the rows of a node are divided.
+/// How the rows of a node make up its relation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Weights {
-    /// The number of slave facets of the node, as in the reference program.
+    /// Rows that extrapolate are left out, the others divided by the number of slave facets of the node; a node in several
+    /// interfaces follows the first. As in the reference program.
     ByFacets,
-    /// The number of rows, so that the weights of a node add up to one.
+    /// All rows, each with its share of the area, so that the weights of a node add up to one.
     Consistent,
 }
 
-/// What of a slave node follows its masters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What of a slave node follows its masters, and where to.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Hold {
-    /// The displacement along the normal.
-    Normal,
-    /// All components, at the offset of the relation.
-    All,
-    /// All components: along the normal at the offset of the relation, in the tangent where the step began.
+    /// The displacement along the normal, until the gap is closed; friction goes with the force, `push` to the unit of pressure.
+    Normal { push: [f64; 3] },
+    /// All components: along the normal until the gap is closed, in the tangent where the relation was made.
+    Closed,
+    /// All components where the relation was made.
+    Tied,
+    /// All components: along the normal until the gap is closed, in the tangent where the step began.
     Stick,
 }
 
@@ -77,32 +88,44 @@ fn vector(column: &[f64], node: u32) -> [f64; 3] {
 }
 
 impl PairRelation {
-    /// The rows of a pair in the present configuration.
-    pub(super) fn new(part: &ModelPart, interfaces: &[Interface], pair: &FacetPair) -> Self {
+    /// The rows of a pair in the present configuration; `finer` integrates it again where its D is not diagonal.
+    pub(super) fn new(
+        part: &ModelPart,
+        interfaces: &[Interface],
+        pair: &FacetPair,
+        weights: Weights,
+        finer: impl Fn() -> Option<FacetOperators>,
+    ) -> Self {
         let facets = &interfaces[pair.key.interface as usize].facets;
         let (slave, master) = (&facets[pair.key.slave as usize], &facets[pair.key.master as usize]);
         let displacement = part.nodes.history.values(&DISPLACEMENT, 0);
         let normals = part.nodes.history.values(&NORMAL, 0);
         let mut rows = Vec::new();
+        let diagonal = pair.operators.is_diagonal();
+        let operators = match weights {
+            Weights::Consistent if !diagonal => finer().filter(FacetOperators::is_diagonal),
+            _ => Some(pair.operators),
+        };
+        let Some(operators) = operators else { return Self { rows } };
         for (j, &node) in slave.nodes.iter().enumerate() {
-            let weights = pair.operators.weights(j, slave.nodes.len(), master.nodes.len());
-            let weights = &weights[..master.nodes.len()];
-            if weights.iter().any(|w| *w < NEGATIVE) || weights.iter().all(|w| *w <= NEGLIGIBLE) {
+            let row = operators.weights(j, slave.nodes.len(), master.nodes.len());
+            let row = &row[..master.nodes.len()];
+            let extrapolates = weights == Weights::ByFacets && row.iter().any(|w| *w < NEGATIVE);
+            if extrapolates || row.iter().all(|w| w.abs() <= NEGLIGIBLE) {
                 continue;
             }
             let normal = vector(normals, node);
             let mut apart = part.nodes.current[node as usize];
-            let mut offset = vector(displacement, node);
-            for (&other, &weight) in master.nodes.iter().zip(weights) {
+            let mut lead = vector(displacement, node);
+            for (&other, &weight) in master.nodes.iter().zip(row) {
                 let (x, u) = (part.nodes.current[other as usize], vector(displacement, other));
                 (0..3).for_each(|c| apart[c] -= weight * x[c]);
-                (0..3).for_each(|c| offset[c] -= weight * u[c]);
+                (0..3).for_each(|c| lead[c] -= weight * u[c]);
             }
             let gap = -dot(normal, apart);
-            (0..3).for_each(|c| offset[c] += normal[c] * gap);
-            let opening = normal.map(|n| n * gap.max(0.0));
-            let kept = master.nodes.iter().copied().zip(weights.iter().copied()).filter(|(_, w)| *w > NEGLIGIBLE);
-            rows.push(Row { node, weights: kept.collect(), offset, opening, normal });
+            let area = operators.d[j][..slave.nodes.len()].iter().sum();
+            let kept = master.nodes.iter().copied().zip(row.iter().copied()).filter(|(_, w)| w.abs() > NEGLIGIBLE);
+            rows.push(Row { node, area, weights: kept.collect(), lead, gap, normal });
         }
         Self { rows }
     }
@@ -113,7 +136,7 @@ impl PairRelation {
     }
 }
 
-/// The sum of the rows at each slave node, divided as `weights` says; a node in several interfaces follows the first.
+/// The relation of each slave node: its rows, weighed as `weights` says.
 pub(super) fn node_relations<'p>(
     pairs: impl Iterator<Item = (u32, &'p PairRelation)>,
     interfaces: &[Interface],
@@ -123,10 +146,17 @@ pub(super) fn node_relations<'p>(
     for (interface, pair) in pairs {
         for row in &pair.rows {
             let (first, list) = rows.entry(row.node).or_insert((interface, Vec::new()));
-            if *first == interface {
+            if *first == interface || weights == Weights::Consistent {
                 list.push(row);
             }
         }
+    }
+    let by_area = |rows: &[&Row]| -> Vec<f64> {
+        let whole: f64 = rows.iter().map(|row| row.area).sum();
+        rows.iter().map(|row| row.area / whole).collect()
+    };
+    if weights == Weights::Consistent {
+        return rows.into_iter().map(|(node, (_, list))| (node, sum(&list, &by_area(&list)))).collect();
     }
     let mut facets: BTreeMap<(u32, u32), usize> = BTreeMap::new();
     for (at, interface) in interfaces.iter().enumerate() {
@@ -134,23 +164,24 @@ pub(super) fn node_relations<'p>(
             *facets.entry((at as u32, *node)).or_insert(0) += 1;
         }
     }
-    let count = |node: u32, interface: u32, rows: usize| match weights {
-        Weights::ByFacets => facets.get(&(interface, node)).copied().unwrap_or(rows),
-        Weights::Consistent => rows,
-    };
-    rows.into_iter().map(|(node, (at, list))| (node, sum(&list, count(node, at, list.len())))).collect()
+    let share = |node, at, rows: &[&Row]| 1.0 / facets.get(&(at, node)).copied().unwrap_or(rows.len()) as f64;
+    rows.into_iter().map(|(node, (at, list))| (node, sum(&list, &vec![share(node, at, &list); list.len()]))).collect()
 }
 
-fn sum(rows: &[&Row], count: usize) -> NodeRelation {
-    let share = 1.0 / count.max(1) as f64;
+fn sum(rows: &[&Row], shares: &[f64]) -> NodeRelation {
     let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
-    let (mut offset, mut opening) = ([0.0; 3], [0.0; 3]);
-    for row in rows {
+    let [mut lead, mut closing, mut opening, mut normal] = [[0.0; 3]; 4];
+    for (row, share) in rows.iter().zip(shares) {
         row.weights.iter().for_each(|&(node, w)| *weights.entry(node).or_insert(0.0) += share * w);
-        (0..3).for_each(|c| offset[c] += share * row.offset[c]);
-        (0..3).for_each(|c| opening[c] += share * row.opening[c]);
+        for c in 0..3 {
+            lead[c] += share * row.lead[c];
+            closing[c] += share * row.gap * row.normal[c];
+            opening[c] += share * row.gap.max(0.0) * row.normal[c];
+            normal[c] += share * row.normal[c];
+        }
     }
-    NodeRelation { weights: weights.into_iter().collect(), offset, opening, normal: rows[0].normal }
+    let weights = weights.into_iter().filter(|(_, w)| w.abs() > NEGLIGIBLE).collect();
+    NodeRelation { weights, lead, closing, opening, normal: normalised(normal) }
 }
 
 impl NodeRelation {
@@ -171,6 +202,11 @@ impl NodeRelation {
         sub(vector(displacement, node), masters)
     }
 
+    /// The relation that leaves an opening as it is.
+    pub(super) fn keeping_opening(&self) -> Self {
+        Self { closing: sub(self.closing, self.opening), ..self.clone() }
+    }
+
     /// The constraints that hold `node`; components that supports hold already are left to them.
     pub(super) fn constraints(
         &self,
@@ -181,44 +217,132 @@ impl NodeRelation {
         out: &mut Vec<MasterSlaveConstraint>,
     ) {
         let dimension = part.info.domain_size;
-        let offset = if part.info.step <= 1 { sub(self.offset, self.opening) } else { self.offset };
         let is_free = |c: usize| !part.dofs.is_fixed(DISPLACEMENT.component(c as u8), node);
-        let mut push = |component: usize, masters, constant| {
+        let mut push = |component: usize, masters, forces, constant| {
             let slave = (node, DISPLACEMENT.component(component as u8));
-            out.push(MasterSlaveConstraint { id: *next_id, slave, masters, constant, active: true });
+            out.push(MasterSlaveConstraint { id: *next_id, slave, masters, forces, constant, active: true });
             *next_id += 1;
         };
-        let offset = if hold == Hold::Stick {
-            let lead = self.lead(part, node, 1);
-            let closing = dot(self.normal, sub(offset, lead));
-            std::array::from_fn(|c| lead[c] + self.normal[c] * closing)
-        } else {
-            offset
-        };
-        match hold {
-            Hold::All | Hold::Stick => {
-                for c in (0..dimension).filter(|&c| is_free(c)) {
-                    let masters = self.weights.iter().map(|&(m, w)| ((m, DISPLACEMENT.component(c as u8)), w));
-                    push(c, masters.collect(), offset[c]);
-                }
+        let n = self.normal;
+        let closed: [f64; 3] = std::array::from_fn(|c| self.lead[c] + self.closing[c]);
+        let offset = match hold {
+            Hold::Tied => self.lead,
+            Hold::Normal { .. } | Hold::Closed => closed,
+            Hold::Stick => {
+                let lead = self.lead(part, node, 1);
+                let closing = dot(n, sub(closed, lead));
+                std::array::from_fn(|c| lead[c] + n[c] * closing)
             }
-            Hold::Normal => {
-                let n = self.normal;
-                let chosen = (0..dimension)
-                    .filter(|&c| is_free(c) && n[c].abs() > HOLD)
-                    .max_by(|&a, &b| n[a].abs().total_cmp(&n[b].abs()));
-                let Some(chosen) = chosen else { return };
-                let mut masters = Vec::new();
-                for c in (0..dimension).filter(|&c| n[c].abs() > NEGLIGIBLE) {
-                    let factor = n[c] / n[chosen];
-                    let component = DISPLACEMENT.component(c as u8);
-                    masters.extend(self.weights.iter().map(|&(m, w)| ((m, component), w * factor)));
-                    if c != chosen {
-                        masters.push(((node, component), -factor));
-                    }
-                }
-                push(chosen, masters, dot(n, offset) / n[chosen]);
+        };
+        let Hold::Normal { push: along } = hold else {
+            for c in (0..dimension).filter(|&c| is_free(c)) {
+                let masters = self.weights.iter().map(|&(m, w)| ((m, DISPLACEMENT.component(c as u8)), w));
+                push(c, masters.collect(), None, offset[c]);
+            }
+            return;
+        };
+        // The slave bears λ (n − push), λ < 0 under pressure. Which component is eliminated changes no answer: the constraint
+        // n · (u¹ − B u² − offset) = 0 and the direction of its force are the same.
+        let borne = sub(n, along);
+        let size = |c: usize| n[c].abs().min(borne[c].abs());
+        let free = (0..dimension).filter(|&c| is_free(c) && size(c) > HOLD);
+        let Some(chosen) = free.max_by(|&a, &b| size(a).total_cmp(&size(b))) else { return };
+        let (mut masters, mut forces) = (Vec::new(), Vec::new());
+        for c in (0..dimension).filter(|&c| n[c].abs().max(borne[c].abs()) > NEGLIGIBLE) {
+            let (factor, force) = (n[c] / n[chosen], borne[c] / borne[chosen]);
+            let component = DISPLACEMENT.component(c as u8);
+            masters.extend(self.weights.iter().map(|&(m, w)| ((m, component), w * factor)));
+            forces.extend(self.weights.iter().map(|&(_, w)| w * force));
+            if c != chosen {
+                masters.push(((node, component), -factor));
+                forces.push(-force);
             }
         }
+        push(chosen, masters, (borne != n).then_some(forces), dot(n, offset) / n[chosen]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use zelus_core::model::Nodes;
+
+    const NORMAL_OF_FACE: [f64; 3] = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];
+
+    fn relation() -> NodeRelation {
+        let (weights, lead, closing) = (vec![(1, 0.75), (2, 0.25)], [0.0; 3], [0.1, 0.15, 0.3]);
+        NodeRelation { weights, lead, closing, opening: [0.0; 3], normal: NORMAL_OF_FACE }
+    }
+
+    /// The constraint of node 0 with some of its components held, and its force on the nodes for a unit at the eliminated one.
+    fn held(fixed: &[u8], push: [f64; 3]) -> (MasterSlaveConstraint, [[f64; 3]; 3]) {
+        let mut part = ModelPart::new("Structure");
+        part.info.domain_size = 3;
+        part.nodes = Nodes::new(vec![1, 2, 3], vec![[0.0; 3]; 3]);
+        part.nodes.history.add(&DISPLACEMENT);
+        let unknowns = [0, 1, 2].map(|c| (DISPLACEMENT.component(c), false, vec![0, 1, 2]));
+        part.dofs.number(&part.nodes, &unknowns);
+        fixed.iter().for_each(|&c| part.dofs.set_fixed(DISPLACEMENT.component(c), &[0], true, 3));
+        let mut out = Vec::new();
+        relation().constraints(&part, 0, Hold::Normal { push }, &mut 1, &mut out);
+        let constraint = out.pop().expect("a constraint");
+        let mut force = [[0.0; 3]; 3];
+        let weights = constraint.masters.iter().map(|m| m.1).collect();
+        let shares = constraint.forces.clone().unwrap_or(weights);
+        force[0][usize::from(constraint.slave.1.component.expect("a component"))] = 1.0;
+        for (&((node, variable), _), share) in constraint.masters.iter().zip(shares) {
+            force[node as usize][usize::from(variable.component.expect("a component"))] = -share;
+        }
+        (constraint, force)
+    }
+
+    /// Whatever component is eliminated, the force is along n − push, on the slave and against it on the masters.
+    #[test]
+    fn the_component_that_is_eliminated_changes_nothing() {
+        for push in [[0.0; 3], [0.3, 0.0, -0.1]] {
+            for (fixed, eliminated) in [(&[][..], 2), (&[2], 1), (&[1, 2], 0)] {
+                let (constraint, force) = held(fixed, push);
+                assert_eq!(constraint.slave.1.component, Some(eliminated));
+                let along = sub(NORMAL_OF_FACE, push);
+                for c in 0..3 {
+                    let expected = along[c] / along[usize::from(eliminated)];
+                    assert!((force[0][c] - expected).abs() < 1e-15, "{force:?}");
+                    assert!(
+                        (force[1][c] + 0.75 * expected).abs() < 1e-15 && (force[2][c] + 0.25 * expected).abs() < 1e-15
+                    );
+                }
+                // n · (u¹ − B u²) = n · offset for any motion.
+                let motion = |node: u32, c: usize| f64::from(node + 1) * [0.3, -0.2, 0.5][c];
+                let component = |v: zelus_core::model::ScalarVariable| usize::from(v.component.expect("a component"));
+                let terms = constraint.masters.iter().map(|&((node, v), w)| w * motion(node, component(v)));
+                let followed = terms.sum::<f64>() + constraint.constant;
+                let gap: f64 = (0..3)
+                    .map(|c| {
+                        let own = if c == usize::from(eliminated) { followed } else { motion(0, c) };
+                        let masters = 0.75 * motion(1, c) + 0.25 * motion(2, c);
+                        NORMAL_OF_FACE[c] * (own - masters - [0.1, 0.15, 0.3][c])
+                    })
+                    .sum();
+                assert!(gap.abs() < 1e-15, "{gap:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn rows_count_with_their_area_or_by_facets() {
+        let row = |area, node, gap| Row {
+            node: 0,
+            area,
+            weights: vec![(node, 1.0)],
+            lead: [0.0; 3],
+            gap,
+            normal: [0.0, 0.0, 1.0],
+        };
+        let pair = PairRelation { rows: vec![row(3.0, 1, 0.2), row(1.0, 2, -0.2)] };
+        let nodes = node_relations([(0, &pair), (1, &pair)].into_iter(), &[], Weights::Consistent);
+        assert_eq!(nodes[&0].weights, [(1, 0.75), (2, 0.25)]);
+        assert!((nodes[&0].closing[2] - 0.1).abs() < 1e-16 && nodes[&0].keeping_opening().closing[2] < 0.0);
+        let first = node_relations([(0, &pair), (1, &pair)].into_iter(), &[], Weights::ByFacets);
+        assert_eq!(first[&0].weights, [(1, 0.5), (2, 0.5)]);
     }
 }

@@ -41,6 +41,7 @@ struct Whole {
     reaction_check_stiffness_factor: f64,
     update_condition_relation_step: bool,
     consistent_weights: bool,
+    keep_first_opening: bool,
     search_parameters: Search,
 }
 
@@ -89,6 +90,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         } else {
             Weights::ByFacets
         },
+        keeps_first_opening: whole.keep_first_opening,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = MpcInteraction::new(chosen, part)?;

@@ -120,14 +120,16 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Spa
     }
 }
 
-register_conditions! { "LineLoadCondition", 1, "Force per length (LINE_LOAD) and pressure on a line",
+register_conditions! { "LineLoadCondition", 1,
+"Force per length (LINE_LOAD) and pressure on a line: NEGATIVE_FACE_PRESSURE presses a body on its left",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ";
 "2D2N": Following<LineLoad<false>>, 2, 4;
 "2D3N": Following<LineLoad<false>>, 3, 6;
 "3D2N": Following<SpatialLineLoad>, 2, 6;
 "3D3N": Following<SpatialLineLoad>, 3, 9 }
 
-register_conditions! { "AxisymLineLoadCondition", 1, "Force per area (LINE_LOAD) and pressure on a surface of revolution",
+register_conditions! { "AxisymLineLoadCondition", 1,
+"Force per area (LINE_LOAD) and pressure on a surface of revolution: NEGATIVE_FACE_PRESSURE presses a body on its left",
 "f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ";
 "2D2N": Following<LineLoad<true>>, 2, 4;
 "2D3N": Following<LineLoad<true>>, 3, 6 }

@@ -69,7 +69,8 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Sur
     }
 }
 
-register_conditions! { "SurfaceLoadCondition", 2, "Force per area (SURFACE_LOAD) and pressure on a surface",
+register_conditions! { "SurfaceLoadCondition", 2,
+"Force per area (SURFACE_LOAD) and pressure on a surface: POSITIVE_FACE_PRESSURE presses a body its normal points out of",
 "f_i = ∫ N_i (q |n| + p n) dξ dη, n = t_1 × t_2";
 "3D3N": Following<SurfaceLoad>, 3, 9;
 "3D4N": Following<SurfaceLoad>, 4, 12;
