@@ -191,7 +191,7 @@ impl Setting {
             normal_variation: NormalVariation::Update,
             augmentation: Augmentation::Node,
             friction_law: &COULOMB,
-            slip_rule: SlipRule::Bounded { augmentation: 0.0, threshold: 0.02 },
+            slip_rule: SlipRule::Bounded(Margin::default()),
         };
         let pair = Pair {
             key: PairKey { interface: 0, slave: 0, master: 0 },
