@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use zelus::contact_structural_mechanics::active_set::SlipRule;
+use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::formulations::Augmentation;
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
