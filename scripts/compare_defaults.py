@@ -206,13 +206,11 @@ class Deck:
                                                                 for word in ("check", "output"))]
             if laid:
                 name, keys, value = laid
-                if name in ("static", "dynamic", "explicit_dynamic"):
-                    complete(parameters["solver_settings"], keys, value)
-                elif name in parameters["solver_settings"]:
-                    complete(parameters["solver_settings"][name], keys, value)
-                for process in (p for items in lists.values() for p in items):
-                    if process.get("python_module", "").split(".")[-1] == name:
-                        complete(process["Parameters"], keys, value)
+                processes = [p["Parameters"] for items in lists.values() for p in items
+                             if p.get("python_module", "").split(".")[-1] == name]
+                solver = parameters["solver_settings"]
+                for target in processes or [solver[name] if name in solver else solver]:
+                    complete(target, keys, value)
             names = [n for field in self.fields for n in FIELDS[field]]
             lists["comparison"] = [{
                 "python_module": "json_output_process", "kratos_module": "KratosMultiphysics",
@@ -247,7 +245,7 @@ class Deck:
 
 def scale_factor(report):
     """SCALE_FACTOR of the run, 1 where it has none."""
-    return next((pair["scale_factor"] for pair in report.get("contact", []) if "scale_factor" in pair), 1.0)
+    return report.get("parameters", {}).get("scale factor k", 1.0)
 
 
 def difference(a, b, field):
