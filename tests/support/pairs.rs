@@ -6,7 +6,7 @@ use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::formulations::Augmentation;
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
-use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, SegmentationSettings};
+use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Family, Pair, PairKey, PairRequest, Previous, condition_name,
 };
@@ -187,7 +187,7 @@ impl Setting {
             scale_factor: 1.7,
             stiffness: 20.0,
             tangent_factor: 0.3,
-            operator_threshold: self.operator_threshold,
+            operator_threshold: OperatorThreshold { share: 0.0, area: self.operator_threshold },
             normal_variation: NormalVariation::Update,
             augmentation: Augmentation::Node,
             friction_law: &COULOMB,

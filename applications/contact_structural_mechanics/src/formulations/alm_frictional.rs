@@ -12,7 +12,7 @@
 //! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference.
 
 use super::{Augmentation, Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode, Turning};
-use crate::mortar::{Operators, incremental_slip, is_objective, objective_slip, tangential};
+use crate::mortar::{OperatorThreshold, Operators, incremental_slip, is_objective, objective_slip, tangential};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, dot, value};
 
@@ -23,8 +23,8 @@ pub struct AlmFrictional {
     pub scale_factor: f64,
     /// Ratio κ of tangential to normal penalty.
     pub tangent_factor: f64,
-    /// Change of D and of M (Frobenius norm) beyond which the slip is taken as objective.
-    pub operator_threshold: f64,
+    /// Change of D and of M beyond which the slip is taken as objective.
+    pub operator_threshold: OperatorThreshold,
     /// Where gap and slip augment the force.
     pub augmentation: Augmentation,
 }

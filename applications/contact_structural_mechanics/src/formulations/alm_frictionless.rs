@@ -1,6 +1,6 @@
 //! Frictionless contact by the augmented Lagrangian with a scalar multiplier (eq. 4.9, D.11).
 //!
-//! Active: p = f (k λ + ε̂ g̃) n and b_λ = k g̃. Inactive: p = 0 and b_λ = −k²/ε λ. λ < 0 in compression.
+//! Active: p = f (k λ + ε̂ g̃) n and b_λ = k g̃. Inactive: p = 0 and b_λ = −k² (A/c) λ. λ < 0 in compression.
 
 use super::{Augmentation, Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use zelus_core::scalar::Real;
@@ -35,7 +35,7 @@ impl Formulation for AlmFrictionless {
                 out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
                 out.multipliers[j][0] = gap[j] * k;
             } else {
-                out.multipliers[j][0] = lambda * (-k * k / node.penalty);
+                out.multipliers[j][0] = lambda * (-k * k * self.augmentation.softness(node));
             }
         }
         out

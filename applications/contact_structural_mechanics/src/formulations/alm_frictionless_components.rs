@@ -1,7 +1,7 @@
 //! Frictionless contact by the augmented Lagrangian with a vector multiplier.
 //!
-//! Active: p = f (k λ + ε̂ g̃ n) and b_λ = k g̃ n − k²/ε P λ, which drives the tangential part to zero.
-//! Inactive: p = 0 and b_λ = −k²/ε λ.
+//! Active: p = f (k λ + ε̂ g̃ n) and b_λ = k g̃ n − k² (A/c) P λ, which drives the tangential part to zero.
+//! Inactive: p = 0 and b_λ = −k² (A/c) λ.
 
 use super::{Augmentation, Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use crate::mortar::tangential;
@@ -31,7 +31,7 @@ impl Formulation for AlmFrictionlessComponents {
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate() {
             let (lambda, n) = (pair.multipliers[j], pair.normals[j]);
-            let release = -k * k / node.penalty;
+            let release = -k * k * self.augmentation.softness(node);
             if node.state.is_active() {
                 let normal = gap[j] * self.augmentation.penalty(node);
                 let traction = std::array::from_fn(|c| (lambda[c] * k + n[c] * normal) * node.dynamic_factor);

@@ -84,6 +84,15 @@ impl Augmentation {
             Self::Pair => node.penalty,
         }
     }
+
+    /// A/c with which multipliers are driven to zero; the reference program's 1/ε where pairs augment.
+    #[inline]
+    pub fn softness(self, node: &SlaveNode) -> f64 {
+        match self {
+            Self::Node => node.area / node.stiffness,
+            Self::Pair => node.penalty.recip(),
+        }
+    }
 }
 
 /// A family of contact conditions, stated by its residual.

@@ -1,7 +1,7 @@
 //! Frictionless contact by the perturbed Lagrangian with a scalar multiplier.
 //!
 //! ∫ k λ g − (k λ)²/(2ε): active: p = f k λ n and b_λ = k (g̃ − D_jj k λ/ε), so that the pressure is ε times the mean
-//! gap of the node. Inactive: p = 0 and b_λ = −k²/ε λ. Tends to the Lagrange multiplier method as ε grows, without its
+//! gap of the node. Inactive: p = 0 and b_λ = −k² (A/ε) λ. Tends to the Lagrange multiplier method as ε grows, without its
 //! zero diagonal.
 
 use super::{Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
@@ -34,7 +34,7 @@ impl Formulation for PerturbedLagrangianFrictionless {
                 out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], lambda * (k * node.dynamic_factor)));
                 out.multipliers[j][0] = (gap[j] - pair.area(j) * lambda * (k / node.penalty)) * k;
             } else {
-                out.multipliers[j][0] = lambda * (-k * k / node.penalty);
+                out.multipliers[j][0] = lambda * (-k * k * node.area / node.penalty);
             }
         }
         out

@@ -3,7 +3,9 @@
 use super::*;
 use crate::friction_law::Bound;
 use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
-use crate::mortar::{Habit, Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential};
+use crate::mortar::{
+    Habit, OperatorThreshold, Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential,
+};
 use zelus_core::vector3::normalised;
 
 const PAIR: Augmentation = Augmentation::Pair;
@@ -123,7 +125,8 @@ fn slip_history<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, N
     }
 }
 
-fn frictional(operator_threshold: f64) -> AlmFrictional {
+fn frictional(area: f64) -> AlmFrictional {
+    let operator_threshold = OperatorThreshold { share: 0.0, area };
     AlmFrictional { scale_factor: 1.7, tangent_factor: 0.3, operator_threshold, augmentation: PAIR }
 }
 

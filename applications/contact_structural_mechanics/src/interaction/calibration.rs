@@ -6,8 +6,9 @@ use zelus_core::model::ModelPart;
 use super::contact_settings::ContactSettings;
 use super::friction;
 use super::step_parameters::StepParameters;
+use crate::formulations::Augmentation;
 use crate::interface::{AlmParameters, Interface, Roles, alm_parameters, unit_of_length};
-use crate::mortar::SegmentationSettings;
+use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Multiplier;
 use crate::search::GapCheck;
 use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_H};
@@ -31,8 +32,10 @@ pub(super) fn calibrate(
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
     let unit = unit_of_length(&part.nodes.initial);
     let measure = if part.info.domain_size == 2 && !settings.axisymmetric { unit } else { unit * unit };
+    // Only penalties of weighted gaps hold an area.
+    let weighted = settings.family.weighted_gaps && settings.augmentation == Augmentation::Pair;
     let mut chosen = settings.manual.unwrap_or(AlmParameters {
-        penalty: estimate.penalty * settings.penalty_factor / if settings.family.weighted_gaps { measure } else { 1.0 },
+        penalty: estimate.penalty * settings.penalty_factor / if weighted { measure } else { 1.0 },
         scale_factor: estimate.scale_factor,
     });
     if unit != 1.0 && matches!(settings.family.multiplier, Multiplier::None) && settings.manual.is_none() {
@@ -60,7 +63,10 @@ pub(super) fn calibrate(
             ..settings.segmentation
         },
         scale_factor: chosen.scale_factor,
-        operator_threshold: settings.operator_threshold * measure,
+        operator_threshold: OperatorThreshold {
+            area: settings.operator_threshold.area * measure,
+            ..settings.operator_threshold
+        },
         stiffness: if of_bodies > 0.0 { of_bodies } else { chosen.penalty },
         slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction),
         ..before.clone()

@@ -10,7 +10,7 @@ use super::step_parameters::NormalVariation;
 use super::uzawa::UzawaSettings;
 use crate::formulations::Augmentation;
 use crate::interface::AlmParameters;
-use crate::mortar::SegmentationSettings;
+use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Family;
 use crate::search::SearchSettings;
 
@@ -51,8 +51,8 @@ pub struct ContactSettings {
     pub use_scale_factor: bool,
     /// Ratio of tangential and normal penalty.
     pub tangent_factor: f64,
-    /// Change of the operators beyond which slip is measured objectively.
-    pub operator_threshold: f64,
+    /// Change of the operators beyond which slip is measured objectively; its area counts in the model's unit of length.
+    pub operator_threshold: OperatorThreshold,
     /// Coefficients and the rules of stick and slip.
     pub friction: FrictionSettings,
     /// What of the parameters is adapted in every iteration.

@@ -3,7 +3,7 @@
 use crate::active_set::SlipRule;
 use crate::formulations::Augmentation;
 use crate::friction_law::FrictionLaw;
-use crate::mortar::SegmentationSettings;
+use crate::mortar::{OperatorThreshold, SegmentationSettings};
 
 /// When normals follow the iteration, and whether the tangent knows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
@@ -51,8 +51,8 @@ pub struct StepParameters {
     pub stiffness: f64,
     /// Ratio κ of tangential and normal penalty.
     pub tangent_factor: f64,
-    /// Change of the operators beyond which slip is measured objectively (area; in the plane a length).
-    pub operator_threshold: f64,
+    /// Change of the operators beyond which slip is measured objectively.
+    pub operator_threshold: OperatorThreshold,
     /// What limits tangential tractions.
     pub friction_law: &'static FrictionLaw,
     /// How stick and slip are told apart.

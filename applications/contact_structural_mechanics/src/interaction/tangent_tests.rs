@@ -18,7 +18,7 @@ use crate::formulations::Augmentation;
 use crate::friction_law::COULOMB;
 use crate::interface::{Facet, FacetSource, Interface, NormalPatches, Roles, centre_normal};
 use crate::mortar::tests::Noise;
-use crate::mortar::{Habit, SegmentationSettings};
+use crate::mortar::{Habit, OperatorThreshold, SegmentationSettings};
 use crate::pairs::{
     ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Previous, condition_name, find_family, group_by_shapes,
     group_by_surroundings,
@@ -107,7 +107,7 @@ impl Contact {
             scale_factor: 1.7,
             stiffness: 20.0,
             tangent_factor: 0.3,
-            operator_threshold: 0.0,
+            operator_threshold: OperatorThreshold::default(),
             normal_variation: NormalVariation::Exact,
             augmentation,
             friction_law: &COULOMB,

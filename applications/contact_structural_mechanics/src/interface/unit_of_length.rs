@@ -1,4 +1,4 @@
-//! The unit of length that dimensionless settings refer to.
+//! The unit of length that Kratos' numbers without a unit refer to, where a deck asks for them.
 //!
 //! Kratos multiplies *weighted* gaps, which hold an area, with E/h, and compares operators, which are areas, with a bare
 //! number. Such numbers mean something in a unit of length only, and are chosen for bodies that measure about one in it.

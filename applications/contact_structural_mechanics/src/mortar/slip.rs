@@ -36,16 +36,26 @@ pub fn incremental_slip<T: Real, const NS: usize, const NM: usize>(
     std::array::from_fn(|j| tangential(jump[j].map(|x| -x), normals[j]))
 }
 
-/// Whether the objective slip is to be used: both operators changed by more than `threshold` (Frobenius norm).
+/// Change of an operator beyond which slip is measured objectively (Frobenius norm): `share` of its norm and `area`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct OperatorThreshold {
+    /// Share of the norm of the operator at the start of the step.
+    pub share: f64,
+    /// An area; in the plane a length.
+    pub area: f64,
+}
+
+/// Whether the objective slip is to be used: both operators changed by more than `threshold`.
 pub fn is_objective<T: Real, const NS: usize, const NM: usize>(
     operators: &Operators<T, NS, NM>,
     previous: &Operators<f64, NS, NM>,
-    threshold: f64,
+    threshold: OperatorThreshold,
 ) -> bool {
     let change = operators.values().minus(previous);
-    let frobenius = |sum: f64| sum.sqrt();
-    frobenius(change.d.iter().flatten().map(|x| x * x).sum()) > threshold
-        && frobenius(change.m.iter().flatten().map(|x| x * x).sum()) > threshold
+    let squares = |x: &f64| x * x;
+    let exceeds = |change: f64, before: f64| change.sqrt() > threshold.area + threshold.share * before.sqrt();
+    exceeds(change.d.iter().flatten().map(squares).sum(), previous.d.iter().flatten().map(squares).sum())
+        && exceeds(change.m.iter().flatten().map(squares).sum(), previous.m.iter().flatten().map(squares).sum())
 }
 
 /// Unit tangent of a slave node: the direction of the tangential part of `vector`, if that is more than its round-off.

@@ -22,6 +22,7 @@ use crate::interaction::{
     UzawaSettings,
 };
 use crate::interface::AlmParameters;
+use crate::mortar::OperatorThreshold;
 use crate::pairs::{Family, find_family};
 use crate::penalty_adaptation::PenaltyRule;
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
@@ -100,6 +101,20 @@ struct FrictionKeys {
     slip_step_reset_frequency: i64,
     tangent_factor: f64,
     operator_threshold: f64,
+    /// Only families that measure slip in two ways have it.
+    #[serde(default)]
+    absolute_operator_threshold: bool,
+}
+
+impl FrictionKeys {
+    fn threshold(&self) -> OperatorThreshold {
+        let (share, area) = (self.operator_threshold, 0.0);
+        if self.absolute_operator_threshold {
+            OperatorThreshold { share: area, area: share }
+        } else {
+            OperatorThreshold { share, area }
+        }
+    }
 }
 
 /// The process for the families whose names begin with that of `stem`.
@@ -158,7 +173,8 @@ fn interaction(
         NormalVariation::Exact if family.frictional() && keeps_normals => NormalVariation::None,
         other => other,
     };
-    let augmentation = whole.augmentation.unwrap_or(Augmentation::Pair);
+    let augmentation =
+        whole.augmentation.unwrap_or(if family.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
     let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
     let rule = whole.parameters.adaptation_rule.unwrap_or(PenaltyRule::AugmentedLagrangian);
     let chosen = ContactSettings {
@@ -191,8 +207,12 @@ fn interaction(
         explicit: explicit_gap(settings, request)?,
         use_scale_factor: whole.parameters.use_scale_factor,
         // Where slips only decide, they count no more than gaps.
-        tangent_factor: if augmentation == Augmentation::Node { tangent_factor.min(1.0) } else { tangent_factor },
-        operator_threshold: keys.as_ref().map_or(0.0, |keys| keys.operator_threshold),
+        tangent_factor: if whole.augmentation == Some(Augmentation::Node) {
+            tangent_factor.min(1.0)
+        } else {
+            tangent_factor
+        },
+        operator_threshold: keys.as_ref().map_or_else(OperatorThreshold::default, FrictionKeys::threshold),
         friction,
         adaptation: AdaptationSettings {
             rule: whole.parameters.adapt_penalty.then_some(rule),

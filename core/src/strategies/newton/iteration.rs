@@ -243,6 +243,7 @@ impl NewtonRaphson {
                 Ok(Turn::Failed(why))
             }
             Failed::Inaccurate(why) if !interactions.is_empty() => {
+                self.singular = true;
                 let worst = self.largest_residual(part, &self.assembler.equations().balanced(residual));
                 Ok(Turn::Failed(why + &worst.unwrap_or_default()))
             }
