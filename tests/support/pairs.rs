@@ -198,6 +198,7 @@ impl Setting {
             slave_normal: self.slave_normal,
             master_normal: self.master_normal,
             overlapping: true,
+            area: [0.6; 4],
             previous: Previous::default(),
             habit: Habit::default(),
         };

@@ -1,12 +1,14 @@
 //! Friction by the augmented Lagrangian with a vector multiplier.
 //!
-//! - inactive: p = 0, b_λ = −k² (A/c) [(λ·n) n + P λ/κ], with n and A constant: a multiplier is to vanish at once;
+//! - inactive: p = 0, b_λ = −k² (A/c) [(λ·n) n + P λ/κ], with n constant: a multiplier is to vanish at once;
 //! - slip: p = f (k λ + ε̂ g̃ n), b_λ = k g̃ n − k (A/c) (k P λ − P q) with q = b(k λ·n + ε̂ g̃) τ, b the bound of the law
 //!   of friction;
 //! - stick: p = f (k λ + ε̂ g̃ n + κ ε̂ s), b_λ = k g̃ n + k s.
 //!
-//! Over the pairs of a node A adds up to the area of the node and g̃ and s to its gap and slip: the equations of a node do
-//! not depend on the number of its pairs.
+//! Over the pairs of a node g̃ and s add up to its gap and slip. So does A, the area that the pair has of the node: the
+//! equations of a node do not depend on the number of its pairs. Where pairs augment, A is the area of the node in each of
+//! them, for then their bounds hold gaps that add up to zero.
+//!
 //! In space the direction τ of sliding turns with the trial traction, which the tangent knows.
 //! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
 //! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference.
@@ -104,7 +106,7 @@ impl Formulation for AlmFrictional {
                         turning = tangential(across(slip[j], node).map(|s| s * by_slip), n);
                     }
                     let q = tangential(q, n);
-                    let softness = pair.area(j) / node.stiffness;
+                    let softness = node.area / node.stiffness;
                     out.multipliers[j] =
                         std::array::from_fn(|c| (n[c] * gap[j] + turning[c] - (lambda_t[c] * k - q[c]) * softness) * k);
                     0.0

@@ -12,9 +12,9 @@
 //! the decision of the active set, which knows the gap of the whole node.
 //!
 //! Notation in the files of the families: k scale factor, ε nodal penalty (ε̂ is ε where pairs augment, 0 where nodes do),
-//! A = Σ D_jk area that the pair has of the node, c stiffness by length, f dynamic factor, n nodal normal,
+//! A area that the pair has of the node, c stiffness by length, f dynamic factor, n nodal normal,
 //! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, b bound of the tangential traction, τ
-//! unit tangent. All but D, M, g̃, s, A (and normals given with derivatives) are constant in the tangent.
+//! unit tangent. All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
 
 pub mod alm_frictional;
 pub mod alm_frictionless;

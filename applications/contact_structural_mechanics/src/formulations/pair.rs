@@ -44,7 +44,7 @@ pub struct SlaveNode {
     pub penalty: f64,
     /// c > 0: stiffness by length, for rows that state tractions beside others that state gaps and slips.
     pub stiffness: f64,
-    /// A > 0: area over all pairs.
+    /// A > 0: the area that this pair has of the node, or all pairs where they augment; constant in the tangent.
     pub area: f64,
     /// Factor f on nodal forces, 1 unless the dynamic factor is in use.
     pub dynamic_factor: f64,
@@ -62,7 +62,7 @@ pub struct SlaveNode {
 /// across its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turning {
-    /// κ b/|q̂|, with the bound b: slip across τ, in shares of the slip that stick would forbid.
+    /// κ b/|q̂|, with the sum b of the bounds that the pairs of the node state: slip across τ, in shares of the slip that stick would forbid.
     pub by_slip: f64,
     /// k/|q̂|: traction by multiplier across τ, in shares of the bound.
     pub by_multiplier: f64,

@@ -53,6 +53,8 @@ pub struct ContactInteraction {
     uzawa: Uzawa,
     /// Gap at which explicit steps stiffen the penalty; 0 in implicit ones (length).
     max_gap: f64,
+    /// Overlapping pairs of every node.
+    pair_counts: Vec<u32>,
     cycles: CycleGuard,
     /// Times in this step that open interfaces took hold because a body was free to move, and which they are.
     reached: usize,
@@ -82,8 +84,8 @@ impl ContactInteraction {
             augmentation: settings.augmentation,
         });
         Ok(Self {
+            pairing: Pairing::new(interfaces, part, settings.nodal_normals),
             settings,
-            pairing: Pairing::new(interfaces, part),
             slaves: Vec::new(),
             parameters,
             threshold: f64::INFINITY,
@@ -95,6 +97,7 @@ impl ContactInteraction {
             resolution: Resolution::default(),
             uzawa: Uzawa::default(),
             max_gap: 0.0,
+            pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             reached: 0,
             open: BTreeSet::new(),
@@ -156,17 +159,18 @@ impl ContactInteraction {
         let count = part.nodes.len();
         let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-        let mut faced = vec![false; count];
+        let mut pairs = vec![0_u32; count];
         for (block, integrals) in self.pairing.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
                 let overlaps = meetings.next().is_some_and(|meeting| meeting.overlapping);
-                block.pairs_mut()[at].overlapping = overlaps;
+                let pair = &mut block.pairs_mut()[at];
+                (pair.overlapping, pair.area) = (overlaps, integral.area);
                 if !overlaps {
                     continue;
                 }
                 for (local, &node) in block.slave_nodes(at).iter().enumerate() {
                     let node = node as usize;
-                    faced[node] = true;
+                    pairs[node] += 1;
                     gap[node] += integral.gap[local];
                     mean[node] += integral.gap[local] * integral.area[local];
                     area[node] += integral.area[local];
@@ -179,8 +183,9 @@ impl ContactInteraction {
         let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
         add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         for &node in &self.slaves {
-            part.nodes.flags.set(ISOLATED, node as usize, !faced[node as usize]);
+            part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
         }
+        self.pair_counts = pairs;
         mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
         self.mean_gaps = mean;
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
@@ -294,7 +299,8 @@ impl ContactInteraction {
     fn write_tangents(&self, part: &mut ModelPart) {
         if self.settings.family.frictional() {
             let (family, keeps) = (self.settings.family, self.settings.friction.keeps_direction);
-            sliding::write_tangents(part, &self.slaves, family, &self.parameters, self.resolution, keeps);
+            let (resolution, counts) = (self.resolution, &self.pair_counts);
+            sliding::write_tangents(part, &self.slaves, family, &self.parameters, resolution, counts, keeps);
         }
     }
 

@@ -9,7 +9,7 @@ use super::friction::FrictionSettings;
 use super::step_parameters::NormalVariation;
 use super::uzawa::UzawaSettings;
 use crate::formulations::Augmentation;
-use crate::interface::AlmParameters;
+use crate::interface::{AlmParameters, NodalNormals};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Family;
 use crate::search::SearchSettings;
@@ -27,6 +27,8 @@ pub struct ContactSettings {
     pub interval: Interval,
     /// When normals follow the iteration.
     pub normal_variation: NormalVariation,
+    /// How facets count in the normals of nodes.
+    pub nodal_normals: NodalNormals,
     /// Where gaps augment the forces of augmented Lagrangians.
     pub augmentation: Augmentation,
     /// Which facets are looked at.

@@ -13,7 +13,7 @@ use zelus_core::registry::{self, Kind};
 
 use super::contact_settings::ContactSettings;
 use super::step_parameters::{NormalVariation, StepParameters};
-use crate::interface::{Facet, Interface, NormalPatches, Roles, centre_normal, positions, slave_nodes};
+use crate::interface::{Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, slave_nodes};
 use crate::mortar::{Habit, SegmentationSettings};
 use crate::pairs::{
     ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes,
@@ -50,9 +50,9 @@ pub(super) struct Meeting {
 
 impl Pairing {
     /// No pairs yet between the facets of these interfaces.
-    pub(super) fn new(interfaces: Vec<Interface>, part: &ModelPart) -> Self {
+    pub(super) fn new(interfaces: Vec<Interface>, part: &ModelPart, normals: NodalNormals) -> Self {
         Self {
-            patches: Arc::new(NormalPatches::new(part.nodes.len(), &interfaces)),
+            patches: Arc::new(NormalPatches::new(part.nodes.len(), &interfaces, normals)),
             interfaces,
             blocks: Vec::new(),
             touching: BTreeSet::new(),
@@ -65,7 +65,7 @@ impl Pairing {
 
     /// Finds the facets around nodes anew, after the sides of facets have changed.
     pub(super) fn find_patches(&mut self, part: &ModelPart) {
-        let patches = NormalPatches::new(part.nodes.len(), &self.interfaces);
+        let patches = NormalPatches::new(part.nodes.len(), &self.interfaces, self.patches.weights());
         if patches != *self.patches {
             self.patches = Arc::new(patches);
             self.graph += 1;
@@ -204,6 +204,7 @@ impl Pairing {
             slave_normal: normal(part, self.slave(key)),
             master_normal: normal(part, self.master(key)),
             overlapping: true,
+            area: [0.0; 4],
             previous: Previous::default(),
             habit: Habit::default(),
         }

@@ -5,7 +5,7 @@ use zelus_core::vector3::{add, cross, dot, norm, scale};
 
 use super::step_parameters::StepParameters;
 use crate::active_set::{SlipRule, TURNED};
-use crate::formulations::{NodeState, Turning};
+use crate::formulations::{Augmentation, NodeState, Turning};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Multiplier};
 use crate::resolution::Resolution;
@@ -19,12 +19,14 @@ use crate::variables::{
 /// multipliers, it is that of the weighted slip. For sliding nodes in space, whose direction is more than a sign, it is
 /// that of the trial traction q̂. A node that has none of them above round-off keeps the direction it had: at step
 /// start that is a far better guess than any fixed tangent. In the plane sliding nodes keep theirs, where `keeps_direction`.
+/// `pair_counts` holds the number of overlapping pairs of every node.
 pub(super) fn write_tangents(
     part: &mut ModelPart,
     slaves: &[u32],
     family: &Family,
     parameters: &StepParameters,
     resolution: Resolution,
+    pair_counts: &[u32],
     keeps_direction: bool,
 ) {
     let dimension = part.info.domain_size;
@@ -60,7 +62,7 @@ pub(super) fn write_tangents(
                 match state {
                     NodeState::Slip if dimension == 3 => {
                         let trial = Trial::new(part, at, parameters, multiplier, normal);
-                        turnings[position] = trial.turning(pure, parameters);
+                        turnings[position] = trial.turning(pair_counts[at], pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }
                     }
                     NodeState::Inactive if !pure => [0.0; 3],
@@ -119,13 +121,15 @@ impl Trial {
     }
 
     /// Trial tractions within the bound belong to nodes about to stick; there the direction turns as at the bound.
-    fn turning(&self, pure: bool, parameters: &StepParameters) -> Turning {
+    fn turning(&self, pairs: u32, pure: bool, parameters: &StepParameters) -> Turning {
         let size = norm(if pure { self.of_slip } else { self.traction }).max(self.bound);
         if size <= 0.0 || self.bound <= 0.0 {
             return Turning::default();
         }
+        // Where pairs augment, each states the law for the whole area.
+        let times = if parameters.augmentation == Augmentation::Pair { f64::from(pairs.max(1)) } else { 1.0 };
         Turning {
-            by_slip: parameters.tangent_factor * self.bound / size,
+            by_slip: times * parameters.tangent_factor * self.bound / size,
             by_multiplier: if pure { 0.0 } else { parameters.scale_factor / size },
         }
     }

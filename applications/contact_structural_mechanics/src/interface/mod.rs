@@ -10,6 +10,6 @@ mod unit_of_length;
 pub use contact_part::add_contact_part;
 pub use facets::{Facet, FacetSource, Interface, Roles, interfaces, slave_nodes};
 pub use nodal_h::find_nodal_h;
-pub use normals::{Corner, NormalPatches, centre_normal, nodal_normals, positions};
+pub use normals::{Corner, NodalNormals, NormalPatches, centre_normal, nodal_normals, positions};
 pub use parameters::{AlmParameters, alm_parameters};
 pub use unit_of_length::unit_of_length;

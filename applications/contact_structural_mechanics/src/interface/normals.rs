@@ -1,15 +1,20 @@
 //! Normals of contact surfaces, and how they turn when nodes move.
 //!
-//! The normal of a node is the sum of the unit normals of its facets, taken at the node, normalised; facets are not
-//! weighted by their area. Everything in the present configuration, outward. At node j of a facet whose next and previous
-//! nodes lie along the edges a and b, the unit normal is m = a × b/|a × b| (in the plane a line has one edge, the other is
-//! the axis z), and with S = Σ m, n = S/|S|:
-//! dn = (I − n⊗n)/|S| Σ (I − m⊗m)/|a × b| (da × b + a × db).
+//! The normal of a node is S/|S| with the sum S of v over its facets. Everything in the present configuration, outward. At a
+//! node of a facet whose next and previous nodes lie along the edges a and b (in the plane a line has one edge, the other is
+//! the axis z), v is one of
+//!
+//! - a × b/(|a|² |b|²), which gives the normal of the sphere or circle that nodes lie on, however unlike their facets are
+//!   (Max, 1999);
+//! - a × b/|a × b|: all facets count alike, as in the reference program.
+//!
+//! dn = (I − n⊗n)/|S| Σ dv with, for the first, dv = (da × b + a × db)/(|a|² |b|²) − 2 v (a·da/|a|² + b·db/|b|²), and for
+//! the second (I − v⊗v)/|a × b| (da × b + a × db).
 
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::{cross, norm, scale, sub};
+use zelus_core::vector3::{cross, dot, norm, scale, sub};
 
 use super::facets::{Facet, Interface, Roles};
 
@@ -59,13 +64,53 @@ impl Corner {
         [self.next, self.previous].map(|end| end.map_or(AXIS, |end| sub(places[end as usize], places[node as usize])))
     }
 
-    /// m and |a × b|; `None` without area.
-    fn normal(self, node: u32, places: &[[f64; 3]]) -> Option<([f64; 3], f64)> {
+    /// v; `None` without area.
+    fn normal(self, node: u32, places: &[[f64; 3]], weights: NodalNormals) -> Option<[f64; 3]> {
         let [a, b] = self.edges(node, places);
         let across = cross(a, b);
-        let size = norm(across);
-        (size > 0.0).then(|| (scale(across, 1.0 / size), size))
+        let size = match weights {
+            NodalNormals::ByEdges => dot(a, a) * dot(b, b),
+            NodalNormals::ByFacets => norm(across),
+        };
+        (norm(across) > 0.0).then(|| scale(across, 1.0 / size))
     }
+
+    /// Visits the ends of its edges with ∂v/∂x; the node itself moves against them.
+    fn variation(
+        self,
+        node: u32,
+        places: &[[f64; 3]],
+        weights: NodalNormals,
+        mut visit: impl FnMut(u32, [[f64; 3]; 3]),
+    ) {
+        let Some(v) = self.normal(node, places, weights) else { return };
+        let [a, b] = self.edges(node, places);
+        let turned = match weights {
+            NodalNormals::ByEdges => projector([0.0; 3], dot(a, a) * dot(b, b)),
+            NodalNormals::ByFacets => projector(v, norm(cross(a, b))),
+        };
+        // δ × b = −b × δ, and a × δ.
+        for (end, moved, other) in [(self.next, a, scale(b, -1.0)), (self.previous, b, a)] {
+            let Some(end) = end else { continue };
+            let mut by_end = product(turned, crossing(other));
+            if weights == NodalNormals::ByEdges {
+                let by_length = -2.0 / dot(moved, moved);
+                (0..3).for_each(|r| (0..3).for_each(|c| by_end[r][c] += by_length * v[r] * moved[c]));
+            }
+            visit(end, by_end);
+        }
+    }
+}
+
+/// How facets count in the normal of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NodalNormals {
+    /// By the squares of their edges at the node, the shorter the more.
+    ByEdges,
+    /// All alike.
+    #[default]
+    ByFacets,
 }
 
 /// The facets that make the normal of every node of the interfaces.
@@ -79,11 +124,12 @@ pub struct NormalPatches {
     /// First corner of each node, and the end.
     starts: Vec<u32>,
     corners: Vec<Corner>,
+    weights: NodalNormals,
 }
 
 impl NormalPatches {
     /// Those of a model part with `count` nodes.
-    pub fn new(count: usize, interfaces: &[Interface]) -> Self {
+    pub fn new(count: usize, interfaces: &[Interface], weights: NodalNormals) -> Self {
         let mut met = vec![false; count];
         let meeting = interfaces.iter().filter(|i| i.open).flat_map(|i| &i.facets).filter(|f| f.role != Roles::Open);
         meeting.flat_map(|f| &f.nodes).for_each(|&node| met[node as usize] = true);
@@ -102,7 +148,12 @@ impl NormalPatches {
         at_nodes.iter().for_each(|(node, _)| starts[*node as usize + 1] += 1);
         (0..count).for_each(|node| starts[node + 1] += starts[node]);
         let nodes = (0..count as u32).filter(|&node| starts[node as usize] < starts[node as usize + 1]).collect();
-        Self { nodes, starts, corners: at_nodes.into_iter().map(|(_, corner)| corner).collect() }
+        Self { nodes, starts, corners: at_nodes.into_iter().map(|(_, corner)| corner).collect(), weights }
+    }
+
+    /// How facets count.
+    pub fn weights(&self) -> NodalNormals {
+        self.weights
     }
 
     /// The facets of a node.
@@ -118,11 +169,11 @@ impl NormalPatches {
         self.corners(node).iter().flat_map(|corner| [corner.next, corner.previous]).flatten()
     }
 
-    /// S, the sum of the unit normals of a node.
+    /// S.
     fn sum(&self, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for (normal, _) in self.corners(node).iter().filter_map(|corner| corner.normal(node, places)) {
-            (0..3).for_each(|c| sum[c] += normal[c]);
+        for v in self.corners(node).iter().filter_map(|corner| corner.normal(node, places, self.weights)) {
+            (0..3).for_each(|c| sum[c] += v[c]);
         }
         sum
     }
@@ -144,17 +195,12 @@ impl NormalPatches {
         }
         let outer = projector(scale(sum, 1.0 / length), length);
         for corner in self.corners(node).iter().filter(|corner| knows(corner)) {
-            let Some((normal, size)) = corner.normal(node, places) else { continue };
-            let turned = product(outer, projector(normal, size));
-            let [a, b] = corner.edges(node, places);
             let mut own = [[0.0; 3]; 3];
-            // δ × b = −b × δ and a × δ.
-            for (end, edge) in [(corner.next, scale(b, -1.0)), (corner.previous, a)] {
-                let Some(end) = end else { continue };
-                let by_end = product(turned, crossing(edge));
+            corner.variation(node, places, self.weights, |end, by_end| {
+                let by_end = product(outer, by_end);
                 (0..3).for_each(|r| (0..3).for_each(|c| own[r][c] -= by_end[r][c]));
                 visit(end, by_end);
-            }
+            });
             visit(node, own);
         }
     }
@@ -186,9 +232,9 @@ fn product(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|r| std::array::from_fn(|c| (0..3).map(|k| a[r][k] * b[k][c]).sum()))
 }
 
-/// Writes NORMAL at the nodes of the interfaces.
+/// Writes NORMAL at the nodes of the interfaces; all facets count alike.
 pub fn nodal_normals(part: &mut ModelPart, interfaces: &[Interface]) {
-    NormalPatches::new(part.nodes.len(), interfaces).write(part);
+    NormalPatches::new(part.nodes.len(), interfaces, NodalNormals::ByFacets).write(part);
 }
 
 #[cfg(test)]
@@ -223,8 +269,11 @@ mod tests {
         sheet.iter_mut().for_each(|x| (0..3).for_each(|c| x[c] += 0.2 * noise.next()));
         let cases: [(&[&[u32]], &[[f64; 3]], usize); 2] =
             [(&[&[0, 1], &[1, 2]], &line, 2), (&[&[0, 1, 4, 3], &[1, 2, 4], &[2, 5, 4]], &sheet, 3)];
-        for (facets, places, space) in cases {
-            let patches = NormalPatches::new(places.len(), &[interface(facets)]);
+        for ((facets, places, space), weights) in cases
+            .into_iter()
+            .flat_map(|case| [NodalNormals::ByEdges, NodalNormals::ByFacets].map(|weights| (case, weights)))
+        {
+            let patches = NormalPatches::new(places.len(), &[interface(facets)], weights);
             for node in 0..places.len() as u32 {
                 let mut exact = vec![[[0.0; 3]; 3]; places.len()];
                 patches.variation(
@@ -254,6 +303,23 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// ANALYTIC: the radius is the normal of a circle and of a sphere, to round-off.
+    #[test]
+    fn normals_of_uneven_spheres_are_radii() {
+        let on_circle = |angle: f64| [angle.sin(), angle.cos(), 0.0];
+        let line = [0.1, 0.3, 1.0].map(on_circle);
+        let directions = [[0.0, 0.0], [0.3, 0.05], [0.35, 0.5], [-0.1, 0.2], [-0.4, -0.02], [0.1, -0.6]];
+        let sphere = directions.map(|[x, y]| zelus_core::vector3::normalised([x, y, 1.0]));
+        let cases: [(&[&[u32]], &[[f64; 3]], u32); 2] =
+            [(&[&[1, 0], &[2, 1]], &line, 1), (&[&[0, 1, 2, 3], &[0, 3, 4], &[0, 4, 5], &[0, 5, 1]], &sphere, 0)];
+        for (facets, places, node) in cases {
+            let of = |weights| normal(&NormalPatches::new(places.len(), &[interface(facets)], weights), node, places);
+            let off = |n: [f64; 3]| norm(sub(n, places[node as usize]));
+            assert!(off(of(NodalNormals::ByEdges)) < 1e-14, "{:?}", of(NodalNormals::ByEdges));
+            assert!(off(of(NodalNormals::ByFacets)) > 1e-3);
         }
     }
 }

@@ -43,6 +43,8 @@ pub struct Pair {
     pub master_normal: [f64; 3],
     /// Whether the facets overlap now; a pair that does not is isolated and contributes nothing.
     pub overlapping: bool,
+    /// Area that it has of each slave node, in the state integrated last.
+    pub area: [f64; 4],
     /// Operators at the start of the step.
     pub previous: Previous,
     /// What it goes on doing until the step ends.

@@ -13,7 +13,7 @@ use zelus_core::vector3::{cross, normalised, sub};
 use super::contact_block::{ContactBlock, Own};
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
+use crate::formulations::{self, Augmentation, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
@@ -191,17 +191,21 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         let penalty = view.nodes.values.values(&INITIAL_PENALTY, 0);
         let factor = view.nodes.values.values(&DYNAMIC_FACTOR, 0);
         let areas = view.nodes.values.values(&NODAL_AREA, 0);
-        let area = |node: usize| areas.get(node).copied().filter(|area| *area > 0.0).unwrap_or(1.0);
+        let positive = |area: Option<&f64>| area.copied().filter(|area| *area > 0.0).unwrap_or(1.0);
+        // The bounds of pairs that augment have gaps of their own, which add up to zero if all count alike.
+        let by_pair = self.parameters.augmentation == Augmentation::Pair;
+        let own = self.pairs[at].area;
         let tangent = view.nodes.values.values(&TANGENT_XI, 0);
         let by_slip = view.nodes.values.values(&TURNING_BY_SLIP, 0);
         let by_multiplier = view.nodes.values.values(&TURNING_BY_MULTIPLIER, 0);
-        self.slaves(at).map(|n| {
-            let node = n as usize;
+        let slaves = self.slaves(at);
+        std::array::from_fn(|j| {
+            let (n, node) = (slaves[j], slaves[j] as usize);
             SlaveNode {
                 state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
-                stiffness: self.parameters.nodal_stiffness(penalty[node], area(node)),
-                area: area(node),
+                stiffness: self.parameters.nodal_stiffness(penalty[node], positive(areas.get(node))),
+                area: positive(if by_pair { areas.get(node) } else { own.get(j) }),
                 dynamic_factor: factor[node],
                 friction: self.parameters.friction_law.bound_at(view.nodes, node),
                 tangent: if tangent.is_empty() { [0.0; 3] } else { vector(tangent, n) },

@@ -21,7 +21,7 @@ use crate::interaction::{
     AdaptationSettings, ContactInteraction, ContactSettings, ExplicitGap, FrictionSettings, NormalVariation,
     UzawaSettings,
 };
-use crate::interface::AlmParameters;
+use crate::interface::{AlmParameters, NodalNormals};
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Family, find_family};
 use crate::penalty_adaptation::PenaltyRule;
@@ -69,6 +69,7 @@ struct Whole {
     assume_master_slave: BTreeMap<String, Vec<String>>,
     contact_type: String,
     normal_variation: NormalVariation,
+    nodal_normals: NodalNormals,
     /// Processes whose families have their forces from penalties lack it.
     augmentation: Option<Augmentation>,
     clear_inactive_for_post: bool,
@@ -183,6 +184,7 @@ fn interaction(
         family,
         interval: Interval::from_node(settings.get("interval")?)?,
         normal_variation,
+        nodal_normals: whole.nodal_normals,
         augmentation,
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
