@@ -45,6 +45,8 @@ impl fmt::Display for Place {
 /// Whether a problem stops the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
+    /// Worth knowing, nothing to do about it.
+    Note,
     /// The run goes on; the log and the report of the run show it.
     Warning,
     /// The run does not start, or ends.
@@ -77,6 +79,11 @@ impl Diagnostic {
         Self { severity: Severity::Warning, ..Self::error(code, fact) }
     }
 
+    /// A note without place or remedy.
+    pub fn note(code: &'static str, fact: impl Into<String>) -> Self {
+        Self { severity: Severity::Note, ..Self::error(code, fact) }
+    }
+
     /// The same problem with its place.
     #[must_use]
     pub fn at(mut self, place: impl Into<Option<Place>>) -> Self {
@@ -94,7 +101,11 @@ impl Diagnostic {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kind = if self.severity == Severity::Error { "error" } else { "warning" };
+        let kind = match self.severity {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        };
         write!(f, "{kind}[{}]", self.code)?;
         if let Some(place) = &self.place {
             write!(f, " {place}")?;

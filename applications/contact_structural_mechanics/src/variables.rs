@@ -12,6 +12,7 @@ register_variable! {
     pub WEIGHTED_VECTOR_RESIDUAL: [f64; 3] = "Residual of a tied vector, integrated with dual shape functions.";
     pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
+    pub HELD_MULTIPLIER: [f64; 3] = "What becomes of the components of a multiplier where supports hold both sides: 0 own equation, 1 kept, 2 as its neighbours, 3 kept in stick.";
     pub NODAL_H: f64 = "Distance to the nearest node that shares an element (length).";
     pub INITIAL_PENALTY: f64 = "Penalty parameter of contact (force per length cubed).";
     pub MULTIPLIER_WEIGHT: f64 = "What the equation of a slave node counts its multiplier with where it states a traction (force times area).";

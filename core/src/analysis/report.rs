@@ -39,6 +39,8 @@ pub struct RunReport {
     pub sizes: Sizes,
     /// Accepted steps and failed attempts, in order.
     pub steps: Vec<StepRecord>,
+    /// Notes, in words.
+    pub notes: Vec<String>,
     /// Warnings, in words.
     pub warnings: Vec<String>,
     /// Which engine serves the deck's linear solver.

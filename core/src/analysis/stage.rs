@@ -14,7 +14,7 @@ use super::sharing::{distribute, read_the_same};
 use super::solver::{SolverSettings, check_dimensions, make_blocks, unknowns_of_all};
 use super::time_stepping::TimeStepping;
 use crate::communication::world;
-use crate::diagnostics::{Diagnostic, Error, Report, Result};
+use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
@@ -335,11 +335,12 @@ impl Stage {
         self.pass_on_messages(model, report, monitor)
     }
 
-    /// Hands warnings met by processes and interactions to the monitor and the report.
+    /// Hands notes and warnings met by processes and interactions to the monitor and the report.
     fn pass_on_messages(&self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
         let own = std::mem::take(&mut model.root_mut(&self.root)?.messages);
         for warning in world().problems_of_all(own) {
-            report.warnings.push(warning.to_string());
+            let list = if warning.severity == Severity::Note { &mut report.notes } else { &mut report.warnings };
+            list.push(warning.to_string());
             monitor.warn(&warning);
         }
         Ok(())

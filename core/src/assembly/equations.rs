@@ -167,7 +167,7 @@ impl Equations {
 
     /// TᵀA T.
     pub fn reduce_matrix(&self, full: &Csr, into: &mut Csr, same_pattern: bool) {
-        if self.has_slaves {
+        if self.has_slaves && self.touches_slaves(full) {
             *into = self.reduce_constrained(full);
             return;
         }
@@ -194,6 +194,12 @@ impl Equations {
                 }
             }
         }
+    }
+
+    /// Whether a constrained unknown has entries; the pattern is symmetric.
+    fn touches_slaves(&self, full: &Csr) -> bool {
+        let slaves = self.roles.iter().enumerate().filter(|(_, role)| matches!(role, Role::Slave(_)));
+        slaves.map(|(row, _)| full.row(row)).any(|(columns, _)| !columns.is_empty())
     }
 
     fn terms<'a>(&'a self, number: usize, one: &'a mut [Follow; 1]) -> &'a [Follow] {

@@ -165,8 +165,7 @@ fn encode(error: &Error) -> Vec<u8> {
 
 fn encode_problem(problem: &Diagnostic) -> Value {
     let place = problem.place.as_ref().map(|p| json!([p.file.to_string_lossy(), p.line, p.column]));
-    let is_error = problem.severity == Severity::Error;
-    json!([is_error, problem.code, place, problem.fact, problem.remedy])
+    json!([problem.severity as u8, problem.code, place, problem.fact, problem.remedy])
 }
 
 fn decode(text: &[u8]) -> Error {
@@ -184,9 +183,9 @@ fn decode(text: &[u8]) -> Error {
 fn decode_problem(value: &Value) -> Diagnostic {
     let text = |at: usize| value[at].as_str().map(str::to_owned);
     let number = |at: usize| value[2][at].as_u64().unwrap_or(0) as u32;
-    let is_error = value[0].as_bool().unwrap_or(true);
+    let severity = [Severity::Note, Severity::Warning].into_iter().find(|&s| value[0].as_u64() == Some(s as u64));
     Diagnostic {
-        severity: if is_error { Severity::Error } else { Severity::Warning },
+        severity: severity.unwrap_or(Severity::Error),
         code: known_code(text(1).unwrap_or_default()),
         place: value[2][0].as_str().map(|file| Place::at(file, number(1), number(2))),
         fact: text(3).unwrap_or_default(),

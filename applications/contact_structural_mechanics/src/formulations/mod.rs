@@ -19,6 +19,7 @@
 pub mod alm_frictional;
 pub mod alm_frictionless;
 pub mod alm_frictionless_components;
+pub mod held;
 pub mod mesh_tying;
 pub mod pair;
 pub mod penalty_frictional;
@@ -30,6 +31,7 @@ pub mod uzawa_frictionless;
 pub use alm_frictional::{AlmFrictional, SlipHistory};
 pub use alm_frictionless::AlmFrictionless;
 pub use alm_frictionless_components::AlmFrictionlessComponents;
+pub use held::Held;
 pub use mesh_tying::MeshTying;
 pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
 pub use penalty_frictional::PenaltyFrictional;

@@ -1,5 +1,6 @@
 //! What a formulation sees of a pair, and what it returns.
 
+use super::Held;
 use crate::friction_law::Bound;
 use crate::mortar::{Operators, weighted_gap};
 use zelus_core::model::flags::{ACTIVE, Flags, SLIP};
@@ -54,6 +55,10 @@ pub struct SlaveNode {
     pub tangent: [f64; 3],
     /// How that direction turns with the unknowns.
     pub turning: Turning,
+    /// What becomes of each component of its multiplier; of a scalar one the first.
+    pub held: [Held; 3],
+    /// k² A/c: what the equations of held components are measured with.
+    pub held_weight: f64,
 }
 
 /// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ c WS/A, τ = q̂/|q̂|.

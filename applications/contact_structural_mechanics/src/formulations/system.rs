@@ -1,5 +1,6 @@
 //! Local systems of a pair: the residual alone, or with its exact tangent by dual numbers.
 
+use super::held::restate;
 use super::pair::{Kinematics, PairResidual, SlaveNode};
 use super::{Formulation, Multipliers};
 use crate::mortar::{
@@ -30,7 +31,7 @@ pub fn residual<F: Formulation, const NS: usize, const NM: usize>(
     rhs.fill(0.0);
     let found = operators(geometry, settings);
     if let Overlap::Cells(operators) = found {
-        let out = formulation.residual(&kinematics(geometry, operators, multipliers), nodes, history);
+        let out = stated(formulation, &kinematics(geometry, operators, multipliers), nodes, history);
         for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, value| rhs[row] = value);
     }
     found
@@ -76,7 +77,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     };
     let Some(dual) = found else { return Overlap::None };
 
-    let out = formulation.residual(&kinematics(geometry, dual, multipliers), nodes, history);
+    let out = stated(formulation, &kinematics(geometry, dual, multipliers), nodes, history);
     for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NU>| {
         rhs[row] = b.value;
         for column in 0..NU {
@@ -94,7 +95,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
         for j in 0..NS {
             pair.multipliers[j][c] = Dual::variable(multipliers[j][c], j);
         }
-        let out = formulation.residual(&pair, nodes, history);
+        let out = stated(formulation, &pair, nodes, history);
         for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NS>| {
             for j in 0..NS {
                 lhs[row * width + NU + count * j + c] = -b.gradient[j];
@@ -122,8 +123,20 @@ pub fn by_normals<F: Formulation, const NS: usize, const NM: usize, const NN: us
         (0..dim).for_each(|c| normal[c] = Dual::variable(normal[c].value, dim * j + c));
     }
     let Some(operators) = operators(&seeded, settings).cells() else { return };
-    let out = formulation.residual(&kinematics(&seeded, operators, multipliers), nodes, history);
+    let out = stated(formulation, &kinematics(&seeded, operators, multipliers), nodes, history);
     for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b| visit(row, &b.gradient));
+}
+
+/// The residual of a pair, with the equations of nodes that supports hold.
+fn stated<F: Formulation, T: Real, const NS: usize, const NM: usize>(
+    formulation: &F,
+    pair: &Kinematics<T, NS, NM>,
+    nodes: &[SlaveNode; NS],
+    history: &F::History<NS, NM>,
+) -> PairResidual<T, NS, NM> {
+    let mut out = formulation.residual(pair, nodes, history);
+    restate(&mut out, F::MULTIPLIERS, pair, nodes);
+    out
 }
 
 fn kinematics<T: Real, const NS: usize, const NM: usize>(

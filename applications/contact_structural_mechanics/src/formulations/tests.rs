@@ -28,6 +28,8 @@ fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, stat
             pair_normals[j],
         )),
         turning: Turning::default(),
+        held: Default::default(),
+        held_weight: 1.0,
     })
 }
 
@@ -55,7 +57,10 @@ fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usi
                 continue;
             }
             let mut noise = Noise::new(seed + 100);
-            let nodes = nodes(&pair.nodal_normals, &mut noise, states);
+            let mut nodes = nodes(&pair.nodal_normals, &mut noise, states);
+            if seed % 3 == 2 {
+                nodes[0].held[0] = Held::Follows;
+            }
             let lambda = multipliers::<NS>(&mut noise);
             let history = history(&pair);
             let (mut lhs, mut rhs, mut plain) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
@@ -165,6 +170,8 @@ fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec
             friction: Bound { coefficient: 0.4, threshold: 0.0 },
             tangent: vector(8 + j),
             turning: Turning::default(),
+            held: Default::default(),
+            held_weight: 1.0,
         });
         let expected = &line[36..];
         let mut rhs = vec![0.0; expected.len()];
@@ -260,6 +267,8 @@ fn sign_of_the_contact_force() {
         friction: Bound::default(),
         tangent: [1.0, 0.0, 0.0],
         turning: Turning::default(),
+        held: Default::default(),
+        held_weight: 1.0,
     };
     let mut rhs = [0.0; 24];
     residual(&PenaltyFrictionless, &pair, &SegmentationSettings::default(), &[node; 4], &[[0.0; 3]; 4], &(), &mut rhs);

@@ -5,14 +5,16 @@ use std::collections::BTreeSet;
 use zelus_core::entities::SetChange;
 use zelus_core::model::flags::{ACTIVE, ISOLATED, SLIP};
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::{norm, scale, sub};
+use zelus_core::vector3::{add, dot, norm, scale, sub};
 
+use super::holding::held_at;
 use super::step_parameters::StepParameters;
 use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
-use crate::formulations::NodeState;
+use crate::formulations::held::along_free_tangents;
+use crate::formulations::{Held, NodeState};
 use crate::friction_law::FrictionLaw;
 use crate::interface::{Interface, Roles};
-use crate::mortar::tangent;
+use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::resolution::Resolution;
 use crate::variables::{
@@ -54,17 +56,7 @@ pub(super) enum Start<'a> {
 }
 
 /// Step start: which nodes are active. Gaps are weighted gaps over areas, so they are those of the mortar mapping.
-///
-/// A node in `at_origin`, which faces the very origin of the coordinates, starts inactive unless it is active already:
-/// Kratos takes it as unmapped. Normals of the step are those after its first iteration, so the first guess decides a
-/// little of the answer and is the same here.
-pub(super) fn start(
-    part: &mut ModelPart,
-    slaves: &[u32],
-    start: Start<'_>,
-    at_origin: &BTreeSet<u32>,
-    friction: (&FrictionLaw, SlipRule),
-) {
+pub(super) fn start(part: &mut ModelPart, slaves: &[u32], start: Start<'_>, friction: (&FrictionLaw, SlipRule)) {
     let gaps: Vec<f64> = {
         let weighted = part.nodes.history.values(&WEIGHTED_GAP, 0);
         let areas = part.nodes.values.values(&NODAL_AREA, 0);
@@ -77,10 +69,7 @@ pub(super) fn start(
             Start::ShareOfMeshSize => *gap < SIMPLE_REACH * sizes[n as usize],
             Start::Touching(nodes) => nodes.contains(&n) || part.nodes.flags.is(ACTIVE, n as usize),
         };
-        let unmapped = |n: &u32| {
-            at_origin.contains(n) && !matches!(start, Start::Touching(_)) && !part.nodes.flags.is(ACTIVE, *n as usize)
-        };
-        slaves.iter().zip(&gaps).map(|(n, gap)| near((n, gap)) && !unmapped(n)).collect()
+        slaves.iter().zip(&gaps).map(near).collect()
     };
     let slides: Vec<bool> = {
         let (law, rule) = friction;
@@ -232,30 +221,41 @@ fn numbers(
     let history = &part.nodes.history;
     let vector_of = |name: &str| history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
     let normal = vector_of(NORMAL.name());
-    let multiplier = match family.multiplier {
-        Multiplier::None => [0.0; 3],
-        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => scale(normal, history.values(variable, 0)[at]),
-        Multiplier::Vector(variable) => vector_of(variable.name()),
-    };
     let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
     let by_area = if area > 0.0 { area.recip() } else { 0.0 };
     let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
+    let held = held_at(part, at);
+    let slip = resolution.vector_of(scale(vector_of(WEIGHTED_SLIP.name()), by_area));
+    let stiffness = match family.multiplier.is_unknown() {
+        true => parameters.nodal_stiffness(penalty, area),
+        false => penalty * area,
+    };
+    let multiplier = match family.multiplier {
+        Multiplier::None => [0.0; 3],
+        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => scale(normal, history.values(variable, 0)[at]),
+        // No multiplier holds what supports move: the slip itself says what would.
+        Multiplier::Vector(variable) if held.contains(&Held::KeptInStick) => {
+            add(vector_of(variable.name()), scale(slip, stiffness / parameters.scale_factor))
+        }
+        Multiplier::Vector(variable) => {
+            // What slides, slides along what is free.
+            let whole = vector_of(variable.name());
+            add(scale(normal, dot(whole, normal)), along_free_tangents(tangential(whole, normal), normal, held))
+        }
+    };
     SlaveNumbers {
         state: NodeState::of_flags(&part.nodes.flags, at),
         normal,
         multiplier,
         gap: resolution.length_of(history.values(&WEIGHTED_GAP, 0)[at] * by_area),
-        slip: resolution.vector_of(scale(vector_of(WEIGHTED_SLIP.name()), by_area)),
+        slip,
         tangent: part
             .nodes
             .values
             .values(&TANGENT_XI, 0)
             .get(3 * at..3 * at + 3)
             .map_or([0.0; 3], |t| [t[0], t[1], t[2]]),
-        stiffness: match family.multiplier.is_unknown() {
-            true => parameters.nodal_stiffness(penalty, area),
-            false => penalty * area,
-        },
+        stiffness,
         friction: parameters.friction_law.bound_at(&part.nodes, at),
         scale_factor: parameters.scale_factor,
         tangent_factor: parameters.tangent_factor,

@@ -9,19 +9,20 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, Outer, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
-use zelus_core::vector3::norm;
 
 use super::activation::{self, Start};
 use super::calibration::{calibrate, limit};
 use super::contact_settings::ContactSettings;
 use super::cycling::{CycleGuard, Settled};
 use super::friction;
+use super::holding::{Holding, held_at};
 use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
 use super::pairing::{Pairing, add_up_nodes};
 use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
 use crate::active_set::SlipRule;
+use crate::formulations::held::along_free_tangents;
 use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
@@ -44,8 +45,6 @@ pub struct ContactInteraction {
     steps_since_search: usize,
     acting: bool,
     warned_of_friction: bool,
-    /// Slave nodes that face the origin of the coordinates, see [`activation::start`].
-    at_origin: BTreeSet<u32>,
     /// Weighted gaps averaged over the pairs of a node by area.
     mean_gaps: Vec<f64>,
     /// What is too small to decide on in the present state.
@@ -56,6 +55,8 @@ pub struct ContactInteraction {
     /// Overlapping pairs of every node.
     pair_counts: Vec<u32>,
     cycles: CycleGuard,
+    /// Slave nodes that supports hold.
+    holding: Holding,
     /// Times in this step that open interfaces took hold because a body was free to move, and which they are.
     reached: usize,
     open: BTreeSet<usize>,
@@ -92,13 +93,13 @@ impl ContactInteraction {
             steps_since_search: usize::MAX,
             acting: true,
             warned_of_friction: false,
-            at_origin: BTreeSet::new(),
             mean_gaps: Vec::new(),
             resolution: Resolution::default(),
             uzawa: Uzawa::default(),
             max_gap: 0.0,
             pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
+            holding: Holding::default(),
             reached: 0,
             open: BTreeSet::new(),
             searches: 0,
@@ -148,7 +149,7 @@ impl ContactInteraction {
             }
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.pairing.carriers());
-        self.pairing.find_patches(part);
+        self.pairing.find_patches(part, &self.holding);
         self.pairing.patches.write(part);
     }
 
@@ -158,7 +159,7 @@ impl ContactInteraction {
         let mut meetings = meetings.into_iter();
         let count = part.nodes.len();
         let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-        let (mut slip, mut mapped) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
+        let mut slip = vec![[0.0; 3]; count];
         let mut pairs = vec![0_u32; count];
         for (block, integrals) in self.pairing.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
@@ -175,13 +176,11 @@ impl ContactInteraction {
                     mean[node] += integral.gap[local] * integral.area[local];
                     area[node] += integral.area[local];
                     (0..3).for_each(|c| slip[node][c] += integral.slip[local][c]);
-                    (0..3).for_each(|c| mapped[node][c] += integral.mapped[local][c]);
                 }
             }
         }
-        let columns = [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..])];
-        let vectors = [(3, slip.as_flattened_mut()), (3, mapped.as_flattened_mut())];
-        add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
+        let columns = &mut [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..]), (3, slip.as_flattened_mut())];
+        add_up_nodes(part, &self.slaves, columns);
         for &node in &self.slaves {
             part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
         }
@@ -191,13 +190,18 @@ impl ContactInteraction {
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
         part.nodes.values.values_mut(&NODAL_AREA, 0).copy_from_slice(&area);
         if self.settings.family.frictional() {
+            for &node in &self.slaves {
+                let (at, held) = (node as usize, held_at(part, node as usize));
+                let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, at));
+                if held.iter().any(|held| held.is_still()) {
+                    slip[at] = along_free_tangents(slip[at], normal, held);
+                }
+            }
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slip.as_flattened());
         }
         activation::weigh_multipliers(part, &self.slaves, self.settings.family, &self.parameters);
         let family = self.settings.family;
         self.resolution = activation::resolution(part, &self.pairing.nodes(), &self.slaves, family, &self.parameters);
-        let at_origin = |&node: &u32| norm(mapped[node as usize]) <= self.resolution.length * area[node as usize];
-        self.at_origin = self.slaves.iter().copied().filter(at_origin).collect();
     }
 
     /// Distance within which nodes start in contact, and depth beyond which facets are in each other (length).
@@ -260,6 +264,7 @@ impl ContactInteraction {
         let missed = self.late_pairs(part)?.missed;
         if !missed.is_empty() {
             self.pairing.add(missed, &self.settings, &self.parameters)?;
+            self.hold(part);
             self.integrate(part);
         }
         Ok(())
@@ -289,11 +294,21 @@ impl ContactInteraction {
         }
         self.searches += 1;
         self.pairing.add(late.missed, &self.settings, &self.parameters)?;
+        self.hold(part);
         self.cycles.begin_step();
         self.integrate(part);
         self.update_active_set(part);
         self.write_tangents(part);
         Ok(Outer::Widened(why))
+    }
+
+    /// Finds the slave nodes that supports hold with what their pairs face.
+    fn hold(&mut self, part: &mut ModelPart) {
+        if self.settings.mind_supports {
+            let keys = self.pairing.keys();
+            let facets = keys.iter().map(|&key| (self.pairing.slave(key), self.pairing.master(key)));
+            self.holding.write(part, self.settings.family, facets);
+        }
     }
 
     fn write_tangents(&self, part: &mut ModelPart) {
@@ -380,6 +395,10 @@ impl Interaction for ContactInteraction {
             return Ok(());
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
+        if self.settings.mind_supports {
+            self.holding.begin_step(part, &self.pairing.interfaces);
+            self.pairing.find_patches(part, &self.holding);
+        }
         self.pairing.patches.write(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.settings.database_step_update {
@@ -387,6 +406,7 @@ impl Interaction for ContactInteraction {
             self.pairing.search(part, &self.settings, &self.parameters, limit(&self.settings, self.threshold))?;
             self.steps_since_search = 0;
         }
+        self.hold(part);
         self.integrate(part);
         let start = match self.settings.search.check {
             GapCheck::DirectCheck => Start::Touching(&self.pairing.touching),
@@ -395,7 +415,7 @@ impl Interaction for ContactInteraction {
             GapCheck::CheckMapping => Start::Reach(self.near()),
         };
         let friction = (self.parameters.friction_law, self.parameters.slip_rule);
-        activation::start(part, &self.slaves, start, &self.at_origin, friction);
+        activation::start(part, &self.slaves, start, friction);
         friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, &self.settings.friction);
         self.pairing.refresh_normals(part, self.updates_normals());
         self.pairing.begin_step(part, &self.slaves, self.settings.segmentation.slivers);
@@ -481,7 +501,7 @@ impl Interaction for ContactInteraction {
             self.reached += 1;
         }
         let friction = (self.parameters.friction_law, self.parameters.slip_rule);
-        activation::start(part, &self.slaves, Start::Touching(&near), &self.at_origin, friction);
+        activation::start(part, &self.slaves, Start::Touching(&near), friction);
         self.write_tangents(part);
         !near.is_empty()
     }

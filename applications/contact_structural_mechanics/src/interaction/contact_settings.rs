@@ -59,6 +59,8 @@ pub struct ContactSettings {
     pub friction: FrictionSettings,
     /// What of the parameters is adapted in every iteration.
     pub adaptation: AdaptationSettings,
+    /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.
+    pub mind_supports: bool,
     /// Whether augmented pressures of inactive nodes are zero after a step.
     pub clear_inactive: bool,
     /// How far Uzawa's outer loop goes, where the family has one.

@@ -7,6 +7,7 @@ mod contact_interaction;
 mod contact_settings;
 mod cycling;
 mod friction;
+mod holding;
 mod late_pairs;
 mod mpc_interaction;
 mod mpc_relation;

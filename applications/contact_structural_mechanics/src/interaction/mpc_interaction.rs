@@ -5,7 +5,7 @@
 //! force of its constraint is below the bound of friction; beyond, a force of that size acts on it and on its masters instead,
 //! against the slip ([`slider_forces`](super::slider_forces)).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -423,7 +423,7 @@ impl Interaction for MpcInteraction {
             nodes.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, true));
         } else {
             let friction = (self.settings.friction.law, self.slip_rule);
-            activation::start(part, &self.slaves, activation::Start::ShareOfMeshSize, &BTreeSet::new(), friction);
+            activation::start(part, &self.slaves, activation::Start::ShareOfMeshSize, friction);
             friction::start_in_stick(part, &self.slaves, self.slip_rule, &self.settings.friction);
             self.slide_on(part);
         }

@@ -12,6 +12,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::registry::{self, Kind};
 
 use super::contact_settings::ContactSettings;
+use super::holding::Holding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use crate::interface::{Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, slave_nodes};
 use crate::mortar::{Habit, SegmentationSettings};
@@ -63,9 +64,9 @@ impl Pairing {
         }
     }
 
-    /// Finds the facets around nodes anew, after the sides of facets have changed.
-    pub(super) fn find_patches(&mut self, part: &ModelPart) {
-        let patches = NormalPatches::new(part.nodes.len(), &self.interfaces, self.patches.weights());
+    /// Finds the facets around nodes anew, after the sides of facets or supports have changed.
+    pub(super) fn find_patches(&mut self, part: &ModelPart, holding: &Holding) {
+        let patches = holding.patches(part, &self.interfaces, self.patches.weights());
         if patches != *self.patches {
             self.patches = Arc::new(patches);
             self.graph += 1;

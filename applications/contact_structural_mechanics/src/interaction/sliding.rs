@@ -1,10 +1,12 @@
 //! The direction in which nodes slide, anew in every iteration, and how it turns.
 
 use zelus_core::model::{ModelPart, variables::NORMAL};
-use zelus_core::vector3::{add, cross, dot, norm, scale};
+use zelus_core::vector3::{add, cross, dot, norm, normalised, scale};
 
+use super::holding::held_at;
 use super::step_parameters::StepParameters;
 use crate::active_set::{SlipRule, TURNED};
+use crate::formulations::held::along_free_tangents;
 use crate::formulations::{Augmentation, NodeState, Turning};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Multiplier};
@@ -12,6 +14,9 @@ use crate::resolution::Resolution;
 use crate::variables::{
     INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_SLIP,
 };
+
+/// Length of the free part of a unit tangent below which a node cannot slide.
+const LEAST_FREE: f64 = 1e-3;
 
 /// Writes TANGENT_XI and TANGENT_ETA of the slave nodes, and how TANGENT_XI turns.
 ///
@@ -56,9 +61,12 @@ pub(super) fn write_tangents(
         };
         let decided =
             |traction: [f64; 3]| if resolution.exceeds(norm(traction), 0.0, false) { traction } else { [0.0; 3] };
+        let held = held_at(part, at);
         let direction = match family.multiplier {
             Multiplier::Vector(variable) => {
-                let multiplier = vector_of(variable.name());
+                let whole = vector_of(variable.name());
+                let sliding = along_free_tangents(tangential(whole, normal), normal, held);
+                let multiplier = add(scale(normal, dot(whole, normal)), sliding);
                 match state {
                     NodeState::Slip if dimension == 3 => {
                         let trial = Trial::new(part, at, parameters, multiplier, normal);
@@ -77,7 +85,9 @@ pub(super) fn write_tangents(
             _ => by_slip(),
         };
         let kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
-        tangents.push(tangent(if kept { before(at) } else { direction }, normal, dimension));
+        let any = tangent(if kept { before(at) } else { direction }, normal, dimension);
+        let free = along_free_tangents(any, normal, held);
+        tangents.push(if norm(free) > LEAST_FREE { normalised(free) } else { any });
     }
     let across: Vec<[f64; 3]> = {
         let normals = part.nodes.history.values(&NORMAL, 0);

@@ -1,17 +1,19 @@
 //! Meshes that do not match, tied by multipliers: D and M of a pair are those of the moment it is made.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, SetChange};
+use zelus_core::entities::{EntityBlock, Interaction, MasterSlaveConstraint, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT};
-use zelus_core::model::{ModelPart, ScalarVariable};
+use zelus_core::model::{ModelPart, ScalarVariable, variables::DISPLACEMENT};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::{self, Kind};
 
+use super::holding::Holding;
 use crate::interface::{
-    Interface, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals, slave_nodes,
+    Fixed, Interface, NodalNormals, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals,
+    slave_nodes,
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
@@ -42,7 +44,14 @@ pub struct TyingSettings {
     pub manual: Option<f64>,
     /// Factor of E/h in eq. 4.11.
     pub stiffness_factor: f64,
+    /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.
+    pub mind_supports: bool,
 }
+
+/// Share of the scale factor that makes redundant multipliers regular.
+const RELAXATION: f64 = 1e-8;
+/// Share of masters that are not fixed below which nothing is left to tie: round-off.
+const LEAST_FREE: f64 = 1e-6;
 
 /// Ties in a model part.
 pub struct TyingInteraction {
@@ -53,6 +62,9 @@ pub struct TyingInteraction {
     blocks: Vec<Box<dyn EntityBlock>>,
     scale_factor: f64,
     graph: u64,
+    holding: Holding,
+    /// Changes with the constraints on multipliers.
+    constrained: u64,
     steps_since_search: Option<usize>,
 }
 
@@ -72,12 +84,14 @@ impl TyingInteraction {
             blocks: Vec::new(),
             scale_factor: 1.0,
             graph: 1,
+            holding: Holding::default(),
+            constrained: 0,
             steps_since_search: None,
         })
     }
 
     fn search(&mut self, part: &mut ModelPart) {
-        nodal_normals(part, &self.interfaces);
+        self.holding.patches(part, &self.interfaces, NodalNormals::ByFacets).write(part);
         let known = |key: &PairKey| self.pairs.contains_key(key);
         let found =
             overlapping_pairs(part, &self.interfaces, &self.settings.search, &self.settings.segmentation, &known);
@@ -123,6 +137,82 @@ impl TyingInteraction {
         self.mark(part, false);
     }
 
+    /// Lets multipliers without equation follow those of their neighbours, or vanish on planes of symmetry.
+    ///
+    /// Where supports hold both sides nothing is left to tie. The dual functions of such nodes are shared out, which keeps the
+    /// system symmetric.
+    fn hold(&mut self, part: &mut ModelPart) {
+        let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
+        let own =
+            |c: &MasterSlaveConstraint| unknowns.contains(&c.slave.1) && self.slaves.binary_search(&c.slave.0).is_ok();
+        let (old, mut constraints): (Vec<_>, Vec<_>) = std::mem::take(&mut part.constraints).into_iter().partition(own);
+        let facet = |interface: u32, facet: u32| &self.interfaces[interface as usize].facets[facet as usize];
+        let pairs = self.pairs.keys().map(|key| (facet(key.interface, key.slave), facet(key.interface, key.master)));
+        let held = if self.blocks.is_empty() { BTreeMap::new() } else { self.holding.nodes(part, pairs) };
+        let mut dropped: BTreeMap<u32, Fixed> = BTreeMap::new();
+        let mut new = Vec::new();
+        for (&node, how) in &held {
+            for (&multiplier, tied) in unknowns.iter().zip(&self.settings.tied) {
+                let Some(c) = tied.component.map(usize::from).filter(|&c| how.components[c]) else { continue };
+                if tied.column != DISPLACEMENT.name() {
+                    continue;
+                }
+                let masters = if how.symmetric {
+                    Vec::new()
+                } else {
+                    self.neighbours(node, |n| !held.get(&n).is_some_and(|other| other.components[c]))
+                };
+                let weight = 1.0 / masters.len().max(1) as f64;
+                if masters.is_empty() && !how.symmetric && self.ties_free_masters(node, |n| self.holding.fixes(n, c)) {
+                    continue;
+                }
+                let masters = masters.into_iter().map(|n| ((n, multiplier), weight)).collect();
+                new.push(MasterSlaveConstraint {
+                    id: 0,
+                    slave: (node, multiplier),
+                    masters,
+                    forces: None,
+                    constant: 0.0,
+                    active: true,
+                });
+                dropped.entry(node).or_default()[c] = true;
+            }
+        }
+        self.constrained += u64::from(old != new);
+        constraints.extend(new);
+        part.constraints = constraints;
+        self.holding.say(part, &dropped, false);
+    }
+
+    /// Whether the equation of a slave node ties masters that are not fixed.
+    fn ties_free_masters(&self, node: u32, fixed: impl Fn(u32) -> bool) -> bool {
+        let facet = |interface: u32, facet: u32| &self.interfaces[interface as usize].facets[facet as usize].nodes;
+        let (mut all, mut free) = (0.0, 0.0);
+        for (key, operators) in &self.pairs {
+            let Some(j) = facet(key.interface, key.slave).iter().position(|&n| n == node) else { continue };
+            for (&master, weight) in facet(key.interface, key.master).iter().zip(operators.m[j]) {
+                all += weight.abs();
+                free += if fixed(master) { 0.0 } else { weight.abs() };
+            }
+        }
+        free > LEAST_FREE * all
+    }
+
+    /// The nearest slave nodes by facets that are wanted.
+    fn neighbours(&self, node: u32, wanted: impl Fn(u32) -> bool) -> Vec<u32> {
+        let mut reached = BTreeSet::from([node]);
+        loop {
+            let facets = self.interfaces.iter().flat_map(|i| &i.facets).filter(|f| f.role == Roles::Slave);
+            let beside = facets.filter(|f| f.nodes.iter().any(|n| reached.contains(n))).flat_map(|f| f.nodes.clone());
+            let more: BTreeSet<u32> = beside.collect();
+            let found: Vec<u32> = more.iter().copied().filter(|&n| wanted(n)).collect();
+            if !found.is_empty() || more.len() == reached.len() {
+                return found;
+            }
+            reached = more;
+        }
+    }
+
     fn mark(&self, part: &mut ModelPart, active: bool) {
         self.slaves.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, active));
     }
@@ -153,7 +243,11 @@ impl Interaction for TyingInteraction {
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         if !self.settings.interval.contains(part.info.time) {
             self.switch_off(part);
+            self.hold(part);
             return Ok(());
+        }
+        if self.settings.mind_supports {
+            self.holding.begin_step(part, &self.interfaces);
         }
         let due = self.steps_since_search.is_none_or(|steps| steps + 1 >= self.settings.database_step_update);
         let before = self.pairs.len();
@@ -172,6 +266,9 @@ impl Interaction for TyingInteraction {
         if self.blocks.is_empty() || self.pairs.len() != before {
             self.make_blocks(part)?;
             self.mark(part, true);
+        }
+        if self.settings.mind_supports {
+            self.hold(part);
         }
         Ok(())
     }
@@ -194,6 +291,14 @@ impl Interaction for TyingInteraction {
 
     fn graph_version(&self) -> u64 {
         self.graph
+    }
+
+    fn constraints_version(&self) -> u64 {
+        self.constrained
+    }
+
+    fn relaxation(&self) -> Option<f64> {
+        Some(RELAXATION * self.scale_factor)
     }
 
     fn idle_diagonal(&self) -> f64 {

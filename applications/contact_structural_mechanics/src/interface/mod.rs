@@ -5,6 +5,7 @@ mod facets;
 mod nodal_h;
 mod normals;
 mod parameters;
+mod supports;
 mod unit_of_length;
 
 pub use contact_part::add_contact_part;
@@ -12,4 +13,5 @@ pub use facets::{Facet, FacetSource, Interface, Roles, interfaces, slave_nodes};
 pub use nodal_h::find_nodal_h;
 pub use normals::{Corner, NodalNormals, NormalPatches, centre_normal, nodal_normals, positions};
 pub use parameters::{AlmParameters, alm_parameters};
+pub use supports::{Fixed, fixed_components, symmetry_planes};
 pub use unit_of_length::unit_of_length;

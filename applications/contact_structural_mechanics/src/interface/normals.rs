@@ -10,6 +10,10 @@
 //!
 //! dn = (I − n⊗n)/|S| Σ dv with, for the first, dv = (da × b + a × db)/(|a|² |b|²) − 2 v (a·da/|a|² + b·db/|b|²), and for
 //! the second (I − v⊗v)/|a × b| (da × b + a × db).
+//!
+//! Normals of nodes on planes of symmetry lie in them: what facets and their mirror images add up to.
+
+use std::collections::BTreeMap;
 
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
@@ -17,6 +21,7 @@ use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::{cross, dot, norm, scale, sub};
 
 use super::facets::{Facet, Interface, Roles};
+use super::supports::Fixed;
 
 /// Unit normal at the centre of a facet; `None` when it has no area.
 pub fn centre_normal(shape: Shape, points: &[[f64; 3]]) -> Option<[f64; 3]> {
@@ -125,6 +130,8 @@ pub struct NormalPatches {
     starts: Vec<u32>,
     corners: Vec<Corner>,
     weights: NodalNormals,
+    /// Components that the normals of nodes on planes of symmetry lack.
+    planes: BTreeMap<u32, Fixed>,
 }
 
 impl NormalPatches {
@@ -148,12 +155,29 @@ impl NormalPatches {
         at_nodes.iter().for_each(|(node, _)| starts[*node as usize + 1] += 1);
         (0..count).for_each(|node| starts[node + 1] += starts[node]);
         let nodes = (0..count as u32).filter(|&node| starts[node as usize] < starts[node as usize + 1]).collect();
-        Self { nodes, starts, corners: at_nodes.into_iter().map(|(_, corner)| corner).collect(), weights }
+        Self {
+            nodes,
+            starts,
+            corners: at_nodes.into_iter().map(|(_, corner)| corner).collect(),
+            weights,
+            planes: BTreeMap::new(),
+        }
     }
 
     /// How facets count.
     pub fn weights(&self) -> NodalNormals {
         self.weights
+    }
+
+    /// The same with nodes on these planes of symmetry.
+    #[must_use]
+    pub fn on_planes(self, planes: BTreeMap<u32, Fixed>) -> Self {
+        Self { planes, ..self }
+    }
+
+    /// The components that the normal of a node lacks.
+    pub fn lacks(&self, node: u32) -> Fixed {
+        self.planes.get(&node).copied().unwrap_or_default()
     }
 
     /// The facets of a node.
@@ -170,12 +194,13 @@ impl NormalPatches {
     }
 
     /// S.
-    fn sum(&self, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
+    pub(super) fn sum(&self, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for v in self.corners(node).iter().filter_map(|corner| corner.normal(node, places, self.weights)) {
             (0..3).for_each(|c| sum[c] += v[c]);
         }
-        sum
+        let lacks = self.lacks(node);
+        std::array::from_fn(|c| if lacks[c] { 0.0 } else { sum[c] })
     }
 
     /// Visits nodes with ∂n/∂x, row by row, of the normal of `node`; the derivative by a node is the sum of its visits.
@@ -193,7 +218,9 @@ impl NormalPatches {
         if length == 0.0 {
             return;
         }
-        let outer = projector(scale(sum, 1.0 / length), length);
+        let lacks = self.lacks(node);
+        let mut outer = projector(scale(sum, 1.0 / length), length);
+        outer.iter_mut().for_each(|row| (0..3).filter(|&c| lacks[c]).for_each(|c| row[c] = 0.0));
         for corner in self.corners(node).iter().filter(|corner| knows(corner)) {
             let mut own = [[0.0; 3]; 3];
             corner.variation(node, places, self.weights, |end, by_end| {

@@ -64,8 +64,6 @@ pub struct Integral {
     pub gap: [f64; 4],
     /// Weighted slip of the step.
     pub slip: [[f64; 3]; 4],
-    /// Weighted positions M x² of the master.
-    pub mapped: [[f64; 3]; 4],
     /// D and M themselves.
     pub operators: Previous,
 }

@@ -13,12 +13,12 @@ use zelus_core::vector3::{cross, normalised, sub};
 use super::contact_block::{ContactBlock, Own};
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Augmentation, Formulation, NodeState, OperatorTangent, SlaveNode, Turning};
+use crate::formulations::{self, Augmentation, Formulation, Held, NodeState, OperatorTangent, SlaveNode, Turning};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
-    DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+    DYNAMIC_FACTOR, HELD_MULTIPLIER, INITIAL_PENALTY, NODAL_AREA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
 };
 
 /// A formulation as the blocks use it.
@@ -198,13 +198,16 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         let tangent = view.nodes.values.values(&TANGENT_XI, 0);
         let by_slip = view.nodes.values.values(&TURNING_BY_SLIP, 0);
         let by_multiplier = view.nodes.values.values(&TURNING_BY_MULTIPLIER, 0);
+        let held = view.nodes.values.values(&HELD_MULTIPLIER, 0);
+        let k = self.parameters.scale_factor;
         let slaves = self.slaves(at);
         std::array::from_fn(|j| {
             let (n, node) = (slaves[j], slaves[j] as usize);
+            let stiffness = self.parameters.nodal_stiffness(penalty[node], positive(areas.get(node)));
             SlaveNode {
                 state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
-                stiffness: self.parameters.nodal_stiffness(penalty[node], positive(areas.get(node))),
+                stiffness,
                 area: positive(if by_pair { areas.get(node) } else { own.get(j) }),
                 dynamic_factor: factor[node],
                 friction: self.parameters.friction_law.bound_at(view.nodes, node),
@@ -213,6 +216,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                     by_slip: by_slip.get(node).copied().unwrap_or(0.0),
                     by_multiplier: by_multiplier.get(node).copied().unwrap_or(0.0),
                 },
+                held: if held.is_empty() { Default::default() } else { vector(held, n).map(Held::of_code) },
+                held_weight: k * k * positive(areas.get(node)) / stiffness,
             }
         })
     }
@@ -357,13 +362,10 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
                     let history = F::history(&self.pairs[at], &self.previous(at, view));
                     let slip = self.formulation.slip(&operators, &geometry, &history);
-                    let zero = [[0.0; 3]; NS];
-                    let mapped = operators.jump(&zero, &geometry.master).map(|v| v.map(|x| -x));
                     for j in 0..NS {
                         out.area[j] = operators.d[j].iter().sum();
                         out.gap[j] = gaps[j];
                         out.slip[j] = slip[j];
-                        out.mapped[j] = mapped[j];
                         (0..NS).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
                         (0..NM).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
                     }

@@ -73,6 +73,7 @@ struct Whole {
     /// Processes whose families have their forces from penalties lack it.
     augmentation: Option<Augmentation>,
     clear_inactive_for_post: bool,
+    mind_supports: bool,
     search_parameters: Search,
     #[serde(rename = "advance_ALM_parameters")]
     parameters: Parameters,
@@ -223,6 +224,7 @@ fn interaction(
             dynamic_factor: false,
         },
         clear_inactive: whole.clear_inactive_for_post,
+        mind_supports: whole.mind_supports,
         segmentation: segmentation(settings)?,
         axisymmetric: whole.alternative_formulations.axisymmetric,
     };

@@ -37,6 +37,7 @@ struct Whole {
     assume_master_slave: BTreeMap<String, Vec<String>>,
     search_parameters: Search,
     scale_factor_parameters: ScaleFactor,
+    mind_supports: bool,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
@@ -74,6 +75,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         segmentation: segmentation(&settings)?,
         manual: manual.manual_scale_factor.then_some(manual.scale_factor),
         stiffness_factor: manual.stiffness_factor,
+        mind_supports: whole.mind_supports,
     };
     let interaction = TyingInteraction::new(chosen, part)?;
     Ok(InteractionProcess::boxed(whole.model_part_name, interaction))

@@ -4,7 +4,7 @@ use super::NewtonRaphson;
 use crate::assembly::impose_constraints;
 use crate::communication::world;
 use crate::diagnostics::Result;
-use crate::entities::Interaction;
+use crate::entities::{Interaction, MasterSlaveConstraint};
 use crate::model::ModelPart;
 
 impl NewtonRaphson {
@@ -68,11 +68,18 @@ impl NewtonRaphson {
     ///
     /// Not so after a failed attempt, since elements may turn inside out that way.
     pub(super) fn led_nodes(&self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Option<Vec<u32>> {
-        let free = !self.failed && self.settings.move_mesh && !part.constraints.iter().any(|c| c.active);
+        let free = !self.failed
+            && self.settings.move_mesh
+            && !part.constraints.iter().any(|c| c.active && !self.is_multiplier(part, c));
         if !free || !self.scheme.is_static() {
             return None;
         }
         interactions.iter().find_map(|interaction| interaction.led_nodes())
+    }
+
+    fn is_multiplier(&self, part: &ModelPart, constraint: &MasterSlaveConstraint) -> bool {
+        let (node, variable) = constraint.slave;
+        part.dofs.number_of(variable, node).is_some_and(|number| part.dofs.dofs()[number as usize].multiplier)
     }
 
     /// Whether forces are farther out of balance after the first iteration than before it, in a step that prescribes motion.

@@ -1,0 +1,139 @@
+//! Equations of slave nodes that supports hold together with what they face.
+//!
+//! Along a component in which both sides are held nothing can move, so that the equation of the multiplier there has no
+//! unknown that could obey it. On a plane of symmetry the traction has no such component: the multiplier keeps what it has,
+//! which is nothing. Elsewhere it follows the multipliers of the facet's other nodes, so that constant tractions are
+//! transmitted exactly: its dual function is shared out among them. What is left of the node's equations:
+//! - stick: the components that are free;
+//! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
+//!   vectors, and e is at right angles to m and n.
+
+use super::{Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{dot, normalised, scale, sub};
+
+/// What becomes of a component of a multiplier.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Held {
+    /// It has an equation of its own.
+    #[default]
+    Free,
+    /// It keeps its value.
+    Kept,
+    /// It is the mean of those of the facet's nodes that are in contact and free.
+    Follows,
+    /// It keeps its value while the node sticks: supports move what it faces.
+    KeptInStick,
+}
+
+impl Held {
+    const ALL: [Self; 4] = [Self::Free, Self::Kept, Self::Follows, Self::KeptInStick];
+
+    /// As a number of a nodal variable.
+    pub fn code(self) -> f64 {
+        f64::from(self as u8)
+    }
+
+    /// From a number of a nodal variable.
+    pub fn of_code(code: f64) -> Self {
+        Self::ALL.into_iter().find(|held| held.code() == code).unwrap_or_default()
+    }
+
+    /// Whether both sides stand still along it.
+    pub fn is_still(self) -> bool {
+        matches!(self, Self::Kept | Self::Follows)
+    }
+}
+
+/// Square of the free part of a normal below which nothing can move along it.
+const LEAST_FREE: f64 = 1e-2;
+
+/// The free part of a unit normal, as a unit vector; zero if there is next to none.
+pub fn free_normal<T: Real>(normal: [T; 3], held: [Held; 3]) -> [T; 3] {
+    let free = free(normal, held);
+    if dot(free, free).value() < LEAST_FREE { [T::zero(); 3] } else { normalised(free) }
+}
+
+/// The part of a vector along which a node that stays in contact can slide.
+pub fn along_free_tangents<T: Real>(vector: [T; 3], normal: [T; 3], held: [Held; 3]) -> [T; 3] {
+    let (vector, normal) = (free(vector, held), free_normal(normal, held));
+    sub(vector, scale(normal, dot(vector, normal)))
+}
+
+fn free<T: Real>(vector: [T; 3], held: [Held; 3]) -> [T; 3] {
+    std::array::from_fn(|c| if held[c].is_still() { T::zero() } else { vector[c] })
+}
+
+/// Share with which a multiplier whose facet has no free node is kept, beside facets that it can follow.
+const NO_ONE_TO_FOLLOW: f64 = 1e-6;
+
+/// Replaces equations of held nodes, each with the weight k² A/c of its node.
+pub fn restate<T: Real, const NS: usize, const NM: usize>(
+    out: &mut PairResidual<T, NS, NM>,
+    kind: Multipliers,
+    pair: &Kinematics<T, NS, NM>,
+    nodes: &[SlaveNode; NS],
+) {
+    for (j, node) in nodes.iter().enumerate() {
+        let held = node.held;
+        if held == [Held::Free; 3] || !node.state.is_active() {
+            continue;
+        }
+        let row = out.multipliers[j];
+        if kind == Multipliers::Vector && node.state == NodeState::Slip && held.iter().any(|held| held.is_still()) {
+            let (n, m) = (pair.normals[j], free_normal(pair.normals[j], held));
+            let tangent = along_free_tangents(row, n, held);
+            let gap = dot(n, row);
+            out.multipliers[j] = std::array::from_fn(|c| tangent[c] + m[c] * gap);
+        }
+        for c in 0..3 {
+            let own = pair.multipliers[j][c];
+            out.multipliers[j][c] = match held[c] {
+                Held::Free => continue,
+                Held::KeptInStick if node.state == NodeState::Slip => continue,
+                Held::Kept | Held::KeptInStick => (T::constant(own.value()) - own) * node.held_weight,
+                Held::Follows => {
+                    let free = (0..NS).filter(|&k| nodes[k].held[c] == Held::Free);
+                    let (mut sum, mut count, mut any) = (T::zero(), 0.0, false);
+                    for k in free {
+                        any = true;
+                        if nodes[k].state.is_active() {
+                            sum += pair.multipliers[k][c];
+                            count += 1.0;
+                        }
+                    }
+                    match (any, count > 0.0) {
+                        (false, _) => (T::constant(own.value()) - own) * (NO_ONE_TO_FOLLOW * node.held_weight),
+                        (true, false) => -own * node.held_weight,
+                        (true, true) => (sum / count - own) * node.held_weight,
+                    }
+                }
+            };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_slide_along_what_is_free() {
+        let slope = [0.6, 0.8, 0.0];
+        let wall = [Held::Follows, Held::Free, Held::Free];
+        // In the plane a node in contact whose component x is held cannot slide; in space it slides along z.
+        let slides = along_free_tangents([0.8, -0.6, 2.0], slope, wall);
+        assert!((0..3).all(|c| (slides[c] - [0.0, 0.0, 2.0][c]).abs() < 1e-15), "{slides:?}");
+        assert_eq!(free_normal(slope, wall), [0.0, 1.0, 0.0]);
+        // What moves with its supports is not restricted, and a clamp leaves no free normal.
+        assert_eq!(along_free_tangents([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [Held::KeptInStick; 3]), [1.0, 0.0, 0.0]);
+        assert_eq!(free_normal(slope, [Held::Follows; 3]), [0.0; 3]);
+    }
+
+    #[test]
+    fn codes_come_back() {
+        for held in Held::ALL {
+            assert_eq!(Held::of_code(held.code()), held);
+        }
+    }
+}

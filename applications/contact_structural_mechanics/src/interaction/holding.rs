@@ -1,0 +1,204 @@
+//! Slave nodes that supports hold together with what they face, and what becomes of their multipliers.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::geometry::mapping::local_coordinates;
+use zelus_core::geometry::shape_functions;
+use zelus_core::model::ModelPart;
+use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
+use zelus_core::vector3::{add, norm, scale, sub};
+
+use crate::formulations::Held;
+use crate::formulations::held::free_normal;
+use crate::interface::{
+    Facet, Fixed, Interface, NodalNormals, NormalPatches, fixed_components, positions, symmetry_planes,
+};
+use crate::pairs::{Family, Multiplier};
+use crate::variables::HELD_MULTIPLIER;
+
+/// Share of a master facet by which a node may lie beyond its edge and still face it.
+const BESIDE: f64 = 0.02;
+/// Shape functions up to this are those of nodes on the other side of an edge.
+const NO_SHARE: f64 = 1e-3;
+/// Difference of prescribed motions, over their size, from which on they move a contact.
+const SAME_MOTION: f64 = 1e-9;
+
+/// Nodes that supports hold, and what was said of them.
+#[derive(Default)]
+pub(super) struct Holding {
+    fixed: BTreeMap<u32, Fixed>,
+    planes: BTreeMap<u32, Fixed>,
+    said: bool,
+}
+
+/// A slave node that is held with what it faces.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeldNode {
+    /// Components in which both sides are held.
+    pub components: Fixed,
+    /// Whether supports move both sides apart in one of them.
+    pub moves: bool,
+    /// Whether the supports are planes of symmetry.
+    pub symmetric: bool,
+}
+
+impl Holding {
+    /// Step start: what is fixed now, and which of it are planes of symmetry.
+    pub(super) fn begin_step(&mut self, part: &ModelPart, interfaces: &[Interface]) {
+        self.fixed = fixed_components(part, interfaces);
+        self.planes = symmetry_planes(part, interfaces, &self.fixed);
+    }
+
+    /// The facets that make normals, with nodes on planes of symmetry.
+    pub(super) fn patches(&self, part: &ModelPart, interfaces: &[Interface], weights: NodalNormals) -> NormalPatches {
+        NormalPatches::new(part.nodes.len(), interfaces, weights).on_planes(self.planes.clone())
+    }
+
+    /// Whether a component of an interface node is fixed.
+    pub(super) fn fixes(&self, node: u32, component: usize) -> bool {
+        self.fixed.get(&node).is_some_and(|fixed| fixed[component])
+    }
+
+    /// The slave nodes that are held, of these pairs of slave and master facets.
+    pub(super) fn nodes<'a>(
+        &self,
+        part: &ModelPart,
+        pairs: impl Iterator<Item = (&'a Facet, &'a Facet)>,
+    ) -> BTreeMap<u32, HeldNode> {
+        // Of each node the image on the master that lies least beside a facet, then the nearest.
+        let mut faced: BTreeMap<u32, ([f64; 2], HeldNode)> = BTreeMap::new();
+        let mut buffer = [[0.0; 3]; 4];
+        for (slave, master) in pairs {
+            for &node in slave.nodes.iter().filter(|node| self.fixed.contains_key(node)) {
+                let points = positions(master, part, &mut buffer);
+                let Some(image) = local_coordinates(master.shape, points, part.nodes.current[node as usize]) else {
+                    continue;
+                };
+                let mut shares = [0.0; 4];
+                shape_functions(master.shape, image.xi, &mut shares[..master.nodes.len()]);
+                let beside = shares.iter().fold(0.0_f64, |most, share| most.max(-share));
+                let place = [if beside > BESIDE { beside } else { 0.0 }, image.distance];
+                if beside <= BESIDE && faced.get(&node).is_none_or(|(known, _)| place < *known) {
+                    faced.insert(node, (place, self.held(part, node, master, &shares)));
+                }
+            }
+        }
+        faced.into_iter().map(|(node, (_, held))| (node, held)).filter(|(_, h)| h.components.contains(&true)).collect()
+    }
+
+    fn held(&self, part: &ModelPart, node: u32, master: &Facet, shares: &[f64; 4]) -> HeldNode {
+        let own = self.fixed[&node];
+        let weights = || master.nodes.iter().zip(shares).filter(|(_, share)| **share > NO_SHARE);
+        let components = std::array::from_fn(|c| own[c] && weights().all(|(&faced, _)| self.fixes(faced, c)));
+        let field = part.nodes.history.get(DISPLACEMENT.name());
+        let motion = |n: u32| {
+            field.map_or([0.0; 3], |u| sub(u.vector(0, n as usize), u.vector(1.min(u.levels.len() - 1), n as usize)))
+        };
+        let total: f64 = weights().map(|(_, share)| share).sum();
+        let faced = weights().fold([0.0; 3], |sum, (&n, share)| add(sum, scale(motion(n), share / total)));
+        let (apart, size) = (sub(motion(node), faced), norm(motion(node)).max(norm(faced)));
+        let moves = |c: usize| apart[c].abs() > SAME_MOTION * size;
+        HeldNode {
+            components,
+            moves: (0..3).any(|c| components[c] && moves(c)),
+            symmetric: self.planes.contains_key(&node),
+        }
+    }
+
+    /// Writes what becomes of the multipliers of held nodes in contact by this family.
+    pub(super) fn write<'a>(
+        &mut self,
+        part: &mut ModelPart,
+        family: &Family,
+        pairs: impl Iterator<Item = (&'a Facet, &'a Facet)> + Clone,
+    ) {
+        let mut codes = vec![0.0; 3 * part.nodes.len()];
+        let held = if family.multiplier.is_unknown() { self.nodes(part, pairs.clone()) } else { BTreeMap::new() };
+        let followed = followed(&held, pairs.clone().map(|(slave, _)| slave));
+        let resting = self.resting(pairs);
+        let mut dropped = BTreeMap::new();
+        for (&node, own) in &held {
+            let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
+            let rule = |c: usize| match () {
+                () if !own.components[c] => Held::Free,
+                () if own.moves => Held::KeptInStick,
+                () if own.symmetric => Held::Kept,
+                () if followed.contains(&(node, c)) => Held::Follows,
+                () if resting[&node][c] => Held::Kept,
+                () => Held::Free,
+            };
+            let rules: [Held; 3] = std::array::from_fn(rule);
+            let held_normal = free_normal(normal, rules) == [0.0; 3] && rules.iter().any(|rule| rule.is_still());
+            let rules = match family.multiplier {
+                Multiplier::Vector(_) if family.frictional() || held_normal => rules,
+                Multiplier::Scalar(_) if held_normal => {
+                    // Along the normal alone.
+                    let most = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+                    [rules[most], Held::Free, Held::Free]
+                }
+                _ => continue,
+            };
+            (0..3).for_each(|c| codes[3 * node as usize + c] = rules[c].code());
+            dropped.insert(node, rules.map(Held::is_still));
+        }
+        let scalar = matches!(family.multiplier, Multiplier::Scalar(_));
+        self.say(part, &dropped, scalar);
+        part.nodes.values.values_mut(&HELD_MULTIPLIER, 0).copy_from_slice(&codes);
+    }
+
+    /// Components in which nothing that a node faces can move.
+    fn resting<'a>(&self, pairs: impl Iterator<Item = (&'a Facet, &'a Facet)>) -> BTreeMap<u32, Fixed> {
+        let mut out: BTreeMap<u32, Fixed> = BTreeMap::new();
+        for (slave, master) in pairs {
+            let rests: Fixed = std::array::from_fn(|c| master.nodes.iter().all(|&node| self.fixes(node, c)));
+            for &node in &slave.nodes {
+                let own = out.entry(node).or_insert([true; 3]);
+                (0..3).for_each(|c| own[c] &= rests[c]);
+            }
+        }
+        out
+    }
+
+    /// Says once a run how many multipliers have no equation.
+    pub(super) fn say(&mut self, part: &mut ModelPart, dropped: &BTreeMap<u32, Fixed>, along_normals: bool) {
+        let count = dropped.values().filter(|components| components.contains(&true)).count();
+        if count == 0 || std::mem::replace(&mut self.said, true) {
+            return;
+        }
+        let along: Vec<String> = (0..3)
+            .map(|c| (["x", "y", "z"][c], dropped.values().filter(|components| components[c]).count()))
+            .filter(|(_, count)| *count > 0)
+            .map(|(name, count)| format!("{count} along {name}"))
+            .collect();
+        let along = if along_normals { "along their normals".to_owned() } else { along.join(", ") };
+        let ids: Vec<String> = dropped.keys().take(5).map(|&n| part.nodes.ids[n as usize].to_string()).collect();
+        let fact = format!(
+            "supports hold {count} slave nodes together with what they face: multipliers without equation, {along}; \
+             nodes {}{}",
+            ids.join(" "),
+            if count > ids.len() { " …" } else { "" }
+        );
+        part.messages.push(Diagnostic::note("held-multipliers", fact));
+    }
+}
+
+/// What becomes of the components of a node's multiplier.
+pub(super) fn held_at(part: &ModelPart, node: usize) -> [Held; 3] {
+    let codes = part.nodes.values.values(&HELD_MULTIPLIER, 0);
+    codes.get(3 * node..3 * node + 3).map_or([Held::Free; 3], |own| std::array::from_fn(|c| Held::of_code(own[c])))
+}
+
+/// The components of held nodes that some node of their facets has free.
+fn followed<'a>(held: &BTreeMap<u32, HeldNode>, slaves: impl Iterator<Item = &'a Facet>) -> BTreeSet<(u32, usize)> {
+    let mut found = BTreeSet::new();
+    for facet in slaves {
+        for c in 0..3 {
+            let is_held = |node: &u32| held.get(node).is_some_and(|own| own.components[c]);
+            if facet.nodes.iter().any(|node| !is_held(node)) {
+                found.extend(facet.nodes.iter().filter(|node| is_held(node)).map(|&node| (node, c)));
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,260 @@
+//! Decks of two structured blocks on each other, mapped to any shape, written from code.
+
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// A point or a displacement.
+pub type Vec3 = [f64; 3];
+
+/// A mesh of quadrilaterals or hexahedra with its parts.
+#[derive(Default)]
+pub struct Mesh {
+    /// Places of the nodes; node n is number n + 1.
+    pub nodes: Vec<Vec3>,
+    elements: Vec<Vec<usize>>,
+    facets: Vec<Vec<usize>>,
+    parts: BTreeMap<String, [Vec<usize>; 3]>,
+    space: usize,
+}
+
+/// Nodes and facets of the sides of a block, by axis and end.
+pub type Sides = BTreeMap<(usize, usize), (Vec<usize>, Vec<usize>)>;
+
+impl Mesh {
+    /// No block yet in this number of dimensions.
+    pub fn new(space: usize) -> Self {
+        Self { space, ..Self::default() }
+    }
+
+    /// A grid over the unit cube, mapped; the facets of its sides become conditions.
+    pub fn block(&mut self, name: &str, divisions: [usize; 3], place: impl Fn(Vec3) -> Vec3) -> Sides {
+        let space = self.space;
+        let counts: [usize; 3] = std::array::from_fn(|c| if c < space { divisions[c] + 1 } else { 1 });
+        let base = self.nodes.len() + 1;
+        let id = |at: [usize; 3]| base + at[0] + counts[0] * (at[1] + counts[1] * at[2]);
+        let grid = |counts: [usize; 3]| {
+            (0..counts[2]).flat_map(move |k| (0..counts[1]).flat_map(move |j| (0..counts[0]).map(move |i| [i, j, k])))
+        };
+        for at in grid(counts) {
+            let x = std::array::from_fn(|c| if c < space { at[c] as f64 / divisions[c] as f64 } else { 0.0 });
+            self.nodes.push(place(x));
+        }
+        let corners = |at: [usize; 3], axes: &[usize]| -> Vec<usize> {
+            let steps: &[[usize; 3]] = match axes.len() {
+                1 => &[[0, 0, 0], [1, 0, 0]],
+                2 => &[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
+                _ => &[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+            };
+            let moved = |step: &[usize; 3]| {
+                let mut to = at;
+                axes.iter().zip(step).for_each(|(&axis, s)| to[axis] += s);
+                id(to)
+            };
+            steps.iter().map(moved).collect()
+        };
+        let axes: Vec<usize> = (0..space).collect();
+        let cells: [usize; 3] = std::array::from_fn(|c| if c < space { divisions[c] } else { 1 });
+        let first = self.elements.len() + 1;
+        self.elements.extend(grid(cells).map(|at| corners(at, &axes)));
+        let mut sides = Sides::new();
+        let mut own = Vec::new();
+        for axis in 0..space {
+            let others: Vec<usize> = axes.iter().copied().filter(|&other| other != axis).collect();
+            for end in 0..2 {
+                let level = end * divisions[axis];
+                let nodes = grid(counts).filter(|at| at[axis] == level).map(id).collect();
+                let flat: [usize; 3] = std::array::from_fn(|c| if c == axis { 1 } else { cells[c] });
+                let facets: Vec<usize> = grid(flat)
+                    .map(|mut at| {
+                        at[axis] = level;
+                        self.facets.push(corners(at, &others));
+                        self.facets.len()
+                    })
+                    .collect();
+                own.extend(&facets);
+                sides.insert((axis, end), (nodes, facets));
+            }
+        }
+        let nodes = (base..base + counts.iter().product::<usize>()).collect();
+        self.parts.insert(name.to_owned(), [nodes, (first..=self.elements.len()).collect(), own]);
+        sides
+    }
+
+    /// A part with these nodes and conditions.
+    pub fn part(&mut self, name: &str, nodes: impl IntoIterator<Item = usize>, conditions: Vec<usize>) {
+        let mut nodes: Vec<usize> = nodes.into_iter().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        self.parts.insert(name.to_owned(), [nodes, Vec::new(), conditions]);
+    }
+
+    fn text(&self, load: &[usize]) -> String {
+        let mut out = String::from("Begin Properties 0\nEnd Properties\nBegin Nodes\n");
+        for (at, [x, y, z]) in self.nodes.iter().enumerate() {
+            writeln!(out, "{} {x:e} {y:e} {z:e}", at + 1).expect("a string");
+        }
+        let numbers = |list: &[usize]| list.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+        let shape = if self.space == 2 { "2D4N" } else { "3D8N" };
+        writeln!(out, "End Nodes\nBegin Elements SmallDisplacementElement{shape}").expect("a string");
+        for (at, nodes) in self.elements.iter().enumerate() {
+            writeln!(out, "{} 0 {}", at + 1, numbers(nodes)).expect("a string");
+        }
+        out += "End Elements\n";
+        let (kind, shape) = if self.space == 2 { ("Line", "2D2N") } else { ("Surface", "3D4N") };
+        for (name, loaded) in [("", false), ("Load", true)] {
+            writeln!(out, "Begin Conditions {kind}{name}Condition{shape}").expect("a string");
+            for (at, nodes) in self.facets.iter().enumerate().filter(|(at, _)| load.contains(&(at + 1)) == loaded) {
+                writeln!(out, "{} 0 {}", at + 1, numbers(nodes)).expect("a string");
+            }
+            out += "End Conditions\n";
+        }
+        for (name, lists) in &self.parts {
+            writeln!(out, "Begin SubModelPart {name}").expect("a string");
+            for (kind, list) in ["Nodes", "Elements", "Conditions"].iter().zip(lists) {
+                let rows: Vec<String> = list.iter().map(ToString::to_string).collect();
+                writeln!(out, "Begin SubModelPart{kind}\n{}\nEnd SubModelPart{kind}", rows.join("\n"))
+                    .expect("a string");
+            }
+            out += "End SubModelPart\n";
+        }
+        out
+    }
+}
+
+/// What acts between the blocks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Joint {
+    /// Contact without friction.
+    Frictionless,
+    /// Contact with this coefficient of friction.
+    Frictional(f64),
+    /// A tie.
+    Tied,
+}
+
+/// A deck of two blocks "Lower" and "Upper" that meet in the parts "Slave" and "Interface".
+pub struct Deck {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// What acts between the blocks.
+    pub joint: Joint,
+    /// Prescribed components of parts: numbers or expressions, null where free.
+    pub supports: Vec<(String, [Value; 3])>,
+    /// A pressure (stress) on the conditions of the part "Top".
+    pub pressure: f64,
+    /// Young's modulus of both blocks.
+    pub young: f64,
+    /// Steps of the run.
+    pub steps: usize,
+}
+
+/// Poisson's ratio of both blocks.
+pub const POISSON: f64 = 0.3;
+
+impl Deck {
+    /// Writes mesh, materials and deck; `change` has the last word on the deck.
+    pub fn write(&self, folder: &Path, change: impl FnOnce(&mut Value)) {
+        let space = self.mesh.space;
+        let load = if self.pressure == 0.0 { &[][..] } else { &self.mesh.parts["Top"][2][..] };
+        std::fs::write(folder.join("mesh.mdpa"), self.mesh.text(load)).expect("the mesh");
+        let law = if space == 2 { "LinearElasticPlaneStrain2DLaw" } else { "LinearElastic3DLaw" };
+        let material = |(at, name): (usize, &str)| {
+            json!({"model_part_name": format!("Structure.{name}"), "properties_id": at + 1, "Material": {
+                "constitutive_law": {"name": law},
+                "Variables": {"YOUNG_MODULUS": self.young, "POISSON_RATIO": POISSON}, "Tables": {}}})
+        };
+        let materials: Vec<Value> = ["Lower", "Upper"].into_iter().enumerate().map(material).collect();
+        let mut deck = self.deck(space);
+        change(&mut deck);
+        for (name, value) in
+            [("StructuralMaterials.json", json!({"properties": materials})), ("ProjectParameters.json", deck)]
+        {
+            std::fs::write(folder.join(name), value.to_string()).expect("a file");
+        }
+    }
+
+    fn deck(&self, space: usize) -> Value {
+        let support = |(part, value): &(String, [Value; 3])| {
+            json!({"python_module": "assign_vector_variable_process", "kratos_module": "KratosMultiphysics",
+                "Parameters": {"model_part_name": format!("Structure.{part}"), "variable_name": "DISPLACEMENT",
+                    "constrained": value.each_ref().map(|v| !v.is_null()), "value": value, "interval": [0.0, "End"]}})
+        };
+        let supports: Vec<Value> = self.supports.iter().map(support).collect();
+        let variable = if space == 2 { "LINE_LOAD" } else { "SURFACE_LOAD" };
+        let mut down = [0.0; 3];
+        down[space - 1] = -1.0;
+        let pressure = json!({"python_module": "assign_vector_by_direction_to_condition_process",
+            "kratos_module": "KratosMultiphysics", "Parameters": {"model_part_name": "Structure.Top",
+                "variable_name": variable, "modulus": self.pressure, "direction": down, "interval": [0.0, "End"]}});
+        let loads = if self.pressure == 0.0 { json!([]) } else { json!([pressure]) };
+        let sides = |key: &str| {
+            json!({"model_part_name": "Structure", key: {"0": ["Interface"]},
+            "assume_master_slave": {"0": ["Slave"]}})
+        };
+        let tight = |names: &[&str]| {
+            let keys = names.iter().flat_map(|name| {
+                [(format!("{name}_relative_tolerance"), 1e-9), (format!("{name}_absolute_tolerance"), 1e-20)]
+            });
+            keys.map(|(key, value)| (key, json!(value))).collect::<serde_json::Map<_, _>>()
+        };
+        let (mortar, module, mut process, names, variable) = match self.joint {
+            Joint::Tied => (
+                "ComponentsMeshTying",
+                "mesh_tying_process",
+                sides("mesh_tying_model_part"),
+                &[][..],
+                "VECTOR_LAGRANGE_MULTIPLIER",
+            ),
+            Joint::Frictionless => (
+                "ALMContactFrictionless",
+                "alm_contact_process",
+                sides("contact_model_part"),
+                &["contact_residual"][..],
+                "LAGRANGE_MULTIPLIER_CONTACT_PRESSURE",
+            ),
+            Joint::Frictional(_) => (
+                "ALMContactFrictional",
+                "alm_contact_process",
+                sides("contact_model_part"),
+                &["contact_residual", "frictional_stick_contact_residual", "frictional_slip_contact_residual"][..],
+                "VECTOR_LAGRANGE_MULTIPLIER",
+            ),
+        };
+        match self.joint {
+            Joint::Tied => process["variable_name"] = json!("DISPLACEMENT"),
+            Joint::Frictionless => process["contact_type"] = json!("Frictionless"),
+            Joint::Frictional(coefficient) => {
+                process["contact_type"] = json!("Frictional");
+                process["friction_coefficients"] = json!({"0": coefficient});
+            }
+        }
+        let mut settings = Value::Object(tight(names));
+        settings["mortar_type"] = json!(mortar);
+        let criterion = if self.joint == Joint::Tied { "residual_criterion" } else { "contact_residual_criterion" };
+        let step = 1.0 / self.steps as f64;
+        let output = |file: &str, part: &str, variable: &str| {
+            json!({"python_module": "json_output_process",
+            "kratos_module": "KratosMultiphysics", "Parameters": {"output_file_name": file, "model_part_name": part,
+                "output_variables": [variable], "time_frequency": 0.0}})
+        };
+        json!({
+            "problem_data": {"problem_name": "blocks", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
+                "end_time": 1.0 - 0.5 * step},
+            "solver_settings": {"solver_type": "Static", "model_part_name": "Structure", "domain_size": space,
+                "echo_level": 0, "analysis_type": "non_linear",
+                "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},
+                "material_import_settings": {"materials_filename": "StructuralMaterials.json"},
+                "time_stepping": {"time_step": step}, "convergence_criterion": criterion,
+                "residual_relative_tolerance": 1e-10, "residual_absolute_tolerance": 1e-20, "buffer_size": 3,
+                "contact_settings": settings},
+            "processes": {"constraints_process_list": supports, "loads_process_list": loads,
+                "contact_process_list": [{"python_module": module,
+                    "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
+                    "Parameters": process}],
+                "json_output_process_list": [output("results.json", "Structure", "DISPLACEMENT"),
+                    output("slave.json", "Structure.Slave", variable)]}
+        })
+    }
+}
