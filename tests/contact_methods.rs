@@ -38,8 +38,7 @@ fn stack_stiffness() -> f64 {
     1.0 / (1.0 / oedometer(2.0e9, 0.3) + 1.0 / oedometer(1.0e9, 0.2))
 }
 
-/// Weighted gaps hold half an edge of the matching mesh, h/2 = 1/6: the penalty acts as ε h/2 per area, and each update
-/// leaves the share q = K/(K + ε h/2) of the error.
+/// The penalty is a spring of stiffness ε by area: each update leaves the share q = K/(K + ε) of the error.
 #[test]
 fn uzawa_converges_linearly_at_the_rate_of_the_penalty() {
     let stiffness = stack_stiffness();
@@ -47,7 +46,7 @@ fn uzawa_converges_linearly_at_the_rate_of_the_penalty() {
         let scratch = case("contact_2d/uzawa");
         let mut deck = read_json(&scratch.path().join(DECK)).expect("the deck");
         let process = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
-        process["advance_ALM_parameters"]["penalty"] = json!(6.0 * share * stiffness);
+        process["advance_ALM_parameters"]["penalty"] = json!(share * stiffness);
         process["uzawa_parameters"] = json!({"multiplier_tolerance": 1e-6});
         write_json(&scratch.path().join(DECK), &deck);
         let said = run(scratch.path());
@@ -121,6 +120,84 @@ fn an_adapted_penalty_brings_the_penetration_between_its_bounds() {
     }
 }
 
+/// Algorithm 7 as the reference program runs it and as it is printed: a penalty that is too soft grows until the penetration is
+/// within the limit, and multipliers are what they are without it.
+#[test]
+fn an_adapted_augmented_lagrangian_ends_within_its_limit_or_where_it_would_have_ended() {
+    let stiffness = stack_stiffness();
+    for rule in ["AALM", "printed"] {
+        for penalty in [true, false] {
+            let scratch = case("contact_2d/uzawa");
+            let (process, family) = if penalty {
+                ("penalty_contact_process", "PenaltyContactFrictionless")
+            } else {
+                ("alm_contact_process", "ALMContactFrictionless")
+            };
+            let deck = std::fs::read_to_string(scratch.path().join(DECK)).expect("the deck");
+            let deck = deck.replace("uzawa_contact_process", process).replace("UzawaContactFrictionless", family);
+            let mut deck: Value = serde_json::from_str(&deck).expect("JSON");
+            for output in deck["processes"]["json_output_process_list"].as_array_mut().expect("a list") {
+                let variables = output["Parameters"]["output_variables"].as_array_mut().expect("a list");
+                variables.retain(|name| !penalty || name != "LAGRANGE_MULTIPLIER_CONTACT_PRESSURE");
+            }
+            let process = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
+            process.as_object_mut().expect("an object").remove("uzawa_parameters");
+            process["advance_ALM_parameters"] = json!({
+                "manual_ALM": true, "penalty": 0.1 * stiffness, "adapt_penalty": true, "adaptation_rule": rule,
+                "max_gap_factor": 3e-4,
+            });
+            if penalty {
+                process["advance_ALM_parameters"]["penalty_of_weighted_gaps"] = json!(false);
+            }
+            write_json(&scratch.path().join(DECK), &deck);
+            let said = run(scratch.path());
+            if penalty {
+                let found = number_after(&said, "deepest penetration");
+                assert!(found > 0.0 && found <= 1e-4 * (1.0 + 1e-6), "{rule}: {found}\n{said}");
+            } else {
+                let results = Results::read(&scratch.path().join("slave.json")).expect("results");
+                let step = results.step(None).expect("a step");
+                for (node, found) in results.nodal("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", step) {
+                    let expected = -stiffness * 1e-3;
+                    assert!((found / expected - 1.0).abs() < 1e-6, "{rule}, node {node}: {found}, expected {expected}");
+                }
+            }
+        }
+    }
+}
+
+/// The penalty of each process is its factor times E/h of the softer side, E = 1e9 and h = 1/3.
+#[test]
+fn each_process_has_its_penalty() {
+    for (process, family, expected) in [
+        ("penalty", "Penalty", 3e13),
+        ("uzawa", "Uzawa", 3e10),
+        ("perturbed_lagrangian", "PerturbedLagrangian", 3e13),
+        ("alm", "ALM", 3e9),
+    ] {
+        let scratch = case("contact_2d/uzawa");
+        let deck = std::fs::read_to_string(scratch.path().join(DECK)).expect("the deck");
+        let deck = deck.replace("uzawa_contact", &format!("{process}_contact")).replace("Uzawa", family);
+        let mut deck: Value = serde_json::from_str(&deck).expect("JSON");
+        let parameters = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
+        let settings = parameters.as_object_mut().expect("an object");
+        settings.remove("advance_ALM_parameters");
+        if process != "uzawa" {
+            settings.remove("uzawa_parameters");
+        }
+        let output = &mut deck["processes"]["json_output_process_list"];
+        output.as_array_mut().expect("a list").retain(|o| o["Parameters"]["output_file_name"] == "slave.json");
+        output[0]["Parameters"]["output_variables"] = json!(["INITIAL_PENALTY"]);
+        output[0]["Parameters"]["historical_value"] = json!(false);
+        write_json(&scratch.path().join(DECK), &deck);
+        run(scratch.path());
+        let results = Results::read(&scratch.path().join("slave.json")).expect("results");
+        for (node, found) in results.nodal("INITIAL_PENALTY", results.step(None).expect("a step")) {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{process}, node {node}: {found:e}, expected {expected:e}");
+        }
+    }
+}
+
 /// A large penalty divides the smallest eigenvalue of nothing and multiplies the largest: κ grows in proportion.
 #[test]
 fn the_condition_number_is_computed_and_grows_with_the_penalty() {
@@ -130,7 +207,7 @@ fn the_condition_number_is_computed_and_grows_with_the_penalty() {
         let deck = deck.replace("uzawa_contact_process", "penalty_contact_process").replace("Uzawa", "Penalty");
         let mut deck: Value = serde_json::from_str(&deck).expect("JSON");
         let process = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
-        process["advance_ALM_parameters"] = json!({"manual_ALM": true, "penalty": penalty});
+        process["advance_ALM_parameters"] = json!({"manual_ALM": true, "penalty": penalty / h});
         process.as_object_mut().expect("an object").remove("uzawa_parameters");
         let lists = deck["processes"].as_object_mut().expect("lists");
         lists.remove("json_output_process_list");
@@ -140,6 +217,35 @@ fn the_condition_number_is_computed_and_grows_with_the_penalty() {
     };
     let (soft, stiff) = (condition(1e14), condition(1e16));
     assert!((stiff / soft / 100.0 - 1.0).abs() < 0.02, "{soft:e} and {stiff:e}");
+}
+
+/// Table 4.2 with bodies that have its plateau: the valley, κ at k = ε = 100 and the row k = 1 over three decades.
+#[test]
+fn condition_numbers_are_those_of_table_4_2() {
+    let condition = |scale_factor: f64, penalty: f64| {
+        let scratch = scratch_copy(&root().join("examples/condition_number"));
+        let mut deck = read_json(&scratch.path().join(DECK)).expect("the deck");
+        deck.as_object_mut().expect("an object").remove("output_processes");
+        let parameters = &mut deck["processes"]["contact_process_list"][0]["Parameters"]["advance_ALM_parameters"];
+        (parameters["scale_factor"], parameters["penalty"]) = (json!(scale_factor), json!(penalty));
+        write_json(&scratch.path().join(DECK), &deck);
+        number_after(&run(scratch.path()), "condition number")
+    };
+    for (scale_factor, penalty, printed, least, most) in [
+        (100.0, 100.0, 1.74e4, 0.97, 1.03),
+        (10.0, 1e-12, 1.74e4, 0.97, 1.03),
+        (10.0, 10.0, 1.74e4, 0.97, 1.03),
+        (100.0, 1e-12, 1.74e4, 0.97, 1.03),
+        (1.0, 1e-12, 1.13e5, 0.5, 2.0),
+        (1.0, 100.0, 1.63e5, 0.5, 2.0),
+        (1.0, 1e3, 6.15e5, 0.5, 2.0),
+        (1.0, 1e4, 2.69e7, 0.5, 2.0),
+        (1e3, 1e-12, 6.60e4, 0.8, 1.25),
+        (1e4, 1e-12, 6.64e5, 0.8, 1.25),
+    ] {
+        let found = condition(scale_factor, penalty) / printed;
+        assert!(least < found && found < most, "k = {scale_factor}, ε = {penalty}: {found} of the printed {printed:e}");
+    }
 }
 
 #[test]
@@ -241,7 +347,7 @@ fn impact(method: &str, elements: usize, time_step: f64) -> Impact {
                     "contact_model_part": {"0": ["Interface"]}, "assume_master_slave": {"0": ["Slave"]},
                     "search_parameters": {"search_factor": 20.0},
                     "advance_ALM_parameters": if explicit {
-                        json!({"manual_ALM": true, "penalty": penalty / h})
+                        json!({"manual_ALM": true, "penalty": penalty})
                     } else {
                         json!({})
                     }}}],

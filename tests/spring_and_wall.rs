@@ -103,6 +103,38 @@ fn problems_of(expected: &Expected, folder: &Path) -> Vec<String> {
     problems
 }
 
+/// Eq. D.25: condition numbers of the systems of the augmented Lagrangian, before the wall acts and after.
+#[test]
+fn condition_numbers_are_those_of_equation_d25() {
+    let scratch = scratch_copy(&root().join("examples/spring_and_wall/moved_wall"));
+    let deck = scratch.path().join("equation_d25.json");
+    let text = std::fs::read_to_string(&deck).expect("the deck");
+    for penalty in [0.5, 5.0, 100.0, 1e4] {
+        std::fs::write(&deck, text.replace("\"penalty\": 5.0", &format!("\"penalty\": {penalty:e}")))
+            .expect("the deck");
+        let output = zelus(scratch.path(), &["run", "equation_d25.json", "--report", "report.json"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let iterates = Written::of(&deck).expect("iterates").iterates;
+        let report = support::read_json(&scratch.path().join("report.json")).expect("a report");
+        let systems = report["steps"][0]["iterations"].as_array().expect("iterations");
+        let mut acted = 0;
+        for (system, iterate) in systems.iter().zip(&iterates) {
+            let found = system["condition_number"].as_f64().expect("a condition number");
+            let (u, multiplier) = (iterate.values[0], iterate.values[1]);
+            let stiffness = 3.0 * (u + 1.0).powi(2);
+            let expected = if multiplier + penalty * (u + 0.9) > 0.0 {
+                (stiffness * penalty).max(1.0 / (stiffness * penalty))
+            } else {
+                acted += 1;
+                let sum = stiffness + penalty;
+                0.5 * sum * ((sum * sum + 4.0).sqrt() + sum) + 1.0
+            };
+            assert!((found / expected - 1.0).abs() < 1e-3, "ε = {penalty}, u = {u}: {found:e}, expected {expected:e}");
+        }
+        assert!(acted > 0 && acted < systems.len(), "{acted} of {} systems with the wall", systems.len());
+    }
+}
+
 #[test]
 fn every_table_is_reproduced_iterate_by_iterate() {
     let scratch = scratch_copy(&root().join("examples/spring_and_wall"));

@@ -1,11 +1,11 @@
-"""Writes condition_number.mdpa: a punch of hexahedra on a larger block, all of side 10.
+"""Writes condition_number.mdpa: a tall punch of hexahedra on a larger block, all of side 1.
 
     python3 make_mesh.py            (standard library only)
 
 Lengths in m. The block stands on z = 0; the punch covers the middle of its top. Nodes of both meet there, unjoined."""
-SIZE = 10.0
+SIZE = 1.0
 BLOCK = (6, 6, 3)      # elements of the block along x, y, z
-PUNCH = (2, 2, 2)      # elements of the punch, in the middle of the block's top
+PUNCH = (2, 2, 25)     # elements of the punch, in the middle of the block's top
 
 nodes, elements, conditions, parts = [], [], [], {}
 

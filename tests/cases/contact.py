@@ -315,10 +315,10 @@ def write():
     stack(flat + "matching", "Matching quadrilaterals pass a constant-stress patch test.")
     stack(flat + "nonmatching", "Non-matching quadrilaterals pass a constant-stress patch test, the finer side as slave.", upper=("2D4N", 5))
     stack(flat + "nonmatching_coarse_slave", "The coarser side as slave passes the same patch test.", upper=("2D4N", 5), slave="lower")
-    # half an edge weighs the penalty: each update of the multipliers halves the penetration
+    # as stiff as the stack: each update of the multipliers halves the penetration
     stiffness = 1.0 / (1.0 / oedometer(*LOWER) + 1.0 / oedometer(*UPPER))
     stack(flat + "uzawa", "Uzawa's iteration leaves no penetration although its kernel is a penalty.",
-          drive=("-0.001*t", {1.0: -0.001}), manual={"penalty": 6.0 * stiffness, "scale_factor": 1.0},
+          drive=("-0.001*t", {1.0: -0.001}), manual={"penalty": stiffness, "scale_factor": 1.0},
           process_settings={"interval": [0.0, "End"]})
     by_another_method(flat + "uzawa", "uzawa_contact_process", "UzawaContactFrictionless",
                       uzawa_parameters={"multiplier_tolerance": 1e-9})

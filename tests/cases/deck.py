@@ -94,9 +94,9 @@ def contact_solver(dim, mesh_name, time_step=1.0, mortar="ALMContactFrictionless
     return base
 
 
-def contact_process(pairs, kind="Frictionless", **more):
+def contact_process(pairs, kind="Frictionless", method="alm", **more):
     """The contact process; `pairs` is a list of (contact part, slave part), [] for skin detection."""
-    return process("alm_contact_process", {
+    return process(method + "_contact_process", {
         "model_part_name": "Structure", "contact_type": kind,
         **({"contact_model_part": {str(i): [c] for i, (c, _) in enumerate(pairs)},
             "assume_master_slave": {str(i): [s] for i, (_, s) in enumerate(pairs)}} if pairs else {}), **more}, CONTACT)

@@ -16,16 +16,17 @@ TIGHT = {
 
 
 def block(folder, requirement, shape, sliding, length=1.0, stress=1.0, steps=5, limits=(FRICTION,), law="Coulomb",
-          from_properties=False, kind="Frictional", shear_share=0.8, settings=None, process=None):
+          from_properties=False, kind="Frictional", shear_share=0.8, settings=None, process=None, method="ALM"):
     """A block on another, pressed by p and sheared along x by 0.8 of the limit, or dragged over a rigid plane.
 
     The shear acts on the top and, as its complement, on the sides, so that both stresses are uniform. `length` and
     `stress` are the units of the deck in metres and pascals. `limits` has one entry for each of several such pairs of
-    blocks side by side: a coefficient, or for Tresca's law the limit as a share of p. `kind` is the contact type; with the
-    penalty's, stresses have to be those of a frictionless block."""
+    blocks side by side: a coefficient, or for Tresca's law the limit as a share of p. `kind` is the contact type, `method`
+    the family: a penalty yields a little, and its tractions stand for multipliers."""
     dim = int(shape[0])
     up, last = "xyz"[dim - 1], dim - 1
     young, load, drag = 1.0e9 / stress, 1.0e3 / stress, 5.0e-6 / length
+    relative = 1e-3 if method == "Penalty" else 1e-5
     mesh = Mesh()
     sizes = [(0.0, 1.0), (0.0, 0.8)]
     family = "Line" if dim == 2 else "Surface"
@@ -75,12 +76,18 @@ def block(folder, requirement, shape, sliding, length=1.0, stress=1.0, steps=5, 
         scale = load / young / length
         for box in ([top] if sliding else [low, top]):
             for axis, field in zip("XYZ", fields):
-                checks.append(check("DISPLACEMENT_" + axis, 1e-5 * scale, f"{box.name.lower()}.json", affine=field))
+                checks.append(check("DISPLACEMENT_" + axis, relative * scale, f"{box.name.lower()}.json", affine=field))
         sides += [(top.facets[up + "0"], young), (low.facets[up + "1"], young)]
-        for axis, value in (("X", -shear), ("XYZ"[last], load)):
-            checks.append((f"{MULTIPLIER}_{axis}", f"slave{mark}.json", value))
+        if method == "Penalty":
+            checks += [check("FRICTION_TRACTION_X", relative * load, f"slave{mark}.json", value=-shear),
+                       check("AUGMENTED_NORMAL_CONTACT_PRESSURE", relative * load, f"pressure{mark}.json", value=-load)]
+            outputs.append(json_output(f"pressure{mark}.json", ["AUGMENTED_NORMAL_CONTACT_PRESSURE"], "Slave" + mark, historical=False))
+        else:
+            for axis, value in (("X", -shear), ("XYZ"[last], load)):
+                checks.append((f"{MULTIPLIER}_{axis}", f"slave{mark}.json", value))
         outputs += [json_output(f"{box.name.lower()}.json", ["DISPLACEMENT"], box.name) for box in (low, top)]
-        outputs.append(json_output(f"slave{mark}.json", [MULTIPLIER, "WEIGHTED_SLIP"], "Slave" + mark))
+        tractions = "FRICTION_TRACTION" if method == "Penalty" else MULTIPLIER
+        outputs.append(json_output(f"slave{mark}.json", [tractions, "WEIGHTED_SLIP"], "Slave" + mark))
         more = {}
         if law == "Tresca":
             more["TRESCA_FRICTION_THRESHOLD"] = limit * load
@@ -91,15 +98,17 @@ def block(folder, requirement, shape, sliding, length=1.0, stress=1.0, steps=5, 
         materials += [material(box.name, len(materials) + 1 + i, name, young, 0.0, **more) for i, box in enumerate((low, top))]
     k = scale_factor(mesh, sides)
     checks = [c if isinstance(c, dict) else check(c[0], 1e-5 * load / k, c[1], value=c[2] / k) for c in checks]
-    solver_settings = contact_solver(dim, "mesh", 1.0 / steps, "ALMContact" + kind, residual_absolute_tolerance=1e-20,
+    solver_settings = contact_solver(dim, "mesh", 1.0 / steps, method + "Contact" + kind, residual_absolute_tolerance=1e-20,
                                      residual_relative_tolerance=1e-10, max_iteration=30, buffer_size=3,
                                      contact_settings=TIGHT, **(settings or {}))
+    # of gaps, an even penetration makes an even pressure on unlike meshes
+    spring = {"advance_ALM_parameters": {"penalty_of_weighted_gaps": False}} if method == "Penalty" else {}
     friction = {"frictional_law": law} if law != "Coulomb" else {"friction_coefficients": given}
     write_case(folder, requirement,
                "Pressure and shear are uniform; loads and contact act on the deformed facets, which moves the answer by the "
                "strain, 1e-6.",
                parameters("mesh", solver_settings, constraints, loads,
-                          [contact_process(pairs, kind, **friction, **(process or {}))], outputs), materials, mesh, checks)
+                          [contact_process(pairs, kind, method.lower(), **spring, **friction, **(process or {}))], outputs), materials, mesh, checks)
 
 
 def arc():
@@ -167,6 +176,10 @@ def write():
         block(f"contact_{dim}d/friction_slide", "A block dragged over a rigid plane resists with μ p.", shape, True)
         block(f"contact_{dim}d/friction_tresca_slide", "Under Tresca's law a dragged block resists with the limit of the law.",
               shape, True, law="Tresca", limits=(0.2,))
+        block(f"contact_{dim}d/friction_penalty_stick", "By the penalty method a block sheared by 0.8 μ p sticks.",
+              shape, False, steps=1, method="Penalty")
+        block(f"contact_{dim}d/friction_penalty_slide", "By the penalty method a dragged block resists with μ p.",
+              shape, True, method="Penalty")
     block("contact_2d/friction_tresca_stick", "Under Tresca's law a block sheared by 0.8 of the limit sticks.", "2D4N", False,
           steps=1, law="Tresca", limits=(0.2,))
     block("contact_3d/friction_iterative_engine", "GMRES on condensed multipliers lets a sheared block stick.", "3D8N", False,

@@ -188,6 +188,8 @@ impl Setting {
             stiffness: 20.0,
             tangent_factor: 0.3,
             operator_threshold: OperatorThreshold { share: 0.0, area: self.operator_threshold },
+            weighted_penalty: false,
+            levels_back: 1,
             normal_variation: NormalVariation::Update,
             augmentation: Augmentation::Node,
             friction_law: &COULOMB,

@@ -76,6 +76,8 @@ pub struct SlaveNumbers {
     pub gap: f64,
     /// Slip s of the step (length).
     pub slip: [f64; 3],
+    /// Traction q of a penalty method before the law limits it.
+    pub trial: [f64; 3],
     /// Unit tangent τ in which the last solve took a sliding node to slide.
     pub tangent: [f64; 3],
     /// Stiffness c: what a gap counts with against tractions (stress by length).
@@ -221,16 +223,20 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     }
 }
 
-/// Decides for a node of the frictional penalty method: it sticks while |κ c s| ≤ −μ p̂.
+/// Decides for a node of the frictional penalty method: it sticks while the trial traction is within the bound.
+///
+/// A sliding node whose trial traction has turned against its traction sticks, too: the spring is stiff, so that the little
+/// that an iterate moves it back takes it from one bound beyond the other.
 pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let pressure = node.pressure();
     if !node.presses(pressure) {
         return inactive(node, pressure);
     }
-    let q = node.slip_traction();
+    let q = node.trial;
     let (bound, length) = (node.friction.at(pressure), norm(q));
     let sliding = node.state == NodeState::Slip;
-    let over = node.resolution.exceeds(length, bound, sliding);
+    let turned = sliding && rule != SlipRule::Pure && dot(q, node.tangent) < 0.0;
+    let over = !turned && node.resolution.exceeds(length, bound, sliding);
     let slips = rule == SlipRule::Pure || node.friction.is_smooth() || over;
     let entered = !node.state.is_active();
     Decision {
@@ -274,6 +280,7 @@ mod tests {
             multiplier,
             gap: -0.5,
             slip: [0.1, 0.0, 0.0],
+            trial: [0.0; 3],
             tangent: [1.0, 0.0, 0.0],
             stiffness: 2.0,
             friction: Bound { coefficient: 0.3, threshold: 0.0 },
@@ -360,15 +367,24 @@ mod tests {
 
     #[test]
     fn penalty_sticks_up_to_the_bound() {
-        // p̂ = −1, bound 0.3, |q̂| = |s|.
-        let decide = |slip| {
-            let node = SlaveNumbers { slip: [0.0, slip, 0.0], ..node(NodeState::Stick, [0.0; 3]) };
+        // p̂ = −1, bound 0.3.
+        let decide = |trial| {
+            let node = SlaveNumbers { trial: [0.0, trial, 0.0], ..node(NodeState::Stick, [0.0; 3]) };
             penalty_frictional(&node, COULOMB)
         };
         assert_eq!(decide(0.3).state, NodeState::Stick);
         let slips = decide(0.6);
         assert_eq!((slips.state, slips.slip_changed), (NodeState::Slip, true));
         assert!((slips.traction[1] - 0.3).abs() < 1e-15);
+        // A sliding node goes on along its direction; turned back it sticks, however far.
+        let slid = |trial| {
+            let node = SlaveNumbers { trial: [trial, 0.0, 0.0], ..node(NodeState::Slip, [0.0; 3]) };
+            penalty_frictional(&node, COULOMB).state
+        };
+        assert_eq!(
+            [0.6, 0.2, -0.2, -6.0].map(slid),
+            [NodeState::Slip, NodeState::Stick, NodeState::Stick, NodeState::Stick]
+        );
     }
 
     #[test]

@@ -5,9 +5,12 @@ use serde::Deserialize;
 /// How the penalty of an active node follows its gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum PenaltyRule {
-    /// Algorithm 7.
+    /// Algorithm 7 as the reference program runs it.
     #[serde(rename = "AALM")]
     AugmentedLagrangian,
+    /// Algorithm 7 as it is printed.
+    #[serde(rename = "printed")]
+    Printed,
     /// Eq. D.4.
     #[serde(rename = "APM")]
     AdaptedPenalty,
@@ -18,6 +21,7 @@ impl PenaltyRule {
     pub fn adapt(self, penalty: f64, gap: f64, previous: f64, [least, largest]: [f64; 2]) -> f64 {
         match self {
             Self::AugmentedLagrangian => adapted_augmented_lagrangian(penalty, gap, previous, largest),
+            Self::Printed => printed_augmented_lagrangian(penalty, -gap, -previous, largest),
             Self::AdaptedPenalty if gap < 0.0 => adapted_penalty(penalty, gap, least, largest),
             Self::AdaptedPenalty => penalty,
         }
@@ -27,7 +31,7 @@ impl PenaltyRule {
     /// one where it is to find its way.
     pub fn floor_refers_to(self, run: f64, present: f64) -> f64 {
         match self {
-            Self::AugmentedLagrangian => run,
+            Self::AugmentedLagrangian | Self::Printed => run,
             Self::AdaptedPenalty => present,
         }
     }
@@ -62,6 +66,26 @@ pub fn adapted_augmented_lagrangian(penalty: f64, gap: f64, previous: f64, max_g
     }
 }
 
+/// Algorithm 7 line by line as it is printed, with penetrations g positive.
+///
+/// Line 3 repeats the test of line 2, so that lines 5 and 6 are never reached; line 12 repeats that of line 7, so that lines
+/// 14 and 15 are not. An open gap, however large, leaves the penalty.
+pub fn printed_augmented_lagrangian(penalty: f64, g: f64, previous: f64, max_gap: f64) -> f64 {
+    if g * previous < 0.0 {
+        return (penalty * previous / g * (g.abs() + max_gap) / (g - previous)).abs();
+    }
+    if g <= max_gap {
+        return penalty;
+    }
+    if (g - previous).abs() > (g / 10.0).max(previous / 10.0).max(5.0 * max_gap) {
+        2.0 * penalty
+    } else if (g - previous).abs() <= 0.01 * previous && g < 10.0 * max_gap {
+        penalty * ((g / max_gap - 1.0).sqrt() + 1.0).powi(2)
+    } else {
+        2.0 * penalty * (previous / g)
+    }
+}
+
 /// Adapted penalty method (eq. D.4): scales the penalty so that the penetration |g| falls between two bounds.
 /// The factor is |g|/g_max above g_max, |g|/g_min below g_min, and 1 between.
 pub fn adapted_penalty(penalty: f64, gap: f64, min_gap: f64, max_gap: f64) -> f64 {
@@ -75,18 +99,32 @@ pub fn adapted_penalty(penalty: f64, gap: f64, min_gap: f64, max_gap: f64) -> f6
     }
 }
 
-/// Penalty ε_j and factor f on the force of an active node whose gap has just closed.
+/// How the penalty of explicit steps grows with the gap (`advance_explicit_parameters`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Growth {
+    /// a: share by which the penalty has grown where the gap is large (`max_gap_factor`).
+    pub most: f64,
+    /// b: how fast it grows (`logistic_exponent_factor`).
+    pub exponent: f64,
+    /// h > 0: the gap by which it has grown by most of that (length).
+    pub gap: f64,
+}
+
+impl Growth {
+    /// ε (1 + a/(1 + e^{−b|g|/h})) for a gap g ≤ 0; otherwise ε.
+    pub fn stiffened(self, penalty: f64, gap: f64) -> f64 {
+        if gap > 0.0 {
+            return penalty;
+        }
+        penalty * (1.0 + self.most / (1.0 + (-self.exponent * gap.abs() / self.gap).exp()))
+    }
+}
+
+/// Factor f on the force of an active node whose gap has just closed.
 ///
-/// ε_j = ε (1 + a/(1 + e^{−6|g|/h})) for g ≤ 0, with a = `max_gap_factor` and h = `max_gap` > 0; otherwise ε. A gap that
-/// went from open to closed within one iterate gives f = min(1, |g|/|g − g₀|): the share of the motion in contact.
-pub fn dynamic_factor(penalty: f64, gap: f64, previous: f64, max_gap_factor: f64, max_gap: f64) -> (f64, f64) {
-    let stiffer = if max_gap > 0.0 && gap <= 0.0 {
-        penalty * (1.0 + max_gap_factor / (1.0 + (-6.0 * gap.abs() / max_gap).exp()))
-    } else {
-        penalty
-    };
-    let factor = if gap < 0.0 && previous > 0.0 { (gap.abs() / (gap - previous).abs()).min(1.0) } else { 1.0 };
-    (stiffer, factor)
+/// A gap that went from open to closed within one iterate gives f = min(1, |g|/|g − g₀|): the share of the motion in contact.
+pub fn dynamic_factor(gap: f64, previous: f64) -> f64 {
+    if gap < 0.0 && previous > 0.0 { (gap.abs() / (gap - previous).abs()).min(1.0) } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -125,11 +163,33 @@ mod tests {
 
     #[test]
     fn dynamic_factor_limits_the_first_touch() {
-        assert_eq!(dynamic_factor(7.0, 0.1, 0.2, 1e-3, 0.05), (7.0, 1.0));
-        assert_eq!(dynamic_factor(7.0, -0.1, -0.2, 1e-3, 0.0), (7.0, 1.0));
-        let (penalty, factor) = dynamic_factor(7.0, -0.1, 0.3, 1e-3, 0.1);
-        close(factor, 0.25);
-        close(penalty, 7.0 * (1.0 + 1e-3 / (1.0 + (-6.0_f64).exp())));
-        close(dynamic_factor(1.0, 0.0, 0.0, 1e-3, 0.1).0, 1.0005);
+        assert_eq!(dynamic_factor(0.1, 0.2), 1.0);
+        assert_eq!(dynamic_factor(-0.1, -0.2), 1.0);
+        close(dynamic_factor(-0.1, 0.3), 0.25);
+    }
+
+    #[test]
+    fn explicit_penalties_grow_with_the_gap() {
+        let growth = Growth { most: 3.0, exponent: 6.0, gap: 0.1 };
+        close(growth.stiffened(7.0, -0.1), 7.0 * (1.0 + 3.0 / (1.0 + (-6.0_f64).exp())));
+        close(growth.stiffened(7.0, 0.0), 7.0 * 2.5);
+        close(growth.stiffened(7.0, -1e3), 28.0);
+        assert_eq!(growth.stiffened(7.0, 0.1), 7.0);
+        close(Growth { exponent: 12.0, ..growth }.stiffened(7.0, -0.05), growth.stiffened(7.0, -0.1));
+    }
+
+    #[test]
+    fn algorithm_7_as_printed() {
+        let rule = |gap, previous| PenaltyRule::Printed.adapt(100.0, gap, previous, [0.0, 0.1]);
+        // Line 4 for any sign change, also of a small gap.
+        close(rule(0.2, -0.4), 100.0 * 2.0 * 0.3 / 0.6);
+        close(rule(-0.5, 0.05), 100.0 * 0.1 * 0.6 / 0.55);
+        // Line 17: good enough, or open.
+        assert_eq!((rule(-0.1, -0.3), rule(5.0, 4.0), rule(0.0, 0.0)), (100.0, 100.0, 100.0));
+        // Lines 9, 11 and 13.
+        close(rule(-2.0, -0.5), 200.0);
+        close(rule(-0.5, -0.5), 100.0 * 9.0);
+        close(rule(-0.5, -0.4), 200.0 * 0.4 / 0.5);
+        close(rule(-1.7, -1.7), 200.0);
     }
 }

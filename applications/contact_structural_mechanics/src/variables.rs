@@ -10,6 +10,9 @@ register_variable! {
     pub WEIGHTED_SLIP: [f64; 3] = "Slip of the step integrated with the dual shape function of a slave node (length times area).";
     pub WEIGHTED_SCALAR_RESIDUAL: f64 = "Residual of a tied scalar, integrated with dual shape functions.";
     pub WEIGHTED_VECTOR_RESIDUAL: [f64; 3] = "Residual of a tied vector, integrated with dual shape functions.";
+    pub FRICTION_TRACTION: [f64; 3] = "Tangential traction on a slave node by the penalty method, carried from step to step (force per area).";
+    pub TRIAL_TRACTION: [f64; 3] = "Tangential traction on a slave node before the law of friction limits it (force per area).";
+    pub MEAN_WEIGHTED_GAP: f64 = "Weighted gaps of the pairs of a slave node, averaged by their areas (length times area).";
     pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
     pub HELD_MULTIPLIER: [f64; 3] = "What becomes of the components of a multiplier where supports hold both sides: 0 own equation, 1 kept, 2 as its neighbours, 3 kept in stick.";
@@ -23,7 +26,7 @@ register_variable! {
     pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";
     pub TURNING_BY_SLIP: f64 = "Tangential traction by weighted slip across the direction of sliding (force per length to the fifth).";
     pub TURNING_BY_MULTIPLIER: f64 = "Turning of the direction of sliding by the tangential multiplier.";
-    pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Scale factor times normal multiplier plus penalty times weighted gap; negative when active.";
+    pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Scale factor times normal multiplier plus penalty times weighted gap, of penalty methods the normal traction; negative in contact.";
     pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";
     kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";
 }

@@ -8,9 +8,9 @@ use crate::model::{EntityTable, ModelPart};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registry::{self, Build, Entry, Kind};
 use crate::strategies::{
-    ArcLength, ArcLengthSettings, CentralDifferences, ConvergenceCriterion, CriterionFactory, CriterionRequest,
-    ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy, LineSearch, NewtonRaphson, NewtonSettings, Scheme,
-    SchemeFactory, SchemeRequest, SolutionStrategy, multipliers,
+    ArcLength, ArcLengthSettings, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionFactory,
+    CriterionRequest, ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy, LineSearch, NewtonRaphson,
+    NewtonSettings, Scheme, SchemeFactory, SchemeRequest, SolutionStrategy, multipliers,
 };
 
 /// A variable with history on the nodes: name and number of components.
@@ -160,6 +160,9 @@ impl SolverSettings {
         }
         for mark in &self.marks {
             part.info.marks.insert(mark, true);
+        }
+        if self.settings.node().get("condn_convergence_criterion").and_then(Node::as_bool) == Some(true) {
+            part.info.marks.insert(CONDITION_NUMBER, true);
         }
         for &(name, value) in &self.values {
             part.info.values.insert(name, value);

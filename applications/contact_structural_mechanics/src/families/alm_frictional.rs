@@ -6,7 +6,7 @@ use zelus_core::registry::Build;
 use super::shapes::{self, register_shapes};
 use crate::formulations::{AlmFrictional, Kinematics, SlipHistory};
 use crate::interaction::StepParameters;
-use crate::mortar::{Operators, PairGeometry};
+use crate::mortar::PairGeometry;
 use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
 use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
 
@@ -37,18 +37,10 @@ impl PairFormulation for AlmFrictional {
 
     fn slip<const NS: usize, const NM: usize>(
         &self,
-        operators: &Operators<f64, NS, NM>,
-        geometry: &PairGeometry<f64, NS, NM>,
+        pair: &Kinematics<f64, NS, NM>,
         history: &SlipHistory<NS, NM>,
     ) -> [[f64; 3]; NS] {
-        let pair = Kinematics {
-            operators: *operators,
-            slave: geometry.slave,
-            master: geometry.master,
-            normals: geometry.nodal_normals,
-            multipliers: [[0.0; 3]; NS],
-        };
-        AlmFrictional::slip(self, &pair, history)
+        AlmFrictional::slip(self, pair, history)
     }
 }
 

@@ -4,31 +4,39 @@ use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
-use crate::formulations::PenaltyFrictional;
+use crate::formulations::{Kinematics, LastState, PenaltyFrictional, SlaveNode};
 use crate::interaction::StepParameters;
-use crate::mortar::{Operators, PairGeometry, objective_slip};
+use crate::mortar::PairGeometry;
 use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
 
 impl PairFormulation for PenaltyFrictional {
     fn new(parameters: &StepParameters) -> Self {
-        Self { tangent_factor: parameters.tangent_factor }
+        Self { tangent_factor: parameters.tangent_factor, weighted: parameters.weighted_penalty }
     }
 
     fn multiplier() -> Multiplier {
         Multiplier::None
     }
 
-    fn history<const NS: usize, const NM: usize>(pair: &Pair, _: &PairGeometry<f64, NS, NM>) -> Operators<f64, NS, NM> {
-        pair.previous.operators()
+    fn history<const NS: usize, const NM: usize>(_: &Pair, last: &PairGeometry<f64, NS, NM>) -> LastState<NS, NM> {
+        LastState { slave: last.slave, master: last.master }
     }
 
     fn slip<const NS: usize, const NM: usize>(
         &self,
-        operators: &Operators<f64, NS, NM>,
-        geometry: &PairGeometry<f64, NS, NM>,
-        previous: &Operators<f64, NS, NM>,
+        pair: &Kinematics<f64, NS, NM>,
+        last: &LastState<NS, NM>,
     ) -> [[f64; 3]; NS] {
-        objective_slip(operators, previous, &geometry.slave, &geometry.master, &geometry.nodal_normals)
+        Self::slip(pair, last)
+    }
+
+    fn trial<const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<f64, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        last: &LastState<NS, NM>,
+    ) -> Option<[[f64; 3]; NS]> {
+        Some(Self::trial(self, pair, nodes, last))
     }
 }
 
@@ -38,10 +46,10 @@ register! { Condition "PenaltyContactFrictional",
     build: Build::Factory(&Family {
         condition: "PenaltyFrictionalMortarContactCondition",
         multiplier: Multiplier::None,
-        variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3)],
+        variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3), ("FRICTION_TRACTION", 3)],
         friction: Friction::Coulomb,
         penalty: true,
-        weighted_gaps: true,
+        weighted_gaps: false,
         block: shapes::block::<PenaltyFrictional>,
     }),
 }

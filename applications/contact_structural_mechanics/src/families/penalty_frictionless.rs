@@ -10,8 +10,8 @@ use crate::mortar::PairGeometry;
 use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
 
 impl PairFormulation for PenaltyFrictionless {
-    fn new(_: &StepParameters) -> Self {
-        Self
+    fn new(parameters: &StepParameters) -> Self {
+        Self { weighted: parameters.weighted_penalty }
     }
 
     fn multiplier() -> Multiplier {
@@ -30,7 +30,7 @@ register! { Condition "PenaltyContactFrictionless",
         variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
         friction: Friction::None,
         penalty: true,
-        weighted_gaps: true,
+        weighted_gaps: false,
         block: shapes::block::<PenaltyFrictionless>,
     }),
 }

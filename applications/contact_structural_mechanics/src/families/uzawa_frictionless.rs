@@ -31,7 +31,7 @@ register! { Condition "UzawaContactFrictionless",
         variables: &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],
         friction: Friction::None,
         penalty: true,
-        weighted_gaps: true,
+        weighted_gaps: false,
         block: shapes::block::<UzawaFrictionless>,
     }),
 }

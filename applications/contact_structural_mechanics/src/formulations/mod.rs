@@ -34,7 +34,7 @@ pub use alm_frictionless_components::AlmFrictionlessComponents;
 pub use held::Held;
 pub use mesh_tying::MeshTying;
 pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
-pub use penalty_frictional::PenaltyFrictional;
+pub use penalty_frictional::{LastState, PenaltyFrictional};
 pub use penalty_frictionless::PenaltyFrictionless;
 pub use perturbed_lagrangian_frictionless::PerturbedLagrangianFrictionless;
 pub use system::{OperatorTangent, by_normals, local_size, residual, tangent};

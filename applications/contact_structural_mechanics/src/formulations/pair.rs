@@ -59,6 +59,8 @@ pub struct SlaveNode {
     pub held: [Held; 3],
     /// k² A/c: what the equations of held components are measured with.
     pub held_weight: f64,
+    /// Tangential traction t° of the last accepted state, where a family carries it (force per area).
+    pub carried: [f64; 3],
 }
 
 /// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ c WS/A, τ = q̂/|q̂|.
@@ -67,7 +69,8 @@ pub struct SlaveNode {
 /// across its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turning {
-    /// κ b/|q̂|, with the sum b of the bounds that the pairs of the node state: slip across τ, in shares of the slip that stick would forbid.
+    /// κ b/|q̂|, with the sum b of the bounds that the pairs of the node state: slip across τ, in shares of the slip that stick
+    /// would forbid. By the penalty method 1/|q|: turning by trial traction.
     pub by_slip: f64,
     /// k/|q̂|: traction by multiplier across τ, in shares of the bound.
     pub by_multiplier: f64,
@@ -99,6 +102,12 @@ impl<T: Real, const NS: usize, const NM: usize> Kinematics<T, NS, NM> {
     #[inline]
     pub fn area(&self, j: usize) -> T {
         self.operators.d[j].iter().fold(T::zero(), |sum, d| sum + *d)
+    }
+
+    /// What a penalty counts of a weighted gap or slip of slave node `j`: all of it, or its mean over the area of the pair.
+    #[inline]
+    pub fn counted(&self, j: usize, weighted: bool) -> T {
+        if weighted { T::one() } else { self.area(j).recip() }
     }
 }
 

@@ -1,46 +1,90 @@
-//! Friction by the penalty method.
+//! Friction by the penalty method: an elastic slip that the law of friction limits.
 //!
-//! Normal part p = f ε g̃ n through D and M. Tangential part t = b(ε g̃) τ (slip, b the bound of the law) or κ ε s
-//! (stick) through the *changes* of the operators since the start of the step: b_slave −= f (D − D°)ᵀ P t, b_master +=
-//! f (M − M°)ᵀ P t, with s objective.
+//! Trial traction q = P R t° + κ ε s̄: the traction t° of the last accepted state, turned with the facet by R, and the mean
+//! slip s̄ since then. Stick: t = q. Slip: t = b(ε ḡ) τ, with b the bound of the law and τ the direction of the trial traction of
+//! all pairs of the node; in space the tangent knows how it turns. An active node has the force p = f (ε ḡ n + t), which acts
+//! through D and M. Means are those over the pair, see [`super::penalty_frictionless`].
 
 use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
-use crate::mortar::{Operators, objective_slip, tangential};
+use crate::mortar::{Turn, tangential, weighted_jump};
 use zelus_core::scalar::Real;
-use zelus_core::vector3::scale;
+use zelus_core::vector3::{add, constant, scale, sub};
 
 /// Penalty method with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenaltyFrictional {
     /// Ratio κ of tangential to normal penalty.
     pub tangent_factor: f64,
+    /// Whether the penalty counts weighted gaps and slips.
+    pub weighted: bool,
+}
+
+/// A pair as it was in the last accepted state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LastState<const NS: usize, const NM: usize> {
+    /// Positions of the slave nodes.
+    pub slave: [[f64; 3]; NS],
+    /// Positions of the master nodes.
+    pub master: [[f64; 3]; NM],
+}
+
+impl PenaltyFrictional {
+    /// Weighted slips s of a pair since its last accepted state.
+    pub fn slip<T: Real, const NS: usize, const NM: usize>(
+        pair: &Kinematics<T, NS, NM>,
+        last: &LastState<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        let turn = Turn::of_facet(&pair.slave, &last.slave);
+        let before = weighted_jump(&pair.operators, &last.slave.map(constant), &last.master.map(constant));
+        let now = weighted_jump(&pair.operators, &pair.slave, &pair.master);
+        std::array::from_fn(|j| tangential(sub(turn.apply(before[j]), now[j]), pair.normals[j]))
+    }
+
+    /// Trial tractions q of the slave nodes of a pair.
+    pub fn trial<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        last: &LastState<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        let turn = Turn::of_facet(&pair.slave, &last.slave);
+        let slip = Self::slip(pair, last);
+        std::array::from_fn(|j| {
+            let carried = tangential(turn.apply(constant(nodes[j].carried)), pair.normals[j]);
+            add(carried, scale(slip[j], pair.counted(j, self.weighted) * (self.tangent_factor * nodes[j].penalty)))
+        })
+    }
+}
+
+/// The direction τ of a sliding node; what it turns by with the trial traction of a pair is nothing but a derivative.
+fn direction<T: Real>(node: &SlaveNode, trial: [T; 3]) -> [T; 3] {
+    let change = trial.map(|q| (q - q.value()) * node.turning.by_slip);
+    let along = change[0] * node.tangent[0] + change[1] * node.tangent[1] + change[2] * node.tangent[2];
+    std::array::from_fn(|c| change[c] - along * node.tangent[c] + node.tangent[c])
 }
 
 impl Formulation for PenaltyFrictional {
     const MULTIPLIERS: Multipliers = Multipliers::None;
-    /// D° and M°, at the start of the step.
-    type History<const NS: usize, const NM: usize> = Operators<f64, NS, NM>;
+    type History<const NS: usize, const NM: usize> = LastState<NS, NM>;
 
     fn residual<T: Real, const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<T, NS, NM>,
         nodes: &[SlaveNode; NS],
-        previous: &Operators<f64, NS, NM>,
+        last: &LastState<NS, NM>,
     ) -> PairResidual<T, NS, NM> {
         let gap = pair.gap();
-        let change = pair.operators.minus(previous);
-        let slip = objective_slip(&pair.operators, previous, &pair.slave, &pair.master, &pair.normals);
+        let trial = self.trial(pair, nodes, last);
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate() {
-            let n = pair.normals[j];
-            let pressure = gap[j] * node.penalty;
-            let friction = match node.state {
+            let pressure = gap[j] * pair.counted(j, self.weighted) * node.penalty;
+            let traction = match node.state {
                 NodeState::Inactive => continue,
-                NodeState::Slip => node.tangent.map(|t| node.friction.at(pressure) * t),
-                NodeState::Stick => slip[j].map(|s| s * (self.tangent_factor * node.penalty)),
+                NodeState::Stick => trial[j],
+                NodeState::Slip => scale(direction(node, trial[j]), node.friction.at(pressure)),
             };
-            out.add_nodal_force(&pair.operators, j, scale(n, pressure * node.dynamic_factor));
-            out.add_nodal_force(&change, j, tangential(friction, n).map(|t| t * -node.dynamic_factor));
+            let force = add(scale(pair.normals[j], pressure), traction);
+            out.add_nodal_force(&pair.operators, j, force.map(|p| p * node.dynamic_factor));
         }
         out
     }

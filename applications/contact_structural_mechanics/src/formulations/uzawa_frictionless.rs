@@ -1,6 +1,7 @@
 //! Frictionless contact by Uzawa's iteration on the penalty kernel (eq. D.10).
 //!
-//! Active: p = f (k λ + ε g̃) n with λ constant; an outer loop updates it, k λ ← k λ + ε g̃. Inactive: p = 0.
+//! Active: p = f (k λ + ε ḡ) n with λ constant and the mean gap ḡ = g̃/D; an outer loop updates it, k λ ← k λ + ε ḡ.
+//! Inactive: p = 0.
 
 use super::{Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use zelus_core::scalar::Real;
@@ -26,7 +27,8 @@ impl Formulation for UzawaFrictionless {
         let gap = pair.gap();
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {
-            let pressure = (pair.multipliers[j][0] * self.scale_factor + gap[j] * node.penalty) * node.dynamic_factor;
+            let spring = gap[j] * pair.counted(j, false) * node.penalty;
+            let pressure = (pair.multipliers[j][0] * self.scale_factor + spring) * node.dynamic_factor;
             out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
         }
         out

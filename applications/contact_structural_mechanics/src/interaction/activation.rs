@@ -18,8 +18,9 @@ use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::resolution::Resolution;
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, MULTIPLIER_WEIGHT,
-    NODAL_AREA, NODAL_H, NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, FRICTION_TRACTION, INITIAL_PENALTY,
+    MEAN_WEIGHTED_GAP, MULTIPLIER_WEIGHT, NODAL_AREA, NODAL_H, NORMAL_GAP, TANGENT_XI, TRIAL_TRACTION, WEIGHTED_GAP,
+    WEIGHTED_SLIP,
 };
 
 /// Gap, in mesh sizes, of the simple activation.
@@ -27,12 +28,16 @@ const SIMPLE_REACH: f64 = 2e-3;
 /// Gap of a node that nothing faces.
 const FAR: f64 = 1e12;
 
-/// Sets the multipliers of inactive nodes to zero.
+/// Sets the multipliers of inactive nodes to zero, or the tractions that the penalty method carries.
 pub(super) fn clear_inactive_multipliers(part: &mut ModelPart, multiplier: Multiplier, slaves: &[u32]) {
     let inactive: Vec<u32> = slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ACTIVE, n as usize)).collect();
     let history = &mut part.nodes.history;
     match multiplier {
-        Multiplier::None => {}
+        Multiplier::None => {
+            if let Some(carried) = history.get_mut(FRICTION_TRACTION.name()) {
+                inactive.iter().for_each(|&n| carried.levels[0][3 * n as usize..3 * n as usize + 3].fill(0.0));
+            }
+        }
         Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
             let column = history.values_mut(variable, 0);
             inactive.iter().for_each(|&n| column[n as usize] = 0.0);
@@ -158,6 +163,7 @@ pub(super) fn apply(
     parameters: &StepParameters,
 ) -> SetChange {
     let mut change = SetChange::default();
+    write_pressures(part, decisions, family, parameters);
     for ((node, decision), &was) in decisions.iter().zip(before) {
         let at = *node as usize;
         let (id, active) = (part.nodes.ids[at], decision.state.is_active());
@@ -197,15 +203,51 @@ pub(super) fn apply(
             }
         }
     }
-    let pressures = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
-    decisions.iter().for_each(|(n, decision)| pressures[*n as usize] = decision.pressure);
     if family.frictional() {
         let tractions = part.nodes.values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
         for (n, decision) in decisions {
             tractions[3 * *n as usize..3 * *n as usize + 3].copy_from_slice(&decision.traction);
         }
+        if let Some(carried) = part.nodes.history.get_mut(FRICTION_TRACTION.name()) {
+            for (n, decision) in decisions {
+                carried.levels[0][3 * *n as usize..3 * *n as usize + 3].copy_from_slice(&decision.traction);
+            }
+        }
     }
     change
+}
+
+/// Writes k λ·n + ε g̃ of the slave nodes; without multipliers the pressure of the penalty.
+fn write_pressures(part: &mut ModelPart, decisions: &[(u32, Decision)], family: &Family, parameters: &StepParameters) {
+    let augmented = |(node, decision): &(u32, Decision)| {
+        let at = *node as usize;
+        let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
+        let augmentation = penalty * part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
+        match family.multiplier {
+            Multiplier::None | Multiplier::Outer(_) => decision.pressure,
+            _ => parameters.scale_factor * dot(multiplier(part, at, family), normal(part, at)) + augmentation,
+        }
+    };
+    let pressures: Vec<f64> = decisions.iter().map(augmented).collect();
+    let column = part.nodes.values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0);
+    decisions.iter().zip(pressures).for_each(|((node, _), pressure)| column[*node as usize] = pressure);
+}
+
+fn normal(part: &ModelPart, at: usize) -> [f64; 3] {
+    part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, at))
+}
+
+/// Multiplier of a slave node; a scalar one along its normal, none without.
+fn multiplier(part: &ModelPart, at: usize, family: &Family) -> [f64; 3] {
+    match family.multiplier {
+        Multiplier::None => [0.0; 3],
+        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
+            scale(normal(part, at), part.nodes.history.values(variable, 0)[at])
+        }
+        Multiplier::Vector(variable) => {
+            part.nodes.history.get(variable.name()).map_or([0.0; 3], |field| field.vector(0, at))
+        }
+    }
 }
 
 /// What the rules look at, of one slave node.
@@ -220,19 +262,18 @@ fn numbers(
 ) -> SlaveNumbers {
     let history = &part.nodes.history;
     let vector_of = |name: &str| history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
-    let normal = vector_of(NORMAL.name());
+    let normal = normal(part, at);
     let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
     let by_area = if area > 0.0 { area.recip() } else { 0.0 };
     let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
     let held = held_at(part, at);
     let slip = resolution.vector_of(scale(vector_of(WEIGHTED_SLIP.name()), by_area));
-    let stiffness = match family.multiplier.is_unknown() {
-        true => parameters.nodal_stiffness(penalty, area),
-        false => penalty * area,
+    let stiffness = match family.multiplier {
+        Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
+        Multiplier::None if parameters.weighted_penalty => penalty * area,
+        Multiplier::None | Multiplier::Outer(_) => penalty,
     };
     let multiplier = match family.multiplier {
-        Multiplier::None => [0.0; 3],
-        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => scale(normal, history.values(variable, 0)[at]),
         // No multiplier holds what supports move: the slip itself says what would.
         Multiplier::Vector(variable) if held.contains(&Held::KeptInStick) => {
             add(vector_of(variable.name()), scale(slip, stiffness / parameters.scale_factor))
@@ -242,25 +283,35 @@ fn numbers(
             let whole = vector_of(variable.name());
             add(scale(normal, dot(whole, normal)), along_free_tangents(tangential(whole, normal), normal, held))
         }
+        _ => multiplier(part, at, family),
     };
     SlaveNumbers {
         state: NodeState::of_flags(&part.nodes.flags, at),
         normal,
         multiplier,
-        gap: resolution.length_of(history.values(&WEIGHTED_GAP, 0)[at] * by_area),
+        gap: resolution.length_of(counted_gap(part, at, parameters) * by_area),
         slip,
-        tangent: part
-            .nodes
-            .values
-            .values(&TANGENT_XI, 0)
-            .get(3 * at..3 * at + 3)
-            .map_or([0.0; 3], |t| [t[0], t[1], t[2]]),
+        trial: vector_at(part.nodes.values.values(&TRIAL_TRACTION, 0), at),
+        tangent: vector_at(part.nodes.values.values(&TANGENT_XI, 0), at),
         stiffness,
         friction: parameters.friction_law.bound_at(&part.nodes, at),
         scale_factor: parameters.scale_factor,
         tangent_factor: parameters.tangent_factor,
         resolution,
     }
+}
+
+/// Weighted gap that the pressure of a node counts. Where a penalty counts weighted gaps each pair acts by its own, and
+/// their mean is what the node bears.
+fn counted_gap(part: &ModelPart, at: usize, parameters: &StepParameters) -> f64 {
+    match parameters.weighted_penalty {
+        true => part.nodes.values.values(&MEAN_WEIGHTED_GAP, 0)[at],
+        false => part.nodes.history.values(&WEIGHTED_GAP, 0)[at],
+    }
+}
+
+pub(super) fn vector_at(column: &[f64], at: usize) -> [f64; 3] {
+    column.get(3 * at..3 * at + 3).map_or([0.0; 3], |v| [v[0], v[1], v[2]])
 }
 
 /// Writes k² A/c of the slave nodes, where rows of multipliers state tractions: the criteria measure them by it.
@@ -293,7 +344,10 @@ pub(super) fn resolution(
     let history = &part.nodes.history;
     let traction = |at: usize| match family.multiplier {
         Multiplier::None => {
-            part.nodes.values.values(&INITIAL_PENALTY, 0)[at] * history.values(&WEIGHTED_GAP, 0)[at].min(0.0).abs()
+            let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
+            let by_area = if area > 0.0 && !parameters.weighted_penalty { area.recip() } else { 1.0 };
+            let gap = counted_gap(part, at, parameters).min(0.0).abs();
+            part.nodes.values.values(&INITIAL_PENALTY, 0)[at] * gap * by_area
         }
         Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
             parameters.scale_factor * history.values(variable, 0)[at].abs()

@@ -3,7 +3,7 @@
 use zelus_core::model::ModelPart;
 use zelus_core::model::flags::ACTIVE;
 
-use crate::penalty_adaptation::{PenaltyRule, dynamic_factor};
+use crate::penalty_adaptation::{Growth, PenaltyRule, dynamic_factor};
 use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP};
 
 /// Least share of a penalty that stays: a gap of round-off would otherwise take all of it away.
@@ -22,25 +22,25 @@ pub struct AdaptationSettings {
     pub dynamic_factor: bool,
 }
 
-/// The gap at which explicit steps stiffen the penalty (`advance_explicit_parameters`).
+/// How explicit steps stiffen the penalty (`advance_explicit_parameters`).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ExplicitGap {
-    /// The mean mesh size.
-    MeanMeshSize,
-    /// This length.
-    Given(f64),
+pub struct ExplicitPenalty {
+    /// Share by which it grows at most.
+    pub most: f64,
+    /// How fast it grows.
+    pub exponent: f64,
+    /// The gap that counts as large (length); the mean mesh size when `None`.
+    pub gap: Option<f64>,
 }
 
-impl ExplicitGap {
-    /// The gap itself (length).
-    pub(super) fn threshold(self, part: &ModelPart) -> f64 {
-        match self {
-            Self::Given(gap) => gap,
-            Self::MeanMeshSize => {
-                let sizes = part.nodes.values.values(&NODAL_H, 0);
-                sizes.iter().sum::<f64>() / sizes.len().max(1) as f64
-            }
-        }
+impl ExplicitPenalty {
+    /// The growth on the mesh of a part.
+    pub(super) fn growth(self, part: &ModelPart) -> Growth {
+        let mean_size = || {
+            let sizes = part.nodes.values.values(&NODAL_H, 0);
+            sizes.iter().sum::<f64>() / sizes.len().max(1) as f64
+        };
+        Growth { most: self.most, exponent: self.exponent, gap: self.gap.unwrap_or_else(mean_size) }
     }
 }
 
@@ -59,9 +59,16 @@ impl AdaptationSettings {
 
     /// Adapts INITIAL_PENALTY and DYNAMIC_FACTOR of the active slave nodes.
     ///
-    /// `penalty` is the penalty of the run, `previous` the weighted gaps of the last iterate, and `max_gap` the gap at which
-    /// explicit steps stiffen the penalty, 0 in implicit ones, which have no bound on that growth.
-    pub(super) fn adapt(self, part: &mut ModelPart, slaves: &[u32], penalty: f64, previous: &[f64], max_gap: f64) {
+    /// `penalty` is the penalty of the run, `previous` the weighted gaps of the last iterate, and `growth` how explicit steps
+    /// stiffen the penalty.
+    pub(super) fn adapt(
+        self,
+        part: &mut ModelPart,
+        slaves: &[u32],
+        penalty: f64,
+        previous: &[f64],
+        growth: Option<Growth>,
+    ) {
         if !self.acts() {
             return;
         }
@@ -77,11 +84,10 @@ impl AdaptationSettings {
             let before = before / area;
             let mut adapted = values.values(&INITIAL_PENALTY, 0)[at];
             if self.dynamic_factor {
-                let (base, factor) = dynamic_factor(penalty, gap, before, self.max_gap_factor, max_gap);
                 if self.rule.is_none() {
-                    adapted = base;
+                    adapted = growth.map_or(penalty, |growth| growth.stiffened(penalty, gap));
                 }
-                values.values_mut(&DYNAMIC_FACTOR, 0)[at] = factor;
+                values.values_mut(&DYNAMIC_FACTOR, 0)[at] = dynamic_factor(gap, before);
             }
             if let Some(rule) = self.rule {
                 let size = values.values(&NODAL_H, 0)[at];

@@ -9,7 +9,6 @@ use super::step_parameters::StepParameters;
 use crate::formulations::Augmentation;
 use crate::interface::{AlmParameters, Interface, Roles, alm_parameters, unit_of_length};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
-use crate::pairs::Multiplier;
 use crate::search::GapCheck;
 use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_H};
 
@@ -33,20 +32,19 @@ pub(super) fn calibrate(
     let unit = unit_of_length(&part.nodes.initial);
     let measure = if part.info.domain_size == 2 && !settings.axisymmetric { unit } else { unit * unit };
     // Only penalties of weighted gaps hold an area.
-    let weighted = settings.family.weighted_gaps && settings.augmentation == Augmentation::Pair;
+    let pairwise = settings.family.weighted_gaps && settings.augmentation == Augmentation::Pair;
+    let weighted = pairwise || settings.weighted_penalty;
     let mut chosen = settings.manual.unwrap_or(AlmParameters {
         penalty: estimate.penalty * settings.penalty_factor / if weighted { measure } else { 1.0 },
         scale_factor: estimate.scale_factor,
     });
-    if unit != 1.0 && matches!(settings.family.multiplier, Multiplier::None) && settings.manual.is_none() {
+    chosen = chosen.with_floors(settings.least_penalty);
+    if unit != 1.0 && settings.weighted_penalty && settings.manual.is_none() {
         part.messages.push(warn_of_unit(unit, measure));
-    }
-    if chosen.penalty <= 0.0 {
-        chosen.penalty = settings.least_penalty;
     }
     // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.
     let open = interfaces.iter().all(|interface| interface.open);
-    if !settings.use_scale_factor || chosen.scale_factor <= 0.0 || (open && settings.manual.is_none()) {
+    if !settings.use_scale_factor || (open && settings.manual.is_none()) {
         chosen.scale_factor = 1.0;
     }
     // Without factors, which a deck may have chosen for what else they do.

@@ -18,6 +18,7 @@ use super::friction;
 use super::holding::{Holding, held_at};
 use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
 use super::pairing::{Pairing, add_up_nodes};
+use super::penalty_ramp::PenaltyRamp;
 use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
@@ -26,12 +27,13 @@ use crate::formulations::held::along_free_tangents;
 use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
+use crate::penalty_adaptation::Growth;
 use crate::resolution::Resolution;
 use crate::search::{GapCheck, WithinStep, assign_roles, warn_of_late_pairs};
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, NODAL_AREA, NODAL_H,
-    WEIGHTED_GAP, WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, MEAN_WEIGHTED_GAP,
+    NODAL_AREA, NODAL_H, TRIAL_TRACTION, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Contact in a model part.
@@ -45,13 +47,13 @@ pub struct ContactInteraction {
     steps_since_search: usize,
     acting: bool,
     warned_of_friction: bool,
-    /// Weighted gaps averaged over the pairs of a node by area.
-    mean_gaps: Vec<f64>,
     /// What is too small to decide on in the present state.
     resolution: Resolution,
     uzawa: Uzawa,
-    /// Gap at which explicit steps stiffen the penalty; 0 in implicit ones (length).
-    max_gap: f64,
+    /// How much of the penalty acts, where it is all there is.
+    ramp: PenaltyRamp,
+    /// How explicit steps stiffen the penalty.
+    growth: Option<Growth>,
     /// Overlapping pairs of every node.
     pair_counts: Vec<u32>,
     cycles: CycleGuard,
@@ -78,6 +80,8 @@ impl ContactInteraction {
             scale_factor: 1.0,
             stiffness: 1.0,
             tangent_factor: settings.tangent_factor,
+            weighted_penalty: settings.weighted_penalty,
+            levels_back: if settings.explicit.is_some() { 2 } else { 1 },
             operator_threshold: settings.operator_threshold,
             friction_law: settings.friction.law,
             slip_rule: SlipRule::Pure,
@@ -93,10 +97,10 @@ impl ContactInteraction {
             steps_since_search: usize::MAX,
             acting: true,
             warned_of_friction: false,
-            mean_gaps: Vec::new(),
             resolution: Resolution::default(),
             uzawa: Uzawa::default(),
-            max_gap: 0.0,
+            ramp: PenaltyRamp::default(),
+            growth: None,
             pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             holding: Holding::default(),
@@ -120,6 +124,12 @@ impl ContactInteraction {
             self.settings.search.factor *= most / least;
             self.settings.active_check_factor *= most / least;
         }
+    }
+
+    /// Whether a stiff penalty that nothing else changes may begin soft.
+    fn ramps(&self) -> bool {
+        let constant = self.settings.adaptation.rule.is_none() && self.settings.explicit.is_none();
+        constant && matches!(self.settings.family.multiplier, Multiplier::None)
     }
 
     fn updates_normals(&self) -> bool {
@@ -159,7 +169,7 @@ impl ContactInteraction {
         let mut meetings = meetings.into_iter();
         let count = part.nodes.len();
         let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-        let mut slip = vec![[0.0; 3]; count];
+        let (mut slip, mut trial) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
         let mut pairs = vec![0_u32; count];
         for (block, integrals) in self.pairing.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
@@ -176,17 +186,19 @@ impl ContactInteraction {
                     mean[node] += integral.gap[local] * integral.area[local];
                     area[node] += integral.area[local];
                     (0..3).for_each(|c| slip[node][c] += integral.slip[local][c]);
+                    (0..3).for_each(|c| trial[node][c] += integral.trial[local][c]);
                 }
             }
         }
-        let columns = &mut [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..]), (3, slip.as_flattened_mut())];
-        add_up_nodes(part, &self.slaves, columns);
+        let columns = [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..])];
+        let vectors = [(3, slip.as_flattened_mut()), (3, trial.as_flattened_mut())];
+        add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         for &node in &self.slaves {
             part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
         }
         self.pair_counts = pairs;
         mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
-        self.mean_gaps = mean;
+        part.nodes.values.values_mut(&MEAN_WEIGHTED_GAP, 0).copy_from_slice(&mean);
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
         part.nodes.values.values_mut(&NODAL_AREA, 0).copy_from_slice(&area);
         if self.settings.family.frictional() {
@@ -198,6 +210,10 @@ impl ContactInteraction {
                 }
             }
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slip.as_flattened());
+            let by_area =
+                |(trial, area): ([f64; 3], &f64)| if *area > 0.0 { trial.map(|t| t / area) } else { [0.0; 3] };
+            let trial: Vec<[f64; 3]> = trial.into_iter().zip(&area).map(by_area).collect();
+            part.nodes.values.values_mut(&TRIAL_TRACTION, 0).copy_from_slice(trial.as_flattened());
         }
         activation::weigh_multipliers(part, &self.slaves, self.settings.family, &self.parameters);
         let family = self.settings.family;
@@ -351,6 +367,8 @@ impl Interaction for ContactInteraction {
         if self.settings.family.frictional() {
             part.nodes.history.add(&WEIGHTED_SLIP);
         }
+        let levels = part.nodes.history.levels().max(self.parameters.levels_back + 1);
+        part.nodes.history.set_levels(levels);
         find_nodal_h(part);
         self.adapt_search(part);
         part.info.marks.insert(CONTACT, self.settings.explicit.is_none());
@@ -369,7 +387,7 @@ impl Interaction for ContactInteraction {
         }
         let (threshold, parameters) = calibrate(part, &self.pairing.interfaces, &self.settings, &self.parameters);
         (self.threshold, self.parameters) = (threshold, Arc::new(parameters));
-        self.max_gap = self.settings.explicit.map_or(0.0, |explicit| explicit.threshold(part));
+        self.growth = self.settings.explicit.map(|explicit| explicit.growth(part));
         self.slaves = self.pairing.slaves();
         for node in self.pairing.carriers() {
             part.nodes.flags.set(ACTIVE, node as usize, false);
@@ -390,6 +408,9 @@ impl Interaction for ContactInteraction {
         self.open.clear();
         self.searches = 0;
         self.uzawa = Uzawa::default();
+        if self.ramps() {
+            self.ramp.begin_step(part);
+        }
         if !self.acting {
             self.switch_off(part);
             return Ok(());
@@ -455,7 +476,7 @@ impl Interaction for ContactInteraction {
         }
         let change = self.update_active_set(part);
         let penalty = part.info.value_or(INITIAL_PENALTY.name(), 1.0);
-        adaptation.adapt(part, &self.slaves, penalty, &gaps, self.max_gap);
+        adaptation.adapt(part, &self.slaves, penalty, &gaps, self.growth);
         if self.settings.explicit.is_some() {
             let touching = self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize));
             part.info.marks.insert(CONTACT, touching);
@@ -470,10 +491,13 @@ impl Interaction for ContactInteraction {
         }
         if let Multiplier::Outer(variable) = self.settings.family.multiplier {
             let (scale_factor, settings) = (self.parameters.scale_factor, self.settings.uzawa);
-            let outer = self.uzawa.update(part, &self.slaves, variable, &self.mean_gaps, scale_factor, settings);
+            let outer = self.uzawa.update(part, &self.slaves, variable, scale_factor, settings);
             if outer != Outer::Done {
                 return Ok(outer);
             }
+        }
+        if self.ramps() && self.ramp.after_convergence(part) == Outer::Again {
+            return Ok(Outer::Again);
         }
         if self.cycles.holds() {
             let settled = self.settle(part);
@@ -563,6 +587,7 @@ impl Interaction for ContactInteraction {
 
     fn restore(&mut self) {
         self.pairing.restore(&self.settings, &self.parameters);
+        self.ramp.retry();
         self.steps_since_search = usize::MAX;
     }
 

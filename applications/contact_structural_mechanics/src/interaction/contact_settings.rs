@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use zelus_core::parameters::Interval;
 
-use super::adaptation::{AdaptationSettings, ExplicitGap};
+use super::adaptation::{AdaptationSettings, ExplicitPenalty};
 use super::friction::FrictionSettings;
 use super::step_parameters::NormalVariation;
 use super::uzawa::UzawaSettings;
@@ -47,6 +47,8 @@ pub struct ContactSettings {
     pub estimate: [f64; 2],
     /// Factor of the estimated penalty; the penalty families need a stiffer spring.
     pub penalty_factor: f64,
+    /// Whether penalties of families without multipliers count weighted gaps.
+    pub weighted_penalty: bool,
     /// Least penalty: what takes its place when the estimate is zero.
     pub least_penalty: f64,
     /// Whether the scale factor is used; otherwise it is 1.
@@ -66,7 +68,7 @@ pub struct ContactSettings {
     /// How far Uzawa's outer loop goes, where the family has one.
     pub uzawa: UzawaSettings,
     /// How explicit steps adapt the penalty; `None` in implicit ones.
-    pub explicit: Option<ExplicitGap>,
+    pub explicit: Option<ExplicitPenalty>,
     /// How overlaps are cut and integrated.
     pub segmentation: SegmentationSettings,
     /// Whether the plane is rotated about the y axis.

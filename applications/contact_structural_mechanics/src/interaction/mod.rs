@@ -12,6 +12,7 @@ mod late_pairs;
 mod mpc_interaction;
 mod mpc_relation;
 mod pairing;
+mod penalty_ramp;
 mod slider_forces;
 mod sliding;
 mod step_parameters;
@@ -20,7 +21,7 @@ mod tangent_tests;
 mod tying_interaction;
 mod uzawa;
 
-pub use adaptation::{AdaptationSettings, ExplicitGap};
+pub use adaptation::{AdaptationSettings, ExplicitPenalty};
 pub use contact_interaction::ContactInteraction;
 pub use contact_settings::ContactSettings;
 pub use friction::FrictionSettings;

@@ -3,6 +3,7 @@
 use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::{add, cross, dot, norm, normalised, scale};
 
+use super::activation;
 use super::holding::held_at;
 use super::step_parameters::StepParameters;
 use crate::active_set::{SlipRule, TURNED};
@@ -12,7 +13,8 @@ use crate::mortar::{tangent, tangential};
 use crate::pairs::{Family, Multiplier};
 use crate::resolution::Resolution;
 use crate::variables::{
-    INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_SLIP,
+    INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TRIAL_TRACTION, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+    WEIGHTED_SLIP,
 };
 
 /// Length of the free part of a unit tangent below which a node cannot slide.
@@ -20,11 +22,11 @@ const LEAST_FREE: f64 = 1e-3;
 
 /// Writes TANGENT_XI and TANGENT_ETA of the slave nodes, and how TANGENT_XI turns.
 ///
-/// The direction is that of the tangential multiplier of an active node. Where contact always slides, and without
-/// multipliers, it is that of the weighted slip. For sliding nodes in space, whose direction is more than a sign, it is
-/// that of the trial traction q̂. A node that has none of them above round-off keeps the direction it had: at step
-/// start that is a far better guess than any fixed tangent. In the plane sliding nodes keep theirs, where `keeps_direction`.
-/// `pair_counts` holds the number of overlapping pairs of every node.
+/// The direction is that of the tangential multiplier of an active node. Where contact always slides it is that of the
+/// weighted slip. For sliding nodes in space, whose direction is more than a sign, and without multipliers it is that of the
+/// trial traction. A node that has none of them above round-off keeps the direction it had: at step start that is a far
+/// better guess than any fixed tangent. In the plane sliding nodes keep theirs, where `keeps_direction`. `pair_counts` holds
+/// the number of overlapping pairs of every node.
 pub(super) fn write_tangents(
     part: &mut ModelPart,
     slaves: &[u32],
@@ -82,6 +84,13 @@ pub(super) fn write_tangents(
                     _ => by_slip(),
                 }
             }
+            Multiplier::None if !pure => {
+                let trial = decided(activation::vector_at(part.nodes.values.values(&TRIAL_TRACTION, 0), at));
+                if state == NodeState::Slip && dimension == 3 && trial != [0.0; 3] {
+                    turnings[position].by_slip = norm(trial).recip();
+                }
+                trial
+            }
             _ => by_slip(),
         };
         let kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
@@ -100,7 +109,7 @@ pub(super) fn write_tangents(
             column[3 * node as usize..3 * node as usize + 3].copy_from_slice(vector);
         }
     }
-    if dimension == 3 && matches!(family.multiplier, Multiplier::Vector(_)) {
+    if dimension == 3 {
         let column = part.nodes.values.values_mut(&TURNING_BY_SLIP, 0);
         slaves.iter().zip(&turnings).for_each(|(&node, turning)| column[node as usize] = turning.by_slip);
         let column = part.nodes.values.values_mut(&TURNING_BY_MULTIPLIER, 0);

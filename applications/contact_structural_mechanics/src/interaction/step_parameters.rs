@@ -57,6 +57,10 @@ pub struct StepParameters {
     pub friction_law: &'static FrictionLaw,
     /// How stick and slip are told apart.
     pub slip_rule: SlipRule,
+    /// Whether penalties of families without multipliers count weighted gaps, as in Kratos, instead of gaps.
+    pub weighted_penalty: bool,
+    /// Time levels back to the state from which slip counts: explicit steps decide on contact at their start.
+    pub levels_back: usize,
     /// When normals follow the iteration.
     pub normal_variation: NormalVariation,
     /// Where gaps augment the forces of augmented Lagrangians.

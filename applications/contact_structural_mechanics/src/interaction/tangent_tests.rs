@@ -108,6 +108,8 @@ impl Contact {
             stiffness: 20.0,
             tangent_factor: 0.3,
             operator_threshold: OperatorThreshold::default(),
+            weighted_penalty: false,
+            levels_back: 1,
             normal_variation: NormalVariation::Exact,
             augmentation,
             friction_law: &COULOMB,

@@ -4,7 +4,7 @@ use zelus_core::entities::Outer;
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Variable};
 
-use crate::variables::INITIAL_PENALTY;
+use crate::variables::{INITIAL_PENALTY, NODAL_AREA, WEIGHTED_GAP};
 
 /// How far the outer loop goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,21 +27,22 @@ pub(super) struct Uzawa {
 }
 
 impl Uzawa {
-    /// k λ ← k λ + ε g̃ at the active slave nodes, `gaps` being the weighted gap of a node averaged over its pairs by area.
+    /// k λ ← k λ + ε ḡ at the active slave nodes, with the mean gap ḡ of a node.
     pub(super) fn update(
         &mut self,
         part: &mut ModelPart,
         slaves: &[u32],
         variable: &Variable<f64>,
-        gaps: &[f64],
         scale_factor: f64,
         settings: UzawaSettings,
     ) -> Outer {
         let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0);
+        let gaps = part.nodes.history.values(&WEIGHTED_GAP, 0);
+        let areas = part.nodes.values.values(&NODAL_AREA, 0);
         let multipliers = part.nodes.history.values(variable, 0);
         let active: Vec<usize> =
-            slaves.iter().map(|&n| n as usize).filter(|&n| part.nodes.flags.is(ACTIVE, n)).collect();
-        let changes: Vec<f64> = active.iter().map(|&n| penalty[n] * gaps[n] / scale_factor).collect();
+            slaves.iter().map(|&n| n as usize).filter(|&n| part.nodes.flags.is(ACTIVE, n) && areas[n] > 0.0).collect();
+        let changes: Vec<f64> = active.iter().map(|&n| penalty[n] * gaps[n] / (areas[n] * scale_factor)).collect();
         let change = changes.iter().map(|c| c * c).sum::<f64>().sqrt();
         let total = active.iter().zip(&changes).map(|(&n, c)| (multipliers[n] + c).powi(2)).sum::<f64>().sqrt();
         if self.updates > 0 && self.last > 0.0 {

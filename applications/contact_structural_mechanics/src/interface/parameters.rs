@@ -18,6 +18,15 @@ pub struct AlmParameters {
     pub scale_factor: f64,
 }
 
+impl AlmParameters {
+    /// The same with `least_penalty` and 1 in the place of numbers that are not positive, as an estimate is of bodies without
+    /// Young's modulus.
+    pub fn with_floors(self, least_penalty: f64) -> Self {
+        let or = |number: f64, floor: f64| if number > 0.0 { number } else { floor };
+        Self { penalty: or(self.penalty, least_penalty), scale_factor: or(self.scale_factor, 1.0) }
+    }
+}
+
 /// The estimate of eq. 4.11 for all interfaces together.
 ///
 /// `stiffness_factor` is the factor of E/h, `penalty_scale_factor` the ratio of scale factor and penalty.
@@ -44,4 +53,56 @@ pub fn alm_parameters(
     let slave = if young <= 0.0 { master } else { slave };
     let penalty = slave.min(master);
     AlmParameters { penalty, scale_factor: penalty_scale_factor * penalty }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interface::{Facet, FacetSource};
+    use zelus_core::geometry::Shape;
+    use zelus_core::model::{Nodes, Properties, PropertyValue};
+
+    /// A slave line of length 1 on a master line of length 2, of these moduli, in cells of 0.25 and 0.5.
+    fn estimate(slave: Option<f64>, master: Option<f64>, factors: [f64; 2]) -> AlmParameters {
+        let mut part = ModelPart::new("Structure");
+        part.info.domain_size = 2;
+        part.nodes = Nodes::new(vec![1, 2, 3, 4], [0.0, 1.0, 0.0, 2.0].map(|x| [x, 0.0, 0.0]).to_vec());
+        part.nodes.values.values_mut(&NODAL_H, 0).copy_from_slice(&[0.25, 0.25, 0.5, 0.5]);
+        for (id, young) in [(1, slave), (2, master)] {
+            let mut properties = Properties::new(id);
+            young.into_iter().for_each(|young| {
+                properties.values.insert("YOUNG_MODULUS".to_owned(), PropertyValue::Number(young));
+            });
+            part.properties.insert(id, properties);
+        }
+        let facet = |nodes: [u32; 2], properties, role| Facet {
+            nodes: nodes.to_vec(),
+            shape: Shape::Line2,
+            source: FacetSource::Face(0),
+            properties,
+            role,
+        };
+        let facets = vec![facet([0, 1], 1, Roles::Slave), facet([2, 3], 2, Roles::Master)];
+        let interface = Interface { key: "0".to_owned(), facets, nodes: vec![0, 1, 2, 3], open: false };
+        alm_parameters(&part, &[interface], factors[0], factors[1])
+    }
+
+    #[test]
+    fn the_softer_side_counts_and_a_slave_without_modulus_does_not() {
+        let found = |slave, master| estimate(slave, master, [1.0, 1.0]).penalty;
+        assert_eq!(found(Some(100.0), Some(300.0)), 400.0);
+        assert_eq!(found(Some(100.0), Some(10.0)), 20.0);
+        assert_eq!(found(None, Some(10.0)), 20.0);
+        assert_eq!(found(Some(100.0), None), 0.0);
+    }
+
+    #[test]
+    fn factors_and_floors() {
+        let AlmParameters { penalty, scale_factor } = estimate(Some(100.0), Some(300.0), [2.0, 5.0]);
+        assert_eq!((penalty, scale_factor), (800.0, 4000.0));
+        let none = estimate(None, None, [2.0, 5.0]);
+        assert_eq!(none.with_floors(1e16), AlmParameters { penalty: 1e16, scale_factor: 1.0 });
+        let some = AlmParameters { penalty: 3.0, scale_factor: 2.0 };
+        assert_eq!(some.with_floors(1e16), some);
+    }
 }

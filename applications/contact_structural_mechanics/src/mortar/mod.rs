@@ -10,7 +10,8 @@
 //!    n = Σ N¹_j n_j, x² = x¹ + n ((x²₀ − x¹)·n_m)/(n·n_m), and gets its local coordinates there;
 //! 5. [`operators`]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
 //! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration;
-//! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments.
+//! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments;
+//! 8. [`turn`]: how a facet has turned since, with what it carries along.
 //!
 //! All of it is continuous in the positions but for a few choices, which a pair can keep: [`habit`].
 //!
@@ -34,6 +35,7 @@ mod segmentation_3d;
 pub mod settings;
 pub mod shape;
 pub mod slip;
+pub mod turn;
 
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{PairGeometry, dimension};
@@ -41,6 +43,7 @@ pub use habit::Habit;
 pub use operators::{Operators, Overlap, habit_of, operators, operators_on_flat_master};
 pub use settings::{IntegrationOrder, SegmentationSettings};
 pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential};
+pub use turn::Turn;
 
 #[cfg(test)]
 pub(crate) mod tests;

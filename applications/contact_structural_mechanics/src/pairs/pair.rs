@@ -64,6 +64,8 @@ pub struct Integral {
     pub gap: [f64; 4],
     /// Weighted slip of the step.
     pub slip: [[f64; 3]; 4],
+    /// Area times trial traction, where a family carries tractions from state to state.
+    pub trial: [[f64; 3]; 4],
     /// D and M themselves.
     pub operators: Previous,
 }

@@ -8,17 +8,20 @@ use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown,
 use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT, variables::NORMAL};
 use zelus_core::registry::Entry;
 use zelus_core::scalar::{Dual, Real};
-use zelus_core::vector3::{cross, normalised, sub};
+use zelus_core::vector3::{cross, normalised, scale, sub};
 
 use super::contact_block::{ContactBlock, Own};
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Augmentation, Formulation, Held, NodeState, OperatorTangent, SlaveNode, Turning};
+use crate::formulations::{
+    self, Augmentation, Formulation, Held, Kinematics, NodeState, OperatorTangent, SlaveNode, Turning,
+};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
-use crate::mortar::{Habit, Operators, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
+use crate::mortar::{Habit, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
-    DYNAMIC_FACTOR, HELD_MULTIPLIER, INITIAL_PENALTY, NODAL_AREA, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+    DYNAMIC_FACTOR, FRICTION_TRACTION, HELD_MULTIPLIER, INITIAL_PENALTY, NODAL_AREA, TANGENT_XI, TURNING_BY_MULTIPLIER,
+    TURNING_BY_SLIP,
 };
 
 /// A formulation as the blocks use it.
@@ -38,11 +41,20 @@ pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
     /// Weighted slip vectors of a pair; zero without friction.
     fn slip<const NS: usize, const NM: usize>(
         &self,
-        _operators: &Operators<f64, NS, NM>,
-        _geometry: &PairGeometry<f64, NS, NM>,
+        _pair: &Kinematics<f64, NS, NM>,
         _history: &Self::History<NS, NM>,
     ) -> [[f64; 3]; NS] {
         [[0.0; 3]; NS]
+    }
+
+    /// Trial tractions of a pair, for families that carry tractions from state to state.
+    fn trial<const NS: usize, const NM: usize>(
+        &self,
+        _pair: &Kinematics<f64, NS, NM>,
+        _nodes: &[SlaveNode; NS],
+        _history: &Self::History<NS, NM>,
+    ) -> Option<[[f64; 3]; NS]> {
+        None
     }
 }
 
@@ -174,7 +186,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
 
     fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
         let displacement = &view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns").levels;
-        let back = &displacement[1.min(displacement.len() - 1)];
+        let back = &displacement[self.parameters.levels_back.min(displacement.len() - 1)];
         let position = |n: u32| {
             let u = vector(back, n);
             let initial = view.nodes.initial[n as usize];
@@ -196,6 +208,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         let by_pair = self.parameters.augmentation == Augmentation::Pair;
         let own = self.pairs[at].area;
         let tangent = view.nodes.values.values(&TANGENT_XI, 0);
+        let carried = view.nodes.history.get(FRICTION_TRACTION.name()).map_or(&[][..], |field| &field.levels[1]);
         let by_slip = view.nodes.values.values(&TURNING_BY_SLIP, 0);
         let by_multiplier = view.nodes.values.values(&TURNING_BY_MULTIPLIER, 0);
         let held = view.nodes.values.values(&HELD_MULTIPLIER, 0);
@@ -218,6 +231,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                 },
                 held: if held.is_empty() { Default::default() } else { vector(held, n).map(Held::of_code) },
                 held_weight: k * k * positive(areas.get(node)) / stiffness,
+                carried: if carried.is_empty() { [0.0; 3] } else { vector(carried, n) },
             }
         })
     }
@@ -361,11 +375,20 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                     out.overlapping = true;
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
                     let history = F::history(&self.pairs[at], &self.previous(at, view));
-                    let slip = self.formulation.slip(&operators, &geometry, &history);
+                    let pair = Kinematics {
+                        operators,
+                        slave: geometry.slave,
+                        master: geometry.master,
+                        normals: geometry.nodal_normals,
+                        multipliers: [[0.0; 3]; NS],
+                    };
+                    let slip = self.formulation.slip(&pair, &history);
+                    let trial = self.formulation.trial(&pair, &self.slave_states(at, view), &history);
                     for j in 0..NS {
                         out.area[j] = operators.d[j].iter().sum();
                         out.gap[j] = gaps[j];
                         out.slip[j] = slip[j];
+                        out.trial[j] = trial.map_or([0.0; 3], |trial| scale(trial[j], out.area[j]));
                         (0..NS).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
                         (0..NM).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
                     }

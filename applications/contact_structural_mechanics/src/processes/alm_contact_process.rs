@@ -18,7 +18,7 @@ use crate::active_set::Margin;
 use crate::compatibility::{Refusal, Use, refusal};
 use crate::formulations::Augmentation;
 use crate::interaction::{
-    AdaptationSettings, ContactInteraction, ContactSettings, ExplicitGap, FrictionSettings, NormalVariation,
+    AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, NormalVariation,
     UzawaSettings,
 };
 use crate::interface::{AlmParameters, NodalNormals};
@@ -52,9 +52,12 @@ struct Parameters {
     scale_factor: f64,
     adapt_penalty: bool,
     max_gap_factor: f64,
-    /// Processes whose families have multipliers lack the two keys of the adapted penalty method.
+    /// Families whose answer does not depend on the penalty lack the keys of the adapted penalty method.
     adaptation_rule: Option<PenaltyRule>,
     min_gap_factor: Option<f64>,
+    /// Only processes of the penalty method have it.
+    #[serde(default)]
+    penalty_of_weighted_gaps: bool,
 }
 
 #[derive(Debug, Deserialize)]
@@ -206,8 +209,9 @@ fn interaction(
         estimate: [whole.parameters.stiffness_factor, whole.parameters.penalty_scale_factor],
         penalty_factor: families.penalty_factor,
         least_penalty: families.least_penalty,
+        weighted_penalty: whole.parameters.penalty_of_weighted_gaps,
         uzawa: uzawa(settings)?,
-        explicit: explicit_gap(settings, request)?,
+        explicit: explicit_penalty(settings, request)?,
         use_scale_factor: whole.parameters.use_scale_factor,
         // Where slips only decide, they count no more than gaps.
         tangent_factor: if whole.augmentation == Some(Augmentation::Node) {
@@ -248,15 +252,21 @@ fn uzawa(settings: &Settings) -> Result<UzawaSettings> {
 }
 
 /// How explicit steps adapt the penalty, where the process is the explicit one.
-fn explicit_gap(settings: &Settings, request: &ProcessRequest<'_>) -> Result<Option<ExplicitGap>> {
+fn explicit_penalty(settings: &Settings, request: &ProcessRequest<'_>) -> Result<Option<ExplicitPenalty>> {
     if request.entry.name != "explicit_penalty_contact_process" {
         return Ok(None);
     }
-    if !settings.get_bool("advance_explicit_parameters.manual_max_gap_theshold")? {
-        return Ok(Some(ExplicitGap::MeanMeshSize));
-    }
-    check_positive(settings, &["advance_explicit_parameters.max_gap_threshold"])?;
-    Ok(Some(ExplicitGap::Given(settings.get_f64("advance_explicit_parameters.max_gap_threshold")?)))
+    let gap = match settings.get_bool("advance_explicit_parameters.manual_max_gap_theshold")? {
+        false => None,
+        true => {
+            check_positive(settings, &["advance_explicit_parameters.max_gap_threshold"])?;
+            Some(settings.get_f64("advance_explicit_parameters.max_gap_threshold")?)
+        }
+    };
+    check_positive(settings, &["advance_explicit_parameters.logistic_exponent_factor"])?;
+    let most = settings.get_f64("advance_explicit_parameters.max_gap_factor")?;
+    let exponent = settings.get_f64("advance_explicit_parameters.logistic_exponent_factor")?;
+    Ok(Some(ExplicitPenalty { most, exponent, gap }))
 }
 
 /// Refuses what the family cannot be used for.
