@@ -253,7 +253,7 @@ impl MpcInteraction {
     }
 
     /// Contact opens where a constraint pulls and closes where a free node penetrates: the sign of the force that holds a
-    /// node and of its gap times a stiffness together, so that a gap of round-off holds nothing.
+    /// node and of its depth times a stiffness together, so that a depth of round-off holds nothing.
     fn update_contact(&self, part: &mut ModelPart, change: &mut SetChange) {
         let release = self.settings.reaction_check_stiffness_factor * self.young;
         for &node in &self.slaves {
@@ -262,8 +262,8 @@ impl MpcInteraction {
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             let was = part.nodes.flags.is(ACTIVE, at);
             let held = if was { dot(reaction(part, node), relation.normal) } else { 0.0 };
-            let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
-            let now = area > 0.0 && held + self.stiffness(part, at) * gap < -release * area;
+            let depth = part.nodes.history.values(&WEIGHTED_GAP, 0)[at].min(0.0);
+            let now = area > 0.0 && held + self.stiffness(part, at) * depth < -release * area;
             if was != now {
                 part.nodes.flags.set(ACTIVE, at, now);
                 if now && self.settings.kind == MpcKind::Frictional {
