@@ -50,4 +50,4 @@ CASE = Case(
               "penalty": {"family": "penalty"}, "Uzawa": {"family": "Uzawa"}, "perturbed": {"family": "perturbed"},
               "4 steps": {"steps": 4}, "frictional": {"family": "ALM frictional", "friction": 0.2},
               "micrometres": {"length": 1e6, "stress": 1e-12}},
-    quick=["a/R = 0.002"])
+    picture="a/R = 0.002", quick=["a/R = 0.002"])

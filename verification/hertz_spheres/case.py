@@ -47,4 +47,4 @@ CASE = Case(
     variants={"a/R = 0.1": {"ratio": 0.1}, "a/R = 0.02": {"ratio": 0.02}, "a/R = 0.002": {}, "a/R = 1e-5": {"ratio": 1e-5},
               "lower as slave": {"slave": "lower"}, "components": {"family": "ALM components"}, "penalty": {"family": "penalty"},
               "Uzawa": {"family": "Uzawa"}, "perturbed": {"family": "perturbed"}, "micrometres": {"length": 1e6, "stress": 1e-12}},
-    quick=["a/R = 0.002"])
+    picture="a/R = 0.002", quick=["a/R = 0.002"])

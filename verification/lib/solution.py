@@ -101,13 +101,18 @@ def solve(model, family="ALM", threads=1, keep=None, variables=("DISPLACEMENT", 
         except subprocess.TimeoutExpired:
             raise Failed(f"no end within {TIME_LIMIT:g} s") from None
         if done.returncode != 0:
-            lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if "error[" in line]
-            raise Failed(f"exit {done.returncode}: {lines[0] if lines else 'no message'}")
+            raise Failed(f"exit {done.returncode}: {message(done)}")
         with open(os.path.join(folder, "report.json")) as file:
             return Solution(model, folder, json.load(file))
     finally:
         if not keep:
             shutil.rmtree(folder, ignore_errors=True)
+
+
+def message(done):
+    """The first error that a finished program printed."""
+    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if "error[" in line]
+    return lines[0] if lines else "no message"
 
 
 def norm(v):

@@ -81,7 +81,7 @@ def picture(name, case, runs):
     """Panels for a case: the deformed coarsest mesh, curves of the finest, convergence of the numbers that converge."""
     panels = []
     of = lambda variant: [(level, runs[name, variant, level][0]) for level in range(len(case.meshes)) if runs.get((name, variant, level), (None,))[0]]
-    for variant in case.variants:
+    for variant in dict.fromkeys([case.picture, *case.variants]):
         done = of(variant)
         if done:
             last = done[0][1].last
@@ -92,12 +92,12 @@ def picture(name, case, runs):
             break
     series = {}
     for quantity in case.quantities:
-        for variant in case.variants:
+        for variant in dict.fromkeys([case.picture, *case.variants]):
             errors = [(case.size(case.meshes[level]), abs(quantity.error(o.values[quantity.name], case.variants[variant])))
                       for level, o in of(variant) if o.values.get(quantity.name) is not None]
             errors = [e for e in errors if e[1] > 1e-9 and math.isfinite(e[1])]
             if quantity.order and len(errors) > 1 and len(series) < 5:
-                series[quantity.name + (f", {variant}" if variant and len(case.quantities) < 3 else "")] = errors
+                series[quantity.name + (f", {variant}" if variant and variant != case.picture else "")] = errors
             if errors:
                 break
     if series:

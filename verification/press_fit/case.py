@@ -51,4 +51,4 @@ CASE = Case(
     (8, 16, 32), run, size=lambda n: 1 / n,
     variants={**{f: {"family": f} for f in FRICTIONLESS}, "outer as slave": {"slave": "outer"}, "like meshes": {"ratio": (2, 2)},
               "frictional": {"family": "ALM frictional", "friction": 0.2}, "4 steps": {"steps": 4}, "millimetres": {"length": 1e3, "stress": 1e-6}},
-    quick=["ALM"])
+    picture="ALM", quick=["ALM"])
