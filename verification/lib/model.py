@@ -189,13 +189,14 @@ class Model:
 
     def interface(self, slave, master):
         """A pair of sides, each a (body, side) or (body, side, where); `where` chooses facets by their middle."""
-        family, ids = ("Line" if self.dim == 2 else "Surface"), []
-        number = len(self.pairs)
-        for body, side, *where in (slave, master):
-            ids.append(body.conditions(side, family, *where))
-        slaves, all_ids = self._nodes_of(ids[0]), ids[0] + ids[1]
-        self.mesh.part(f"Slave{number}", slaves, (), ids[0])
-        self.mesh.part(f"Interface{number}", self._nodes_of(all_ids), (), all_ids)
+        family = "Line" if self.dim == 2 else "Surface"
+        return self.between(*(body.conditions(side, family, *where) for body, side, *where in (slave, master)))
+
+    def between(self, slave, master):
+        """A pair of lists of conditions; returns the slave's nodes."""
+        number, slaves = len(self.pairs), self._nodes_of(slave)
+        self.mesh.part(f"Slave{number}", slaves, (), slave)
+        self.mesh.part(f"Interface{number}", self._nodes_of(slave + master), (), slave + master)
         self.pairs.append((f"Interface{number}", f"Slave{number}"))
         self.watched[number] = sorted(slaves)
         return sorted(slaves)

@@ -19,13 +19,8 @@ def run(n, family="ALM", degrees=12.0, steps=160, dynamic=None, slave="block"):
         m.material(body, "strain", YOUNG, POISSON, DENSITY=DENSITY)
     m.fix(ground.nodes, x=0.0, y=0.0)
     m.velocity(block.nodes, SPEED)
-    # the whole skin of the block may touch
-    ids = [c_ for side in ("x0", "x1", "y0", "y1") for c_ in block.conditions(side, "Line")]
-    master = ground.conditions("y1", "Line")
-    m.mesh.part("Slave0", m._nodes_of(ids), (), ids)
-    m.mesh.part("Interface0", m._nodes_of(ids + master), (), ids + master)
-    m.pairs.append(("Interface0", "Slave0"))
-    m.watched[0] = sorted(m._nodes_of(ids))
+    skin = [c_ for side in ("x0", "x1", "y0", "y1") for c_ in block.conditions(side, "Line")]  # all of it may touch
+    m.between(*((skin, ground.conditions("y1", "Line")) if slave == "block" else (ground.conditions("y1", "Line"), skin)))
     end = 0.4
     s = solve(m, family, time_step=end / steps, end=end, dynamic=dynamic or {}, variables=("DISPLACEMENT", "VELOCITY"))
     balance = Balance(m, [(block, YOUNG, POISSON, DENSITY)])
@@ -40,7 +35,7 @@ CASE = Case(
     "Thrown block", "balance of momentum and energy: without friction the momentum along the ground stays", "ANALYTIC",
     "Momentum obeys the law to the tolerance of the iteration (1e-4); energy may only fall, by what the scheme damps.",
     [Quantity("momentum along the ground", 0.0, 1e-3, scale=1.0, order=False), Quantity("largest energy", 1.0, 0.02, order=False),
-     Quantity("energy after", 1.0, 0.3, order=False), Quantity("leaves the ground", 1.0, 0.0, order=False)],
+     Quantity("energy after", 1.0, 0.4, order=False), Quantity("leaves the ground", 1.0, 0.0, order=False)],
     (4, 8), run, size=lambda n: 1 / n,
     variants={"default scheme": {}, "flat": {"degrees": 0.0}, "320 steps": {"steps": 320}, "newmark": {"dynamic": {"scheme_type": "newmark"}},
-              "generalised alpha": {"dynamic": {"scheme_type": "generalized_alpha"}}, "40 steps": {"steps": 40}}, quick=False)
+              "generalised alpha": {"dynamic": {"scheme_type": "generalized_alpha"}}, "40 steps": {"steps": 40}, "ground as slave": {"slave": "ground"}, "flat, ground as slave": {"degrees": 0.0, "slave": "ground"}}, quick=False)
