@@ -189,3 +189,55 @@ fn free_blocks_hand_on_their_momentum() {
         }
     }
 }
+
+/// Where a gap closes within a long step, the step is cut: a tenth of the time of a wave is enough.
+#[test]
+fn long_steps_keep_the_energy_where_gaps_close() {
+    let bar = Bar::new(50, 1);
+    for (name, step) in [("newmark", 0.04), ("newmark", 0.1), ("generalized_alpha", 0.04)] {
+        let results = bar.run(step, 2.5, &scheme(name));
+        let begin = bar.state(&results, None).energy();
+        let energies = (0..results.len()).map(|step| bar.state(&results, Some(step)).energy() / begin);
+        let (least, most) = energies.fold((1.0_f64, 1.0_f64), |(a, b), e| (a.min(e), b.max(e)));
+        println!("{name}, steps of {step} L/c: energy from {least:.4} to {most:.4} in {} steps", results.len());
+        assert!(least > 0.98 && most < 1.002, "{name}, {step}: energy from {least} to {most}");
+    }
+}
+
+/// A block whose whole skin is the slave lands flat, on an edge or on a corner: without friction nothing pushes it aside.
+#[test]
+fn a_thrown_block_keeps_its_energy_and_its_way() {
+    let material = [1.0, 0.3, 1.0];
+    for (dimension, count, angle) in [(2, 4, 0.0), (2, 4, 0.3), (3, 2, 0.0), (3, 3, 0.0), (3, 3, 0.3)] {
+        let mut boxes = Boxes::new(dimension);
+        let faces = ["x-", "x+", "y-", "y+", "z-", "z+"].map(|face| (face, "Skin"));
+        let velocity = |_| [0.01, -0.02, 0.0];
+        boxes.add("Block", [[0.0; 3], [1.0; 3]], [count; 3], angle, &faces[..2 * dimension], velocity);
+        let lowest = boxes.nodes.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min) - 0.001;
+        let ground = [[-1.0, lowest - 1.0, -1.0], [2.0, lowest, 2.0]];
+        boxes.add("Ground", ground, [3, 1, 3], 0.0, &[("y+", "Top")], |_| [0.0; 3]);
+        let results = solve(&boxes, |folder| {
+            let process = ("alm_contact_process", &json!({}));
+            let fixed = [("Ground", [true; 3])];
+            boxes.write(folder, material, &[("Skin", "Top")], &fixed, [0.05, 5.0], &json!({}), process);
+        });
+        let state = |step| boxes.state("Block", material, &results, step);
+        let begin = state(None);
+        let (mut aside, mut least, mut most) = (0.0_f64, 1.0_f64, 1.0_f64);
+        for step in 0..results.len() {
+            let now = state(Some(step));
+            let share = now.energy() / begin.energy();
+            (least, most) = (least.min(share), most.max(share));
+            aside = aside.max((now.momentum[0] - begin.momentum[0]).abs().max(now.momentum[2].abs()));
+        }
+        let end = state(Some(results.len() - 1));
+        println!(
+            "{dimension}D, {count} elements, turned by {angle}: energy from {least:.4} to {most:.4}, aside {aside:.1e}, \
+             momentum {:?} to {:?}",
+            begin.momentum, end.momentum
+        );
+        assert!(end.momentum[1] > -0.5 * begin.momentum[1].abs(), "the block has not landed");
+        assert!(aside < 1e-10 * begin.momentum[1].abs(), "pushed aside by {aside}");
+        assert!(most < 1.002 && least > 0.95, "energy from {least} to {most}");
+    }
+}

@@ -24,6 +24,7 @@ register_variable! {
     pub TRESCA_FRICTION_THRESHOLD: f64 = "Tresca's limit of the tangential traction (force per area).";
     pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding.";
     pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";
+    pub NORMAL_OF_MASTER: f64 = "1 at slave nodes on sharp edges, whose normal is that of what they meet and does not turn with their facets.";
     pub TURNING_BY_SLIP: f64 = "Tangential traction by weighted slip across the direction of sliding (force per length to the fifth).";
     pub TURNING_BY_MULTIPLIER: f64 = "Turning of the direction of sliding by the tangential multiplier.";
     pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Scale factor times normal multiplier plus penalty times weighted gap, of penalty methods the normal traction; negative in contact.";

@@ -57,6 +57,12 @@ impl Lengths {
         true
     }
 
+    /// After an attempt of length `tried` that converged, but would better be shorter: shortens; `false` when that would leave
+    /// no cut for one that fails.
+    pub(super) fn refine(&mut self, tried: f64) -> bool {
+        self.cuts + 1 < self.cutting.times && self.cut(tried)
+    }
+
     /// The length to begin the next step with, when it should not be the whole one.
     pub(super) fn carry(&self) -> Option<f64> {
         (self.cuts > 0).then_some(self.length)

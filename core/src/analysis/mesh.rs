@@ -5,11 +5,12 @@ use std::path::Path;
 use super::deck::{import, open, root_name, stages};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::RunReport;
+use super::sharing::common_of_stage;
 use super::solver::SolverSettings;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
-use crate::partition::{Surface, common_nodes, surfaces};
+use crate::partition::{Surface, surfaces};
 
 /// A mesh, and what of it ranks have in common.
 pub struct DeckMesh {
@@ -42,6 +43,6 @@ pub fn read_deck_mesh(path: &Path) -> Result<DeckMesh> {
     problems.finish()?;
     let part = model.parts.remove(&root).ok_or_else(|| Error::System(format!("the stage has no model part {root}")))?;
     let surfaces = surfaces(&settings, &part);
-    let common = common_nodes(&part, &surfaces, &settings);
+    let common = common_of_stage(&part, &surfaces, &settings);
     Ok(DeckMesh { part, surfaces, common })
 }

@@ -2,11 +2,12 @@
 
 use std::hash::{Hash, Hasher};
 
+use super::solver::has_inertia;
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::{ModelPart, Properties};
 use crate::parameters::Node;
-use crate::partition::{Partition, Share, common_nodes, keep_share, partition, surfaces};
+use crate::partition::{Partition, Share, Surface, common_nodes, everywhere, keep_share, partition, surfaces};
 use crate::strategies::Monitor;
 
 /// Gives every rank its share of the mesh, where there are several ranks and enough to share; from then on a rank has its
@@ -34,7 +35,7 @@ pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, mo
     let cut = cut_on_rank_0(part, &decks[0], ranks)?;
     let mut common = vec![changes; part.nodes.len()];
     for deck in decks {
-        let of_stage = common_nodes(part, &surfaces(deck, part), deck);
+        let of_stage = common_of_stage(part, &surfaces(deck, part), deck);
         common.iter_mut().zip(of_stage).for_each(|(common, of_stage)| *common |= of_stage);
     }
     let mut facets = vec![0_usize; ranks];
@@ -51,6 +52,13 @@ pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, mo
     note.push_str(&format!("; the fullest has {most} of {whole} nodes"));
     monitor.note(&note);
     Ok(())
+}
+
+/// The nodes of a stage that every rank keeps with the elements at them. In motion with inertia those next to surfaces are among
+/// them: they carry the mass of nodes in contact.
+pub(super) fn common_of_stage(part: &ModelPart, surfaces: &[Surface], deck: &Node) -> Vec<bool> {
+    let common = common_nodes(part, surfaces, deck);
+    if surfaces.is_empty() || !has_inertia(deck) { common } else { everywhere(part, &common) }
 }
 
 /// The partition, which rank 0 makes for all; without facets on the others. Collective.

@@ -4,6 +4,7 @@ use super::cutting::Cutting;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::BlockRequest;
+use crate::model::variables::ACCELERATION;
 use crate::model::{EntityTable, ModelPart};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registry::{self, Build, Entry, Kind};
@@ -344,6 +345,15 @@ pub(super) fn solver_entry(user: &Node) -> Result<&'static Entry> {
 fn definition_of(entry: &'static Entry) -> &'static SolverDefinition {
     let Build::Factory(definition) = entry.build else { unreachable!("solvers register a factory") };
     definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition")
+}
+
+/// Whether the solver that a deck names moves bodies against inertia, by iteration.
+pub(super) fn has_inertia(deck: &Node) -> bool {
+    let Some(settings) = deck.get("solver_settings") else { return false };
+    solver_entry(settings).is_ok_and(|entry| {
+        let definition = definition_of(entry);
+        !definition.explicit && definition.variables.iter().any(|(name, _)| *name == ACCELERATION.name())
+    })
 }
 
 /// Makes the blocks of a part from its tables: one for each kind and properties, with the entities of this rank. Elements

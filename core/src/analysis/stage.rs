@@ -244,6 +244,13 @@ impl Stage {
             let part = model.root_mut(&self.root)?;
             let saved = self.strategy.can_retry().then(|| Saved::of(part));
             let record = self.attempt(to, model, report, monitor)?;
+            if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
+                let factor = self.cutting.factor;
+                monitor
+                    .note(&format!("step {} to time {to}: {why}; made anew with 1/{factor} of the step", record.step));
+                saved.expect("just asked for").restore(model.root_mut(&self.root)?);
+                continue;
+            }
             if record.converged {
                 self.accept(model, report, monitor)?;
                 lengths.grow();

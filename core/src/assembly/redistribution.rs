@@ -13,13 +13,16 @@ use zelus_linear_algebra::Csr;
 
 use super::dof_table::DofTable;
 use super::supports::supports;
+use crate::entities::MasslessNodes;
 use crate::model::ModelPart;
 
 /// Massless nodes and unknowns, and what stands in for them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Redistribution {
-    /// The nodes asked for, ascending.
-    wanted: Vec<u32>,
+    /// The nodes asked for.
+    wanted: MasslessNodes,
+    /// Those of them that are massless for the whole run.
+    lasting: Vec<(u32, Vec<(u32, f64)>)>,
     /// Massless nodes, with the nodes below them and their weights.
     nodes: Vec<(u32, Vec<(u32, f64)>)>,
     /// Massless unknowns, with those below them and their weights.
@@ -30,12 +33,24 @@ pub(super) struct Redistribution {
 
 impl Redistribution {
     /// Takes the mass off those of the `wanted` nodes that have enough other nodes below them; whether anything changes.
-    pub(super) fn choose(&mut self, part: &ModelPart, wanted: &[u32]) -> bool {
-        if self.wanted == wanted {
+    ///
+    /// Nodes of a surface need others below that are no part of it, and on two levels; those near contact make do with all that
+    /// have mass now.
+    pub(super) fn choose(&mut self, part: &ModelPart, wanted: &MasslessNodes) -> bool {
+        if self.wanted == *wanted {
             return false;
         }
-        self.wanted = wanted.to_vec();
-        let nodes = supports(part, wanted);
+        if self.wanted.surface != wanted.surface {
+            self.lasting = supports(part, &wanted.surface, &wanted.surface, true);
+        }
+        self.wanted = wanted.clone();
+        let lasts = |node: &u32| self.lasting.binary_search_by_key(node, |(node, _)| *node).is_ok();
+        let near: Vec<u32> = wanted.near.iter().copied().filter(|node| !lasts(node)).collect();
+        let mut massless: Vec<u32> = self.lasting.iter().map(|(node, _)| *node).chain(near.iter().copied()).collect();
+        massless.sort_unstable();
+        let mut nodes = supports(part, &near, &massless, false);
+        nodes.extend(self.lasting.iter().cloned());
+        nodes.sort_by_key(|(node, _)| *node);
         let changed = nodes != self.nodes;
         self.nodes = nodes;
         changed

@@ -19,18 +19,18 @@ const FLAT: f64 = 20.0;
 /// Share of the largest variance that is round-off.
 const ROUND_OFF: f64 = 1e-10;
 
-/// The nodes below each of `massless` with their weights, where there are enough of them.
+/// The nodes below each of `nodes` with their weights, where there are enough of them; none are `massless` (ascending).
 ///
-/// Without nodes on two levels, as in a plate of one element, they are taken as they are across it: the weights are then exact
-/// along it only.
-pub(super) fn supports(part: &ModelPart, massless: &[u32]) -> Vec<(u32, Vec<(u32, f64)>)> {
-    if massless.is_empty() {
+/// Without nodes on two levels, as in a plate of one element, they are taken as they are across it, unless all must be
+/// `exact`: the weights are then so along it only.
+pub(super) fn supports(part: &ModelPart, nodes: &[u32], massless: &[u32], exact: bool) -> Vec<(u32, Vec<(u32, f64)>)> {
+    if nodes.is_empty() {
         return Vec::new();
     }
-    let around = Around::of(part, massless);
+    let around = Around::of(part, nodes);
     let is_massless = |node: u32| massless.binary_search(&node).is_ok();
     let mut out = Vec::new();
-    for &node in massless {
+    for &node in nodes {
         let Some(first) = around.neighbours(part, &[node]) else { continue };
         let Some(all) = around.neighbours(part, &first) else { continue };
         let mut candidates: Vec<u32> = all.into_iter().filter(|&other| !is_massless(other)).collect();
@@ -38,7 +38,7 @@ pub(super) fn supports(part: &ModelPart, massless: &[u32]) -> Vec<(u32, Vec<(u32
         let way = |other: u32| sub(part.nodes.initial[other as usize], from);
         candidates.sort_by(|&a, &b| norm(way(a)).total_cmp(&norm(way(b))).then(a.cmp(&b)));
         let ways: Vec<[f64; 3]> = candidates.iter().map(|&other| way(other)).collect();
-        if let Some(weights) = weights(&ways, part.info.domain_size) {
+        if let Some(weights) = weights(&ways, part.info.domain_size, exact) {
             let mut list: Vec<(u32, f64)> = candidates.into_iter().zip(weights).collect();
             list.sort_by_key(|(other, _)| *other);
             out.push((node, list));
@@ -48,14 +48,14 @@ pub(super) fn supports(part: &ModelPart, massless: &[u32]) -> Vec<(u32, Vec<(u32
 }
 
 /// Weights of the first of `ways`, which ascend in length, that are exact; of all of them where they are so along a plate.
-fn weights(ways: &[[f64; 3]], dimension: usize) -> Option<Vec<f64>> {
+fn weights(ways: &[[f64; 3]], dimension: usize, exact: bool) -> Option<Vec<f64>> {
     let lengths: Vec<f64> = ways.iter().map(|way| norm(*way)).collect();
     let is_last = |at: usize| lengths.get(at + 1).is_none_or(|next| *next > (1.0 + SAME) * lengths[at]);
     let groups = (dimension..ways.len()).filter(|&at| is_last(at));
-    let exact =
+    let whole =
         groups.into_iter().find_map(|at| fitted(&ways[..=at], dimension).filter(|(_, rank)| *rank == dimension));
-    let along = || fitted(ways, dimension).filter(|(_, rank)| *rank + 1 == dimension);
-    exact.or_else(along).map(|(weights, _)| weights)
+    let along = || fitted(ways, dimension).filter(|(_, rank)| !exact && *rank + 1 == dimension);
+    whole.or_else(along).map(|(weights, _)| weights)
 }
 
 /// The weights over these nodes, and in how many directions they are exact.
@@ -171,7 +171,7 @@ mod tests {
     fn weights_extrapolate_linear_fields() {
         let mut ways = vec![[0.1, 0.0, -1.0], [1.0, 0.2, -1.1], [-0.9, 0.1, -1.0], [0.0, 1.1, -0.9], [0.0, -1.0, -1.0]];
         ways.push([0.0, 0.1, -2.1]);
-        let weights = weights(&ways, 3).expect("weights");
+        let weights = weights(&ways, 3, true).expect("weights");
         assert_eq!(weights.len(), 6);
         assert_exact(&ways, &weights);
     }
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn a_corner_follows_the_four_nearest() {
         let ways = [[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.0, 1.0, 2.0], [2.0, 2.0, 2.0]];
-        let weights = weights(&ways, 3).expect("weights");
+        let weights = weights(&ways, 3, true).expect("weights");
         assert_eq!(weights.len(), 4);
         assert_exact(&ways, &weights);
         assert!((weights[0] - 4.0).abs() < 1e-12, "{weights:?}");
@@ -188,16 +188,17 @@ mod tests {
     #[test]
     fn across_a_plate_of_one_element_values_are_taken_as_they_are() {
         let ways = [[0.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, -1.0, 0.0]];
-        let weights = weights(&ways, 2).expect("weights");
+        let weights = weights(&ways, 2, false).expect("weights");
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!(super::weights(&ways, 2, true).is_none());
         let along: f64 = ways.iter().zip(&weights).map(|(way, weight)| weight * way[0]).sum();
         assert!(along.abs() < 1e-12);
     }
 
     #[test]
     fn one_node_is_not_enough() {
-        assert!(weights(&[[0.0, -1.0, 0.0]], 2).is_none());
-        assert!(weights(&[[0.0, -1.0, 0.0], [1.0, -1.0, 0.0]], 3).is_none());
+        assert!(weights(&[[0.0, -1.0, 0.0]], 2, false).is_none());
+        assert!(weights(&[[0.0, -1.0, 0.0], [1.0, -1.0, 0.0]], 3, false).is_none());
     }
 
     #[test]

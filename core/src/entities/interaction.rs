@@ -38,8 +38,19 @@ pub enum Outer {
     Again,
     /// Blocks were added that the state must obey too, and why: the iteration goes on with them.
     Widened(String),
+    /// The step is solved, but a shorter one would be better, and why.
+    Coarse(String),
     /// The outer loop does not come to an end, and why.
     Failed(String),
+}
+
+/// Nodes whose mass others carry, ascending.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct MasslessNodes {
+    /// Those that have none for the whole run, where nodes that are not among them can carry it.
+    pub surface: Vec<u32>,
+    /// Of the others, those that have none in this step.
+    pub near: Vec<u32>,
 }
 
 /// A participant in the Newton loop that owns blocks of its own and decides which of them act.
@@ -142,10 +153,9 @@ pub trait Interaction: Send + Sync {
     /// Called in place of [`Interaction::after_update`]; [`Interaction::after_prediction`] follows.
     fn keep_first_iterate(&mut self, _part: &mut ModelPart) {}
 
-    /// Step start, in motion with inertia: nodes that others carry the mass of, ascending, since forces on them come and go at
-    /// once.
-    fn massless_nodes(&self, _part: &ModelPart) -> Vec<u32> {
-        Vec::new()
+    /// Step start, in motion with inertia: nodes that others carry the mass of, since forces on them come and go at once.
+    fn massless_nodes(&mut self, _part: &ModelPart) -> MasslessNodes {
+        MasslessNodes::default()
     }
 
     /// Keeps what a retried step must restore.

@@ -11,6 +11,6 @@ mod view;
 
 pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
-pub use interaction::{Interaction, Outer, SetChange};
+pub use interaction::{Interaction, MasslessNodes, Outer, SetChange};
 pub use kernel::{Gather, Kernel, KernelBlock};
 pub use view::{NORMALS_OF_FIRST_ITERATION, StepView};

@@ -22,7 +22,7 @@ pub use counts::{Counts, PRODUCTS, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
 pub use halo::Halo;
 pub use interfaces::{Surface, surfaces};
-pub use share::{MeshSizes, Share, keep_share};
+pub use share::{MeshSizes, Share, everywhere, keep_share};
 
 use zelus_linear_algebra::{WeightedGraph, partition_graph};
 

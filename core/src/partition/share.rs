@@ -58,7 +58,7 @@ pub(super) struct Kept {
 }
 
 /// Marks the nodes that every rank has: the common ones and those of the elements and conditions at them.
-pub(super) fn everywhere(part: &ModelPart, common: &[bool]) -> Vec<bool> {
+pub fn everywhere(part: &ModelPart, common: &[bool]) -> Vec<bool> {
     let mut everywhere = common.to_vec();
     for table in [&part.elements, &part.conditions] {
         for at in 0..table.len() as u32 {

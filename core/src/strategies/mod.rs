@@ -45,7 +45,7 @@ pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
-pub use newton::{CONDITION_NUMBER, NewtonRaphson, NewtonSettings};
+pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
 pub use residual_criterion::ResidualCriterion;

@@ -31,6 +31,9 @@ use crate::registry::Build;
 /// Mark of the step data: the condition number of every system is computed.
 pub const CONDITION_NUMBER: &str = "CONDN_CONVERGENCE_CRITERION";
 
+/// Value of the step data: the largest energy that bodies in motion have had.
+pub const ENERGY_OF_MOTION: &str = "ENERGY_OF_MOTION";
+
 /// How a step is iterated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewtonSettings {
@@ -61,6 +64,8 @@ pub struct NewtonRaphson {
     linear_seconds: [f64; 3],
     /// Whether the last step ended at a singular system.
     singular: bool,
+    /// Why the last step would better be shorter.
+    coarse: Option<String>,
     warned: bool,
     /// Where the deck names the linear solver.
     solver_place: Option<Place>,
@@ -79,9 +84,10 @@ impl SolutionStrategy for NewtonRaphson {
 
     fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
         self.singular = false;
+        self.coarse = None;
         let record = recorded(part, |part, interactions| self.iterate(part, interactions, monitor));
         self.failed = !record.as_ref().is_ok_and(|record| record.converged);
-        Ok(StepRecord { singular: self.singular, ..record? })
+        Ok(StepRecord { singular: self.singular, coarse: self.coarse.take(), ..record? })
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
@@ -92,6 +98,9 @@ impl SolutionStrategy for NewtonRaphson {
             self.scheme.keep(forces);
         }
         self.assembler.extrapolate_rates(part);
+        if self.scheme.has_inertia() && !part.interactions.is_empty() {
+            self.measure_energy(part)?;
+        }
         accept(part)
     }
 }
@@ -118,6 +127,7 @@ impl NewtonRaphson {
             failed: false,
             linear_seconds: [0.0; 3],
             singular: false,
+            coarse: None,
             warned: false,
             solver_place: None,
             warned_of_multipliers: false,
@@ -134,6 +144,13 @@ impl NewtonRaphson {
     pub fn solve_by_petsc(&mut self, settings: zelus_petsc::PetscSettings, multipliers: Multipliers) {
         let condensing = if let Multipliers::Condense(settings) = multipliers { Some(settings) } else { None };
         self.gathered.petsc = Some(super::owned_rows::OwnedRows::new(settings, condensing));
+    }
+
+    /// Notes the energy of the present state where it is the largest so far.
+    fn measure_energy(&mut self, part: &mut ModelPart) -> Result<()> {
+        let most = part.info.value_or(ENERGY_OF_MOTION, 0.0).max(self.assembler.energy(part)?);
+        part.info.values.insert(ENERGY_OF_MOTION, most);
+        Ok(())
     }
 
     /// Solves the present system; nothing out of balance needs no solver.

@@ -72,6 +72,9 @@ pub struct StepRecord {
     /// Whether it failed because the system of equations was singular.
     #[serde(skip)]
     pub singular: bool,
+    /// Why a shorter step would be better, though it converged.
+    #[serde(skip)]
+    pub coarse: Option<String>,
     /// Numbers of the interactions by name, e.g. active nodes.
     pub interactions: Vec<(String, f64)>,
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use zelus_core::Result;
 use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, NORMALS_OF_FIRST_ITERATION, Outer, SetChange};
+use zelus_core::entities::{EntityBlock, Interaction, MasslessNodes, NORMALS_OF_FIRST_ITERATION, Outer, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
 
@@ -14,8 +14,10 @@ use super::activation::{self, Start};
 use super::calibration::{calibrate, limit};
 use super::contact_settings::ContactSettings;
 use super::cycling::{CycleGuard, Settled};
+use super::edges::turn_edges;
 use super::friction;
 use super::holding::{Holding, held_at};
+use super::impact::{coarse_impact, near_nodes};
 use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
 use super::pairing::{Pairing, add_up_nodes};
 use super::penalty_ramp::PenaltyRamp;
@@ -30,7 +32,7 @@ use crate::pairs::Multiplier;
 use crate::penalty_adaptation::Growth;
 use crate::resolution::Resolution;
 use crate::search::{GapCheck, WithinStep, assign_roles, warn_of_late_pairs};
-use crate::solver::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
+use crate::solver::{AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, MEAN_WEIGHTED_GAP,
     NODAL_AREA, NODAL_H, TRIAL_TRACTION, WEIGHTED_GAP, WEIGHTED_SLIP,
@@ -65,6 +67,10 @@ pub struct ContactInteraction {
     /// Searches in converged states of this step.
     searches: usize,
     warned_of_late_pairs: bool,
+    /// Nodes that contact is near to.
+    near_nodes: Vec<u32>,
+    /// Weighted gaps at the start of the step.
+    start_gaps: Vec<f64>,
 }
 
 impl ContactInteraction {
@@ -108,6 +114,8 @@ impl ContactInteraction {
             open: BTreeSet::new(),
             searches: 0,
             warned_of_late_pairs: false,
+            near_nodes: Vec::new(),
+            start_gaps: Vec::new(),
         })
     }
 
@@ -130,6 +138,14 @@ impl ContactInteraction {
     fn ramps(&self) -> bool {
         let constant = self.settings.adaptation.rule.is_none() && self.settings.explicit.is_none();
         constant && matches!(self.settings.family.multiplier, Multiplier::None)
+    }
+
+    /// Normals of the nodes in the present configuration.
+    fn find_normals(&self, part: &mut ModelPart) {
+        self.pairing.patches.write(part);
+        if !part.info.is(AVERAGED_EDGES) {
+            turn_edges(part, &self.pairing);
+        }
     }
 
     fn updates_normals(&self) -> bool {
@@ -420,15 +436,17 @@ impl Interaction for ContactInteraction {
             self.holding.begin_step(part, &self.pairing.interfaces);
             self.pairing.find_patches(part, &self.holding);
         }
-        self.pairing.patches.write(part);
+        self.find_normals(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.settings.database_step_update {
             self.assign_open_roles(part);
             self.pairing.search(part, &self.settings, &self.parameters, limit(&self.settings, self.threshold))?;
             self.steps_since_search = 0;
+            self.find_normals(part);
         }
         self.hold(part);
         self.integrate(part);
+        part.nodes.history.values(&WEIGHTED_GAP, 0).clone_into(&mut self.start_gaps);
         let start = match self.settings.search.check {
             GapCheck::DirectCheck => Start::Touching(&self.pairing.touching),
             GapCheck::NoCheck => Start::Reach(f64::MAX),
@@ -453,7 +471,7 @@ impl Interaction for ContactInteraction {
 
     fn keep_first_iterate(&mut self, part: &mut ModelPart) {
         if self.acting {
-            self.pairing.patches.write(part);
+            self.find_normals(part);
         }
     }
 
@@ -462,7 +480,7 @@ impl Interaction for ContactInteraction {
             return Ok(SetChange::default());
         }
         if iteration == 1 || self.updates_normals() {
-            self.pairing.patches.write(part);
+            self.find_normals(part);
         }
         if self.updates_normals() {
             self.pairing.refresh_normals(part, true);
@@ -506,13 +524,17 @@ impl Interaction for ContactInteraction {
             }
         }
         let outer = self.search_again(part)?;
+        if outer != Outer::Done {
+            return Ok(outer);
+        }
         let touches = self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize));
-        if outer == Outer::Done && part.info.is(ENSURE_CONTACT) && !touches {
+        if part.info.is(ENSURE_CONTACT) && !touches {
             return Err(zelus_core::Error::NotConverged(
                 "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
             ));
         }
-        Ok(outer)
+        let (family, scale_factor) = (self.settings.family, self.parameters.scale_factor);
+        Ok(coarse_impact(part, &self.slaves, family, scale_factor, &self.start_gaps))
     }
 
     fn reach_out(&mut self, part: &mut ModelPart) -> bool {
@@ -577,8 +599,12 @@ impl Interaction for ContactInteraction {
         Some(RELAXATION * self.parameters.scale_factor)
     }
 
-    fn massless_nodes(&self, part: &ModelPart) -> Vec<u32> {
-        if self.acting && !part.info.is(KEEP_MASS) { self.pairing.nodes() } else { Vec::new() }
+    fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes {
+        if !self.acting || part.info.is(KEEP_MASS) {
+            return MasslessNodes::default();
+        }
+        self.near_nodes = near_nodes(part, &self.pairing, &self.slaves, &self.near_nodes);
+        MasslessNodes { surface: self.pairing.nodes(), near: self.near_nodes.clone() }
     }
 
     fn save(&mut self) {

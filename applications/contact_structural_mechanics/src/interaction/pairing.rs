@@ -10,6 +10,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
 use zelus_core::registry::{self, Kind};
+use zelus_core::vector3::dot;
 
 use super::contact_settings::ContactSettings;
 use super::holding::Holding;
@@ -21,6 +22,10 @@ use crate::pairs::{
     group_by_surroundings,
 };
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
+use crate::solver::AVERAGED_EDGES;
+
+/// Cosine of the angle at which facets look past each other, 84°.
+const FACING: f64 = 0.1;
 
 /// Pairs of facets and the blocks that evaluate them.
 pub(super) struct Pairing {
@@ -138,8 +143,9 @@ impl Pairing {
         let still = predicted_positions(part, settings.search.dynamic);
         let sides = |key: PairKey| (self.slave(key).role, self.master(key).role);
         let of_these_sides = |pair: &Pair| sides(pair.key) == (Roles::Slave, Roles::Master);
-        let mut known: BTreeMap<PairKey, Pair> =
-            self.pairs().into_iter().filter(of_these_sides).map(|pair| (pair.key, pair)).collect();
+        let edges = !part.info.is(AVERAGED_EDGES);
+        let known = self.pairs().into_iter().filter(of_these_sides).filter(|pair| !edges || self.meet(part, pair.key));
+        let mut known: BTreeMap<PairKey, Pair> = known.map(|pair| (pair.key, pair)).collect();
         let (mut beyond, mut touching) = (BTreeSet::new(), BTreeSet::new());
         for (key, within_reach) in self.candidates(part, settings) {
             if settings.search.check == GapCheck::DirectCheck {
@@ -196,7 +202,16 @@ impl Pairing {
                 (PairKey { interface: at as u32, slave, master }, within_reach)
             }));
         }
+        if !part.info.is(AVERAGED_EDGES) {
+            all.retain(|(key, _)| self.meet(part, *key));
+        }
         all
+    }
+
+    /// Whether the facets look at each other: those across an edge of the slave look past the master, and what they integrate
+    /// of it is no surface.
+    fn meet(&self, part: &ModelPart, key: PairKey) -> bool {
+        dot(normal(part, self.slave(key)), normal(part, self.master(key))) < -FACING
     }
 
     pub(super) fn pair(&self, part: &ModelPart, key: PairKey) -> Pair {

@@ -20,8 +20,8 @@ use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::mortar::{Habit, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
-    DYNAMIC_FACTOR, FRICTION_TRACTION, HELD_MULTIPLIER, INITIAL_PENALTY, NODAL_AREA, TANGENT_XI, TURNING_BY_MULTIPLIER,
-    TURNING_BY_SLIP,
+    DYNAMIC_FACTOR, FRICTION_TRACTION, HELD_MULTIPLIER, INITIAL_PENALTY, NODAL_AREA, NORMAL_OF_MASTER, TANGENT_XI,
+    TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
 };
 
 /// A formulation as the blocks use it.
@@ -156,7 +156,11 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
         let local = self.nodes(at);
+        let of_master = view.nodes.values.values(&NORMAL_OF_MASTER, 0);
         for (j, node) in self.slaves(at).into_iter().enumerate() {
+            if of_master.get(node as usize).is_some_and(|edge| *edge != 0.0) {
+                continue;
+            }
             self.patches.variation(node, &view.nodes.current, knows, |by, matrix| {
                 let place = local.iter().rposition(|&n| n == by).expect("the nodes of its patch are around a pair");
                 let column = match place.checked_sub(self.around) {

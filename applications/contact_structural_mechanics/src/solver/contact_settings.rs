@@ -13,6 +13,10 @@ use crate::pairs::variables_of;
 pub const ENSURE_CONTACT: &str = "ENSURE_CONTACT";
 /// Contact forces are scaled in the step in which a gap closes.
 pub const COMPUTE_DYNAMIC_FACTOR: &str = "COMPUTE_DYNAMIC_FACTOR";
+/// Share of the energy of motion that a step may make or lose where contact closes or opens.
+pub const IMPACT_TOLERANCE: &str = "IMPACT_TOLERANCE";
+/// Slave nodes on sharp edges have the mean normal of their faces.
+pub const AVERAGED_EDGES: &str = "AVERAGED_EDGES";
 /// Nodes of contact keep their mass in motion.
 pub const KEEP_MASS: &str = "KEEP_MASS";
 /// Factor of explicit steps while there is contact.
@@ -35,13 +39,17 @@ register! { SolverExtension "contact_settings",
         },
         marks: |settings| {
             let mut marks = Vec::new();
-            match settings.get_str("contact_stabilisation")? {
-                "mass_redistribution" => {}
-                "none" => marks.push(KEEP_MASS),
-                other => {
-                    let fact = format!("\"contact_stabilisation\" is {other:?}");
-                    let problem = settings.error("contact_stabilisation", "contact-stabilisation", fact);
-                    return Err(problem.remedy("use \"mass_redistribution\" or \"none\"").into());
+            for (key, usual, other, mark) in [
+                ("contact_stabilisation", "mass_redistribution", "none", KEEP_MASS),
+                ("edge_normals", "of_master", "averaged", AVERAGED_EDGES),
+            ] {
+                match settings.get_str(key)? {
+                    word if word == usual => {}
+                    word if word == other => marks.push(mark),
+                    word => {
+                        let problem = settings.error(key, "invalid-value", format!("\"{key}\" is {word:?}"));
+                        return Err(problem.remedy(format!("use {usual:?} or {other:?}")).into());
+                    }
                 }
             }
             for (key, wanted, mark) in [
@@ -78,7 +86,13 @@ register! { SolverExtension "contact_settings",
                 let fact = format!("\"{key}\" is {factor}, it must be above 0 and at most 1");
                 return Err(settings.error(key, "invalid-value", fact).remedy("0.5 is the usual value").into());
             }
-            let mut values = vec![(DELTA_TIME_FACTOR, factor)];
+            let key = "impact_energy_tolerance";
+            let tolerance = settings.get_f64(key)?;
+            if tolerance < 0.0 {
+                let fact = format!("\"{key}\" is {tolerance}, it must not be negative");
+                return Err(settings.error(key, "invalid-value", fact).remedy("1e-3 is the usual value").into());
+            }
+            let mut values = vec![(DELTA_TIME_FACTOR, factor), (IMPACT_TOLERANCE, tolerance)];
             for (key, name) in [
                 ("mixed_ulm_solver_parameters.dual_lm_off_node_tolerance", OFF_NODE_TOLERANCE),
                 ("mixed_ulm_solver_parameters.dual_lm_zero_row_tolerance", ZERO_ROW_TOLERANCE),

@@ -3,5 +3,7 @@
 mod contact_settings;
 mod mpc_contact_settings;
 
-pub(crate) use contact_settings::{COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
+pub(crate) use contact_settings::{
+    AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, IMPACT_TOLERANCE, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON,
+};
 pub(crate) use mpc_contact_settings::UPDATE_EACH_ITERATION;

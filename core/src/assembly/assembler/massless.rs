@@ -2,8 +2,11 @@
 
 use super::{Assembler, bulk_pattern, zero_matrix};
 use crate::assembly::Dof;
+use crate::assembly::bulk_matrix::add_residual;
 use crate::assembly::redistribution::diagonal;
+use crate::communication::world;
 use crate::diagnostics::Result;
+use crate::entities::{MasslessNodes, Want};
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
 use crate::model::{ModelPart, Variable};
 
@@ -13,12 +16,12 @@ const MOST_ITERATIONS: usize = 500;
 const TOLERANCE: f64 = 1e-15;
 
 impl Assembler {
-    /// Step start: takes the mass off `nodes` (ascending), where others can carry it, and hands on what their velocities and
+    /// Step start: takes the mass off `nodes`, where others can carry it, and hands on what their velocities and
     /// accelerations have beyond those of the others, so that momentum stays and energy does not grow. Collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn redistribute(&mut self, part: &mut ModelPart, nodes: &[u32]) -> Result<()> {
+    pub fn redistribute(&mut self, part: &mut ModelPart, nodes: &MasslessNodes) -> Result<()> {
         if self.redistribution.choose(part, nodes) {
             self.pattern = bulk_pattern(part, &self.redistribution.groups(part));
             self.bulk = zero_matrix(&self.pattern);
@@ -38,6 +41,28 @@ impl Assembler {
             }
         }
         Ok(())
+    }
+
+    /// Kinetic energy of the present velocities, and half the work of present internal forces on the displacements. Collective.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn energy(&mut self, part: &ModelPart) -> Result<f64> {
+        let own = self.own_energy(part);
+        Ok(world().total(world().agree(own)?))
+    }
+
+    fn own_energy(&mut self, part: &ModelPart) -> Result<f64> {
+        let (u, v) = (self.values(part), rates(part, &VELOCITY, 0));
+        self.mass(part)?;
+        let mut forces = vec![0.0; u.len()];
+        for (block, numbers) in part.element_blocks.iter().zip(&self.element_numbers) {
+            add_residual(block.as_ref(), numbers, &part.view(), Want::Residual, &mut forces)?;
+        }
+        let mut momentum = vec![0.0; u.len()];
+        self.mul_subtract(self.mass.as_ref().expect("just made"), &v, &mut momentum);
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        Ok(0.5 * product(&forces, &u).abs() + 0.5 * product(&momentum, &v).abs())
     }
 
     /// Makes present velocities and accelerations of massless unknowns those of the nodes below.
@@ -62,6 +87,9 @@ impl Assembler {
         let mut values = rates(part, variable, level);
         self.mass(part)?;
         let mut residual = self.redistribution.excess(&values);
+        if !world().any(residual.iter().any(|r| *r != 0.0)) {
+            return Ok(());
+        }
         self.add_up(&mut residual);
         let mass = self.mass.as_ref().expect("just made");
         let diagonal = {

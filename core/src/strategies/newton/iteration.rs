@@ -1,6 +1,6 @@
 //! The iterations of one step: solve, move, let the interactions decide, judge.
 
-use super::{NewtonRaphson, References};
+use super::{ENERGY_OF_MOTION, NewtonRaphson, References};
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, Outer, SetChange};
@@ -81,6 +81,9 @@ impl NewtonRaphson {
         self.assembler.begin_step(part, interactions)?;
         if self.scheme.has_inertia() {
             self.redistribute_mass(part, interactions)?;
+            if !part.info.values.contains_key(ENERGY_OF_MOTION) {
+                self.measure_energy(part)?;
+            }
         }
         if let Some(past) = self.scheme.past_inertia(part) {
             let forces = self.assembler.inertia_forces(part, &past)?;
@@ -329,6 +332,7 @@ impl NewtonRaphson {
                     step.widened = Some(why);
                     accepted = false;
                 }
+                Outer::Coarse(why) => self.coarse = Some(why),
                 Outer::Failed(why) => return Ok(Turn::Failed(why)),
             }
         }

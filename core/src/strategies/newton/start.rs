@@ -4,7 +4,7 @@ use super::NewtonRaphson;
 use crate::assembly::impose_constraints;
 use crate::communication::world;
 use crate::diagnostics::Result;
-use crate::entities::{Interaction, MasterSlaveConstraint};
+use crate::entities::{Interaction, MasslessNodes, MasterSlaveConstraint};
 use crate::model::ModelPart;
 
 impl NewtonRaphson {
@@ -12,12 +12,18 @@ impl NewtonRaphson {
     pub(super) fn redistribute_mass(
         &mut self,
         part: &mut ModelPart,
-        interactions: &[Box<dyn Interaction>],
+        interactions: &mut [Box<dyn Interaction>],
     ) -> Result<()> {
-        let mut nodes: Vec<u32> =
-            interactions.iter().flat_map(|interaction| interaction.massless_nodes(part)).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
+        let mut nodes = MasslessNodes::default();
+        for interaction in interactions.iter_mut() {
+            let own = interaction.massless_nodes(part);
+            nodes.surface.extend(own.surface);
+            nodes.near.extend(own.near);
+        }
+        for list in [&mut nodes.surface, &mut nodes.near] {
+            list.sort_unstable();
+            list.dedup();
+        }
         self.assembler.redistribute(part, &nodes)?;
         if let Some(forces) = self.scheme.kept() {
             self.assembler.hand_on(forces);
