@@ -120,4 +120,5 @@ macro_rules! problems {
 
 problems! {
     press_fit lug_with_pin gear_pair stack_of_four tilted_landing wedge initial_gap initial_penetration large_sliding
+    snap_fit ring_between_plates ball_in_socket strip_round_a_drum
 }

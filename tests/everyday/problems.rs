@@ -59,16 +59,6 @@ fn rectangle(from: [f64; 2], to: [f64; 2]) -> impl Fn(Vec3) -> Vec3 {
     move |x| [from[0] + (to[0] - from[0]) * x[0], from[1] + (to[1] - from[1]) * x[1], 0.0]
 }
 
-/// Linear between points (x, y), constant beyond them.
-fn profile(points: &[[f64; 2]], x: f64) -> f64 {
-    let next = points.partition_point(|p| p[0] <= x);
-    if next == 0 || next == points.len() {
-        return points[next.max(1) - 1][1];
-    }
-    let [a, b] = [points[next - 1], points[next]];
-    a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0])
-}
-
 const FREE: Value = Value::Null;
 
 /// Holds two opposite nodes of a ring on each axis, where it goes round.
@@ -192,20 +182,20 @@ fn gear_pair(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
 /// A hook that bends over a ridge and is free behind it.
 fn snap_fit(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
     let mut model = Model::new(2, friction, steps);
-    let nose = [[16.0, 0.0], [17.0, -1.0], [17.5, -1.0], [20.0, 0.0]];
+    // bumps with round tops
+    let bump = |x: f64, half: f64| if x.abs() < half { 0.5 + 0.5 * (PI * x / half).cos() } else { 0.0 };
     let hook = move |x: Vec3| {
         let along = 20.0 * x[0];
-        let below = profile(&nose, along);
+        let below = -bump(along - 17.5, 2.5);
         [along, below + (1.0 - below) * x[1], 0.0]
     };
-    let ridge = [[20.5, -1.2], [21.5, -0.2], [22.5, -0.2], [23.5, -1.2]];
     let base = move |x: Vec3| {
-        let along = 18.0 + 10.0 * x[0];
-        [along, -4.0 + (profile(&ridge, along) + 4.0) * x[1], 0.0]
+        let along = 18.0 + 12.0 * x[0];
+        [along, -4.0 + (bump(along - 22.5, 2.0) + 2.8) * x[1], 0.0]
     };
     let hook = model.body(&[40 * finer, 3 * finer], 2e3, POISSON, hook);
-    let base = model.body(&[20 * finer, 4 * finer], 2e3, POISSON, base);
-    model.fix(&hook.nodes(low(0)), [json!("6*t"), json!(0), FREE]);
+    let base = model.body(&[24 * finer, 4 * finer], 2e3, POISSON, base);
+    model.fix(&hook.nodes(low(0)), [json!("8*t"), json!(0), FREE]);
     model.fix(&base.nodes(low(1)), [json!(0), json!(0), FREE]);
     model.contact(hook.facets(low(1)), base.facets(high(1)));
     let tip = hook.nodes(high(0));
@@ -215,7 +205,7 @@ fn snap_fit(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
             (lift < 0.7).then(|| format!("the hook is lifted by {lift:.3} only")).into_iter().collect();
         let end = outcome.last().displacement[tip[0]];
         faults.extend(
-            ((end[0] - 6.0).abs().max(end[1].abs()) > 1e-6).then(|| format!("at last the hook is not free: {end:?}")),
+            ((end[0] - 8.0).abs().max(end[1].abs()) > 1e-6).then(|| format!("at last the hook is not free: {end:?}")),
         );
         faults
     };
@@ -440,9 +430,9 @@ fn large_sliding(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
         let mut faults = Vec::new();
         for state in outcome.states.iter().skip(outcome.states.len() / 4) {
             let force = state.sum(&top);
-            // the corners of the block dig in
+            // the corners of the block dig in, and stand at a slope of some hundredths there
             let off = force[0] / -force[1] - friction.unwrap_or(0.0);
-            faults.extend((off.is_nan() || off.abs() > 0.02).then(|| format!("push over load is off by {off:.1e}")));
+            faults.extend((off.is_nan() || off.abs() > 0.03).then(|| format!("push over load is off by {off:.1e}")));
         }
         faults
     };

@@ -72,6 +72,8 @@ pub struct SlaveNumbers {
     pub normal: [f64; 3],
     /// Multiplier λ, a scalar one times the normal; zero for penalty methods.
     pub multiplier: [f64; 3],
+    /// Whether multipliers are unknowns of the solve.
+    pub solved: bool,
     /// Gap g, negative in penetration (length).
     pub gap: f64,
     /// Slip s of the step (length).
@@ -94,8 +96,12 @@ pub struct SlaveNumbers {
 
 impl SlaveNumbers {
     /// Augmented normal pressure p̂ = k λ_n + c g; compression is negative.
+    ///
+    /// The gap of a node in contact, whose multiplier the last solve has found, is what the curvature of its path has left of
+    /// it. Against c, the stiffness of solid bodies, that would let go of the nodes of slender ones.
     pub fn pressure(&self) -> f64 {
-        self.scale_factor * dot(self.multiplier, self.normal) + self.stiffness * self.gap
+        let gap = if self.solved && self.state.is_active() { 0.0 } else { self.gap };
+        self.scale_factor * dot(self.multiplier, self.normal) + self.stiffness * gap
     }
 
     fn presses(&self, pressure: f64) -> bool {
@@ -223,6 +229,16 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     }
 }
 
+/// Whether friction pushes a node along its motion that slides on within a margin.
+pub fn is_pushed(node: &SlaveNumbers, rule: SlipRule) -> bool {
+    let along = dot(node.tangent, node.slip_traction());
+    let has_margin = matches!(rule, SlipRule::Bounded(margin) if margin.threshold > 0.0);
+    has_margin
+        && node.state == NodeState::Slip
+        && !node.friction.is_smooth()
+        && along < -TURNED * node.friction.at(node.pressure())
+}
+
 /// Decides for a node of the frictional penalty method: it sticks while the trial traction is within the bound.
 ///
 /// A sliding node whose trial traction has turned against its traction sticks, too: the spring is stiff, so that the little
@@ -278,6 +294,7 @@ mod tests {
             state,
             normal: [0.0, 0.0, 1.0],
             multiplier,
+            solved: false,
             gap: -0.5,
             slip: [0.1, 0.0, 0.0],
             trial: [0.0; 3],
@@ -299,6 +316,14 @@ mod tests {
         }
         let pulled = SlaveNumbers { gap: 0.0, ..node(NodeState::Slip, [0.0, 0.0, 1e-6]) };
         assert!(frictionless(&pulled).changed);
+    }
+
+    #[test]
+    fn nodes_whose_multiplier_is_solved_for_are_let_go_by_it_alone() {
+        let solved = |state, lambda: f64| SlaveNumbers { solved: true, gap: 100.0, ..node(state, [0.0, 0.0, lambda]) };
+        assert_eq!(frictionless(&solved(NodeState::Slip, -1.0)).state, NodeState::Slip);
+        assert_eq!(frictionless(&solved(NodeState::Slip, 1.0)).state, NodeState::Inactive);
+        assert_eq!(frictionless(&solved(NodeState::Inactive, 0.0)).state, NodeState::Inactive);
     }
 
     #[test]

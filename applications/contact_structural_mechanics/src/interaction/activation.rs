@@ -124,16 +124,19 @@ pub(super) fn nearest(
 
 /// What the rules of [`active_set`] want of every slave node, and the states the nodes are in.
 ///
-/// Nodes that nothing overlaps are not in contact.
+/// Nodes that nothing overlaps are not in contact. When nothing changes at all, nodes that slide on within a margin and that
+/// friction pushes along their motion stick, each once a step: those in `released` did before.
 pub(super) fn decide(
     part: &ModelPart,
     slaves: &[u32],
     family: &Family,
     parameters: &StepParameters,
     resolution: Resolution,
+    released: &mut BTreeSet<u32>,
 ) -> (Vec<(u32, Decision)>, Vec<NodeState>) {
     let mut decisions = Vec::with_capacity(slaves.len());
     let mut states = Vec::with_capacity(slaves.len());
+    let mut pushed = Vec::new();
     for &node in slaves {
         let at = node as usize;
         let numbers = numbers(part, at, family, parameters, resolution);
@@ -145,8 +148,18 @@ pub(super) fn decide(
         if part.nodes.flags.is(ISOLATED, at) {
             decision = active_set::inactive(&numbers, decision.pressure);
         }
+        let multipliers = family.frictional() && !family.penalty;
+        if multipliers && !released.contains(&node) && active_set::is_pushed(&numbers, parameters.slip_rule) {
+            pushed.push(decisions.len());
+        }
         decisions.push((node, decision));
         states.push(numbers.state);
+    }
+    if decisions.iter().zip(&states).all(|((_, decision), was)| decision.state == *was) {
+        for at in pushed {
+            decisions[at].1.stay(NodeState::Stick, NodeState::Slip);
+            released.insert(decisions[at].0);
+        }
     }
     (decisions, states)
 }
@@ -289,6 +302,7 @@ fn numbers(
         state: NodeState::of_flags(&part.nodes.flags, at),
         normal,
         multiplier,
+        solved: family.multiplier.is_unknown(),
         gap: resolution.length_of(counted_gap(part, at, parameters) * by_area),
         slip,
         trial: vector_at(part.nodes.values.values(&TRIAL_TRACTION, 0), at),

@@ -61,6 +61,8 @@ pub struct ContactInteraction {
     cycles: CycleGuard,
     /// Slave nodes that supports hold.
     holding: Holding,
+    /// Nodes that were pushed along their motion in this step and stick since.
+    released: BTreeSet<u32>,
     /// Times in this step that open interfaces took hold because a body was free to move, and which they are.
     reached: usize,
     open: BTreeSet<usize>,
@@ -110,6 +112,7 @@ impl ContactInteraction {
             pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             holding: Holding::default(),
+            released: BTreeSet::new(),
             reached: 0,
             open: BTreeSet::new(),
             searches: 0,
@@ -244,7 +247,8 @@ impl ContactInteraction {
     /// Lets the rules of the active set decide in the present state.
     fn update_active_set(&mut self, part: &mut ModelPart) -> SetChange {
         let family = self.settings.family;
-        let (mut decisions, before) = activation::decide(part, &self.slaves, family, &self.parameters, self.resolution);
+        let (mut decisions, before) =
+            activation::decide(part, &self.slaves, family, &self.parameters, self.resolution, &mut self.released);
         self.cycles.restrict(&mut decisions, &before);
         part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
         activation::apply(part, &decisions, &before, family, &self.parameters)
@@ -253,7 +257,8 @@ impl ContactInteraction {
     /// Lets the rules decide in a converged state, where the set was held.
     fn settle(&mut self, part: &mut ModelPart) -> Outer {
         let family = self.settings.family;
-        let (mut decisions, before) = activation::decide(part, &self.slaves, family, &self.parameters, self.resolution);
+        let (mut decisions, before) =
+            activation::decide(part, &self.slaves, family, &self.parameters, self.resolution, &mut self.released);
         let largest = decisions.iter().map(|(_, decision)| -decision.pressure).fold(0.0, f64::max);
         match self.cycles.settle(&mut decisions, &before, largest, &part.nodes.ids) {
             Settled::Done => Outer::Done,
@@ -420,6 +425,7 @@ impl Interaction for ContactInteraction {
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.acting = self.settings.interval.contains(part.info.time);
         self.cycles.begin_step();
+        self.released.clear();
         self.reached = 0;
         self.open.clear();
         self.searches = 0;
