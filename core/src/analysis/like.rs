@@ -103,6 +103,6 @@ mod tests {
         let laid = r#"{"a":1,"c":"x","inner":{"b":2,"d":7},"other":{"e":8}}"#;
         assert_eq!(deck.to_json().to_string(), laid);
         assert_eq!(added, ["thing.c = \"x\"", "thing.inner.d = 7", "thing.other.e = 8"]);
-        assert_eq!(deck.get_path("inner.d").unwrap().place().to_string(), "deck.json:1:21");
+        assert_eq!(deck.get_path("inner.d").unwrap().place().to_string(), "deck.json:1:20");
     }
 }

@@ -243,10 +243,18 @@ impl NodeRelation {
         };
         // The slave bears λ (n − push), λ < 0 under pressure. Which component is eliminated changes no answer: the constraint
         // n · (u¹ − B u² − offset) = 0 and the direction of its force are the same.
+        let component = |borne: [f64; 3]| {
+            let size = move |c: usize| n[c].abs().min(borne[c].abs());
+            let free = (0..dimension).filter(|&c| is_free(c) && size(c) > HOLD);
+            free.max_by(|&a, &b| size(a).total_cmp(&size(b)))
+        };
         let borne = sub(n, along);
-        let size = |c: usize| n[c].abs().min(borne[c].abs());
-        let free = (0..dimension).filter(|&c| is_free(c) && size(c) > HOLD);
-        let Some(chosen) = free.max_by(|&a, &b| size(a).total_cmp(&size(b))) else { return };
+        // Where supports leave no component in which the force with its friction acts, the node is wedged.
+        let (borne, chosen) = match (component(borne), component(n)) {
+            (Some(chosen), _) => (borne, chosen),
+            (None, Some(chosen)) => (n, chosen),
+            (None, None) => return,
+        };
         let (mut masters, mut forces) = (Vec::new(), Vec::new());
         for c in (0..dimension).filter(|&c| n[c].abs().max(borne[c].abs()) > NEGLIGIBLE) {
             let (factor, force) = (n[c] / n[chosen], borne[c] / borne[chosen]);
@@ -299,7 +307,7 @@ mod tests {
     /// Whatever component is eliminated, the force is along n − push, on the slave and against it on the masters.
     #[test]
     fn the_component_that_is_eliminated_changes_nothing() {
-        for push in [[0.0; 3], [0.3, 0.0, -0.1]] {
+        for push in [[0.0; 3], [0.15, 0.0, -0.05]] {
             for (fixed, eliminated) in [(&[][..], 2), (&[2], 1), (&[1, 2], 0)] {
                 let (constraint, force) = held(fixed, push);
                 assert_eq!(constraint.slave.1.component, Some(eliminated));
@@ -326,6 +334,12 @@ mod tests {
                 assert!(gap.abs() < 1e-15, "{gap:e}");
             }
         }
+    }
+
+    #[test]
+    fn a_wedged_node_is_held_without_friction() {
+        let (constraint, _) = held(&[1, 2], [0.3, 0.0, -0.1]);
+        assert_eq!((constraint.slave.1.component, constraint.forces), (Some(0), None));
     }
 
     #[test]
