@@ -7,12 +7,15 @@
 Prints for each case what is published, computed, the error, the observed order, iterations and cuts. `--only` runs the cases
 whose folder has TEXT in its name (and, after a slash, in its variant); `--quick` the coarsest mesh of the cases of the test
 command; `--write` writes docs/verification.md and its pictures. The exit status is 1 where a case misses its tolerance."""
-import argparse, concurrent.futures, importlib.util, math, os, sys, time, traceback
+import argparse, concurrent.futures, importlib.util, multiprocessing, os, sys, traceback
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 sys.path.insert(0, HERE)
 from lib import solution, table  # noqa: E402
+
+
+CASES = {}  # by folder; processes that run them inherit it
 
 
 def load(only):
@@ -28,13 +31,11 @@ def load(only):
     return cases
 
 
-def one(case, mesh, variant):
+def one(name, variant, level):
     """One run: (outcome, None) or (None, message)."""
-    begin = time.time()
+    case = CASES[name]
     try:
-        outcome = case.solve(mesh, **case.variants[variant])
-        outcome.seconds = time.time() - begin
-        return outcome, None
+        return case.solve(case.meshes[level], **case.variants[variant]), None
     except solution.Failed as failed:
         return None, str(failed)
     except Exception as error:  # a script that breaks is a failure of its case, not of the others
@@ -67,15 +68,16 @@ def main():
         sys.exit(f"{solution.PROGRAM} is not there: cargo build --release")
     if options.write and (options.only or options.quick):
         sys.exit("--write writes the whole table: leave out --only and --quick")
-    cases = load(options.only)
+    CASES.update(load(options.only))
+    cases = CASES
     todo = list(work(cases, options.quick, options.only))
     if not todo:
         sys.exit(f"no case has {options.only!r} in its name")
-    # the finest meshes first, so that no long run is left at the end
-    order = sorted(todo, key=lambda w: -w[2])
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        runs = {w: pool.submit(one, cases[w[0]], cases[w[0]].meshes[w[2]], w[1]) for w in order}
-        rows, missed = [], 0
+    # slow cases and the finest meshes first, so that no long run is left at the end
+    order = sorted(todo, key=lambda w: (not cases[w[0]].slow, -w[2]))
+    with concurrent.futures.ProcessPoolExecutor(options.jobs, multiprocessing.get_context("fork")) as pool:
+        runs = {w: pool.submit(one, *w) for w in order}
+        rows = []
         for name in cases:
             made = table.rows_of(name, cases[name], {w: runs[w].result() for w in todo if w[0] == name})
             for row in made:

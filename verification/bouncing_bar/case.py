@@ -40,4 +40,4 @@ CASE = Case(
     [Quantity("largest energy", 1.0, 0.02, order=False), Quantity("rebounds", TIMES, (0.5, 0.3), order=False)],
     (10, 20), run, size=lambda n: 1 / n,
     variants={"default scheme": {}, "half steps": {"courant": 0.5}, "newmark": {"dynamic": {"scheme_type": "newmark"}},
-              "generalised alpha": {"dynamic": {"scheme_type": "generalized_alpha"}}}, quick=False)
+              "generalised alpha": {"dynamic": {"scheme_type": "generalized_alpha"}}}, quick=False, slow=True)

@@ -42,13 +42,14 @@ class Case:
     """A problem: `solve(mesh, **variant)` returns an Outcome for an entry of `meshes` (coarse to fine)."""
 
     def __init__(self, title, source, tag, why, quantities, meshes, solve, variants=None, note="", size=None, quick=True, known=None,
-                 picture=None):
+                 picture=None, slow=False):
         self.title, self.source, self.tag, self.why, self.note = title, source, tag, why, note
         self.quantities, self.meshes, self.solve = quantities, meshes, solve
         self.variants = variants or {"": {}}
         self.size = size or (lambda mesh: 1.0 / (mesh if isinstance(mesh, (int, float)) else mesh[0]))
         # whether the coarsest mesh of all variants (True), or of the named ones, is part of the test command
         self.quick = quick
+        self.slow = slow  # begun first
         # the variant that is drawn: the first one unless another is named
         self.picture = picture or next(iter(self.variants))
         # why variants miss today, by name; "" for all

@@ -85,7 +85,7 @@ def picture(name, case, runs):
         done = of(variant)
         if done:
             last = done[0][1].last
-            if last is not None and last.model.bodies:
+            if last is not None and last.model is not None and last.model.bodies:
                 panels.append(svg.mesh(last.model, last))
             if done[-1][1].curves:
                 panels.append(svg.curves(done[-1][1].curves, *(done[-1][1].labels or ())))
