@@ -39,4 +39,4 @@ CASE = Case(
     "The answers of several programs differ by 3 %; the last value is read from a curve. Points lie 0, 1.25, 5, 7.5 and 11.25 mm from "
     "the loaded side.",
     [Quantity("u" + name, u, (0.06, 0.04, 0.04), "µm", order=False) for name, (_, u) in POINTS.items()],
-    (16, 32, 64), run, variants={"mm": {}, "m": {"length": 1e-3, "stress": 1e6}, "4 steps": {"steps": 4}}, quick=["mm"])
+    (16, 32, 64), run, variants={"mm": {}, "m": {"length": 1e-3, "stress": 1e6}, "4 steps": {"steps": 4}}, quick=["mm", "m"])

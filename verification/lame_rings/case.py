@@ -89,4 +89,4 @@ CASE = Case(
               "Uzawa": {"family": "Uzawa"}, "frictional": {"family": "ALM frictional", "friction": 0.3},
               "turned by 9°": TURNED, "turned by 9°, inner as slave": {**TURNED, "slave": "inner"},
               "turned by 9°, penalty": {**TURNED, "family": "penalty"}, "millimetres": {"length": 1e3, "stress": 1e-6}},
-    picture="ALM", quick=["tied", "ALM", "inner as slave"])
+    picture="ALM", quick=["tied", "ALM", "inner as slave", "turned by 9°"])

@@ -37,4 +37,4 @@ CASE = Case(
     (2, 4, 8), run, size=lambda n: 1 / n,
     variants={**{f: {"family": f} for f in FRICTIONLESS}, "ALM frictional": {"family": "ALM frictional", "friction": 0.3},
               "foundation as slave": {"slave": "base"}, "triangles": {"shape": "2D3N"}, "metres to millimetres": {"length": 1e3, "stress": 1e-6}},
-    quick=["ALM", "ALM components", "ALM frictional", "triangles"])
+    quick=["ALM", "ALM components", "ALM frictional", "foundation as slave", "triangles"])

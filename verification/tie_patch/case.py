@@ -45,4 +45,4 @@ CASE = Case(
               "ends on symmetry planes, matching": {"symmetry": True, "finer": 0}, "ends on symmetry planes, hexahedra": {**CUBES, "symmetry": True},
               "constraints": {"family": "MPC tie"}, "constraints, matching": {"family": "MPC tie", "finer": 0}, "constraints, hexahedra": {**CUBES, "family": "MPC tie"},
               "constraints, ends on symmetry planes": {"family": "MPC tie", "symmetry": True}, "millimetres": {"length": 1e3, "stress": 1e-6}},
-    quick=["multipliers", "hexahedra", "constraints, matching"])
+    quick=["multipliers", "hexahedra", "constraints, matching", "ends on symmetry planes"])
