@@ -207,7 +207,7 @@ fn the_condition_number_is_computed_and_grows_with_the_penalty() {
         let deck = deck.replace("uzawa_contact_process", "penalty_contact_process").replace("Uzawa", "Penalty");
         let mut deck: Value = serde_json::from_str(&deck).expect("JSON");
         let process = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
-        process["advance_ALM_parameters"] = json!({"manual_ALM": true, "penalty": penalty / h});
+        process["advance_ALM_parameters"] = json!({"manual_ALM": true, "penalty": penalty});
         process.as_object_mut().expect("an object").remove("uzawa_parameters");
         let lists = deck["processes"].as_object_mut().expect("lists");
         lists.remove("json_output_process_list");

@@ -396,6 +396,7 @@ fn penalty_friction_acts_through_the_mortar_operators() {
                 state,
                 penalty: 50.0,
                 stiffness: 50.0,
+                area: 0.25,
                 dynamic_factor: 1.0,
                 friction: Bound { coefficient: 0.4, threshold: 0.0 },
                 tangent: free([-1.0, 0.0, 0.0]),
