@@ -28,6 +28,9 @@ use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
 use crate::model::ModelPart;
 
+/// Largest stiffness of an interaction in those of the bodies: what a stiff penalty adds to the round-off of forces.
+const STIFFEST: f64 = 100.0;
+
 /// Seconds spent assembling, by what was assembled.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AssemblySeconds {
@@ -332,12 +335,20 @@ impl Assembler {
         let mut out = vec![0.0; values.len()];
         let bulk = if self.traits.variable_elements { &position } else { &displacement };
         abs_product(&self.bulk, bulk, &mut out);
-        abs_product(&self.coupling.matrix, &position, &mut out);
-        let (mut pushed, mut most) = (vec![0.0; values.len()], vec![0.0; values.len()]);
-        abs_product(&self.coupling.matrix, &multiplier, &mut pushed);
-        abs_product(&self.bulk, &farthest, &mut most);
-        abs_product(&self.coupling.matrix, &farthest, &mut most);
-        out.iter_mut().zip(pushed.iter().zip(&most)).for_each(|(sum, (pushed, most))| *sum += pushed.min(*most));
+        let product = |matrix: &Csr, x: &[f64]| {
+            let mut product = vec![0.0; x.len()];
+            abs_product(matrix, x, &mut product);
+            product
+        };
+        let [coupled, pushed, gaps] = [&position, &multiplier, &farthest].map(|x| product(&self.coupling.matrix, x));
+        let bodies = product(&self.bulk, &farthest);
+        for (n, dof) in part.dofs.dofs().iter().enumerate() {
+            // Multipliers stand in the tangent of turning normals, too: forces are bounded by the bodies alone.
+            out[n] += match dof.multiplier {
+                true => coupled[n] + pushed[n].min(gaps[n]),
+                false => (coupled[n] + pushed[n]).min(STIFFEST * bodies[n]),
+            };
+        }
         self.add_up(&mut out);
         out.iter_mut().for_each(|v| *v *= f64::EPSILON);
         out
