@@ -347,7 +347,7 @@ fn impact(method: &str, elements: usize, time_step: f64) -> Impact {
                     "contact_model_part": {"0": ["Interface"]}, "assume_master_slave": {"0": ["Slave"]},
                     "search_parameters": {"search_factor": 20.0},
                     "advance_ALM_parameters": if explicit {
-                        json!({"manual_ALM": true, "penalty": penalty})
+                        json!({"manual_ALM": true, "penalty": penalty / h})
                     } else {
                         json!({})
                     }}}],

@@ -63,9 +63,9 @@ fn state(specimen: &Specimen, amount: f64, random: &mut Random) -> Vec<f64> {
 
 #[test]
 fn tangents_are_derivatives() {
-    let mut random = Random(11);
     for (entry, shape, law) in kinds() {
         let name = label(entry, law);
+        let mut random = Random(11);
         let at_rest = TANGENT_AT_REST
             .iter()
             .any(|(element, of_law, _)| entry.name.contains(element) && law.is_some_and(|law| law.starts_with(of_law)));

@@ -81,7 +81,7 @@ fn the_state_before_a_failed_attempt_comes_back_to_the_bit() {
 #[test]
 fn contact_with_friction_comes_back_to_the_bit() {
     let folder = root().join("tests/cases/contact_3d/friction_tresca_slide");
-    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 4, \"continue_if_converging\": false");
+    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 3, \"continue_if_converging\": false");
     let cut = run(&folder, &[few]);
     assert_eq!(cut.code, Some(0), "{}", cut.text);
     let (rules, end) = as_intervals(&cut.lengths);
@@ -94,7 +94,7 @@ fn contact_with_friction_comes_back_to_the_bit() {
 #[test]
 fn contact_settings_say_how_steps_are_cut() {
     let folder = root().join("tests/cases/contact_2d/friction_slide");
-    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 3");
+    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 2, \"continue_if_converging\": false");
     let splits = "\"adaptative_strategy\": true, \"split_factor\": 4.0, \"max_number_splits\": 1, \"mortar_type\"";
     let cut = run(&folder, &[few, (DECK, "\"mortar_type\"", splits)]);
     assert_eq!((cut.code, cut.attempts), (Some(3), 2), "{}", cut.text);

@@ -1,43 +1,61 @@
 //! How a facet has turned since an earlier state.
 
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{cross, dot, normalised, sub};
+use zelus_core::vector3::{constant, cross, dot, normalised, sub};
 
-/// Rotation R that takes the frame of a facet, its first edge and its normal, from an earlier state to the present one.
+/// Rotation R that takes a facet from an earlier state to the present one: the shortest that takes its normal along, and one
+/// about the normal by the mean angle of its nodes about its centre, whichever of them is the first.
 #[derive(Debug, Clone, Copy)]
 pub struct Turn<T> {
-    now: [[T; 3]; 3],
-    before: [[f64; 3]; 3],
+    normal: [T; 3],
+    before: [f64; 3],
+    cosine: T,
+    sine: T,
 }
 
 impl<T: Real> Turn<T> {
     /// From the nodes of a facet now and before.
     pub fn of_facet<const N: usize>(now: &[[T; 3]; N], before: &[[f64; 3]; N]) -> Self {
-        Self { now: frame(now), before: frame(before) }
+        let mut turn = Self { normal: normal(now), before: normal(before), cosine: T::one(), sine: T::zero() };
+        let (centre, centre_before) = (centre(now), centre(before));
+        let (mut along, mut across) = (T::zero(), T::zero());
+        for (x, x_before) in now.iter().zip(before) {
+            let arm = turn.tilt(constant(sub(*x_before, centre_before)));
+            let arm_now = sub(*x, centre);
+            along = along + dot(arm, arm_now) - dot(turn.normal, arm) * dot(turn.normal, arm_now);
+            across = across + dot(turn.normal, cross(arm, arm_now));
+        }
+        [turn.cosine, turn.sine, _] = normalised([along, across, T::zero()]);
+        turn
     }
 
     /// R v for a vector of the earlier state.
     pub fn apply(&self, vector: [T; 3]) -> [T; 3] {
-        let mut turned = [T::zero(); 3];
-        for (now, before) in self.now.iter().zip(&self.before) {
-            let along = vector[0] * before[0] + vector[1] * before[1] + vector[2] * before[2];
-            (0..3).for_each(|c| turned[c].add_product(now[c], along));
-        }
-        turned
+        let tilted = self.tilt(vector);
+        let across = cross(self.normal, tilted);
+        let height = dot(self.normal, tilted) * (T::one() - self.cosine);
+        std::array::from_fn(|c| tilted[c] * self.cosine + across[c] * self.sine + self.normal[c] * height)
+    }
+
+    /// The shortest rotation from the earlier normal a to the present one b: v − (a + b)·v / (1 + a·b) (a + b) + 2 (a·v) b.
+    fn tilt(&self, vector: [T; 3]) -> [T; 3] {
+        let before: [T; 3] = constant(self.before);
+        let sum: [T; 3] = std::array::from_fn(|c| before[c] + self.normal[c]);
+        let share = dot(sum, vector) / (T::one() + dot(before, self.normal));
+        let height = dot(before, vector) * 2.0;
+        std::array::from_fn(|c| vector[c] - sum[c] * share + self.normal[c] * height)
     }
 }
 
-/// Right-handed unit vectors: along the first edge, across it, normal to the facet; of a line those in its plane.
-fn frame<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [[T; 3]; 3] {
-    let edge = normalised(sub(x[1], x[0]));
-    let normal = if N == 2 {
-        [T::zero(), T::zero(), T::one()]
-    } else {
-        // The diagonals of a quadrilateral, two edges of a triangle.
-        let normal = normalised(cross(sub(x[2], x[0]), sub(x[N - 1], x[1])));
-        normalised(sub(normal, edge.map(|e| e * dot(normal, edge))))
-    };
-    [edge, cross(normal, edge), normal]
+fn centre<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
+    let mut sum = [T::zero(); 3];
+    x.iter().for_each(|x| (0..3).for_each(|c| sum[c] = sum[c] + x[c] * (1.0 / N as f64)));
+    sum
+}
+
+/// Unit normal: by the diagonals of a quadrilateral, two edges of a triangle; of a line that of its plane.
+fn normal<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
+    if N == 2 { [T::zero(), T::zero(), T::one()] } else { normalised(cross(sub(x[2], x[0]), sub(x[N - 1], x[1]))) }
 }
 
 #[cfg(test)]
