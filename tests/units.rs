@@ -21,7 +21,13 @@ const UNITS: [(f64, f64); 6] = [(1e3, 1e-6), (1e3, 1.0), (1e-3, 1e6), (1e6, 1.0)
 const TOLERANCE: f64 = 1e-9;
 
 /// The same for bodies that hang on one or two nodes under a light load: see `renumbering.rs`.
-const TOLERANCE_OF_LIGHT_LOADS: f64 = 3e-8;
+const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-7;
+
+/// The same where a slave node lies on the axis of revolution: its area is small, and its multiplier a quotient by it.
+const TOLERANCE_AT_THE_AXIS: f64 = 5e-9;
+
+/// The same where surfaces slide in space: the decks' tolerance of slip, 1e-9, leaves 1e-8 in the multipliers.
+const TOLERANCE_OF_SLIDING: f64 = 3e-8;
 
 /// Quantities by whose largest value is measured what is compared, and that.
 const COMPARED: [(&str, &str); 7] = [
@@ -255,7 +261,9 @@ fn augmented_lagrangian_by_components() {
 fn bodies_of_revolution() {
     let light = "contact_2d/hertz_spheres_light_coarse";
     let light = Deck { case: light, changes: Vec::new(), tolerance: TOLERANCE_OF_LIGHT_LOADS };
-    unchanged(as_they_are(&["contact_2d/hertz_spheres", "contact_2d/friction_sleeve"]).into_iter().chain([light]));
+    unchanged(as_they_are(&["contact_2d/friction_sleeve"]).into_iter().chain([light]));
+    let spheres = "contact_2d/hertz_spheres";
+    unchanged([Deck { case: spheres, changes: Vec::new(), tolerance: TOLERANCE_AT_THE_AXIS }]);
 }
 
 #[test]
@@ -275,9 +283,9 @@ fn sticking_and_sliding() {
         "contact_2d/cattaneo_mindlin_light_coarse",
         "contact_3d/friction_stick",
         "contact_3d/friction_iterative_engine",
-        "contact_3d/friction_slide",
-        "contact_3d/friction_tresca_slide",
     ]));
+    let slide = |case| Deck { case, changes: Vec::new(), tolerance: TOLERANCE_OF_SLIDING };
+    unchanged(["contact_3d/friction_slide", "contact_3d/friction_tresca_slide"].map(slide));
 }
 
 #[test]

@@ -17,8 +17,8 @@ use crate::pairs::Pair;
 use crate::resolution::Resolution;
 use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP};
 
-/// Share of a node's area that a pair must integrate to be missed, and of a mesh size, or of its square in space, that it must face to be in
-/// a master. Less than that is a sliver at the edge of a surface.
+/// Share of a node's area that a pair must integrate to be missed, and of a mesh size (its square in space, its way about the
+/// axis of revolution) that it must face to be in a master. Less than that is a sliver at the edge of a surface.
 const LEAST_SHARE: f64 = 0.01;
 
 /// What a search within a step is for.
@@ -100,7 +100,9 @@ pub(super) fn late_pairs(
     let active = |n: u32| part.nodes.flags.is(ACTIVE, n as usize);
     let inside = |&n: &u32| {
         let at = n as usize;
-        let whole = sizes[at].powi(part.info.domain_size as i32 - 1);
+        let around =
+            parameters.segmentation.revolution().map_or(1.0, |per_radius| per_radius * part.nodes.current[at][0]);
+        let whole = around * sizes[at].powi(part.info.domain_size as i32 - 1);
         !active(n) && more_area[at] > wanted.facing * whole && gap[at] < -wanted.depth * area[at]
     };
     let nodes: BTreeSet<u32> = slaves.iter().copied().filter(inside).collect();
