@@ -27,7 +27,7 @@ register_variable! {
     pub NORMAL_OF_MASTER: f64 = "1 at slave nodes on sharp edges, whose normal is that of what they meet and does not turn with their facets.";
     pub TURNING_BY_SLIP: f64 = "Tangential traction by weighted slip across the direction of sliding (force per length to the fifth).";
     pub TURNING_BY_MULTIPLIER: f64 = "Turning of the direction of sliding by the tangential multiplier.";
-    pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Scale factor times normal multiplier plus penalty times weighted gap, of penalty methods the normal traction; negative in contact.";
+    pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Normal traction of a slave node, negative in contact: scale factor times normal multiplier, plus penalty times weighted gap where pairs augment; of penalty methods their traction.";
     pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";
     kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";
 }

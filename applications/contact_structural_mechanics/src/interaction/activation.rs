@@ -11,7 +11,7 @@ use super::holding::held_at;
 use super::step_parameters::StepParameters;
 use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
 use crate::formulations::held::along_free_tangents;
-use crate::formulations::{Held, NodeState};
+use crate::formulations::{Augmentation, Held, NodeState};
 use crate::friction_law::FrictionLaw;
 use crate::interface::{Interface, Roles};
 use crate::mortar::{tangent, tangential};
@@ -230,14 +230,14 @@ pub(super) fn apply(
     change
 }
 
-/// Writes k λ·n + ε g̃ of the slave nodes; without multipliers the pressure of the penalty.
+/// Writes the pressure that acts at the slave nodes: k λ·n + ε g̃ where pairs augment, else that of the decision.
 fn write_pressures(part: &mut ModelPart, decisions: &[(u32, Decision)], family: &Family, parameters: &StepParameters) {
     let augmented = |(node, decision): &(u32, Decision)| {
         let at = *node as usize;
         let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
         let augmentation = penalty * part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
-        match family.multiplier {
-            Multiplier::None | Multiplier::Outer(_) => decision.pressure,
+        match (family.multiplier, parameters.augmentation) {
+            (Multiplier::None | Multiplier::Outer(_), _) | (_, Augmentation::Node) => decision.pressure,
             _ => parameters.scale_factor * dot(multiplier(part, at, family), normal(part, at)) + augmentation,
         }
     };
