@@ -341,7 +341,8 @@ def main():
             for path, row in table:
                 found = row.get("differences", {})
                 traction = max((v for k, v in found.items() if k != "DISPLACEMENT"), default=None)
-                cells = [f"`{path}`", f"{found['DISPLACEMENT']:.1e}" if found else row["why"],
+                folder, name = path.split("/", 1)
+                cells = [f"`{name}` of {folder}", f"{found['DISPLACEMENT']:.1e}" if found else row["why"],
                          "" if traction is None else f"{traction:.1e}", ", ".join(f"`{c}`" for c in row.get("causes", [])),
                          row.get("nearer", "")]
                 print("| " + " | ".join(cells) + " |", file=file)
