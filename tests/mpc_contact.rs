@@ -37,6 +37,10 @@ struct Problem {
     settings: Value,
     /// Parts of the interface that hold the upper face, each with half of the lower one.
     halves: bool,
+    /// Whether the lower face is the slave.
+    upside_down: bool,
+    /// Degrees by which both blocks turn about the last axis of space within the run, with large displacements.
+    turn: Option<f64>,
 }
 
 impl Problem {
@@ -54,6 +58,8 @@ impl Problem {
             kind,
             settings: json!({}),
             halves: false,
+            upside_down: false,
+            turn: None,
         }
     }
 
@@ -150,7 +156,12 @@ fn run(problem: &Problem) -> Outcome {
                     let facing = if body == 0 { (k == nz - 1).then_some(k + 1) } else { (k == 0).then_some(0) };
                     if plane {
                         let square = [at(i, 0, k), at(i + 1, 0, k), at(i + 1, 0, k + 1), at(i, 0, k + 1)];
-                        elements.push(("SmallDisplacementElement2D4N", square.to_vec()));
+                        let name = if problem.turn.is_some() {
+                            "TotalLagrangianElement2D4N"
+                        } else {
+                            "SmallDisplacementElement2D4N"
+                        };
+                        elements.push((name, square.to_vec()));
                         own.push(elements.len() - 1);
                         if let Some(k) = facing {
                             let ends = [at(i, 0, k), at(i + 1, 0, k)];
@@ -161,7 +172,11 @@ fn run(problem: &Problem) -> Outcome {
                     }
                     let layer = |k| [at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k)];
                     let ([a, b, c, d], [e, f, g, h]) = (layer(k), layer(k + 1));
-                    let name = if tetrahedra { "SmallDisplacementElement3D4N" } else { "SmallDisplacementElement3D8N" };
+                    let name = match (tetrahedra, problem.turn.is_some()) {
+                        (true, _) => "SmallDisplacementElement3D4N",
+                        (false, false) => "SmallDisplacementElement3D8N",
+                        (false, true) => "TotalLagrangianElement3D8N",
+                    };
                     for cell in cells([a, b, c, d, e, f, g, h], tetrahedra) {
                         elements.push((name, cell));
                         own.push(elements.len() - 1);
@@ -239,15 +254,25 @@ fn run(problem: &Problem) -> Outcome {
     part("Rear", &of_face(rear), &[], rear);
     write("mesh.mdpa", mesh);
 
-    let expressions: Vec<String> = (0..3)
-        .map(|c| format!("{:e} + ({:e})*t", problem.turned(problem.motion[0])[c], problem.turned(problem.motion[1])[c]))
-        .collect();
+    let [start, way] = problem.motion.map(|motion| problem.turned(motion));
+    let moves = |start: Vec3, way: Vec3| -> Vec<String> {
+        let plain = |c: usize| format!("{:e} + ({:e})*t", start[c], way[c]);
+        let Some(degrees) = problem.turn else { return (0..3).map(plain).collect() };
+        let angle = format!("({:e}*t)", degrees.to_radians());
+        let [x, y] = [0, 1].map(|c| format!("({} + {})", ["X", "Y"][c], plain(c)));
+        vec![
+            format!("cos({angle})*{x} - sin({angle})*{y} - X"),
+            format!("sin({angle})*{x} + cos({angle})*{y} - Y"),
+            plain(2),
+        ]
+    };
     let fix = |part: &str, value: Value| {
         json!({"python_module": "assign_vector_variable_process", "kratos_module": "KratosMultiphysics", "Parameters": {
             "model_part_name": format!("Structure.{part}"), "variable_name": "DISPLACEMENT", "value": value}})
     };
     let mut contact = json!({"model_part_name": "Structure", "contact_type": problem.kind,
-        "contact_model_part": {"0": ["Slave", "Front"]}, "assume_master_slave": {"0": ["Slave"]}});
+        "contact_model_part": {"0": ["Slave", "Front"]},
+        "assume_master_slave": {"0": [if problem.upside_down { "Front" } else { "Slave" }]}});
     if problem.halves {
         contact["contact_model_part"]["1"] = json!(["Slave", "Rear"]);
         contact["assume_master_slave"]["1"] = json!(["Slave"]);
@@ -270,7 +295,7 @@ fn run(problem: &Problem) -> Outcome {
             "mpc_contact_settings": {"contact_type": problem.kind},
             "residual_relative_tolerance": 1e-11, "residual_absolute_tolerance": 1e-30, "max_iteration": 40},
         "processes": {
-            "constraints_process_list": [fix("Bottom", json!([0.0, 0.0, 0.0])), fix("Top", json!(expressions))],
+            "constraints_process_list": [fix("Bottom", json!(moves([0.0; 3], [0.0; 3]))), fix("Top", json!(moves(start, way)))],
             "contact_process_list": [{"python_module": "mpc_contact_process",
                 "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication", "Parameters": contact}],
             "json_output_process_list": [{"python_module": "json_output_process", "kratos_module": "KratosMultiphysics",
@@ -422,6 +447,67 @@ fn frames_and_numbers_change_nothing() {
                     let apart = (f[c] - outcome.reaction[at][c]).abs();
                     assert!(apart < 1e-9 * loaded, "{tetrahedra:?} {backwards} node {at}: force off by {apart:e}");
                 }
+            }
+        }
+    }
+}
+
+/// Supports bear what constraints hand on to them: where all masters are held, and where a slave is, their forces balance
+/// those of the drive, moments too where nothing slides.
+#[test]
+fn supports_bear_what_constraints_hand_on() {
+    for kind in ["Frictionless", "Frictional"] {
+        for (divisions, frame) in [([[4, 0, 1], [3, 0, 2]], oblique(37.0)), ([[4, 3, 1], [3, 2, 2]], ASKEW)] {
+            // Pressed with a little shear, which sticks.
+            let motion = [[1e-4, if divisions[0][1] == 0 { 0.0 } else { 5e-5 }, -2e-3], [0.0; 3]];
+            let motion = if kind == "Frictional" { motion } else { [[0.0, 0.0, -2e-3], [0.0; 3]] };
+            let problem = Problem { rigid: true, frame, motion, ..Problem::new(divisions, kind) };
+            let outcome = run(&problem);
+            let (below, above) = (outcome.sum(&outcome.bottom), outcome.sum(&outcome.top));
+            let (turned, back) = (outcome.moment(&outcome.bottom), outcome.moment(&outcome.top));
+            for c in 0..3 {
+                assert!((below[c] + above[c]).abs() < 1e-10 * size(below), "{kind}: forces {below:?} {above:?}");
+                let apart = (turned[c] + back[c]).abs();
+                assert!(kind == "Frictionless" || apart < 1e-10 * size(below), "{kind}: moments {turned:?} {back:?}");
+            }
+        }
+    }
+}
+
+/// Constraints move slaves: where supports hold the whole slave side, the other one is moved, and the deck's author is told.
+#[test]
+fn sides_are_exchanged_where_supports_hold_the_slaves() {
+    for divisions in [[[4, 0, 1], [3, 0, 2]], [[4, 3, 1], [3, 2, 2]]] {
+        let frame = if divisions[0][1] == 0 { oblique(0.0) } else { UPRIGHT };
+        let problem = Problem { rigid: true, frame, poisson: 0.3, ..Problem::new(divisions, "Frictionless") };
+        let usual = run(&problem);
+        let upside_down = run(&Problem { upside_down: true, ..problem.clone() });
+        for (u, v) in usual.displacement.iter().zip(&upside_down.displacement) {
+            assert!((0..3).all(|c| (u[c] - v[c]).abs() < 1e-14), "{u:?} {v:?}");
+        }
+        assert!(upside_down.said.contains("mpc-held-slaves") && !usual.said.contains("mpc-held"), "{}", usual.said);
+        let kept = run(&Problem { upside_down: true, settings: json!({"swap_held_slaves": false}), ..problem });
+        assert!(kept.said.contains("mpc-held-nodes"), "{}", kept.said);
+    }
+}
+
+/// Blocks that turn within one step press on each other as those that stand still: normals are those of the iterates.
+#[test]
+fn normals_turn_with_the_blocks_within_a_step() {
+    for kind in ["Frictionless", "Frictional"] {
+        for divisions in [[[4, 0, 1], [3, 0, 2]], [[4, 3, 1], [3, 2, 1]]] {
+            // In the plane the interface turns with the blocks; in space it lies across an axis that does.
+            let frame =
+                if divisions[0][1] == 0 { oblique(0.0) } else { [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]] };
+            let still = Problem { frame, poisson: 0.3, turn: Some(0.0), ..Problem::new(divisions, kind) };
+            let degrees = 25.0_f64;
+            let (at_rest, turned) = (run(&still), run(&Problem { turn: Some(degrees), ..still.clone() }));
+            let (s, c) = degrees.to_radians().sin_cos();
+            let force = at_rest.sum(&at_rest.top);
+            let expected = [c * force[0] - s * force[1], s * force[0] + c * force[1], force[2]];
+            let found = turned.sum(&turned.top);
+            for c in 0..3 {
+                assert!((found[c] - expected[c]).abs() < 1e-8 * size(force), "{kind}: {found:?} {expected:?}");
             }
         }
     }

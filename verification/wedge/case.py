@@ -38,4 +38,4 @@ CASE = Case(
               "MPC": {"family": "MPC"}, "block as slave": {"slave": "block"}, "μ = 0.2": {**F, "friction": 0.2}, "μ = 0.2, block as slave": {**F, "friction": 0.2, "slave": "block"},
               "μ = 0.5": {**F, "friction": 0.5}, "μ = 0.2, 8 steps": {**F, "friction": 0.2, "steps": 8},
               "μ = 0.2, penalty": {"family": "penalty frictional", "friction": 0.2}, "μ = 0.2, MPC": {"family": "MPC frictional", "friction": 0.2},
-              "millimetres": {**F, "friction": 0.2, "length": 1e3, "stress": 1e-6}}, quick=["frictionless"])
+              "millimetres": {**F, "friction": 0.2, "length": 1e3, "stress": 1e-6}}, quick=["frictionless", "MPC", "μ = 0.2, MPC"])

@@ -275,6 +275,7 @@ impl SolverSettings {
             continue_if_converging: self.settings.get_bool("continue_if_converging")?,
             linear,
             compute_reactions: self.settings.get_bool("compute_reactions")?,
+            reactions_of_constraints: self.settings.get_bool("reactions_of_constraints")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
             line_search: if searched { Some(LineSearch::new(&advanced)?) } else { None },
         };

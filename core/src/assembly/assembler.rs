@@ -180,6 +180,8 @@ impl Assembler {
             self.stamps.bulk_graph += 1;
             self.stamps.bulk_values += 1;
             self.coupling_graph = None;
+        } else {
+            self.equations.leaning = equations.leaning;
         }
         let graph = interactions.iter().fold(1_u64, |sum, i| sum.wrapping_mul(31).wrapping_add(i.graph_version()));
         if self.coupling_graph != Some(graph) {

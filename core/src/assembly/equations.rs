@@ -35,6 +35,15 @@ struct Follow {
     force: f64,
 }
 
+/// A fixed unknown that a slave leans on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Leaning {
+    fixed: u32,
+    slave: u32,
+    /// Share of the slave's force.
+    force: f64,
+}
+
 /// The map between unknowns and equations.
 #[derive(Debug, Clone, Default)]
 pub struct Equations {
@@ -43,6 +52,8 @@ pub struct Equations {
     free: Vec<u32>,
     has_slaves: bool,
     symmetric: bool,
+    /// What constraints hand on to fixed unknowns.
+    pub(super) leaning: Vec<Leaning>,
     /// What the equations stand for.
     pub layout: Layout,
 }
@@ -74,12 +85,18 @@ impl Equations {
                 free.push(number as u32);
             }
         }
+        let mut leaning = Vec::new();
         for &number in slaves.keys() {
             let mut terms = BTreeMap::new();
-            follow(number, [1.0; 2], &slaves, &roles, dofs, nodes, 0, &mut terms)?;
-            let terms = terms.into_iter();
-            roles[number as usize] =
-                Role::Slave(terms.map(|(equation, [weight, force])| Follow { equation, weight, force }).collect());
+            follow(number, [1.0; 2], &slaves, dofs, nodes, 0, &mut terms)?;
+            let mut follows = Vec::with_capacity(terms.len());
+            for (master, [weight, force]) in terms {
+                match roles[master as usize] {
+                    Role::Free(equation) => follows.push(Follow { equation, weight, force }),
+                    _ => leaning.push(Leaning { fixed: master, slave: number, force }),
+                }
+            }
+            roles[number as usize] = Role::Slave(follows);
         }
         let layout = Layout {
             node: free.iter().map(|&n| dofs.dofs()[n as usize].node).collect(),
@@ -87,7 +104,7 @@ impl Equations {
             near_null_space: Vec::new(),
         };
         let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());
-        Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, layout })
+        Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, leaning, layout })
     }
 
     /// Whether both lead to the same equations.
@@ -150,6 +167,16 @@ impl Equations {
         }
         let mut out = vec![0.0; full.len()];
         self.free.iter().zip(self.reduce(full)).for_each(|(&n, value)| out[n as usize] = value);
+        Cow::Owned(out)
+    }
+
+    /// The residual with what slaves hand on to fixed unknowns: there, minus the force of the supports.
+    pub fn supported<'r>(&self, full: &'r [f64]) -> Cow<'r, [f64]> {
+        if self.leaning.is_empty() {
+            return Cow::Borrowed(full);
+        }
+        let mut out = full.to_vec();
+        self.leaning.iter().for_each(|of| out[of.fixed as usize] += of.force * full[of.slave as usize]);
         Cow::Owned(out)
     }
 
@@ -235,7 +262,6 @@ fn follow(
     number: u32,
     shares: [f64; 2],
     slaves: &BTreeMap<u32, &MasterSlaveConstraint>,
-    roles: &[Role],
     dofs: &DofTable,
     nodes: &Nodes,
     depth: usize,
@@ -259,9 +285,9 @@ fn follow(
             )
         })?;
         if slaves.contains_key(&master) {
-            follow(master, shares, slaves, roles, dofs, nodes, depth + 1, terms)?;
-        } else if let Role::Free(equation) = roles[master as usize] {
-            let sums = terms.entry(equation).or_insert([0.0; 2]);
+            follow(master, shares, slaves, dofs, nodes, depth + 1, terms)?;
+        } else {
+            let sums = terms.entry(master).or_insert([0.0; 2]);
             (0..2).for_each(|at| sums[at] += shares[at]);
         }
     }
@@ -306,13 +332,14 @@ mod tests {
     use super::*;
     use crate::model::{ModelPart, variables::DISPLACEMENT};
 
-    /// Three nodes on a line; the last follows the others by halves and passes its force on as `forces` say.
-    fn equations(forces: Option<Vec<f64>>) -> Equations {
+    /// Three nodes on a line, some of them fixed; the last follows the others by halves and passes its force on as `forces` say.
+    fn equations(fixed: &[u32], forces: Option<Vec<f64>>) -> Equations {
         let mut part = ModelPart::new("Structure");
         part.nodes = Nodes::new(vec![1, 2, 3], vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         let x = DISPLACEMENT.component(0);
         part.nodes.history.add(&DISPLACEMENT);
         part.dofs.number(&part.nodes, &[(x, false, vec![0, 1, 2])]);
+        part.dofs.set_fixed(x, fixed, true, 3);
         let masters = vec![((0, x), 0.5), ((1, x), 0.5)];
         let constraint = MasterSlaveConstraint { id: 1, slave: (2, x), masters, forces, constant: 0.0, active: true };
         Equations::new(&part.dofs, &part.nodes, &[constraint]).unwrap()
@@ -322,7 +349,7 @@ mod tests {
     fn forces_may_go_another_way_than_motions() {
         let full = Csr::from_triplets(3, &[(0, 0, 2.0), (1, 1, 3.0), (2, 0, 5.0), (2, 2, 4.0)]);
         for forces in [[0.5, 0.5], [0.75, -0.25]] {
-            let given = equations((forces != [0.5, 0.5]).then(|| forces.to_vec()));
+            let given = equations(&[], (forces != [0.5, 0.5]).then(|| forces.to_vec()));
             assert_eq!(given.keep_symmetry(), forces == [0.5, 0.5]);
             assert_eq!(given.expand(&[1.0, 3.0]), [1.0, 3.0, 2.0]);
             assert_eq!(given.reduce(&[1.0, 2.0, 10.0]), [1.0 + 10.0 * forces[0], 2.0 + 10.0 * forces[1]]);
@@ -335,5 +362,13 @@ mod tests {
                 assert_eq!(reduced.row(row).1, expected, "{forces:?}");
             }
         }
+    }
+
+    #[test]
+    fn supports_bear_what_slaves_hand_on_to_them() {
+        let given = equations(&[1], Some(vec![0.75, -0.25]));
+        assert_eq!(given.reduce(&[1.0, 2.0, 10.0]), [1.0 + 7.5]);
+        assert_eq!(*given.supported(&[1.0, 2.0, 10.0]), [1.0, 2.0 - 2.5, 10.0]);
+        assert_eq!(*equations(&[], None).supported(&[1.0, 2.0, 10.0]), [1.0, 2.0, 10.0]);
     }
 }

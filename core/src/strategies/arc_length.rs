@@ -6,7 +6,6 @@
 
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
-use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
 use crate::assembly::Assembler;
@@ -217,9 +216,7 @@ impl ArcLength {
                 break;
             }
             if verdict.converged && change.count() == 0 {
-                if self.newton.settings.compute_reactions {
-                    write_reactions(part, &residual);
-                }
+                self.newton.keep_reactions(part, &residual);
                 self.pending = Some((factor, step, iteration));
                 return Ok((records, None));
             }

@@ -39,6 +39,8 @@ pub struct ExplicitSettings {
     pub follow_prescribed: bool,
     /// Whether REACTION is computed.
     pub compute_reactions: bool,
+    /// Whether REACTION of supports holds what constraints hand on to them.
+    pub reactions_of_constraints: bool,
     /// Whether nodes follow DISPLACEMENT.
     pub move_mesh: bool,
 }
@@ -61,6 +63,7 @@ impl ExplicitSettings {
             rayleigh: [settings.get_f64("rayleigh_alpha")?, settings.get_f64("rayleigh_beta")?],
             follow_prescribed: settings.get_bool("follow_prescribed_motion")?,
             compute_reactions: settings.get_bool("compute_reactions")?,
+            reactions_of_constraints: settings.get_bool("reactions_of_constraints")?,
             move_mesh: settings.get_bool("move_mesh_flag")?,
         })
     }
@@ -167,7 +170,9 @@ impl ExplicitStrategy {
         }
         self.write_residual(part, &residual);
         if self.settings.compute_reactions {
-            write_reactions(part, &self.unbalanced(part, &residual));
+            let unbalanced = self.unbalanced(part, &residual);
+            let handed_on = self.settings.reactions_of_constraints.then(|| self.assembler.equations());
+            write_reactions(part, &unbalanced, handed_on);
         }
         if self.settings.move_mesh {
             part.move_mesh();

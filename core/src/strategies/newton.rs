@@ -45,6 +45,8 @@ pub struct NewtonSettings {
     pub linear: bool,
     /// Whether REACTION is computed.
     pub compute_reactions: bool,
+    /// Whether REACTION of supports holds what constraints hand on to them.
+    pub reactions_of_constraints: bool,
     /// Whether nodes follow DISPLACEMENT.
     pub move_mesh: bool,
     /// How much of an increment is taken; all of it when `None`.

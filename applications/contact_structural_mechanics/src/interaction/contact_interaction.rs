@@ -21,6 +21,7 @@ use super::impact::{coarse_impact, near_nodes};
 use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
 use super::pairing::{Pairing, add_up_nodes};
 use super::penalty_ramp::PenaltyRamp;
+use super::reach::Reach;
 use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
@@ -63,9 +64,8 @@ pub struct ContactInteraction {
     holding: Holding,
     /// Nodes that were pushed along their motion in this step and stick since.
     released: BTreeSet<u32>,
-    /// Times in this step that open interfaces took hold because a body was free to move, and which they are.
-    reached: usize,
-    open: BTreeSet<usize>,
+    /// What open interfaces have taken hold of in this step because a body was free to move.
+    reach: Reach,
     /// Searches in converged states of this step.
     searches: usize,
     warned_of_late_pairs: bool,
@@ -113,8 +113,7 @@ impl ContactInteraction {
             cycles: CycleGuard::default(),
             holding: Holding::default(),
             released: BTreeSet::new(),
-            reached: 0,
-            open: BTreeSet::new(),
+            reach: Reach::default(),
             searches: 0,
             warned_of_late_pairs: false,
             near_nodes: Vec::new(),
@@ -370,10 +369,6 @@ const SETTLED: usize = 5;
 /// Share of the scale factor that makes redundant multipliers regular.
 const RELAXATION: f64 = 1e-8;
 
-/// How much farther than the nearest node of an open interface others are taken hold of with it, in mesh sizes: the first
-/// time that a body is free to move, the second, the third.
-const REACHES: [f64; 3] = [0.01, 0.5, f64::INFINITY];
-
 /// Searches in converged states of a step after which it counts as not converged.
 const MOST_SEARCHES: usize = 5;
 
@@ -426,8 +421,7 @@ impl Interaction for ContactInteraction {
         self.acting = self.settings.interval.contains(part.info.time);
         self.cycles.begin_step();
         self.released.clear();
-        self.reached = 0;
-        self.open.clear();
+        self.reach = Reach::default();
         self.searches = 0;
         self.uzawa = Uzawa::default();
         if self.ramps() {
@@ -547,11 +541,7 @@ impl Interaction for ContactInteraction {
         if !self.acting || self.settings.explicit.is_some() {
             return false;
         }
-        let mut near = BTreeSet::new();
-        while near.is_empty() && self.reached < REACHES.len() {
-            near = activation::nearest(part, &self.pairing.interfaces, REACHES[self.reached], &mut self.open);
-            self.reached += 1;
-        }
+        let near = self.reach.next(part, &self.pairing.interfaces);
         let friction = (self.parameters.friction_law, self.parameters.slip_rule);
         activation::start(part, &self.slaves, Start::Touching(&near), friction);
         self.write_tangents(part);

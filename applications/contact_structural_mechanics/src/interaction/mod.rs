@@ -15,6 +15,7 @@ mod mpc_interaction;
 mod mpc_relation;
 mod pairing;
 mod penalty_ramp;
+mod reach;
 mod slider_forces;
 mod sliding;
 mod step_parameters;

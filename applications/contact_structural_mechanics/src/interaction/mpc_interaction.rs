@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, Interaction, MasterSlaveConstraint, SetChange};
-use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, SLIP};
+use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE, SLIP};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::DISPLACEMENT, variables::NORMAL, variables::REACTION};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::Entry;
@@ -19,11 +19,12 @@ use zelus_core::vector3::{dot, norm, scale, sub};
 
 use super::activation;
 use super::friction::{self, FrictionSettings};
-use super::mpc_relation::{Hold, NodeRelation, PairRelation, Weights, node_relations};
+use super::mpc_relation::{Hold, NodeRelation, PairRelation, Weights, can_follow, node_relations};
+use super::reach::Reach;
 use super::slider_forces::{Slider, SliderForces};
 use crate::active_set::SlipRule;
 use crate::friction_law::Bound;
-use crate::interface::{Interface, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes};
+use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes};
 use crate::mortar::{IntegrationOrder, SegmentationSettings, tangential};
 use crate::pairs::{FacetPair, Friction, PairKey, condition_name, facet_operators, overlapping_pairs};
 use crate::resolution::is_more;
@@ -35,6 +36,13 @@ use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 const DIRECTION: f64 = 1e3;
 /// Gauss rule that tells the functions of every facet apart, so that dual ones exist wherever there is area.
 const FINE: usize = 4;
+
+/// Iterations in which relations follow every motion: without sliders, and with them.
+const SETTLED: [usize; 2] = [15, 5];
+/// Motion since relations were made, in mesh sizes, up to which they are those of the iterate.
+const STILL: f64 = 1e-9;
+/// Motion, in mesh sizes, after which they are renewed in any iteration.
+const FAR: f64 = 1e-2;
 
 /// What constraints enforce.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,6 +83,8 @@ pub struct MpcSettings {
     pub weights: Weights,
     /// Whether openings stay as they are in the first step of a run.
     pub keeps_first_opening: bool,
+    /// Whether sides are exchanged where supports hold all slaves of an interface.
+    pub swaps_held_slaves: bool,
 }
 
 /// Contact by constraints in a model part.
@@ -84,6 +94,8 @@ pub struct MpcInteraction {
     slaves: Vec<u32>,
     pairs: BTreeMap<PairKey, PairRelation>,
     nodes: BTreeMap<u32, NodeRelation>,
+    /// Where the nodes of the interfaces were when relations were made.
+    places: Vec<[f64; 3]>,
     sliders: Vec<SliderForces>,
     entry: Option<&'static Entry>,
     directions: BTreeMap<u32, [f64; 3]>,
@@ -95,7 +107,10 @@ pub struct MpcInteraction {
     version: u64,
     steps_since_search: usize,
     acting: bool,
+    sided: bool,
+    reach: Reach,
     warned: bool,
+    warned_of_held: bool,
     saved: BTreeMap<PairKey, PairRelation>,
     saved_directions: BTreeMap<u32, [f64; 3]>,
 }
@@ -114,6 +129,7 @@ impl MpcInteraction {
             interfaces,
             pairs: BTreeMap::new(),
             nodes: BTreeMap::new(),
+            places: Vec::new(),
             sliders: Vec::new(),
             entry: None,
             directions: BTreeMap::new(),
@@ -125,7 +141,10 @@ impl MpcInteraction {
             version: 0,
             steps_since_search: usize::MAX,
             acting: false,
+            sided: false,
+            reach: Reach::default(),
             warned: false,
+            warned_of_held: false,
             saved: BTreeMap::new(),
             saved_directions: BTreeMap::new(),
         })
@@ -133,6 +152,67 @@ impl MpcInteraction {
 
     fn tying(&self) -> bool {
         self.settings.kind == MpcKind::MeshTying
+    }
+
+    /// Exchanges the sides of interfaces whose slaves are all held by supports: constraints move slaves, and these cannot move.
+    fn take_sides(&mut self, part: &mut ModelPart) {
+        if std::mem::replace(&mut self.sided, true) || !self.settings.swaps_held_slaves {
+            return;
+        }
+        for interface in self.interfaces.iter_mut().filter(|interface| !interface.open) {
+            let [slaves, masters] = [Roles::Slave, Roles::Master].map(|role| interface.nodes_of(role));
+            let held = |nodes: &[u32]| nodes.iter().all(|&node| !can_follow(part, node, normal(part, node)));
+            if !held(&slaves) || held(&masters) {
+                continue;
+            }
+            for facet in &mut interface.facets {
+                facet.role = if facet.role == Roles::Slave { Roles::Master } else { Roles::Slave };
+            }
+            for (nodes, is_slave) in [(&slaves, false), (&masters, true)] {
+                for &node in nodes {
+                    part.nodes.flags.set(SLAVE, node as usize, is_slave);
+                    part.nodes.flags.set(MASTER, node as usize, !is_slave);
+                }
+            }
+            let fact = format!(
+                "supports hold the slave side of contact pair \"{}\", and constraints move slaves: its sides are exchanged",
+                interface.key
+            );
+            let remedy = "name the side that can move as slave";
+            part.messages.push(Diagnostic::warning("mpc-held-slaves", fact).remedy(remedy));
+        }
+        self.slaves = slave_nodes(&self.interfaces);
+    }
+
+    /// Names nodes in contact that supports hold along their normals, while their masters are free: nothing holds those there.
+    fn warn_of_held(&mut self, part: &mut ModelPart) {
+        if self.warned_of_held || self.tying() {
+            return;
+        }
+        let presses = |node: u32, relation: &NodeRelation| {
+            let at = node as usize;
+            let n = relation.normal;
+            part.nodes.flags.is(ACTIVE, at)
+                && !can_follow(part, node, n)
+                && relation.weights.iter().any(|&(master, _)| can_follow(part, master, n))
+        };
+        let resolved = activation::resolved_length(part, &self.slaves);
+        let held = self.nodes.iter().filter(|(node, relation)| presses(**node, relation));
+        let (weighted, areas) = (part.nodes.history.values(&WEIGHTED_GAP, 0), part.nodes.values.values(&NODAL_AREA, 0));
+        let depths: Vec<(u32, f64)> = held
+            .map(|(&node, _)| (node, -weighted[node as usize] / areas[node as usize]))
+            .filter(|of| of.1 > resolved)
+            .collect();
+        let Some(&(node, depth)) = depths.iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))) else { return };
+        self.warned_of_held = true;
+        let fact = format!(
+            "supports hold {} slave nodes in contact along their normals: constraints cannot hold the masters there, and node \
+             {} is {depth:.1e} inside the other body",
+            depths.len(),
+            part.nodes.ids[node as usize]
+        );
+        let remedy = "make the other side the slave, or use alm_contact_process";
+        part.messages.push(Diagnostic::warning("mpc-held-nodes", fact).remedy(remedy));
     }
 
     /// Relations of the pairs that overlap; those that hold a node stay as they were made, unless they are to be renewed.
@@ -151,6 +231,30 @@ impl MpcInteraction {
         self.warn_of_unlike_meshes(part);
     }
 
+    /// Normals and relations of this iterate, where nodes have moved since they were made.
+    ///
+    /// The tangent does not know how they change, which slows iterations whose sliders hardly slide: later ones change them
+    /// only where nodes have moved far.
+    fn follow(&mut self, part: &mut ModelPart, iteration: usize) {
+        let settled = SETTLED[usize::from(!self.sliders.is_empty())];
+        let least = if iteration <= settled { STILL } else { FAR };
+        if self.farthest(part) > least {
+            nodal_normals(part, &self.interfaces);
+            self.search(part);
+        }
+    }
+
+    /// How far nodes of the interfaces are from where they were when relations were made, in mesh sizes.
+    fn farthest(&self, part: &ModelPart) -> f64 {
+        let sizes = part.nodes.values.values(&NODAL_H, 0);
+        let nodes = self.interfaces.iter().flat_map(|interface| &interface.nodes).map(|&node| node as usize);
+        let ratio = |(at, before): (usize, &[f64; 3])| {
+            let moved = norm(sub(part.nodes.current[at], *before));
+            if sizes[at] > 0.0 { moved / sizes[at] } else { moved }
+        };
+        nodes.zip(&self.places).map(ratio).fold(0.0, f64::max)
+    }
+
     fn relate(&mut self, part: &ModelPart, pairs: &[FacetPair]) {
         for pair in pairs {
             let facets = &self.interfaces[pair.key.interface as usize].facets;
@@ -163,6 +267,8 @@ impl MpcInteraction {
             let relation = PairRelation::new(part, &self.interfaces, pair, self.settings.weights, finer);
             self.pairs.insert(pair.key, relation);
         }
+        let nodes = self.interfaces.iter().flat_map(|interface| &interface.nodes);
+        self.places = nodes.map(|&node| part.nodes.current[node as usize]).collect();
         let pairs = self.pairs.iter().map(|(key, relation)| (key.interface, relation));
         self.nodes = node_relations(pairs, &self.interfaces, self.settings.weights);
     }
@@ -202,9 +308,9 @@ impl MpcInteraction {
             let of_slave: Vec<[f64; 3]> = slave.nodes.iter().map(place).collect();
             let of_master: Vec<[f64; 3]> = master.nodes.iter().map(place).collect();
             for (j, &node) in slave.nodes.iter().enumerate() {
+                let n = normal(part, node);
                 let node = node as usize;
-                let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |f| f.vector(0, node));
-                gap[node] -= dot(normal, operators.jump(j, &of_slave, &of_master));
+                gap[node] -= dot(n, operators.jump(j, &of_slave, &of_master));
                 area[node] += operators.d[j][..slave.nodes.len()].iter().sum::<f64>();
             }
         }
@@ -258,7 +364,13 @@ impl MpcInteraction {
         let release = self.settings.reaction_check_stiffness_factor * self.young;
         for &node in &self.slaves {
             let at = node as usize;
-            let Some(relation) = self.nodes.get(&node) else { continue };
+            let Some(relation) = self.nodes.get(&node) else {
+                if part.nodes.flags.is(ACTIVE, at) {
+                    part.nodes.flags.set(ACTIVE, at, false);
+                    change.deactivated.push(part.nodes.ids[at]);
+                }
+                continue;
+            };
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             let was = part.nodes.flags.is(ACTIVE, at);
             let held = if was { dot(reaction(part, node), relation.normal) } else { 0.0 };
@@ -363,6 +475,10 @@ fn direction_along(direction: Option<&[f64; 3]>, normal: [f64; 3]) -> [f64; 3] {
     if size > 0.0 { scale(along, size.recip()) } else { along }
 }
 
+fn normal(part: &ModelPart, node: u32) -> [f64; 3] {
+    part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize))
+}
+
 fn reaction(part: &ModelPart, node: u32) -> [f64; 3] {
     part.nodes.history.get(REACTION.name()).map_or([0.0; 3], |field| field.vector(0, node as usize))
 }
@@ -410,6 +526,8 @@ impl Interaction for MpcInteraction {
             return Ok(());
         }
         nodal_normals(part, &self.interfaces);
+        self.take_sides(part);
+        self.reach = Reach::default();
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.tying() && self.settings.weights == Weights::Consistent && !self.pairs.is_empty() {
             self.relate(part, &[]);
@@ -435,12 +553,14 @@ impl Interaction for MpcInteraction {
         Ok(())
     }
 
-    fn after_update(&mut self, part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
+    fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange> {
         let mut change = SetChange::default();
         if !self.acting {
             return Ok(change);
         }
-        if self.update_each_iteration && !(self.tying() && self.settings.weights == Weights::Consistent) {
+        if self.update_each_iteration && !self.tying() && self.settings.update_relations {
+            self.follow(part, iteration);
+        } else if self.update_each_iteration && !(self.tying() && self.settings.weights == Weights::Consistent) {
             nodal_normals(part, &self.interfaces);
             let keys: Vec<PairKey> = self.pairs.keys().copied().collect();
             let pairs: Vec<FacetPair> = keys
@@ -465,7 +585,19 @@ impl Interaction for MpcInteraction {
         Ok(change)
     }
 
-    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
+    fn reach_out(&mut self, part: &mut ModelPart) -> bool {
+        if !self.acting || self.tying() {
+            return false;
+        }
+        let near = self.reach.next(part, &self.interfaces);
+        let friction = (self.settings.friction.law, self.slip_rule);
+        activation::start(part, &self.slaves, activation::Start::Touching(&near), friction);
+        self.write_constraints(part);
+        !near.is_empty()
+    }
+
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.warn_of_held(part);
         Ok(())
     }
 

@@ -136,6 +136,12 @@ impl PairRelation {
     }
 }
 
+/// Whether supports leave a component of a node free along which a constraint can hold it.
+pub(super) fn can_follow(part: &ModelPart, node: u32, normal: [f64; 3]) -> bool {
+    let free = |c: &usize| !part.dofs.is_fixed(DISPLACEMENT.component(*c as u8), node);
+    (0..part.info.domain_size).filter(free).any(|c| normal[c].abs() > HOLD)
+}
+
 /// The relation of each slave node: its rows, weighed as `weights` says.
 pub(super) fn node_relations<'p>(
     pairs: impl Iterator<Item = (u32, &'p PairRelation)>,

@@ -42,6 +42,7 @@ struct Whole {
     update_condition_relation_step: bool,
     consistent_weights: bool,
     keep_first_opening: bool,
+    swap_held_slaves: bool,
     search_parameters: Search,
 }
 
@@ -91,6 +92,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
             Weights::ByFacets
         },
         keeps_first_opening: whole.keep_first_opening,
+        swaps_held_slaves: whole.swap_held_slaves,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = MpcInteraction::new(chosen, part)?;

@@ -146,7 +146,7 @@ impl NewtonRaphson {
             let balance = self.assembler.equations().reduce(&step.residual);
             interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
         }
-        let verdict = self.judge(part, iteration, &balanced, &step.references, &increment);
+        let verdict = self.judge(part, iteration, &self.with_pending(step), &step.references, &increment);
         agree(iteration, &change, verdict.converged)?;
         let record = IterationRecord {
             condition_number: condition,
@@ -184,8 +184,13 @@ impl NewtonRaphson {
         part: &mut ModelPart,
         interactions: &mut [Box<dyn Interaction>],
     ) -> Result<Solved, Failed> {
+        let constraints = constraints_version(interactions);
         let mut solved = self.solve_once(iteration, step, part, interactions);
         while matches!(solved, Err(Failed::Singular(_))) && reach_out(interactions, part) {
+            if constraints != constraints_version(interactions) {
+                self.assembler.begin_step(part, interactions)?;
+                step.prescribed = self.followed(part, &step.prescribed);
+            }
             step.residual = self.residual(part, interactions)?;
             if iteration == 1 {
                 step.references.start.clear();
@@ -294,7 +299,7 @@ impl NewtonRaphson {
     ) -> Result<SetChange> {
         if interactions.iter().any(|interaction| interaction.needs_reactions()) {
             let residual = self.residual(part, interactions)?;
-            write_reactions(part, &residual);
+            write_reactions(part, &residual, None);
         }
         let (constraints, graph) = (constraints_version(interactions), graph_version(interactions));
         let change = if afresh {
@@ -311,6 +316,15 @@ impl NewtonRaphson {
         }
         step.residual = self.residual(part, interactions)?;
         Ok(change)
+    }
+
+    /// The residual as the equations see it, with the force of motions that changed constraints still ask for. Collective.
+    fn with_pending(&self, step: &Step) -> Vec<f64> {
+        let mut residual = step.residual.clone();
+        if has_motion(&step.prescribed) {
+            self.assembler.subtract_product(&step.prescribed, &mut residual);
+        }
+        self.assembler.equations().balanced(&residual).into_owned()
     }
 
     /// Asks the interactions whether a converged state may be accepted; where it may not, the count of iterations begins anew.
@@ -357,9 +371,11 @@ impl NewtonRaphson {
         self.assembler.residual(part, interactions, inertia.as_ref())
     }
 
-    fn keep_reactions(&self, part: &mut ModelPart, residual: &[f64]) {
+    /// Writes REACTION, if the settings ask for it.
+    pub(in crate::strategies) fn keep_reactions(&self, part: &mut ModelPart, residual: &[f64]) {
         if self.settings.compute_reactions {
-            write_reactions(part, residual);
+            let handed_on = self.settings.reactions_of_constraints.then(|| self.assembler.equations());
+            write_reactions(part, residual, handed_on);
         }
     }
 }

@@ -52,16 +52,8 @@ impl NewtonRaphson {
         }
         self.scheme.predict(part)?;
         let start = self.assembler.values(part);
-        let mut increment: Vec<f64> = (0..start.len())
-            .map(|n| if self.assembler.equations().is_fixed(n) { targets[n] - start[n] } else { 0.0 })
-            .collect();
-        if part.constraints.iter().any(|c| c.active) {
-            part.dofs.scatter_add(&increment, &mut part.nodes);
-            let followed = self.constraint_increment(part);
-            let back: Vec<f64> = increment.iter().map(|d| -d).collect();
-            part.dofs.scatter_add(&back, &mut part.nodes);
-            increment.iter_mut().zip(followed).for_each(|(sum, d)| *sum += d);
-        }
+        let increment: Vec<f64> = targets.iter().zip(&start).map(|(target, value)| target - value).collect();
+        let increment = self.followed(part, &increment);
         self.scheme.update(part);
         if self.settings.move_mesh {
             part.move_mesh();
@@ -121,6 +113,20 @@ impl NewtonRaphson {
             interaction.after_prediction(part)?;
         }
         Ok(prescribed)
+    }
+
+    /// The increments of prescribed unknowns, and those of constrained ones that follow.
+    pub(super) fn followed(&self, part: &mut ModelPart, prescribed: &[f64]) -> Vec<f64> {
+        let fixed = |(n, d): (usize, &f64)| if self.assembler.equations().is_fixed(n) { *d } else { 0.0 };
+        let mut increment: Vec<f64> = prescribed.iter().enumerate().map(fixed).collect();
+        if part.constraints.iter().any(|c| c.active) {
+            part.dofs.scatter_add(&increment, &mut part.nodes);
+            let lack = self.constraint_increment(part);
+            let back: Vec<f64> = increment.iter().map(|d| -d).collect();
+            part.dofs.scatter_add(&back, &mut part.nodes);
+            increment.iter_mut().zip(lack).for_each(|(sum, d)| *sum += d);
+        }
+        increment
     }
 
     /// What constrained unknowns lack to obey their constraints at the present values of the others.
