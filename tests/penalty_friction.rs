@@ -125,7 +125,6 @@ fn thrown(speed: f64, friction: f64, time_step: f64, end: f64) -> Results {
                     "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication", "Parameters": {
                         "model_part_name": "Structure", "contact_type": "Frictional",
                         "contact_model_part": {"0": ["Interface"]}, "assume_master_slave": {"0": ["Slave"]},
-                        "advance_ALM_parameters": {"penalty_of_weighted_gaps": false},
                         "friction_coefficients": {"0": friction}}}],
                 "json_output_process_list": [{"python_module": "json_output_process", "kratos_module": "KratosMultiphysics",
                     "Parameters": {"output_file_name": "block.json", "model_part_name": "Structure.Block",

@@ -15,10 +15,6 @@ const TOLERANCE: f64 = 1e-9;
 /// much larger ones in the stiff body, whose round-off is 1e-8 of the pressure.
 const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-7;
 
-/// The same for tractions of the penalty method: they are differences of positions times 1e4 E/h. At strains of 1e-6 the round-off
-/// of positions is 1e-5 of the tractions.
-const TOLERANCE_OF_PENALTIES: f64 = 3e-5;
-
 /// Values below are zero but for round-off; the cases are of size one.
 const ZERO: f64 = 1e-18;
 
@@ -148,7 +144,6 @@ fn difference(folder: &Path) -> Result<(), String> {
     let name = folder.to_string_lossy();
     let tolerance = match () {
         () if name.contains("spheres_light") => TOLERANCE_OF_LIGHT_LOADS,
-        () if name.contains("friction_penalty") => TOLERANCE_OF_PENALTIES,
         () => TOLERANCE,
     };
     let (one, other) = (histories(one.path()), histories(other.path()));

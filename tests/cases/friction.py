@@ -102,7 +102,6 @@ def block(folder, requirement, shape, sliding, length=1.0, stress=1.0, steps=5, 
                                      residual_relative_tolerance=1e-10, max_iteration=30, buffer_size=3,
                                      contact_settings=TIGHT, **(settings or {}))
     # of gaps, an even penetration makes an even pressure on unlike meshes
-    spring = {"advance_ALM_parameters": {"penalty_of_weighted_gaps": False}} if method == "Penalty" else {}
     friction = {"frictional_law": law} if law != "Coulomb" else {"friction_coefficients": given}
     write_case(folder, requirement,
                "Pressure and shear are uniform; loads and contact act on the deformed facets, which moves the answer by the "

@@ -192,6 +192,7 @@ impl Setting {
             levels_back: 1,
             normal_variation: NormalVariation::Update,
             augmentation: Augmentation::Node,
+            compliant: family.compliant,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
         };
@@ -265,14 +266,16 @@ fn families() -> Vec<(&'static str, &'static Family)> {
     };
     let found: Vec<_> = entries().into_iter().filter_map(|e| Some((e.name, of(&e.build)?))).collect();
     assert!(!found.is_empty(), "no contact family is registered");
-    found
+    let by_node = |&(name, family): &(&'static str, &'static Family)| Some((name, family.by_node?.implicit));
+    let by_node: Vec<_> = found.iter().filter_map(by_node).collect();
+    found.into_iter().chain(by_node).collect()
 }
 
 const INACTIVE: (bool, bool) = (false, false);
 const STICK: (bool, bool) = (true, false);
 const SLIDING: (bool, bool) = (true, true);
 
-/// Every family on every two shapes in every mix of states, with its name.
+/// Every family on every two shapes in every mix of states, with its name; penalties by pair and by node.
 fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
     for (name, family) in families() {
         let mut shapes = 0;

@@ -9,7 +9,7 @@ use zelus_core::strategies::{
 
 use super::frictional_criterion::FrictionalCriterion;
 use super::measure::{Form, Tolerance, check};
-use crate::pairs::{Multiplier, find_family};
+use crate::pairs::{Family, find_family};
 
 /// Displacements and multipliers, each in its form.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,8 +49,7 @@ fn single(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Re
     let settings = request.settings;
     let decomposed = settings.node().get("contact_settings").is_some()
         && settings.get_bool("contact_settings.frictional_decomposed")?
-        && find_family(settings.get_str("contact_settings.mortar_type")?)
-            .is_ok_and(|family| family.frictional() && !matches!(family.multiplier, Multiplier::None));
+        && find_family(settings.get_str("contact_settings.mortar_type")?).is_ok_and(Family::frictional);
     if decomposed {
         return Ok(Box::new(FrictionalCriterion::from_settings(request, primary, multiplier)?));
     }

@@ -4,7 +4,7 @@ use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
-use crate::formulations::{AlmFrictional, Kinematics, SlipHistory};
+use crate::formulations::{AlmFrictional, Kinematics, SlaveNode, SlipHistory};
 use crate::interaction::StepParameters;
 use crate::mortar::PairGeometry;
 use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
@@ -17,6 +17,7 @@ impl PairFormulation for AlmFrictional {
             tangent_factor: parameters.tangent_factor,
             operator_threshold: parameters.operator_threshold,
             augmentation: parameters.augmentation,
+            compliant: parameters.compliant,
         }
     }
 
@@ -42,6 +43,15 @@ impl PairFormulation for AlmFrictional {
     ) -> [[f64; 3]; NS] {
         AlmFrictional::slip(self, pair, history)
     }
+
+    fn trial<const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<f64, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+    ) -> Option<[[f64; 3]; NS]> {
+        self.compliant.then(|| AlmFrictional::trial(self, pair, nodes, history))
+    }
 }
 
 /// The family, with or without sticking.
@@ -59,6 +69,8 @@ pub(super) const fn family(friction: Friction) -> Family {
         friction,
         penalty: false,
         weighted_gaps: true,
+        compliant: false,
+        by_node: None,
         block: shapes::block::<AlmFrictional>,
     }
 }

@@ -32,6 +32,8 @@ register! { Condition "ALMContactFrictionlessComponents",
         friction: Friction::None,
         penalty: false,
         weighted_gaps: true,
+        compliant: false,
+        by_node: None,
         block: shapes::block::<AlmFrictionlessComponents>,
     }),
 }

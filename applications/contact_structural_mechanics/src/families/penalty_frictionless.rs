@@ -1,17 +1,19 @@
 //! Frictionless contact by the penalty method.
 
+use zelus_core::analysis::NodalVariable;
 use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
-use crate::formulations::PenaltyFrictionless;
+use crate::formulations::{AlmFrictionless, PenaltyByNode, PenaltyFrictionless};
 use crate::interaction::StepParameters;
 use crate::mortar::PairGeometry;
-use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
+use crate::pairs::{ByNode, Family, Friction, Multiplier, Pair, PairFormulation};
+use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
 impl PairFormulation for PenaltyFrictionless {
-    fn new(parameters: &StepParameters) -> Self {
-        Self { weighted: parameters.weighted_penalty }
+    fn new(_: &StepParameters) -> Self {
+        Self
     }
 
     fn multiplier() -> Multiplier {
@@ -21,18 +23,38 @@ impl PairFormulation for PenaltyFrictionless {
     fn history<const NS: usize, const NM: usize>(_: &Pair, _: &PairGeometry<f64, NS, NM>) {}
 }
 
+const CONDITION: &str = "PenaltyFrictionlessMortarContactCondition";
+const VARIABLES: &[NodalVariable] = &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)];
+
+/// Pair by pair.
+const BY_PAIR: Family = Family {
+    condition: CONDITION,
+    multiplier: Multiplier::None,
+    variables: VARIABLES,
+    friction: Friction::None,
+    penalty: true,
+    weighted_gaps: false,
+    compliant: false,
+    by_node: None,
+    block: shapes::block::<PenaltyFrictionless>,
+};
+
+/// By node, with a multiplier a node.
+static IMPLICIT: Family = Family {
+    multiplier: Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE),
+    penalty: false,
+    compliant: true,
+    block: shapes::block::<AlmFrictionless>,
+    ..BY_PAIR
+};
+
+/// By node, in explicit steps.
+static EXPLICIT: Family = Family { block: shapes::block::<PenaltyByNode>, ..BY_PAIR };
+
 register! { Condition "PenaltyContactFrictionless",
     about: "frictionless contact, penalty method",
     source: "eq. D.3",
-    build: Build::Factory(&Family {
-        condition: "PenaltyFrictionlessMortarContactCondition",
-        multiplier: Multiplier::None,
-        variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
-        friction: Friction::None,
-        penalty: true,
-        weighted_gaps: false,
-        block: shapes::block::<PenaltyFrictionless>,
-    }),
+    build: Build::Factory(&Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR }),
 }
 register_shapes!(
     "PenaltyFrictionlessMortarContactCondition",

@@ -4,23 +4,9 @@ use zelus_core::register;
 use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
-use crate::formulations::PerturbedLagrangianFrictionless;
-use crate::interaction::StepParameters;
-use crate::mortar::PairGeometry;
-use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
+use crate::formulations::AlmFrictionless;
+use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
-
-impl PairFormulation for PerturbedLagrangianFrictionless {
-    fn new(parameters: &StepParameters) -> Self {
-        Self { scale_factor: parameters.scale_factor }
-    }
-
-    fn multiplier() -> Multiplier {
-        Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE)
-    }
-
-    fn history<const NS: usize, const NM: usize>(_: &Pair, _: &PairGeometry<f64, NS, NM>) {}
-}
 
 register! { Condition "PerturbedLagrangianContactFrictionless",
     about: "frictionless contact, perturbed Lagrangian, one multiplier a slave node along its normal",
@@ -32,7 +18,9 @@ register! { Condition "PerturbedLagrangianContactFrictionless",
         friction: Friction::None,
         penalty: false,
         weighted_gaps: false,
-        block: shapes::block::<PerturbedLagrangianFrictionless>,
+        compliant: true,
+        by_node: None,
+        block: shapes::block::<AlmFrictionless>,
     }),
 }
 register_shapes!(

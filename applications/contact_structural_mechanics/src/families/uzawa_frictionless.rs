@@ -32,6 +32,8 @@ register! { Condition "UzawaContactFrictionless",
         friction: Friction::None,
         penalty: true,
         weighted_gaps: false,
+        compliant: false,
+        by_node: None,
         block: shapes::block::<UzawaFrictionless>,
     }),
 }

@@ -9,26 +9,33 @@
 //! equations of a node do not depend on the number of its pairs. Where pairs augment, A is the area of the node in each of
 //! them, for then their bounds hold gaps that add up to zero.
 //!
+//! Where surfaces give way (1/ε > 0), g̃ − A k λ·n/ε and s − A (k P λ − P R t°)/(κ ε) take the places of g̃ and s: what of gap and
+//! slip is not elastic. t° is the traction of the last accepted state, turned with the facet by R.
+//!
 //! In space the direction τ of sliding turns with the trial traction, which the tangent knows.
 //! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
-//! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference.
+//! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference. Where surfaces give way it is that of [`turned_slip`].
 
 use super::{Augmentation, Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode, Turning};
-use crate::mortar::{OperatorThreshold, Operators, incremental_slip, is_objective, objective_slip, tangential};
+use crate::mortar::{
+    OperatorThreshold, Operators, Turn, incremental_slip, is_objective, objective_slip, tangential, turned_slip,
+};
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{constant, dot, value};
+use zelus_core::vector3::{add, constant, dot, scale, sub, value};
 
 /// Augmented Lagrangian with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AlmFrictional {
     /// Scale factor k of the multipliers: traction = k λ.
     pub scale_factor: f64,
-    /// Ratio κ of tangential to normal penalty.
+    /// Ratio κ > 0 of tangential to normal penalty.
     pub tangent_factor: f64,
     /// Change of D and of M beyond which the slip is taken as objective.
     pub operator_threshold: OperatorThreshold,
     /// Where gap and slip augment the force.
     pub augmentation: Augmentation,
+    /// Whether surfaces give way by the nodes' [`SlaveNode::compliance`].
+    pub compliant: bool,
 }
 
 /// A pair as it was when slip began to be counted.
@@ -49,6 +56,10 @@ impl AlmFrictional {
         pair: &Kinematics<T, NS, NM>,
         history: &SlipHistory<NS, NM>,
     ) -> [[T; 3]; NS] {
+        if self.compliant {
+            let (slave, master) = (&history.reference_slave, &history.reference_master);
+            return turned_slip(&pair.operators, (&pair.slave, slave), (&pair.master, master), &pair.normals);
+        }
         if is_objective(&pair.operators, &history.previous, self.operator_threshold) {
             return objective_slip(&pair.operators, &history.previous, &pair.slave, &pair.master, &pair.normals);
         }
@@ -56,6 +67,52 @@ impl AlmFrictional {
         let delta_slave = std::array::from_fn(|j| increment(pair.slave[j], history.reference_slave[j]));
         let delta_master = std::array::from_fn(|l| increment(pair.master[l], history.reference_master[l]));
         incremental_slip(&pair.operators, &delta_slave, &delta_master, &pair.normals)
+    }
+
+    /// Tractions P R t° that slave nodes of a pair have from the last accepted state.
+    pub fn carried<T: Real, const NS: usize, const NM: usize>(
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        let turn = Turn::of_facet(&pair.slave, &history.reference_slave);
+        std::array::from_fn(|j| tangential(turn.apply(constant(nodes[j].carried)), pair.normals[j]))
+    }
+
+    /// A times the elastic trial tractions P R t° + κ ε s/A of slave nodes whose surfaces give way.
+    pub fn trial<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        let (carried, slip) = (Self::carried(pair, nodes, history), self.slip(pair, history));
+        std::array::from_fn(|j| {
+            let elastic = scale(slip[j], T::constant(self.tangent_factor * nodes[j].penalty));
+            add(scale(carried[j], pair.area(j)), elastic)
+        })
+    }
+
+    /// Takes from gap and slip what is elastic.
+    fn take_elastic<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+        gap: &mut [T; NS],
+        slip: &mut [[T; 3]; NS],
+    ) {
+        if !self.compliant {
+            return;
+        }
+        let carried = Self::carried(pair, nodes, history);
+        for (j, node) in nodes.iter().enumerate() {
+            let traction = scale(pair.multipliers[j], T::constant(self.scale_factor));
+            let give = pair.area(j) * node.compliance;
+            gap[j] -= dot(traction, pair.normals[j]) * give;
+            let along = sub(tangential(traction, pair.normals[j]), carried[j]);
+            slip[j] = sub(slip[j], scale(along, give * self.tangent_factor.recip()));
+        }
     }
 }
 
@@ -78,8 +135,8 @@ impl Formulation for AlmFrictional {
         history: &SlipHistory<NS, NM>,
     ) -> PairResidual<T, NS, NM> {
         let k = self.scale_factor;
-        let gap = pair.gap();
-        let slip = self.slip(pair, history);
+        let (mut gap, mut slip) = (pair.gap(), self.slip(pair, history));
+        self.take_elastic(pair, nodes, history, &mut gap, &mut slip);
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate() {
             let (lambda, n, penalty) = (pair.multipliers[j], pair.normals[j], self.augmentation.penalty(node));

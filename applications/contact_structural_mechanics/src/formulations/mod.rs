@@ -22,9 +22,9 @@ pub mod alm_frictionless_components;
 pub mod held;
 pub mod mesh_tying;
 pub mod pair;
+pub mod penalty_by_node;
 pub mod penalty_frictional;
 pub mod penalty_frictionless;
-pub mod perturbed_lagrangian_frictionless;
 pub mod system;
 pub mod uzawa_frictionless;
 
@@ -34,9 +34,9 @@ pub use alm_frictionless_components::AlmFrictionlessComponents;
 pub use held::Held;
 pub use mesh_tying::MeshTying;
 pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
+pub use penalty_by_node::PenaltyByNode;
 pub use penalty_frictional::{LastState, PenaltyFrictional};
 pub use penalty_frictionless::PenaltyFrictionless;
-pub use perturbed_lagrangian_frictionless::PerturbedLagrangianFrictionless;
 pub use system::{OperatorTangent, by_normals, local_size, residual, tangent};
 pub use uzawa_frictionless::UzawaFrictionless;
 

@@ -43,6 +43,8 @@ pub struct SlaveNode {
     pub state: NodeState,
     /// Penalty ε > 0.
     pub penalty: f64,
+    /// 1/ε of families whose surfaces give way, penetration by pressure; 0 of all others.
+    pub compliance: f64,
     /// c > 0: stiffness by length, for rows that state tractions beside others that state gaps and slips.
     pub stiffness: f64,
     /// A > 0: the area that this pair has of the node, or all pairs where they augment; constant in the tangent.
@@ -61,6 +63,8 @@ pub struct SlaveNode {
     pub held_weight: f64,
     /// Tangential traction t° of the last accepted state, where a family carries it (force per area).
     pub carried: [f64; 3],
+    /// Traction of all pairs of the node, where a family has it before its pairs are looked at (force per area).
+    pub traction: [f64; 3],
 }
 
 /// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ c WS/A, τ = q̂/|q̂|.
@@ -102,12 +106,6 @@ impl<T: Real, const NS: usize, const NM: usize> Kinematics<T, NS, NM> {
     #[inline]
     pub fn area(&self, j: usize) -> T {
         self.operators.d[j].iter().fold(T::zero(), |sum, d| sum + *d)
-    }
-
-    /// What a penalty counts of a weighted gap or slip of slave node `j`: all of it, or its mean over the area of the pair.
-    #[inline]
-    pub fn counted(&self, j: usize, weighted: bool) -> T {
-        if weighted { T::one() } else { self.area(j).recip() }
     }
 }
 

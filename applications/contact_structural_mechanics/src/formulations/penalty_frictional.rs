@@ -1,22 +1,20 @@
-//! Friction by the penalty method: an elastic slip that the law of friction limits.
+//! Friction by the penalty method, pair by pair: an elastic slip that the law of friction limits.
 //!
-//! Trial traction q = P R t° + κ ε s̄: the traction t° of the last accepted state, turned with the facet by R, and the mean
-//! slip s̄ since then. Stick: t = q. Slip: t = b(ε ḡ) τ, with b the bound of the law and τ the direction of the trial traction of
-//! all pairs of the node; in space the tangent knows how it turns. An active node has the force p = f (ε ḡ n + t), which acts
-//! through D and M. Means are those over the pair, see [`super::penalty_frictionless`].
+//! Trial traction q = P R t° + κ ε s: the traction t° of the last accepted state, turned with the facet by R, and the weighted
+//! slip s of the pair since then. Stick: t = q. Slip: t = b(ε g̃) τ, with b the bound of the law and τ the direction of the trial
+//! traction of all pairs of the node; in space the tangent knows how it turns. An active node has the force p = f (ε g̃ n + t),
+//! which acts through D and M.
 
 use super::{Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
-use crate::mortar::{Turn, tangential, weighted_jump};
+use crate::mortar::{Turn, tangential, turned_slip};
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{add, constant, scale, sub};
+use zelus_core::vector3::{add, constant, scale};
 
-/// Penalty method with friction.
+/// Penalty method with friction, of weighted gaps and slips.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenaltyFrictional {
     /// Ratio κ of tangential to normal penalty.
     pub tangent_factor: f64,
-    /// Whether the penalty counts weighted gaps and slips.
-    pub weighted: bool,
 }
 
 /// A pair as it was in the last accepted state.
@@ -34,10 +32,17 @@ impl PenaltyFrictional {
         pair: &Kinematics<T, NS, NM>,
         last: &LastState<NS, NM>,
     ) -> [[T; 3]; NS] {
+        turned_slip(&pair.operators, (&pair.slave, &last.slave), (&pair.master, &last.master), &pair.normals)
+    }
+
+    /// Tractions P R t° that the slave nodes of a pair have from its last accepted state.
+    pub fn carried<T: Real, const NS: usize, const NM: usize>(
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        last: &LastState<NS, NM>,
+    ) -> [[T; 3]; NS] {
         let turn = Turn::of_facet(&pair.slave, &last.slave);
-        let before = weighted_jump(&pair.operators, &last.slave.map(constant), &last.master.map(constant));
-        let now = weighted_jump(&pair.operators, &pair.slave, &pair.master);
-        std::array::from_fn(|j| tangential(sub(turn.apply(before[j]), now[j]), pair.normals[j]))
+        std::array::from_fn(|j| tangential(turn.apply(constant(nodes[j].carried)), pair.normals[j]))
     }
 
     /// Trial tractions q of the slave nodes of a pair.
@@ -47,12 +52,8 @@ impl PenaltyFrictional {
         nodes: &[SlaveNode; NS],
         last: &LastState<NS, NM>,
     ) -> [[T; 3]; NS] {
-        let turn = Turn::of_facet(&pair.slave, &last.slave);
-        let slip = Self::slip(pair, last);
-        std::array::from_fn(|j| {
-            let carried = tangential(turn.apply(constant(nodes[j].carried)), pair.normals[j]);
-            add(carried, scale(slip[j], pair.counted(j, self.weighted) * (self.tangent_factor * nodes[j].penalty)))
-        })
+        let (carried, slip) = (Self::carried(pair, nodes, last), Self::slip(pair, last));
+        std::array::from_fn(|j| add(carried[j], scale(slip[j], T::constant(self.tangent_factor * nodes[j].penalty))))
     }
 }
 
@@ -77,7 +78,7 @@ impl Formulation for PenaltyFrictional {
         let trial = self.trial(pair, nodes, last);
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate() {
-            let pressure = gap[j] * pair.counted(j, self.weighted) * node.penalty;
+            let pressure = gap[j] * node.penalty;
             let traction = match node.state {
                 NodeState::Inactive => continue,
                 NodeState::Stick => trial[j],

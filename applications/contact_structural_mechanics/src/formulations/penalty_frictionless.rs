@@ -1,18 +1,14 @@
-//! Frictionless contact by the penalty method (eq. D.3d): p = f ε ḡ n on active nodes, no multipliers.
+//! Frictionless contact by the penalty method (eq. D.3d), pair by pair as in Kratos: p = f ε g̃ n on active nodes.
 //!
-//! ḡ = g̃ is the weighted gap of the pair, as in Kratos, or its mean gap at the node, g̃/D: a node then bears ε g̃ of all its
-//! pairs together, and an even gap gives an even pressure, whatever the areas of the pairs.
+//! ε g̃ holds an area: it counts the weighted gap of the pair.
 
 use super::{Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
-/// Penalty method without friction.
+/// Penalty method without friction, of weighted gaps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct PenaltyFrictionless {
-    /// Whether the penalty counts weighted gaps.
-    pub weighted: bool,
-}
+pub struct PenaltyFrictionless;
 
 impl Formulation for PenaltyFrictionless {
     const MULTIPLIERS: Multipliers = Multipliers::None;
@@ -27,7 +23,7 @@ impl Formulation for PenaltyFrictionless {
         let gap = pair.gap();
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {
-            let pressure = gap[j] * pair.counted(j, self.weighted) * (node.penalty * node.dynamic_factor);
+            let pressure = gap[j] * (node.penalty * node.dynamic_factor);
             out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
         }
         out

@@ -11,8 +11,7 @@ use zelus_core::vector3::{dot, normalised};
 const PAIR: Augmentation = Augmentation::Pair;
 const ALM: AlmFrictionless = AlmFrictionless { scale_factor: 1.7, augmentation: PAIR };
 const COMPONENTS: AlmFrictionlessComponents = AlmFrictionlessComponents { scale_factor: 1.7, augmentation: PAIR };
-const PENALTY: PenaltyFrictional = PenaltyFrictional { tangent_factor: 0.3, weighted: false };
-const WEIGHTED: PenaltyFrictional = PenaltyFrictional { tangent_factor: 0.3, weighted: true };
+const PENALTY: PenaltyFrictional = PenaltyFrictional { tangent_factor: 0.3 };
 
 /// States of the slave nodes, starting with `first`.
 fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, states: [NodeState; 3]) -> [SlaveNode; NS] {
@@ -20,6 +19,7 @@ fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, stat
     std::array::from_fn(|j| SlaveNode {
         state: states[j % 3],
         penalty: 20.0 + 5.0 * noise.next(),
+        compliance: 0.06,
         stiffness: 20.0,
         area: 1.3,
         dynamic_factor: 0.8 + 0.1 * noise.next(),
@@ -32,6 +32,7 @@ fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, stat
         held: Default::default(),
         held_weight: 1.0,
         carried: std::array::from_fn(|c| if c < dim { 0.1 * noise.next() } else { 0.0 }),
+        traction: [0.0; 3],
     })
 }
 
@@ -140,7 +141,7 @@ fn last_state<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>
 
 fn frictional(area: f64) -> AlmFrictional {
     let operator_threshold = OperatorThreshold { share: 0.0, area };
-    AlmFrictional { scale_factor: 1.7, tangent_factor: 0.3, operator_threshold, augmentation: PAIR }
+    AlmFrictional { scale_factor: 1.7, tangent_factor: 0.3, operator_threshold, augmentation: PAIR, compliant: false }
 }
 
 fn all_families<const NS: usize, const NM: usize, const NU: usize>() {
@@ -151,12 +152,14 @@ fn all_families<const NS: usize, const NM: usize, const NU: usize>() {
         &AlmFrictional { augmentation: Augmentation::Node, ..frictional(0.0) },
         slip_history,
     );
+    check_tangent::<_, NS, NM, NU>(
+        &AlmFrictional { augmentation: Augmentation::Node, compliant: true, ..frictional(0.0) },
+        slip_history,
+    );
     check_tangent::<_, NS, NM, NU>(&AlmFrictionless { augmentation: Augmentation::Node, ..ALM }, |_| ());
     check_tangent::<_, NS, NM, NU>(&frictional(1e9), slip_history);
-    check_tangent::<_, NS, NM, NU>(&PenaltyFrictionless { weighted: false }, |_| ());
-    check_tangent::<_, NS, NM, NU>(&PenaltyFrictionless { weighted: true }, |_| ());
+    check_tangent::<_, NS, NM, NU>(&PenaltyFrictionless, |_| ());
     check_tangent::<_, NS, NM, NU>(&PENALTY, last_state);
-    check_tangent::<_, NS, NM, NU>(&WEIGHTED, last_state);
 }
 
 #[test]
@@ -174,6 +177,7 @@ fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec
             state: [NodeState::Inactive, NodeState::Stick, NodeState::Slip][line[30 + j] as usize],
             penalty: line[32 + j],
             // The reference program divides by the penalty, whatever the area.
+            compliance: 0.0,
             stiffness: line[32 + j] * areas[j],
             area: areas[j],
             dynamic_factor: line[34 + j],
@@ -183,6 +187,7 @@ fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec
             held: Default::default(),
             held_weight: 1.0,
             carried: [0.0; 3],
+            traction: [0.0; 3],
         });
         let expected = &line[36..];
         let mut rhs = vec![0.0; expected.len()];
@@ -238,7 +243,8 @@ fn scalar_and_components_agree() {
     let settings = SegmentationSettings::default();
     let pair = random_pair::<4, 3>(2);
     let mut noise = Noise::new(9);
-    let nodes = nodes(&pair.nodal_normals, &mut noise, [NodeState::Slip; 3]);
+    let mut nodes = nodes(&pair.nodal_normals, &mut noise, [NodeState::Slip; 3]);
+    nodes.iter_mut().for_each(|node| node.compliance = 0.0);
     let pressure: [f64; 4] = std::array::from_fn(|_| noise.next());
     let scalar = pressure.map(|p| [p, 0.0, 0.0]);
     let vector = std::array::from_fn(|j| pair.nodal_normals[j].map(|n| n * pressure[j]));
@@ -271,6 +277,7 @@ fn sign_of_the_contact_force() {
     let node = SlaveNode {
         state: NodeState::Slip,
         penalty: 50.0,
+        compliance: 0.0,
         stiffness: 12.5,
         area: 0.25,
         dynamic_factor: 1.0,
@@ -280,17 +287,22 @@ fn sign_of_the_contact_force() {
         held: Default::default(),
         held_weight: 1.0,
         carried: [0.0; 3],
+        traction: [0.0, 0.0, 50.0 * -0.01],
     };
     let mut rhs = [0.0; 24];
     // Each slave node: D = 1/4, g = −0.01, force = 50 · 0.01 · 1/4 against the normal; of weighted gaps a quarter of it.
-    for (weighted, force) in [(false, 50.0 * 0.01 / 4.0), (true, 50.0 * 0.0025 / 4.0)] {
-        let penalty = PenaltyFrictionless { weighted };
-        residual(&penalty, &pair, &SegmentationSettings::default(), &[node; 4], &[[0.0; 3]; 4], &(), &mut rhs);
+    let mut check = |force: f64, rhs: &[f64]| {
         for n in 0..4 {
             assert!((rhs[3 * n + 2] - force).abs() < 1e-14, "the master, below, is pushed up");
             assert!((rhs[12 + 3 * n + 2] + force).abs() < 1e-14, "the slave is pushed down");
         }
-    }
+    };
+    let (settings, none) = (SegmentationSettings::default(), [[0.0; 3]; 4]);
+    residual(&PenaltyFrictionless, &pair, &settings, &[node; 4], &none, &(), &mut rhs);
+    check(50.0 * 0.0025 / 4.0, &rhs);
+    let last = LastState { slave, master };
+    residual(&PenaltyByNode { tangent_factor: 1.0 }, &pair, &settings, &[node; 4], &none, &last, &mut rhs);
+    check(50.0 * 0.01 / 4.0, &rhs);
 }
 
 #[test]
@@ -380,7 +392,9 @@ fn penalty_friction_acts_through_the_mortar_operators() {
     let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
     let turned = |x: [f64; 3]| [x[2] + 4.0, x[0] - 1.0, x[1] + 2.0];
     let turn = |v: [f64; 3]| [v[2], v[0], v[1]];
-    for (state, expected) in [(NodeState::Stick, 0.3 * 50.0 * 0.02 - 0.01), (NodeState::Slip, 0.4 * 50.0 * 0.01)] {
+    for (state, expected) in
+        [(NodeState::Stick, 0.3 * 50.0 * 0.02 / 4.0 - 0.01), (NodeState::Slip, 0.4 * 50.0 * 0.01 / 4.0)]
+    {
         for rigid in [false, true] {
             let place = |x: [f64; 3]| if rigid { turned(x) } else { x };
             let free = |v: [f64; 3]| if rigid { turn(v) } else { v };
@@ -395,6 +409,7 @@ fn penalty_friction_acts_through_the_mortar_operators() {
             let node = SlaveNode {
                 state,
                 penalty: 50.0,
+                compliance: 0.0,
                 stiffness: 50.0,
                 area: 0.25,
                 dynamic_factor: 1.0,
@@ -404,6 +419,7 @@ fn penalty_friction_acts_through_the_mortar_operators() {
                 held: Default::default(),
                 held_weight: 1.0,
                 carried: [0.01, 0.0, 0.0],
+                traction: [0.0; 3],
             };
             // The slave has come along x by 0.02 since.
             let last = LastState { slave: slave.map(|x| [x[0] - 0.02, x[1], x[2]]), master };

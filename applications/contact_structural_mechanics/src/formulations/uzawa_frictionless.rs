@@ -27,7 +27,7 @@ impl Formulation for UzawaFrictionless {
         let gap = pair.gap();
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {
-            let spring = gap[j] * pair.counted(j, false) * node.penalty;
+            let spring = gap[j] / pair.area(j) * node.penalty;
             let pressure = (pair.multipliers[j][0] * self.scale_factor + spring) * node.dynamic_factor;
             out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
         }

@@ -280,7 +280,7 @@ fn numbers(
     let by_area = if area > 0.0 { area.recip() } else { 0.0 };
     let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
     let held = held_at(part, at);
-    let slip = resolution.vector_of(scale(vector_of(WEIGHTED_SLIP.name()), by_area));
+    let slip = resolution.vector_of(slip(part, at, family.multiplier, parameters));
     let stiffness = match family.multiplier {
         Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
         Multiplier::None if parameters.weighted_penalty => penalty * area,
@@ -312,6 +312,27 @@ fn numbers(
         scale_factor: parameters.scale_factor,
         tangent_factor: parameters.tangent_factor,
         resolution,
+    }
+}
+
+/// Slip of a node in this step (length). Where surfaces give way, that of a node in contact without its elastic part:
+/// (q − k P λ)/(κ ε), with the trial traction q.
+pub(super) fn slip(part: &ModelPart, at: usize, multiplier: Multiplier, parameters: &StepParameters) -> [f64; 3] {
+    let history = &part.nodes.history;
+    let vector_of = |name: &str| history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
+    match multiplier {
+        Multiplier::Vector(variable)
+            if parameters.compliant && NodeState::of_flags(&part.nodes.flags, at).is_active() =>
+        {
+            let (normal, trial) = (normal(part, at), vector_at(part.nodes.values.values(&TRIAL_TRACTION, 0), at));
+            let traction = scale(tangential(vector_of(variable.name()), normal), parameters.scale_factor);
+            let elastic = parameters.tangent_factor * part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
+            along_free_tangents(scale(sub(trial, traction), elastic.recip()), normal, held_at(part, at))
+        }
+        _ => {
+            let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
+            if area > 0.0 { scale(vector_of(WEIGHTED_SLIP.name()), area.recip()) } else { [0.0; 3] }
+        }
     }
 }
 

@@ -42,13 +42,16 @@ pub(super) fn calibrate(
     if unit != 1.0 && settings.weighted_penalty && settings.manual.is_none() {
         part.messages.push(warn_of_unit(unit, measure));
     }
-    // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.
-    let open = interfaces.iter().all(|interface| interface.open);
-    if !settings.use_scale_factor || (open && settings.manual.is_none()) {
-        chosen.scale_factor = 1.0;
-    }
     // Without factors, which a deck may have chosen for what else they do.
     let of_bodies = alm_parameters(part, interfaces, 1.0, 1.0).penalty;
+    let of_bodies = if of_bodies > 0.0 { of_bodies } else { chosen.penalty };
+    // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.
+    let open = interfaces.iter().all(|interface| interface.open);
+    if settings.own_scale {
+        chosen.scale_factor = of_bodies;
+    } else if !settings.use_scale_factor || (open && settings.manual.is_none()) {
+        chosen.scale_factor = 1.0;
+    }
     part.info.values.insert(INITIAL_PENALTY.name(), chosen.penalty);
     part.info.values.insert("SCALE_FACTOR", chosen.scale_factor);
     part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(chosen.penalty);
@@ -65,7 +68,7 @@ pub(super) fn calibrate(
             area: settings.operator_threshold.area * measure,
             ..settings.operator_threshold
         },
-        stiffness: if of_bodies > 0.0 { of_bodies } else { chosen.penalty },
+        stiffness: of_bodies,
         slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction),
         ..before.clone()
     };

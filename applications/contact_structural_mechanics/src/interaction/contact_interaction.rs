@@ -73,6 +73,8 @@ pub struct ContactInteraction {
     near_nodes: Vec<u32>,
     /// Weighted gaps at the start of the step.
     start_gaps: Vec<f64>,
+    /// What the last attempt at the step made of the energy of motion, where that was too much.
+    impact_error: f64,
 }
 
 impl ContactInteraction {
@@ -95,6 +97,7 @@ impl ContactInteraction {
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
             augmentation: settings.augmentation,
+            compliant: settings.family.compliant,
         });
         Ok(Self {
             pairing: Pairing::new(interfaces, part, settings.nodal_normals),
@@ -118,6 +121,7 @@ impl ContactInteraction {
             warned_of_late_pairs: false,
             near_nodes: Vec::new(),
             start_gaps: Vec::new(),
+            impact_error: 0.0,
         })
     }
 
@@ -534,7 +538,7 @@ impl Interaction for ContactInteraction {
             ));
         }
         let (family, scale_factor) = (self.settings.family, self.parameters.scale_factor);
-        Ok(coarse_impact(part, &self.slaves, family, scale_factor, &self.start_gaps))
+        Ok(coarse_impact(part, &self.slaves, family, scale_factor, &self.start_gaps, &mut self.impact_error))
     }
 
     fn reach_out(&mut self, part: &mut ModelPart) -> bool {
@@ -549,6 +553,7 @@ impl Interaction for ContactInteraction {
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.impact_error = 0.0;
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
         let cleared = |n: u32| self.settings.clear_inactive && !part.nodes.flags.is(ACTIVE, n as usize);
@@ -561,12 +566,7 @@ impl Interaction for ContactInteraction {
             let (multiplier, law) = (self.settings.family.multiplier, self.settings.friction.law);
             friction::meet_bounds(part, &self.slaves, multiplier, law, self.parameters.scale_factor);
             if !self.warned_of_friction {
-                let warning = friction::warn_of_pushing(
-                    part,
-                    &self.slaves,
-                    self.settings.family.multiplier,
-                    self.settings.friction.law,
-                );
+                let warning = friction::warn_of_pushing(part, &self.slaves, multiplier, &self.parameters);
                 self.warned_of_friction = warning.is_some();
                 part.messages.extend(warning);
             }

@@ -47,12 +47,14 @@ pub struct ContactSettings {
     pub estimate: [f64; 2],
     /// Factor of the estimated penalty; the penalty families need a stiffer spring.
     pub penalty_factor: f64,
-    /// Whether penalties of families without multipliers count weighted gaps.
+    /// Whether penalties act pair by pair on weighted gaps.
     pub weighted_penalty: bool,
     /// Least penalty: what takes its place when the estimate is zero.
     pub least_penalty: f64,
     /// Whether the scale factor is used; otherwise it is 1.
     pub use_scale_factor: bool,
+    /// Whether multipliers are no part of what a deck sees, so that their scale is that of the bodies.
+    pub own_scale: bool,
     /// Ratio of tangential and normal penalty.
     pub tangent_factor: f64,
     /// Change of the operators beyond which slip is measured objectively; its area counts in the model's unit of length.

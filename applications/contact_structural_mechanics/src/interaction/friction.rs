@@ -7,13 +7,15 @@ use zelus_core::model::flags::SLIP;
 use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::{add, dot, norm, scale};
 
+use super::activation;
+use super::step_parameters::StepParameters;
 use crate::active_set::{Margin, SlipRule};
 use crate::formulations::NodeState;
 use crate::friction_law::{COULOMB, FrictionLaw};
 use crate::interface::Interface;
 use crate::mortar::tangential;
 use crate::pairs::{Friction, Multiplier};
-use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_SLIP};
+use crate::variables::NODAL_H;
 
 /// Slip, in mesh sizes, below which its direction says nothing.
 const LEAST_SLIP: f64 = 1e-6;
@@ -117,17 +119,17 @@ pub(super) fn warn_of_pushing(
     part: &ModelPart,
     slaves: &[u32],
     multiplier: Multiplier,
-    law: &FrictionLaw,
+    parameters: &StepParameters,
 ) -> Option<Diagnostic> {
     let Multiplier::Vector(variable) = multiplier else { return None };
     let vector_of = |name: &str, at: usize| part.nodes.history.get(name).map_or([0.0; 3], |f| f.vector(0, at));
-    let (areas, sizes) = (part.nodes.values.values(&NODAL_AREA, 0), part.nodes.values.values(&NODAL_H, 0));
+    let sizes = part.nodes.values.values(&NODAL_H, 0);
     let pushed = |at: &usize| {
-        let slip = vector_of(WEIGHTED_SLIP.name(), *at);
+        let slip = activation::slip(part, *at, multiplier, parameters);
         let traction = tangential(vector_of(variable.name(), *at), vector_of(NORMAL.name(), *at));
         NodeState::of_flags(&part.nodes.flags, *at) == NodeState::Slip
-            && !law.bound_at(&part.nodes, *at).is_smooth()
-            && norm(slip) > LEAST_SLIP * sizes[*at] * areas[*at]
+            && !parameters.friction_law.bound_at(&part.nodes, *at).is_smooth()
+            && norm(slip) > LEAST_SLIP * sizes[*at]
             && dot(slip, traction) < 0.0
     };
     let nodes: Vec<usize> = slaves.iter().map(|&n| n as usize).filter(pushed).map(|at| part.nodes.ids[at]).collect();

@@ -40,15 +40,20 @@ pub(super) fn near_nodes(part: &ModelPart, pairing: &Pairing, slaves: &[u32], be
     near.into_iter().collect()
 }
 
+/// Share of the error of a step that a shorter one must have taken away for others to be tried.
+const LEAST_GAIN: f64 = 0.1;
+
 /// Whether the step is too coarse for the nodes that closed or opened in it.
 ///
-/// `start` are the weighted gaps at its start.
+/// `start` are the weighted gaps at its start. `before` is the error of the last attempt at this step, zero at first: where a
+/// shorter step has not helped, as where supports jump, still shorter ones do not either.
 pub(super) fn coarse_impact(
     part: &ModelPart,
     slaves: &[u32],
     family: &Family,
     scale_factor: f64,
     start: &[f64],
+    before: &mut f64,
 ) -> Outer {
     let (tolerance, energy) = (part.info.value_or(IMPACT_TOLERANCE, 0.0), part.info.value_or(ENERGY_OF_MOTION, 0.0));
     if tolerance == 0.0 || energy == 0.0 {
@@ -66,8 +71,9 @@ pub(super) fn coarse_impact(
     let gap = |gaps: &[f64], node: u32| gaps.get(node as usize).map_or(0.0, |gap| gap.max(0.0));
     let work = |&node: &u32| 0.5 * (pressure(node, 0) * gap(start, node) + pressure(node, 1) * gap(gaps, node));
     let error = slaves.iter().map(work).sum::<f64>() / energy;
-    if error <= tolerance {
+    if error <= tolerance || (*before > 0.0 && error > (1.0 - LEAST_GAIN) * *before) {
         return Outer::Done;
     }
+    *before = error;
     Outer::Coarse(format!("contact closes or opens within it, which is {error:.1e} of the energy of motion"))
 }

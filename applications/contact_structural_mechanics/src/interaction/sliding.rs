@@ -14,7 +14,6 @@ use crate::pairs::{Family, Multiplier};
 use crate::resolution::Resolution;
 use crate::variables::{
     INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TRIAL_TRACTION, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
-    WEIGHTED_SLIP,
 };
 
 /// Length of the free part of a unit tangent below which a node cannot slide.
@@ -50,8 +49,7 @@ pub(super) fn write_tangents(
         let normal = vector_of(NORMAL.name());
         let by_slip = || {
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
-            let slip = vector_of(WEIGHTED_SLIP.name());
-            let slip = if area > 0.0 { resolution.vector_of(scale(slip, area.recip())) } else { [0.0; 3] };
+            let slip = resolution.vector_of(activation::slip(part, at, family.multiplier, parameters));
             // Bodies that stand still keep the direction in which they came.
             let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
             let pressure = match family.multiplier {
@@ -71,7 +69,7 @@ pub(super) fn write_tangents(
                 let multiplier = add(scale(normal, dot(whole, normal)), sliding);
                 match state {
                     NodeState::Slip if dimension == 3 => {
-                        let trial = Trial::new(part, at, parameters, multiplier, normal);
+                        let trial = Trial::new(part, at, family.multiplier, parameters, multiplier, normal);
                         turnings[position] = trial.turning(pair_counts[at], pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }
                     }
@@ -117,7 +115,7 @@ pub(super) fn write_tangents(
     }
 }
 
-/// Trial traction q̂ = k P λ + κ c WS/A of a node of area A, and what bounds it.
+/// Trial traction q̂ = k P λ + κ c s of a node with slip s, and what bounds it.
 struct Trial {
     traction: [f64; 3],
     of_slip: [f64; 3],
@@ -125,12 +123,18 @@ struct Trial {
 }
 
 impl Trial {
-    fn new(part: &ModelPart, at: usize, parameters: &StepParameters, multiplier: [f64; 3], normal: [f64; 3]) -> Self {
-        let slip = part.nodes.history.get(WEIGHTED_SLIP.name()).map_or([0.0; 3], |field| field.vector(0, at));
+    fn new(
+        part: &ModelPart,
+        at: usize,
+        kind: Multiplier,
+        parameters: &StepParameters,
+        multiplier: [f64; 3],
+        normal: [f64; 3],
+    ) -> Self {
+        let slip = activation::slip(part, at, kind, parameters);
         let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
         let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
-        let by_slip = parameters.nodal_stiffness(penalty, area) / if area > 0.0 { area } else { 1.0 };
-        let of_slip = scale(slip, parameters.tangent_factor * by_slip);
+        let of_slip = scale(slip, parameters.tangent_factor * parameters.nodal_stiffness(penalty, area));
         let pressure = parameters.scale_factor * dot(multiplier, normal);
         Self {
             traction: add(scale(tangential(multiplier, normal), parameters.scale_factor), of_slip),

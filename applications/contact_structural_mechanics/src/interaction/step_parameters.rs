@@ -57,7 +57,7 @@ pub struct StepParameters {
     pub friction_law: &'static FrictionLaw,
     /// How stick and slip are told apart.
     pub slip_rule: SlipRule,
-    /// Whether penalties of families without multipliers count weighted gaps, as in Kratos, instead of gaps.
+    /// Whether penalties act pair by pair on weighted gaps, as in Kratos.
     pub weighted_penalty: bool,
     /// Time levels back to the state from which slip counts: explicit steps decide on contact at their start.
     pub levels_back: usize,
@@ -65,6 +65,8 @@ pub struct StepParameters {
     pub normal_variation: NormalVariation,
     /// Where gaps augment the forces of augmented Lagrangians.
     pub augmentation: Augmentation,
+    /// Whether surfaces give way by traction over penalty.
+    pub compliant: bool,
 }
 
 impl StepParameters {

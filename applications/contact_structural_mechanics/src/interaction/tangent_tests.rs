@@ -112,6 +112,7 @@ impl Contact {
             levels_back: 1,
             normal_variation: NormalVariation::Exact,
             augmentation,
+            compliant: family.compliant,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
         });

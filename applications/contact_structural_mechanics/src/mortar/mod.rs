@@ -42,7 +42,7 @@ pub use geometry::{PairGeometry, dimension};
 pub use habit::Habit;
 pub use operators::{Operators, Overlap, habit_of, operators, operators_on_flat_master};
 pub use settings::{IntegrationOrder, SegmentationSettings};
-pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential};
+pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential, turned_slip};
 pub use turn::Turn;
 
 #[cfg(test)]

@@ -2,8 +2,9 @@
 
 use super::gap::weighted_jump;
 use super::operators::Operators;
+use super::turn::Turn;
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{cross, dot, norm, normalised, scale, sub};
+use zelus_core::vector3::{constant, cross, dot, norm, normalised, scale, sub};
 
 /// The part of a vector in the plane with unit normal `normal`: P v = v − (v·n) n.
 #[inline]
@@ -34,6 +35,20 @@ pub fn incremental_slip<T: Real, const NS: usize, const NM: usize>(
 ) -> [[T; 3]; NS] {
     let jump = operators.jump(delta_slave, delta_master);
     std::array::from_fn(|j| tangential(jump[j].map(|x| -x), normals[j]))
+}
+
+/// Weighted slip s_j = P [R (D x° − M x°) − (D x − M x)]_j since nodes were at x°, with the rotation R of the slave facet since
+/// then and the present operators. `slave` and `master` are positions now and before.
+pub fn turned_slip<T: Real, const NS: usize, const NM: usize>(
+    operators: &Operators<T, NS, NM>,
+    slave: (&[[T; 3]; NS], &[[f64; 3]; NS]),
+    master: (&[[T; 3]; NM], &[[f64; 3]; NM]),
+    normals: &[[T; 3]; NS],
+) -> [[T; 3]; NS] {
+    let turn = Turn::of_facet(slave.0, slave.1);
+    let before = weighted_jump(operators, &slave.1.map(constant), &master.1.map(constant));
+    let now = weighted_jump(operators, slave.0, master.0);
+    std::array::from_fn(|j| tangential(sub(turn.apply(before[j]), now[j]), normals[j]))
 }
 
 /// Change of an operator beyond which slip is measured objectively (Frobenius norm): `share` of its norm and `area`.

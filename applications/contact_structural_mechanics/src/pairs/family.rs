@@ -69,6 +69,15 @@ pub struct PairRequest {
     pub parameters: Arc<StepParameters>,
 }
 
+/// A penalty method by node: the traction of a node is the penalty times its gap and slip over all its pairs.
+#[derive(Clone, Copy)]
+pub struct ByNode {
+    /// For steps that iterate: the traction is a multiplier, which couples the pairs of a node.
+    pub implicit: &'static Family,
+    /// For explicit steps, which have the tractions before they look at pairs.
+    pub explicit: &'static Family,
+}
+
 /// A family, registered under its `mortar_type` as a condition with `Build::Factory(&Family {…})`.
 pub struct Family {
     /// Beginning of the names of its conditions, up to the shape, e.g. `ALMFrictionlessMortarContactCondition`.
@@ -79,10 +88,14 @@ pub struct Family {
     pub variables: &'static [NodalVariable],
     /// Its friction.
     pub friction: Friction,
-    /// Whether it works without multipliers and therefore with a larger penalty.
+    /// Whether its nodes have their tractions from a penalty alone.
     pub penalty: bool,
     /// Whether its penalty counts weighted gaps, and is a stress by length and area; otherwise gaps.
     pub weighted_gaps: bool,
+    /// Whether its surfaces give way by traction over penalty, the traction being a multiplier.
+    pub compliant: bool,
+    /// The families that take its place where its penalty is that of whole nodes.
+    pub by_node: Option<ByNode>,
     /// Makes the block of one pair of shapes (slave, master).
     pub block: fn(Shape, Shape, PairRequest) -> Option<Box<dyn ContactBlock>>,
 }

@@ -11,7 +11,7 @@ mod tying_block;
 pub use contact_block::{ContactBlock, Own};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
 pub use family::{
-    Family, Friction, Multiplier, PairRequest, TyingFamily, find_family, find_tying_family, variables_of,
+    ByNode, Family, Friction, Multiplier, PairRequest, TyingFamily, find_family, find_tying_family, variables_of,
 };
 pub use grouping::{Groups, condition_name, group_by_shapes, group_by_surroundings};
 pub use pair::{Integral, Pair, PairKey, Previous};

@@ -8,7 +8,7 @@ use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown,
 use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT, variables::NORMAL};
 use zelus_core::registry::Entry;
 use zelus_core::scalar::{Dual, Real};
-use zelus_core::vector3::{cross, normalised, scale, sub};
+use zelus_core::vector3::{add, cross, normalised, scale, sub};
 
 use super::contact_block::{ContactBlock, Own};
 use super::family::{Multiplier, PairRequest};
@@ -21,7 +21,7 @@ use crate::interface::{Corner, NormalPatches};
 use crate::mortar::{Habit, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
     DYNAMIC_FACTOR, FRICTION_TRACTION, HELD_MULTIPLIER, INITIAL_PENALTY, NODAL_AREA, NORMAL_OF_MASTER, TANGENT_XI,
-    TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
+    TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_GAP,
 };
 
 /// A formulation as the blocks use it.
@@ -47,7 +47,7 @@ pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
         [[0.0; 3]; NS]
     }
 
-    /// Trial tractions of a pair, for families that carry tractions from state to state.
+    /// Areas times trial tractions of a pair, for families that carry tractions from state to state.
     fn trial<const NS: usize, const NM: usize>(
         &self,
         _pair: &Kinematics<f64, NS, NM>,
@@ -212,7 +212,12 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         let by_pair = self.parameters.augmentation == Augmentation::Pair;
         let own = self.pairs[at].area;
         let tangent = view.nodes.values.values(&TANGENT_XI, 0);
-        let carried = view.nodes.history.get(FRICTION_TRACTION.name()).map_or(&[][..], |field| &field.levels[1]);
+        let of_friction = |level: usize| {
+            view.nodes.history.get(FRICTION_TRACTION.name()).map_or(&[][..], |field| &field.levels[level])
+        };
+        let (friction, carried) = (of_friction(0), of_friction(1));
+        let gaps = view.nodes.history.get(WEIGHTED_GAP.name()).map_or(&[][..], |field| &field.levels[0]);
+        let normals = view.nodes.history.values(&NORMAL, 0);
         let by_slip = view.nodes.values.values(&TURNING_BY_SLIP, 0);
         let by_multiplier = view.nodes.values.values(&TURNING_BY_MULTIPLIER, 0);
         let held = view.nodes.values.values(&HELD_MULTIPLIER, 0);
@@ -224,6 +229,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             SlaveNode {
                 state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
+                compliance: if self.parameters.compliant { penalty[node].recip() } else { 0.0 },
                 stiffness,
                 area: positive(if by_pair { areas.get(node) } else { own.get(j) }),
                 dynamic_factor: factor[node],
@@ -236,6 +242,13 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                 held: if held.is_empty() { Default::default() } else { vector(held, n).map(Held::of_code) },
                 held_weight: k * k * positive(areas.get(node)) / stiffness,
                 carried: if carried.is_empty() { [0.0; 3] } else { vector(carried, n) },
+                traction: add(
+                    if friction.is_empty() { [0.0; 3] } else { vector(friction, n) },
+                    scale(
+                        vector(normals, n),
+                        penalty[node] * gaps.get(node).map_or(0.0, |gap| gap / positive(areas.get(node))),
+                    ),
+                ),
             }
         })
     }
@@ -392,7 +405,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                         out.area[j] = operators.d[j].iter().sum();
                         out.gap[j] = gaps[j];
                         out.slip[j] = slip[j];
-                        out.trial[j] = trial.map_or([0.0; 3], |trial| scale(trial[j], out.area[j]));
+                        out.trial[j] = trial.map_or([0.0; 3], |trial| trial[j]);
                         (0..NS).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
                         (0..NM).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
                     }

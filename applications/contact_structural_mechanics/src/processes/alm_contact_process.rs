@@ -153,8 +153,19 @@ fn interaction(
         Some(stem) => (stem, true),
         None => (whole.contact_type.as_str(), false),
     };
-    let family =
+    let named =
         find_family(&format!("{}{stem}", families.name)).map_err(|d| d.at(settings.key_place("contact_type")))?;
+    let part = request.model.root_mut(&whole.model_part_name)?;
+    let family = match named.by_node {
+        Some(by_node) if !whole.parameters.penalty_of_weighted_gaps => {
+            if part.info.is(EXPLICIT) {
+                by_node.explicit
+            } else {
+                by_node.implicit
+            }
+        }
+        _ => named,
+    };
     check_positive(
         settings,
         &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
@@ -167,7 +178,12 @@ fn interaction(
         Some(keys) => FrictionSettings {
             law: friction_law(settings, family.frictional(), request)?,
             coefficients: keys.friction_coefficients.clone(),
-            margin: Margin { augmentation: keys.slip_augmentation_coefficient, threshold: keys.slip_threshold },
+            // A penalty holds sliding nodes and sticking ones by the same spring.
+            margin: if family.compliant {
+                Margin::default()
+            } else {
+                Margin { augmentation: keys.slip_augmentation_coefficient, threshold: keys.slip_threshold }
+            },
             keeps_direction: keys.sliding_direction == SlidingDirection::Kept,
             reset_frequency: usize::try_from(keys.slip_step_reset_frequency).ok().filter(|f| *f > 0),
         },
@@ -209,10 +225,11 @@ fn interaction(
         estimate: [whole.parameters.stiffness_factor, whole.parameters.penalty_scale_factor],
         penalty_factor: families.penalty_factor,
         least_penalty: families.least_penalty,
-        weighted_penalty: whole.parameters.penalty_of_weighted_gaps,
+        weighted_penalty: named.by_node.is_some() && whole.parameters.penalty_of_weighted_gaps,
         uzawa: uzawa(settings)?,
         explicit: explicit_penalty(settings, request)?,
         use_scale_factor: whole.parameters.use_scale_factor,
+        own_scale: named.by_node.is_some(),
         // Where slips only decide, they count no more than gaps.
         tangent_factor: if whole.augmentation == Some(Augmentation::Node) {
             tangent_factor.min(1.0)
