@@ -174,6 +174,36 @@ fn components_and_perturbed_lagrangian_condense_too() {
     }
 }
 
+/// Every kind of multiplier, with and without friction, held ones and those of slivers among them.
+#[test]
+fn multigrid_has_the_answer_of_the_direct_engine() {
+    for case in [
+        "contact_2d/nonmatching",
+        "contact_2d/opening",
+        "contact_2d/slope",
+        "contact_2d/free_sides",
+        "contact_2d/friction_stick",
+        "contact_2d/friction_slide_millimetres",
+        "contact_2d/friction_arc",
+        "contact_3d/hexahedra_nonmatching",
+        "contact_3d/hexahedra_on_tetrahedra",
+        "contact_3d/tetrahedra_on_hexahedra",
+        "contact_3d/slope_tetrahedra",
+        "contact_3d/friction_stick",
+        "mesh_tying/coarse_slave",
+        "mesh_tying/hexahedra",
+        "self_contact/slit_components",
+    ] {
+        let direct = Run::converged(case, DIRECT, as_it_is);
+        let multigrid = Run::converged(case, "amgcl", |deck| {
+            deck["solver_settings"]["linear_solver_settings"]["direct_below"] = json!(0);
+        });
+        assert!(multigrid.is_solved_by("multigrid"), "{case}: {:?}", multigrid.engines);
+        let (difference, field) = direct.difference(&multigrid);
+        assert!(difference < AGREE, "{case}: {field} differs by {difference:e}");
+    }
+}
+
 /// Gradients serve while nothing touches, GMRES stands in where contact leaves no symmetry.
 #[test]
 fn conjugate_gradients_go_as_far_as_symmetry() {

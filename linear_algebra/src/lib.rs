@@ -28,6 +28,7 @@ mod lu;
 
 mod condensation;
 mod krylov;
+mod multigrid;
 mod precondition;
 
 mod condition;
@@ -39,7 +40,8 @@ pub use csr::Csr;
 pub use partition::{WeightedGraph, partition_graph};
 pub use rank::rank;
 pub use solver::{
-    DirectSettings, Engine, KrylovSettings, LinearSolver, Multipliers, Preconditioner, SolveError, SolveReport,
+    DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Preconditioner, SolveError,
+    SolveReport,
 };
 pub use system::{Layout, Symmetry, System};
 
@@ -54,5 +56,6 @@ pub fn create(engine: Engine) -> Box<dyn LinearSolver> {
         Engine::Gmres { krylov: settings, restart } => {
             Box::new(krylov::KrylovSolver::new(krylov::Method::Gmres { restart }, settings))
         }
+        Engine::Multigrid(settings) => Box::new(multigrid::MultigridSolver::new(settings)),
     }
 }

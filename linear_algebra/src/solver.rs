@@ -62,12 +62,22 @@ pub trait LinearSolver: Send {
     /// Name of the engine, as in [`SolveReport::engine`].
     fn name(&self) -> &'static str;
 
+    /// The engine in words, and which systems it solves if it does not solve all.
+    fn says(&self) -> String {
+        self.name().to_owned()
+    }
+
     /// Solves `(bulk + coupling) x = rhs`; `x` is the first guess of iterative engines and the answer.
     ///
     /// # Errors
     /// [`SolveError::Singular`] when the matrix has no inverse, [`SolveError::NotConverged`] when the residual stays
     /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
+
+    /// Whether a small part without symmetry may join the coupling at no cost.
+    fn takes_loads(&self) -> bool {
+        false
+    }
 
     /// Why the last solve did not condense multipliers that it should have.
     fn not_condensed(&self) -> Option<NotCondensable> {
@@ -91,6 +101,9 @@ pub enum Engine {
         /// Directions kept before a restart.
         restart: usize,
     },
+    /// Smoothed-aggregation multigrid with the near-null space of the layout, as the preconditioner of conjugate gradients
+    /// or, with multipliers or without symmetry, of GMRES; multipliers leave by their constraints.
+    Multigrid(MultigridSettings),
 }
 
 impl Default for Engine {
@@ -162,8 +175,28 @@ pub enum Preconditioner {
     /// Inverses of the diagonal blocks of the nodes.
     BlockJacobi,
     /// Incomplete LU on the pattern of the matrix.
-    Ilu0,
-    /// Smoothed-aggregation multigrid with the near-null space of the layout.
     #[default]
-    SmoothedAggregation,
+    Ilu0,
+}
+
+/// Settings of [`Engine::Multigrid`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct MultigridSettings {
+    /// Relative residual at which iteration stops, with the equations of multipliers at the size of forces.
+    pub tolerance: f64,
+    /// Largest number of iterations.
+    pub iterations: usize,
+    /// Equations below which the direct engine solves: where rows have many entries, as those of solids in space, and else.
+    pub least: [usize; 2],
+}
+
+impl MultigridSettings {
+    /// Equations from which on multigrid is faster than factorisation: in space, and else.
+    pub const FASTER: [usize; 2] = [30_000, 300_000];
+}
+
+impl Default for MultigridSettings {
+    fn default() -> Self {
+        Self { tolerance: 1e-9, iterations: 300, least: [3_000; 2] }
+    }
 }

@@ -51,7 +51,7 @@ pub fn norm(a: &[f64]) -> f64 {
 /// When the lengths differ.
 pub fn add_scaled(factor: f64, x: &[f64], y: &mut [f64]) {
     assert_eq!(x.len(), y.len(), "vectors of one length");
-    y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x);
+    y.par_iter_mut().zip(x).with_min_len(CHUNK).for_each(|(y, x)| *y += factor * x);
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@ mod samples;
 use samples::{Brick, contact, fix};
 use zelus_linear_algebra::{Csr, Engine, KrylovSettings, Layout, Preconditioner, Symmetry, System, create};
 
-const PRECONDITIONERS: [Preconditioner; 4] =
-    [Preconditioner::Identity, Preconditioner::BlockJacobi, Preconditioner::Ilu0, Preconditioner::SmoothedAggregation];
+const PRECONDITIONERS: [Preconditioner; 3] =
+    [Preconditioner::Identity, Preconditioner::BlockJacobi, Preconditioner::Ilu0];
 
 fn clamped_box(cells: usize) -> (Csr, Layout) {
     let brick = Brick { cells: [cells; 3] };
@@ -35,24 +35,8 @@ fn every_preconditioner_converges() {
             let report = solver.solve(&system, &rhs, &mut x).expect("regular");
             assert_eq!((report.engine, report.fallback), (solver.name(), None), "{preconditioner:?}");
             assert!(report.relative_residual < 1e-8);
-            if preconditioner == Preconditioner::SmoothedAggregation {
-                assert!(report.iterations < 30, "{} iterations", report.iterations);
-            }
         }
     }
-}
-
-#[test]
-fn multigrid_iterations_hardly_grow() {
-    let iterations = [8, 16].map(|cells| {
-        let (bulk, layout) = clamped_box(cells);
-        let rhs: Vec<f64> = (0..bulk.rows).map(|i| (i % 7) as f64 - 3.0).collect();
-        let mut x = vec![0.0; bulk.rows];
-        let [engine, _] = engines(Preconditioner::SmoothedAggregation);
-        let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
-        create(engine).solve(&system, &rhs, &mut x).expect("regular").iterations
-    });
-    assert!(iterations[1] <= iterations[0] + 8, "{iterations:?}");
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The linear solvers that decks name, and the engine that serves each.
 
-use zelus_linear_algebra::{DirectSettings, Engine, KrylovSettings, LinearSolver, Multipliers, Preconditioner, create};
+use zelus_linear_algebra::{
+    DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Preconditioner, create,
+};
 
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
@@ -18,7 +20,7 @@ pub(super) type EngineFactory = fn(&Settings, Multipliers) -> Engine;
 pub(super) fn make(settings: &Settings, multipliers: Multipliers) -> Result<(Box<dyn LinearSolver>, String)> {
     let given = settings.node().get("solver_type").map(|n| n.str()).transpose()?.unwrap_or("");
     let name = given.rsplit('.').next().unwrap_or(given);
-    let name = if name.is_empty() { "sparse_lu" } else { name };
+    let name = if name.is_empty() { "automatic" } else { name };
     let entry = registry::require(Kind::LinearSolver, name).map_err(|d| d.at(settings.key_place("solver_type")))?;
     let Build::Factory(factory) = entry.build else { unreachable!("linear solvers register a factory") };
     let factory = factory.downcast_ref::<EngineFactory>().expect("linear solvers register an EngineFactory");
@@ -28,7 +30,7 @@ pub(super) fn make(settings: &Settings, multipliers: Multipliers) -> Result<(Box
     let how = if condenses { ", multipliers are condensed" } else { "" };
     let solver = create(engine);
     let asked = if given.is_empty() { "no linear solver named".to_owned() } else { format!("\"{given}\"") };
-    let says = format!("linear solver: {asked} is served by {}{how}", solver.name());
+    let says = format!("linear solver: {asked} is served by {}{how}", solver.says());
     Ok((solver, says))
 }
 
@@ -83,6 +85,25 @@ fn direct(_: &Settings, _: Multipliers) -> Engine {
     Engine::Direct(DirectSettings::default())
 }
 
+/// Multigrid by the settings of a deck, with the direct engine below `least` equations where they do not say otherwise.
+fn multigrid_from(settings: &Settings, least: [usize; 2]) -> Engine {
+    let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
+    let usual = MultigridSettings::default();
+    Engine::Multigrid(MultigridSettings {
+        tolerance: number("tolerance").unwrap_or(usual.tolerance).min(usual.tolerance),
+        least: number("direct_below").map_or(least, |equations| [equations as usize; 2]),
+        ..usual
+    })
+}
+
+fn multigrid(settings: &Settings, _: Multipliers) -> Engine {
+    multigrid_from(settings, MultigridSettings::default().least)
+}
+
+fn automatic(settings: &Settings, _: Multipliers) -> Engine {
+    multigrid_from(settings, MultigridSettings::FASTER)
+}
+
 fn krylov(settings: &Settings, multipliers: Multipliers) -> KrylovSettings {
     let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
     let mut krylov = KrylovSettings { preconditioner: Preconditioner::Ilu0, multipliers, ..KrylovSettings::default() };
@@ -101,10 +122,14 @@ register! { LinearSolver "sparse_lu",
     about: "multifrontal factorisation; the interface of contact in a dense Schur complement",
     build: Build::Factory(&(direct as EngineFactory)),
 }
+register! { LinearSolver "automatic",
+    about: "what is fastest: factorisation of small systems, multigrid for big ones",
+    build: Build::Factory(&(automatic as EngineFactory)),
+}
 register! { LinearSolver "amgcl",
     aliases: &["AMGCL", "amgcl_raw", "multigrid", "deflated_cg"],
-    about: "served by the direct engine, which is faster at the sizes one machine holds and never leaves a residual",
-    build: Build::Factory(&(direct as EngineFactory)),
+    about: "smoothed-aggregation multigrid with rigid motions, for conjugate gradients or GMRES",
+    build: Build::Factory(&(multigrid as EngineFactory)),
 }
 register! { LinearSolver "cg",
     aliases: &["CGSolver", "conjugate_gradient"],

@@ -11,6 +11,7 @@ mod tangents;
 
 use std::time::Instant;
 
+use rayon::prelude::*;
 use zelus_linear_algebra::{Csr, Symmetry, System};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
@@ -20,6 +21,7 @@ use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::distribution::Distribution;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
+use super::near_null_space::{Place, near_null_space};
 use super::numbering::Numbering;
 use super::reach::{is_displacement, reach};
 use super::redistribution::Redistribution;
@@ -50,10 +52,12 @@ pub struct Assembler {
     pattern: BulkPattern,
     element_numbers: Vec<Vec<u32>>,
     condition_numbers: Vec<Vec<u32>>,
+    /// What constant tangents give to the bulk.
     constant: Option<Vec<f64>>,
     mass: Option<Vec<f64>>,
     lumped: bool,
-    bulk: Csr,
+    /// Values of the bulk's tangent where they are not the constant ones.
+    bulk: Option<Vec<f64>>,
     bulk_general: bool,
     loads: GroupMatrix,
     coupling: GroupMatrix,
@@ -145,7 +149,6 @@ impl Assembler {
         Self {
             element_numbers: numbers(&part.element_blocks),
             condition_numbers: numbers(&part.condition_blocks),
-            bulk: zero_matrix(&pattern),
             loads: GroupMatrix::new(&part.dofs, &loads, &[], |_| true),
             pattern,
             lumped: lumped_mass,
@@ -176,6 +179,14 @@ impl Assembler {
         let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
         if world().any(changed) {
             self.equations = equations;
+            if self.distribution.is_none() {
+                let place = |&number: &u32| {
+                    let dof = &part.dofs.dofs()[number as usize];
+                    (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]))
+                };
+                let places: Vec<Place> = self.equations.unknowns().iter().map(place).collect();
+                self.equations.layout.near_null_space = near_null_space(&places);
+            }
             self.numbering = self.distribution.as_ref().map(|d| Numbering::new(&self.equations, d));
             self.stamps.bulk_graph += 1;
             self.stamps.bulk_values += 1;
@@ -190,7 +201,8 @@ impl Assembler {
             self.coupling = GroupMatrix::new(&part.dofs, &blocks, &self.interaction_unknowns, is_own);
             self.coupling_graph = Some(graph);
             self.stamps.coupling_graph += 1;
-            self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, false);
+            let coupling = &self.coupling.matrix;
+            self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, false);
         }
         Ok(())
     }
@@ -294,7 +306,9 @@ impl Assembler {
     /// Subtracts (all tangents) · `increment` from `rhs`, both over all unknowns.
     pub fn subtract_product(&self, increment: &[f64], rhs: &mut [f64]) {
         let subtract = |rhs: &mut [f64]| {
-            self.bulk.mul_vec_subtract(increment, rhs);
+            if let Some(bulk) = self.bulk_values() {
+                self.mul_subtract(bulk, increment, rhs);
+            }
             self.loads.matrix.mul_vec_subtract(increment, rhs);
             self.coupling.matrix.mul_vec_subtract(increment, rhs);
         };
@@ -336,14 +350,19 @@ impl Assembler {
             [0, 1, 2, 3].map(|i| sizes.iter().map(|s| s[i]).collect::<Vec<f64>>());
         let mut out = vec![0.0; values.len()];
         let bulk = if self.traits.variable_elements { &position } else { &displacement };
-        abs_product(&self.bulk, bulk, &mut out);
-        let product = |matrix: &Csr, x: &[f64]| {
+        let product = |matrix: &Csr, values: &[f64], x: &[f64]| {
             let mut product = vec![0.0; x.len()];
-            abs_product(matrix, x, &mut product);
+            abs_product(matrix, values, x, &mut product);
             product
         };
-        let [coupled, pushed, gaps] = [&position, &multiplier, &farthest].map(|x| product(&self.coupling.matrix, x));
-        let bodies = product(&self.bulk, &farthest);
+        let coupling = &self.coupling.matrix;
+        let [coupled, pushed, gaps] =
+            [&position, &multiplier, &farthest].map(|x| product(coupling, &coupling.values, x));
+        let mut bodies = vec![0.0; values.len()];
+        if let Some(values) = self.bulk_values() {
+            abs_product(&self.pattern.zero, values, bulk, &mut out);
+            bodies = product(&self.pattern.zero, values, &farthest);
+        }
         for (n, dof) in part.dofs.dofs().iter().enumerate() {
             // Multipliers stand in the tangent of turning normals, too: forces are bounded by the bodies alone.
             out[n] += match dof.multiplier {
@@ -354,6 +373,11 @@ impl Assembler {
         self.add_up(&mut out);
         out.iter_mut().for_each(|v| *v *= f64::EPSILON);
         out
+    }
+
+    /// Values of the bulk's tangent on its pattern, once there are any.
+    fn bulk_values(&self) -> Option<&[f64]> {
+        self.bulk.as_deref().or(self.constant.as_deref())
     }
 
     fn mul_subtract(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
@@ -396,16 +420,6 @@ fn bulk_pattern(part: &ModelPart, groups: &[Vec<u32>]) -> BulkPattern {
     BulkPattern::new(&part.dofs, part.nodes.len(), blocks, groups, |node| part.owns_node(node))
 }
 
-/// A matrix of this pattern; cloned zeros are written to memory, new ones are not.
-fn zero_matrix(pattern: &BulkPattern) -> Csr {
-    Csr {
-        rows: pattern.zero.rows,
-        row_starts: pattern.zero.row_starts.clone(),
-        columns: pattern.zero.columns.clone(),
-        values: vec![0.0; pattern.zero.entries()],
-    }
-}
-
 fn is_variable(block: &dyn EntityBlock) -> bool {
     matches!(block.tangent(), Tangent::Symmetric | Tangent::General)
 }
@@ -422,9 +436,11 @@ fn blocks_of(interactions: &[Box<dyn Interaction>]) -> Blocks<'_> {
     interactions.iter().flat_map(|interaction| interaction.blocks()).collect()
 }
 
-fn abs_product(matrix: &Csr, x: &[f64], out: &mut [f64]) {
-    for (row, y) in out.iter_mut().enumerate().take(matrix.rows) {
-        let (columns, values) = matrix.row(row);
+/// Adds `|A| x` of the matrix A with this pattern and these values.
+fn abs_product(pattern: &Csr, values: &[f64], x: &[f64], out: &mut [f64]) {
+    out.par_iter_mut().enumerate().with_min_len(512).take(pattern.rows).for_each(|(row, y)| {
+        let (columns, _) = pattern.row(row);
+        let values = &values[pattern.row_starts[row]..pattern.row_starts[row + 1]];
         *y += columns.iter().zip(values).map(|(&c, v)| v.abs() * x[c as usize]).sum::<f64>();
-    }
+    });
 }

@@ -192,10 +192,11 @@ impl Equations {
             .collect()
     }
 
-    /// TᵀA T.
-    pub fn reduce_matrix(&self, full: &Csr, into: &mut Csr, same_pattern: bool) {
+    /// TᵀA T of the matrix A with the pattern of `full` and these values.
+    pub fn reduce_matrix(&self, full: &Csr, values: &[f64], into: &mut Csr, same_pattern: bool) {
+        assert_eq!(values.len(), full.entries(), "length of values");
         if self.has_slaves && self.touches_slaves(full) {
-            *into = self.reduce_constrained(full);
+            *into = self.reduce_constrained(full, values);
             return;
         }
         if !same_pattern {
@@ -213,8 +214,8 @@ impl Equations {
         }
         let mut at = 0;
         for &n in &self.free {
-            let (cols, values) = full.row(n as usize);
-            for (&column, &value) in cols.iter().zip(values) {
+            let (cols, _) = full.row(n as usize);
+            for (&column, &value) in cols.iter().zip(&values[full.row_starts[n as usize]..]) {
                 if self.is_free(column as usize) {
                     into.values[at] = value;
                     at += 1;
@@ -240,12 +241,13 @@ impl Equations {
         }
     }
 
-    fn reduce_constrained(&self, full: &Csr) -> Csr {
+    fn reduce_constrained(&self, full: &Csr, values: &[f64]) -> Csr {
         let mut triplets = Vec::with_capacity(full.entries());
         let none = Follow { equation: 0, weight: 0.0, force: 0.0 };
         let (mut left, mut right) = ([none], [none]);
         for row in 0..full.rows {
-            let (columns, values) = full.row(row);
+            let (columns, _) = full.row(row);
+            let values = &values[full.row_starts[row]..];
             for to in self.terms(row, &mut left) {
                 for (&column, &value) in columns.iter().zip(values) {
                     for of in self.terms(column as usize, &mut right) {
@@ -354,7 +356,7 @@ mod tests {
             assert_eq!(given.expand(&[1.0, 3.0]), [1.0, 3.0, 2.0]);
             assert_eq!(given.reduce(&[1.0, 2.0, 10.0]), [1.0 + 10.0 * forces[0], 2.0 + 10.0 * forces[1]]);
             let mut reduced = Csr::default();
-            given.reduce_matrix(&full, &mut reduced, false);
+            given.reduce_matrix(&full, &full.values, &mut reduced, false);
             // The row of the slave over the equations is 5 x₀ + 4 (x₀ + x₁)/2.
             let [f, g] = forces;
             let expected = [[2.0 + 7.0 * f, 2.0 * f], [7.0 * g, 3.0 + 2.0 * g]];

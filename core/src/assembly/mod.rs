@@ -7,6 +7,7 @@ mod dof_table;
 mod equations;
 mod group_matrix;
 mod local;
+mod near_null_space;
 mod numbering;
 mod reach;
 mod redistribution;
@@ -16,5 +17,6 @@ pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties, s
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};
+pub use near_null_space::{Place, near_null_space};
 pub use numbering::Numbering;
 pub use reach::{is_displacement, reach};

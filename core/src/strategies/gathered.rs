@@ -8,7 +8,7 @@ use rayon::ThreadPool;
 use zelus_linear_algebra::{Csr, Layout, NotCondensable, System};
 
 use super::meaning::Meaning;
-use crate::assembly::{Assembler, DofTable, Numbering};
+use crate::assembly::{Assembler, DofTable, Numbering, Place, near_null_space};
 use crate::communication::{threads_while_others_wait, world};
 use crate::model::Nodes;
 
@@ -26,6 +26,9 @@ pub(super) struct Gathered {
     #[cfg(feature = "petsc")]
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,
 }
+
+/// Numbers that say what an equation is: place of its node, meaning, position.
+const NUMBERS: usize = 7;
 
 /// All equations on rank 0.
 #[derive(Default)]
@@ -45,24 +48,28 @@ impl Whole {
             let number = unknowns[equation as usize];
             let place = assembler.distribution().map_or(0, |distribution| distribution.place(number as usize));
             let [variable, node, multiplier] = Meaning::of(dofs, nodes, number).pack(dofs);
-            [f64::from(place), variable, node, multiplier]
+            let [x, y, z] = nodes.initial[dofs.dofs()[number as usize].node as usize];
+            [f64::from(place), variable, node, multiplier, x, y, z]
         };
         let own: Vec<f64> = numbering.own.iter().flat_map(row).collect();
-        let counts: Vec<usize> = numbering.counts().iter().map(|count| 4 * count).collect();
+        let counts: Vec<usize> = numbering.counts().iter().map(|count| NUMBERS * count).collect();
         let rows = world().gather_to_root(&own, &counts);
-        let rows: Vec<&[f64]> = rows.chunks_exact(4).collect();
+        let rows: Vec<&[f64]> = rows.chunks_exact(NUMBERS).collect();
         let mut order: Vec<u32> = (0..rows.len() as u32).collect();
         // Equations of a node stand together already, in their order.
         order.sort_by_key(|&number| rows[number as usize][0] as u32);
         self.places = vec![0; rows.len()];
         order.iter().enumerate().for_each(|(place, &number)| self.places[number as usize] = place as u32);
         let sorted = || order.iter().map(|&number| rows[number as usize]);
+        self.meanings = sorted().filter_map(|row| Meaning::unpack(&row[1..4], dofs)).collect();
+        let positions = sorted().map(|row| [row[4], row[5], row[6]]);
+        let place = |(meaning, at): (&Meaning, _)| (!meaning.multiplier).then_some((meaning.variable, at));
+        let places: Vec<Place> = self.meanings.iter().zip(positions).map(place).collect();
         self.layout = Layout {
             node: sorted().map(|row| row[0] as u32).collect(),
-            multiplier: sorted().map(|row| row[3] != 0.0).collect(),
-            near_null_space: Vec::new(),
+            multiplier: self.meanings.iter().map(|meaning| meaning.multiplier).collect(),
+            near_null_space: near_null_space(&places),
         };
-        self.meanings = sorted().filter_map(|row| Meaning::unpack(&row[1..], dofs)).collect();
     }
 }
 

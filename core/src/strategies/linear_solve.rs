@@ -110,7 +110,8 @@ fn elsewhere() -> SolveReport {
 
 /// Solves for the increment of the equations of `system`.
 ///
-/// Follower loads make the tangent slightly unsymmetric. The factorised rest serves as the preconditioner of a stationary
+/// Follower loads make the tangent slightly unsymmetric. Engines that do not mind take them with the coupling. For others the
+/// factorised rest serves as the preconditioner of a stationary
 /// iteration; when their tangents are too large for it, they are merged into the matrix, which then has `merged_stamps`.
 fn solve_here(
     system: &System<'_>,
@@ -122,6 +123,21 @@ fn solve_here(
 ) -> Result<(Vec<f64>, SolveReport), Failed> {
     let explain = |error: SolveError| explain(&error, Some(system), meaning);
     let mut increment = vec![0.0; rhs.len()];
+    if let Some(loads) = loads
+        && solver.takes_loads()
+    {
+        let coupling = system.coupling.map_or_else(|| loads.clone(), |coupling| coupling.plus(loads));
+        let [graph, values] = merged_stamps;
+        let whole = System {
+            coupling: Some(&coupling),
+            coupling_graph: graph,
+            coupling_values: values,
+            coupling_symmetric: false,
+            ..*system
+        };
+        let report = solver.solve(&whole, rhs, &mut increment).map_err(explain)?;
+        return Ok((increment, report));
+    }
     let mut report = solver.solve(system, rhs, &mut increment).map_err(explain)?;
     let Some(loads) = loads else { return Ok((increment, report)) };
     let scale = vector::norm(rhs);

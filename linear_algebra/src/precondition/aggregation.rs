@@ -1,76 +1,82 @@
-//! Aggregates of nodes and the tentative prolongation that reproduces the near-null space.
+//! Aggregates of node blocks and the tentative prolongation that reproduces the near-null space.
 
-use super::rectangular::{Rectangular, from_rows};
-use crate::csr::Csr;
+use rayon::prelude::*;
 
-const NONE: u32 = u32::MAX;
+use super::block_matrix::BlockMatrix;
+
+/// Aggregate of a block that has no strong neighbour.
+pub(super) const NONE: u32 = u32::MAX;
 /// Share of the geometric mean of two diagonal blocks above which their coupling is strong.
 const STRONG: f64 = 0.02;
 /// Share of a vector that must be left after orthogonalisation for it to be kept.
 const INDEPENDENT: f64 = 1e-6;
 
-/// The graph of strong couplings between groups of equations, as lists of neighbours.
-fn strong_graph(matrix: &Csr, group: &[u32], groups: usize) -> Vec<Vec<u32>> {
-    let mut members = vec![Vec::new(); groups];
-    group.iter().enumerate().for_each(|(i, &g)| members[g as usize].push(i));
-    let mut size = vec![0.0_f64; groups];
-    for i in 0..matrix.rows {
-        let (columns, values) = matrix.row(i);
-        for (&j, value) in columns.iter().zip(values) {
-            if group[j as usize] == group[i] {
-                size[group[i] as usize] += value * value;
-            }
-        }
-    }
-    let mut place = vec![usize::MAX; groups];
-    let mut graph = Vec::with_capacity(groups);
-    for (g, list) in members.iter().enumerate() {
-        let mut blocks: Vec<(u32, f64)> = Vec::new();
-        for &i in list {
-            let (columns, values) = matrix.row(i);
-            for (&j, value) in columns.iter().zip(values) {
-                let h = group[j as usize];
-                if h as usize == g {
-                    continue;
-                }
-                let at = &mut place[h as usize];
-                if *at == usize::MAX {
-                    *at = blocks.len();
-                    blocks.push((h, 0.0));
-                }
-                blocks[*at].1 += value * value;
-            }
-        }
-        blocks.iter().for_each(|&(h, _)| place[h as usize] = usize::MAX);
-        let strong = |&&(h, square): &&(u32, f64)| square > (STRONG * STRONG) * (size[g] * size[h as usize]).sqrt();
-        graph.push(blocks.iter().filter(strong).map(|&(h, _)| h).collect());
-    }
-    graph
+/// The tentative coarse space: each block is interpolated from the one aggregate it belongs to.
+pub(super) struct Tentative {
+    /// Aggregate of each block, or [`NONE`].
+    pub(super) aggregate: Vec<u32>,
+    /// Number of aggregates.
+    pub(super) aggregates: usize,
+    /// Rows of the prolongation, `height × modes` entries a block by columns.
+    pub(super) values: Vec<f32>,
+    /// The modes on the aggregates, as `modes` vectors of `aggregates × modes` entries.
+    pub(super) modes: Vec<Vec<f64>>,
 }
 
-/// Aggregate of each group, and their number; groups without strong neighbours have none.
-fn aggregate(graph: &[Vec<u32>]) -> (Vec<u32>, usize) {
-    let mut of = vec![NONE; graph.len()];
+/// Starts and lists of the strong couplings between blocks.
+fn strong_graph(matrix: &BlockMatrix) -> (Vec<usize>, Vec<u32>) {
+    let size = matrix.size();
+    let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
+    let diagonal: Vec<f64> = (0..matrix.rows)
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|i| {
+            let (columns, values) = matrix.row(i);
+            columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
+        })
+        .collect();
+    let lists: Vec<Vec<u32>> = (0..matrix.rows)
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|i| {
+            let (columns, values) = matrix.row(i);
+            let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| **j as usize != i);
+            let is_strong =
+                |j: u32, block: &[f32]| square(block) > (STRONG * STRONG) * (diagonal[i] * diagonal[j as usize]).sqrt();
+            blocks.filter(|(j, block)| is_strong(**j, block)).map(|(j, _)| *j).collect()
+        })
+        .collect();
+    let mut starts = vec![0];
+    lists.iter().for_each(|list| starts.push(starts[starts.len() - 1] + list.len()));
+    (starts, lists.concat())
+}
+
+/// Aggregate of each block, and their number; blocks without strong neighbours have none.
+fn aggregate(matrix: &BlockMatrix) -> (Vec<u32>, usize) {
+    let (starts, list) = strong_graph(matrix);
+    let neighbours = |g: usize| &list[starts[g]..starts[g + 1]];
+    let mut of = vec![NONE; matrix.rows];
     let mut count = 0;
-    for (g, neighbours) in graph.iter().enumerate() {
-        if of[g] == NONE && !neighbours.is_empty() && neighbours.iter().all(|&h| of[h as usize] == NONE) {
+    for g in 0..matrix.rows {
+        let near = neighbours(g);
+        if of[g] == NONE && !near.is_empty() && near.iter().all(|&h| of[h as usize] == NONE) {
             of[g] = count;
-            neighbours.iter().for_each(|&h| of[h as usize] = count);
+            near.iter().for_each(|&h| of[h as usize] = count);
             count += 1;
         }
     }
     let first = of.clone();
-    for (g, neighbours) in graph.iter().enumerate() {
+    for g in 0..matrix.rows {
         if of[g] == NONE
-            && let Some(&h) = neighbours.iter().find(|&&h| first[h as usize] != NONE)
+            && let Some(&h) = neighbours(g).iter().find(|&&h| first[h as usize] != NONE)
         {
             of[g] = first[h as usize];
         }
     }
-    for (g, neighbours) in graph.iter().enumerate() {
-        if of[g] == NONE && !neighbours.is_empty() {
+    for g in 0..matrix.rows {
+        if of[g] == NONE && !neighbours(g).is_empty() {
             of[g] = count;
-            for &h in neighbours {
+            for &h in neighbours(g) {
                 if of[h as usize] == NONE {
                     of[h as usize] = count;
                 }
@@ -81,66 +87,65 @@ fn aggregate(graph: &[Vec<u32>]) -> (Vec<u32>, usize) {
     (of, count as usize)
 }
 
-/// A coarse space: prolongation, aggregate of each of its equations, and its near-null space.
-pub(super) struct Coarse {
-    pub(super) prolongation: Rectangular,
-    pub(super) group: Vec<u32>,
-    pub(super) near_null_space: Vec<Vec<f64>>,
+/// The tentative coarse space of a matrix with these near-null vectors; `None` when nothing aggregates.
+pub(super) fn coarsen(matrix: &BlockMatrix, near_null_space: &[Vec<f64>]) -> Option<Tentative> {
+    let (aggregate, aggregates) = aggregate(matrix);
+    if aggregates == 0 {
+        return None;
+    }
+    let (height, modes) = (matrix.height, near_null_space.len());
+    let mut members = vec![Vec::new(); aggregates];
+    for (i, &a) in aggregate.iter().enumerate().filter(|(_, a)| **a != NONE) {
+        members[a as usize].push(i);
+    }
+    let orthonormal: Vec<(Vec<f64>, Vec<f64>)> =
+        members.par_iter().with_min_len(16).map(|list| orthonormalise(list, height, near_null_space)).collect();
+    let mut values = vec![0.0; matrix.rows * height * modes];
+    let mut coarse = vec![vec![0.0; aggregates * modes]; modes];
+    for (a, (list, (basis, triangle))) in members.iter().zip(&orthonormal).enumerate() {
+        let length = list.len() * height;
+        for (at, &i) in list.iter().enumerate() {
+            for h in 0..height {
+                for m in 0..modes {
+                    values[(i * modes + m) * height + h] = basis[m * length + at * height + h] as f32;
+                }
+            }
+        }
+        for (m, vector) in coarse.iter_mut().enumerate() {
+            vector[a * modes..(a + 1) * modes].copy_from_slice(&triangle[m * modes..(m + 1) * modes]);
+        }
+    }
+    Some(Tentative { aggregate, aggregates, values, modes: coarse })
 }
 
-/// The tentative coarse space of `matrix`, whose equations belong to groups; `None` when nothing aggregates.
-pub(super) fn coarsen(matrix: &Csr, group: &[u32], near_null_space: &[Vec<f64>]) -> Option<Coarse> {
-    let groups = group.iter().max().map_or(0, |&g| g as usize + 1);
-    let (aggregate_of, aggregates) = aggregate(&strong_graph(matrix, group, groups));
-    let mut members = vec![Vec::new(); aggregates];
-    for (i, &g) in group.iter().enumerate() {
-        if aggregate_of[g as usize] != NONE {
-            members[aggregate_of[g as usize] as usize].push(i);
+/// Orthonormal vectors on the blocks of `list` that span the near-null space there, one after the other, and each of its
+/// vectors in their terms; a vector that depends on those before it is zero.
+fn orthonormalise(list: &[usize], height: usize, near_null_space: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
+    let (length, modes) = (list.len() * height, near_null_space.len());
+    let mut basis = vec![0.0; length * modes];
+    let mut triangle = vec![0.0; modes * modes];
+    let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    for (m, vector) in near_null_space.iter().enumerate() {
+        let (done, rest) = basis.split_at_mut(m * length);
+        let local = &mut rest[..length];
+        for (at, &i) in list.iter().enumerate() {
+            local[at * height..(at + 1) * height].copy_from_slice(&vector[i * height..(i + 1) * height]);
+        }
+        let before = norm(local);
+        for _ in 0..2 {
+            for (q, known) in done.chunks_exact(length).enumerate() {
+                let part: f64 = known.iter().zip(local.iter()).map(|(q, v)| q * v).sum();
+                triangle[m * modes + q] += part;
+                local.iter_mut().zip(known).for_each(|(v, q)| *v -= part * q);
+            }
+        }
+        let after = norm(local);
+        if after > INDEPENDENT * before {
+            local.iter_mut().for_each(|v| *v /= after);
+            triangle[m * modes + m] = after;
+        } else {
+            local.fill(0.0);
         }
     }
-    let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); matrix.rows];
-    let mut coarse_group = Vec::new();
-    let mut coarse_space: Vec<Vec<f64>> = vec![Vec::new(); near_null_space.len()];
-    for (a, list) in members.iter().enumerate() {
-        let mut kept: Vec<Vec<f64>> = Vec::new();
-        let first = coarse_group.len() as u32;
-        let mut coefficients: Vec<Vec<f64>> = Vec::new();
-        for vector in near_null_space {
-            let mut local: Vec<f64> = list.iter().map(|&i| vector[i]).collect();
-            let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let before = length(&local);
-            let mut row = vec![0.0; kept.len()];
-            for _ in 0..2 {
-                for (q, total) in kept.iter().zip(&mut row) {
-                    let part: f64 = q.iter().zip(&local).map(|(q, v)| q * v).sum();
-                    *total += part;
-                    local.iter_mut().zip(q).for_each(|(v, q)| *v -= part * q);
-                }
-            }
-            let after = length(&local);
-            if after > INDEPENDENT * before {
-                local.iter_mut().for_each(|v| *v /= after);
-                row.push(after);
-                kept.push(local);
-            }
-            coefficients.push(row);
-        }
-        for (q, vector) in kept.iter().enumerate() {
-            coarse_group.push(a as u32);
-            for (&i, &value) in list.iter().zip(vector) {
-                if value != 0.0 {
-                    rows[i].push((first + q as u32, value));
-                }
-            }
-        }
-        for (vector, row) in coarse_space.iter_mut().zip(&coefficients) {
-            vector.extend((0..kept.len()).map(|q| row.get(q).copied().unwrap_or(0.0)));
-        }
-    }
-    let columns = coarse_group.len();
-    (columns > 0).then(|| Coarse {
-        prolongation: from_rows(columns, rows),
-        group: coarse_group,
-        near_null_space: coarse_space,
-    })
+    (basis, triangle)
 }

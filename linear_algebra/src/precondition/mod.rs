@@ -2,9 +2,13 @@
 
 mod aggregation;
 mod block_jacobi;
+mod block_matrix;
+mod constrained;
 mod ilu0;
 mod multigrid;
-mod rectangular;
+
+pub(crate) use constrained::Constrained;
+pub(crate) use multigrid::Multigrid;
 
 use crate::csr::Csr;
 use crate::solver::Preconditioner;
@@ -28,6 +32,5 @@ pub(crate) fn create(kind: Preconditioner, matrix: &Csr, layout: &Layout) -> Box
         Preconditioner::Identity => Box::new(Identity),
         Preconditioner::BlockJacobi => Box::new(block_jacobi::BlockJacobi::new(matrix, &layout.node)),
         Preconditioner::Ilu0 => Box::new(ilu0::Ilu0::new(matrix)),
-        Preconditioner::SmoothedAggregation => Box::new(multigrid::Multigrid::new(matrix, layout)),
     }
 }

@@ -1,40 +1,48 @@
-//! Smoothed-aggregation multigrid: one V-cycle with Chebyshev smoothing, symmetric for a symmetric matrix.
+//! Smoothed-aggregation multigrid on node blocks: one V-cycle with Chebyshev smoothing in single precision, symmetric for
+//! a symmetric matrix.
 //!
 //! Vaněk, Mandel and Brezina, Computing 56 (1996). The prolongation is `P = (I - ω D⁻¹ A) T` with the tentative `T`
-//! of [`super::aggregation`], `D` the diagonal and `ω = 4 / (3 ρ(D⁻¹ A))`.
+//! of [`super::aggregation`], `D` the diagonal blocks and `ω = 4 / (3 ρ(D⁻¹ A))`.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
-use super::Precondition;
-use super::aggregation::{Coarse, coarsen};
-use super::rectangular::{Rectangular, product};
+use super::aggregation::{NONE, coarsen};
+use super::block_matrix::{BlockMatrix, BlockRow, Into, multiplier};
 use crate::check;
-use crate::csr::Csr;
+use crate::dense_lu;
 use crate::multifrontal::{Factor, Kind, Scatter};
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
-use crate::vector;
 
 /// Equations below which a level is solved directly.
-const COARSEST: usize = 1000;
+const COARSEST: usize = 1500;
 /// Largest number of levels.
 const LEVELS: usize = 12;
 /// Steps of the power iteration for the spectral radius.
-const POWER_STEPS: usize = 12;
+const POWER_STEPS: usize = 10;
 /// What the power iteration may have missed.
-const SAFETY: f64 = 1.1;
+const SAFETY: f32 = 1.1;
 /// Polynomial degree of the smoother.
 const DEGREE: usize = 2;
 /// Share of the spectrum that the smoother damps, counted from above.
-const DAMPED_FROM: f64 = 0.1;
+const DAMPED_FROM: f32 = 0.1;
 
 struct Level {
-    matrix: Csr,
-    inverse_diagonal: Vec<f64>,
+    matrix: BlockMatrix,
+    /// Inverse diagonal blocks, by rows.
+    inverse: Vec<f32>,
     /// Upper bound of the spectrum of `D⁻¹ A`.
-    radius: f64,
-    prolongation: Rectangular,
-    restriction: Rectangular,
+    radius: f32,
+    prolongation: BlockMatrix,
+    restriction: BlockMatrix,
+}
+
+/// Vectors of a level during a cycle.
+#[derive(Default)]
+struct Vectors {
+    b: Vec<f32>,
+    x: Vec<f32>,
+    step: Vec<f32>,
 }
 
 /// The hierarchy.
@@ -42,147 +50,204 @@ pub(crate) struct Multigrid {
     levels: Vec<Level>,
     /// Factorised matrix of the last level; `None` when it has no equations.
     coarsest: Option<Factor>,
+    vectors: Mutex<Vec<Vectors>>,
 }
 
 impl Multigrid {
-    /// Builds the hierarchy on `matrix`.
-    pub(crate) fn new(matrix: &Csr, layout: &Layout) -> Self {
-        let mut near_null_space = layout.near_null_space.clone();
-        if near_null_space.is_empty() {
-            near_null_space = translations(&layout.node);
-        }
-        let mut group = layout.node.clone();
-        let mut matrix = matrix.clone();
-        let mut levels = Vec::new();
-        while matrix.rows > COARSEST && levels.len() < LEVELS {
-            let Some(coarse) = coarsen(&matrix, &group, &near_null_space) else { break };
-            if coarse.group.len() * 4 > matrix.rows * 3 {
+    /// Builds the hierarchy on `matrix`, whose near-null vectors have one entry for each of its rows.
+    pub(super) fn new(mut matrix: BlockMatrix, mut near_null_space: Vec<Vec<f64>>) -> Self {
+        let mut levels: Vec<Level> = Vec::new();
+        let equations = |matrix: &BlockMatrix| matrix.rows * matrix.height;
+        while equations(&matrix) > COARSEST && levels.len() < LEVELS {
+            let Some(coarse) = coarsen(&matrix, &near_null_space) else { break };
+            if coarse.aggregates * near_null_space.len() * 4 > equations(&matrix) * 3 {
                 break;
             }
-            let (level, next) = Level::new(matrix, &coarse);
+            let (level, next) = Level::new(matrix, &coarse.aggregate, coarse.aggregates, &coarse.values);
             levels.push(level);
             matrix = next;
-            (group, near_null_space) = (coarse.group, coarse.near_null_space);
+            near_null_space = coarse.modes;
         }
-        Self { levels, coarsest: factorise(&matrix, group) }
+        let size = |rows: usize| Vectors { b: vec![0.0; rows], x: vec![0.0; rows], step: vec![0.0; rows] };
+        let mut vectors: Vec<Vectors> = levels.iter().map(|l| size(equations(&l.matrix))).collect();
+        vectors.push(size(equations(&matrix)));
+        Self { levels, coarsest: factorise(&matrix), vectors: Mutex::new(vectors) }
     }
 
-    fn cycle(&self, depth: usize, b: &[f64], x: &mut [f64]) {
+    /// Replaces `x` by an approximation of `A⁻¹ x`.
+    pub(crate) fn apply(&self, x: &mut [f64]) {
+        let largest = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        if largest == 0.0 || !largest.is_finite() {
+            return;
+        }
+        let mut vectors = self.vectors.lock().expect("no cycle panics");
+        vectors[0].b.iter_mut().zip(x.iter()).for_each(|(b, x)| *b = (x / largest) as f32);
+        self.cycle(0, &mut vectors);
+        x.iter_mut().zip(&vectors[0].x).for_each(|(x, v)| *x = largest * f64::from(*v));
+    }
+
+    fn cycle(&self, depth: usize, vectors: &mut [Vectors]) {
+        let (here, below) = vectors.split_first_mut().expect("vectors of each level");
         let Some(level) = self.levels.get(depth) else {
-            x.copy_from_slice(b);
+            let mut x: Vec<f64> = here.b.iter().map(|&b| f64::from(b)).collect();
             if let Some(factor) = &self.coarsest {
-                factor.solve(x, |_| {});
+                factor.solve(&mut x, |_| {});
             }
+            here.x.iter_mut().zip(x).for_each(|(to, x)| *to = x as f32);
             return;
         };
-        x.fill(0.0);
-        let mut residual = vec![0.0; b.len()];
-        level.smooth(b, x, &mut residual, true);
-        residual.copy_from_slice(b);
-        level.matrix.mul_vec_subtract(x, &mut residual);
-        let mut coarse_b = vec![0.0; level.prolongation.columns];
-        level.restriction.mul_vec_add(&residual, &mut coarse_b);
-        let mut coarse_x = vec![0.0; coarse_b.len()];
-        self.cycle(depth + 1, &coarse_b, &mut coarse_x);
-        level.prolongation.mul_vec_add(&coarse_x, x);
-        level.smooth(b, x, &mut residual, false);
+        level.smooth(here, true);
+        level.matrix.residual(&here.b, &here.x, &mut here.step);
+        level.restriction.mul_vec(&here.step, &mut below[0].b, Into::Set);
+        self.cycle(depth + 1, below);
+        level.prolongation.mul_vec(&below[0].x, &mut here.x, Into::Add);
+        level.smooth(here, false);
     }
-}
-
-impl Precondition for Multigrid {
-    fn apply(&self, x: &mut [f64]) {
-        let b = x.to_vec();
-        self.cycle(0, &b, x);
-    }
-}
-
-/// One vector for each equation of a node: all nodes move alike.
-fn translations(node: &[u32]) -> Vec<Vec<f64>> {
-    let mut seen = vec![0_usize; node.iter().max().map_or(0, |&g| g as usize + 1)];
-    let mut vectors: Vec<Vec<f64>> = Vec::new();
-    for (i, &g) in node.iter().enumerate() {
-        let component = seen[g as usize];
-        seen[g as usize] += 1;
-        if component == vectors.len() {
-            vectors.push(vec![0.0; node.len()]);
-        }
-        vectors[component][i] = 1.0;
-    }
-    vectors
 }
 
 /// LU of the coarsest matrix; pivots of a singular one are replaced.
-fn factorise(matrix: &Csr, group: Vec<u32>) -> Option<Factor> {
-    let n = matrix.rows;
-    let layout = Layout { node: group, multiplier: vec![false; n], near_null_space: Vec::new() };
-    let symbolic = Arc::new(Symbolic::new(matrix, &layout, &vec![false; n]).ok()?);
-    let scatter = Scatter::new(&symbolic, matrix, false);
-    let scaling = crate::equilibrate::factors(matrix);
-    Factor::new(&symbolic, &scatter, matrix, Kind::Lu { limit: 1e-9 }, Some(scaling), None).ok()
+fn factorise(matrix: &BlockMatrix) -> Option<Factor> {
+    let mut csr = matrix.to_csr();
+    let n = csr.rows;
+    if n == 0 {
+        return None;
+    }
+    // Modes that an aggregate does not have left empty rows.
+    for i in 0..n {
+        if let Some(at) = csr.find(i, i)
+            && csr.values[at] == 0.0
+            && csr.row(i).1.iter().all(|v| *v == 0.0)
+        {
+            csr.values[at] = 1.0;
+        }
+    }
+    let layout = Layout::blocked(matrix.rows, matrix.height);
+    let symbolic = Arc::new(Symbolic::new(&csr, &layout, &vec![false; n]).ok()?);
+    let scatter = Scatter::new(&symbolic, &csr, false);
+    let scaling = crate::equilibrate::factors(&csr);
+    Factor::new(&symbolic, &scatter, &csr, Kind::Lu { limit: 1e-9 }, Some(scaling), None).ok()
 }
 
 impl Level {
-    /// A level and the matrix of the next one.
-    fn new(matrix: Csr, coarse: &Coarse) -> (Self, Csr) {
-        let inverse_diagonal: Vec<f64> =
-            matrix.diagonal().into_iter().map(|d| if d == 0.0 { 1.0 } else { 1.0 / d }).collect();
-        let radius = SAFETY * spectral_radius(&matrix, &inverse_diagonal);
+    /// A level with this tentative prolongation, and the matrix of the next one.
+    fn new(matrix: BlockMatrix, aggregate: &[u32], aggregates: usize, tentative: &[f32]) -> (Self, BlockMatrix) {
+        let inverse = inverse_diagonal(&matrix);
+        let radius = SAFETY * spectral_radius(&matrix, &inverse);
         let omega = 4.0 / 3.0 * SAFETY / radius;
-        let tentative = &coarse.prolongation;
-        let prolongation = product(&matrix, tentative, |i, row| {
-            row.iter_mut().for_each(|(_, value)| *value *= -omega * inverse_diagonal[i]);
-            let range = tentative.starts[i]..tentative.starts[i + 1];
-            for (&j, &value) in tentative.indices[range.clone()].iter().zip(&tentative.values[range]) {
-                match row.iter_mut().find(|(column, _)| *column == j) {
-                    Some((_, sum)) => *sum += value,
-                    None => row.push((j, value)),
+        let (height, width) = (matrix.height, tentative.len() / (matrix.rows * matrix.height).max(1));
+        let (size, wide) = (height * height, height * width);
+        let multiply = multiplier([height, height, width]);
+        let smoothed = |i: usize, row: &mut BlockRow| {
+            let (columns, values) = matrix.row(i);
+            let mut damped = vec![0.0; size];
+            for (&k, block) in columns.iter().zip(values.chunks_exact(size)) {
+                let a = aggregate[k as usize];
+                if a == NONE {
+                    continue;
                 }
+                damped.fill(0.0);
+                for h in 0..height {
+                    for l in 0..height {
+                        let factor = -omega * inverse[i * size + h * height + l];
+                        (0..height).for_each(|w| damped[w * height + h] += factor * block[w * height + l]);
+                    }
+                }
+                if k as usize == i {
+                    (0..height).for_each(|h| damped[h * height + h] += 1.0);
+                }
+                let from = &tentative[k as usize * wide..(k as usize + 1) * wide];
+                multiply([height, height, width], &damped, from, row.block(a));
             }
-        });
+        };
+        let prolongation = BlockMatrix::from_rows([matrix.rows, aggregates], [height, width], smoothed);
         let restriction = prolongation.transpose();
-        let next = product(&restriction, &product(&matrix, &prolongation, |_, _| {}), |_, _| {}).into_csr();
-        (Self { matrix, inverse_diagonal, radius, prolongation, restriction }, next)
+        let next = restriction.times(&matrix.times(&prolongation));
+        (Self { matrix, inverse, radius, prolongation, restriction }, next)
     }
 
     /// Chebyshev iteration on the upper part of the spectrum of `D⁻¹ A`.
-    fn smooth(&self, b: &[f64], x: &mut [f64], residual: &mut [f64], from_zero: bool) {
+    fn smooth(&self, vectors: &mut Vectors, from_zero: bool) {
         let (low, high) = (DAMPED_FROM * self.radius, self.radius);
         let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
         let sigma = middle / half;
         let mut rho = 1.0 / sigma;
-        let mut step = vec![0.0; b.len()];
+        let Vectors { b, x, step } = vectors;
+        if from_zero {
+            x.fill(0.0);
+        }
         for k in 0..DEGREE {
-            residual.copy_from_slice(b);
-            if k > 0 || !from_zero {
-                self.matrix.mul_vec_subtract(x, residual);
-            }
-            let (keep, gain) = if k == 0 {
-                (0.0, 1.0 / middle)
+            let factors = if k == 0 {
+                [0.0, 1.0 / middle]
             } else {
                 let next = 1.0 / (2.0 * sigma - rho);
-                let factors = (next * rho, 2.0 * next / half);
+                let factors = [next * rho, 2.0 * next / half];
                 rho = next;
                 factors
             };
-            let changes = step.iter_mut().zip(residual.iter()).zip(&self.inverse_diagonal);
-            changes.for_each(|((s, r), d)| *s = keep * *s + gain * d * r);
-            vector::add_scaled(1.0, &step, x);
+            if k == 0 {
+                step.fill(0.0);
+            }
+            if k == 0 && from_zero {
+                diagonal_step(&self.inverse, self.matrix.height, b, factors[1], step);
+            } else {
+                self.matrix.smoothing_step(&self.inverse, b, x, factors, step);
+            }
+            x.iter_mut().zip(step.iter()).for_each(|(x, s)| *x += s);
         }
     }
 }
 
+/// `step = gain D⁻¹ b`.
+fn diagonal_step(inverse: &[f32], height: usize, b: &[f32], gain: f32, step: &mut [f32]) {
+    let blocks = b.chunks_exact(height).zip(step.chunks_exact_mut(height)).zip(inverse.chunks_exact(height * height));
+    for ((b, step), inverse) in blocks {
+        for (step, row) in step.iter_mut().zip(inverse.chunks_exact(height)) {
+            *step = gain * row.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
+        }
+    }
+}
+
+/// Inverses of the diagonal blocks, by rows; tiny pivots are lifted, so that they always exist.
+fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
+    let h = matrix.height;
+    let mut out = vec![0.0; matrix.rows * h * h];
+    for (i, out) in out.chunks_exact_mut(h * h).enumerate() {
+        let (columns, values) = matrix.row(i);
+        let Ok(at) = columns.binary_search(&(i as u32)) else { continue };
+        let block = &values[at * h * h..(at + 1) * h * h];
+        let mut lu: Vec<f64> = block.iter().map(|&v| f64::from(v)).collect();
+        let largest = lu.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        if largest == 0.0 {
+            continue;
+        }
+        (0..h).filter(|&k| (0..h).all(|l| lu[k + h * l] == 0.0)).collect::<Vec<_>>().into_iter().for_each(|k| {
+            lu[k + h * k] = largest;
+        });
+        let pivots = dense_lu::factorise(&mut lu, h, 1e-6 * largest);
+        let mut column = vec![0.0; h];
+        for w in 0..h {
+            column.fill(0.0);
+            column[w] = 1.0;
+            dense_lu::solve(&lu, h, &pivots, &mut column);
+            (0..h).for_each(|k| out[k * h + w] = column[k] as f32);
+        }
+    }
+    out
+}
+
 /// Spectral radius of `D⁻¹ A` by power iteration, from below.
-fn spectral_radius(matrix: &Csr, inverse_diagonal: &[f64]) -> f64 {
-    let mut x = check::pseudo_random(matrix.rows);
-    let mut y = vec![0.0; x.len()];
+fn spectral_radius(matrix: &BlockMatrix, inverse: &[f32]) -> f32 {
+    let n = matrix.rows * matrix.height;
+    let mut x: Vec<f32> = check::pseudo_random(n).into_iter().map(|v| v as f32).collect();
+    let (zero, mut y) = (vec![0.0; n], vec![0.0; n]);
+    let norm = |v: &[f32]| v.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>().sqrt() as f32;
     let mut radius = 1.0;
     for _ in 0..POWER_STEPS {
-        let length = vector::norm(&x);
+        let length = norm(&x);
         x.iter_mut().for_each(|x| *x /= length);
-        matrix.mul_vec(&x, &mut y);
-        y.iter_mut().zip(inverse_diagonal).for_each(|(y, d)| *y *= d);
-        radius = vector::norm(&y);
+        matrix.smoothing_step(inverse, &zero, &x, [0.0, -1.0], &mut y);
+        radius = norm(&y);
         std::mem::swap(&mut x, &mut y);
     }
-    radius
+    radius.max(f32::MIN_POSITIVE)
 }

@@ -1,6 +1,6 @@
 //! Nodes without mass: the system takes them on, and velocities and accelerations follow.
 
-use super::{Assembler, bulk_pattern, zero_matrix};
+use super::{Assembler, bulk_pattern};
 use crate::assembly::Dof;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::assembly::redistribution::diagonal;
@@ -24,8 +24,7 @@ impl Assembler {
     pub fn redistribute(&mut self, part: &mut ModelPart, nodes: &MasslessNodes) -> Result<()> {
         if self.redistribution.choose(part, nodes) {
             self.pattern = bulk_pattern(part, &self.redistribution.groups(part));
-            self.bulk = zero_matrix(&self.pattern);
-            (self.constant, self.damping) = (None, None);
+            (self.bulk, self.constant, self.damping) = (None, None, None);
             (self.mass, self.tangent_key) = (None, None);
             self.stamps.bulk_graph += 1;
         }

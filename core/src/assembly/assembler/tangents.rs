@@ -34,7 +34,8 @@ impl Assembler {
         world().any_of(&mut in_use);
         let distribution = self.distribution.as_ref();
         self.coupling.hold_lonely(&in_use, diagonal, |n| distribution.is_none_or(|d| d.is_own(n)));
-        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
+        let coupling = &self.coupling.matrix;
+        self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;
         self.seconds.coupling += start.elapsed().as_secs_f64();
         Ok(())
@@ -55,7 +56,8 @@ impl Assembler {
         let stale =
             self.traits.variable_bulk || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
         if stale {
-            let mut values = self.stiffness(part)?;
+            let is_constant = inertia.is_none() && !self.traits.variable_bulk;
+            let mut values = if is_constant { Vec::new() } else { self.stiffness(part)? };
             // Damping acts on rates only, which takes the symmetry from unknowns without them.
             let mut damped = false;
             if inertia.is_some() {
@@ -80,7 +82,7 @@ impl Assembler {
                     moving.filter(|(_, column)| moves(column)).for_each(|((value, c), _)| *value += damping_factor * c);
                 }
             }
-            self.bulk.values = values;
+            self.bulk = (!is_constant).then_some(values);
             self.bulk_general = self.traits.general_elements || damped;
             self.reduce_bulk(self.reduced_graph == self.stamps.bulk_graph);
             self.reduced_graph = self.stamps.bulk_graph;
@@ -95,7 +97,8 @@ impl Assembler {
     }
 
     fn reduce_bulk(&mut self, same_pattern: bool) {
-        self.equations.reduce_matrix(&self.bulk, &mut self.reduced_bulk, same_pattern);
+        let values = self.bulk.as_ref().or(self.constant.as_ref()).expect("assembled before it is reduced");
+        self.equations.reduce_matrix(&self.pattern.zero, values, &mut self.reduced_bulk, same_pattern);
         self.stamps.bulk_values += 1;
     }
 
@@ -111,7 +114,8 @@ impl Assembler {
                 self.coupling.matrix.add(number, number, amount);
             }
         }
-        self.equations.reduce_matrix(&self.coupling.matrix, &mut self.reduced_coupling, true);
+        let coupling = &self.coupling.matrix;
+        self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;
     }
 
@@ -120,7 +124,8 @@ impl Assembler {
         if self.loads.matrix.values.iter().all(|v| *v == 0.0) {
             return None;
         }
-        self.equations.reduce_matrix(&self.loads.matrix, &mut self.reduced_loads, false);
+        let loads = &self.loads.matrix;
+        self.equations.reduce_matrix(loads, &loads.values, &mut self.reduced_loads, false);
         Some(&self.reduced_loads)
     }
 

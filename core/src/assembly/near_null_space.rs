@@ -1,0 +1,69 @@
+//! Motions that elements hardly resist: what multigrid has to carry to the coarser levels.
+
+use crate::model::ScalarVariable;
+
+/// Axes that a rotation turns into each other.
+const ROTATIONS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+
+/// The unknown of an equation and the initial position of its node; multipliers have none.
+pub type Place = Option<(ScalarVariable, [f64; 3])>;
+
+/// The near-null space of equations: for each vector field of the unknowns its translations and rotations, for each scalar
+/// one the constant. Entries of multipliers are zero.
+pub fn near_null_space(places: &[Place]) -> Vec<Vec<f64>> {
+    let mut fields: Vec<(&'static str, [bool; 3], bool)> = Vec::new();
+    let mut center = [0.0; 3];
+    for (variable, at) in places.iter().flatten() {
+        (0..3).for_each(|axis| center[axis] += at[axis] / places.len() as f64);
+        let field = match fields.iter_mut().find(|(column, ..)| *column == variable.column) {
+            Some(field) => field,
+            None => {
+                fields.push((variable.column, [false; 3], variable.component.is_some()));
+                fields.last_mut().expect("just pushed")
+            }
+        };
+        field.1[variable.offset()] = true;
+    }
+    let mut space = Vec::new();
+    for (column, has, is_vector) in fields {
+        let mut add = |value: &dyn Fn(usize, &[f64; 3]) -> f64| {
+            let of = |place: &Place| match place {
+                Some((variable, at)) if variable.column == column => value(variable.offset(), at),
+                _ => 0.0,
+            };
+            space.push(places.iter().map(of).collect());
+        };
+        for axis in (0..3).filter(|&axis| has[axis]) {
+            add(&|along, _| f64::from(u8::from(along == axis)));
+        }
+        for [a, b] in ROTATIONS.into_iter().filter(|[a, b]| is_vector && has[*a] && has[*b]) {
+            add(&|along, at| match along {
+                _ if along == a => center[b] - at[b],
+                _ if along == b => at[a] - center[a],
+                _ => 0.0,
+            });
+        }
+    }
+    space
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::variables::DISPLACEMENT;
+
+    #[test]
+    fn a_vector_field_translates_and_rotates() {
+        let [x, y] = [0, 1].map(|axis| DISPLACEMENT.component(axis));
+        let (first, second) = ([0.0; 3], [2.0, 4.0, 0.0]);
+        let space = near_null_space(&[Some((x, first)), Some((y, first)), Some((x, second)), Some((y, second))]);
+        let expected = [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [2.0, -1.0, -2.0, 1.0]];
+        assert_eq!(space, expected.map(|vector| vector.to_vec()));
+    }
+
+    #[test]
+    fn multipliers_have_no_part_in_a_scalar_field() {
+        let scalar = ScalarVariable { column: "TEMPERATURE", component: None };
+        assert_eq!(near_null_space(&[Some((scalar, [1.0; 3])), None]), [[1.0, 0.0]]);
+    }
+}

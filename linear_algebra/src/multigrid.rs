@@ -1,0 +1,210 @@
+//! The engine of big systems: Krylov iteration on the whole system, multigrid on what its constraints leave.
+
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+use crate::check;
+use crate::direct::DirectSolver;
+use crate::krylov::{Progress, conjugate_gradient, gmres};
+use crate::precondition::{Constrained, Multigrid};
+use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
+use crate::system::{Stamps, System};
+use crate::vector;
+
+/// Directions kept before a restart.
+const RESTART: usize = 80;
+/// Growth of the iterations, and their number beside it, from which on the hierarchy is made anew.
+const STALE: (f64, usize) = (1.3, 2);
+/// Entries of a row, on average, from which on factors fill like those of solids in space.
+const MANY_ENTRIES: usize = 40;
+/// Failures in a row after which multigrid is not tried again.
+const FAILURES: usize = 2;
+/// Share of the nodes with multipliers that may prescribe other motions than when the hierarchy was made.
+const CHANGED: f64 = 0.01;
+/// Residual, as a multiple of the tolerance, that rounding in the recurrence of the residual excuses.
+const DRIFT: f64 = 10.0;
+
+/// A hierarchy, and how well it did when it was new.
+struct Hierarchy {
+    levels: (Multigrid, f64),
+    bulk_graph: u64,
+    /// What the nodes with multipliers prescribed.
+    prescribed: Vec<(u32, u32)>,
+    /// Whether the matrix has changed since.
+    is_old: bool,
+    first: Option<usize>,
+    last: usize,
+}
+
+impl Hierarchy {
+    fn suits(&self, system: &System<'_>, constrained: &Constrained) -> bool {
+        if self.bulk_graph != system.bulk_graph {
+            return false;
+        }
+        if !self.is_old {
+            return true;
+        }
+        let first = self.first.unwrap_or(0);
+        let prescribed = constrained.prescribed();
+        let before: BTreeSet<_> = self.prescribed.iter().collect();
+        let changed = prescribed.iter().filter(|now| !before.contains(now)).count()
+            + self.prescribed.len().saturating_sub(prescribed.len());
+        self.last <= (STALE.0 * first as f64) as usize + STALE.1
+            && changed as f64 <= CHANGED * self.prescribed.len() as f64
+    }
+}
+
+/// The engine [`crate::Engine::Multigrid`]; the direct engine takes over what it cannot do, and the report says so.
+pub(crate) struct MultigridSolver {
+    settings: MultigridSettings,
+    constrained: Option<(Constrained, Stamps)>,
+    hierarchy: Option<Hierarchy>,
+    stand_in: DirectSolver,
+    /// Solves one after the other that multigrid did not do.
+    failures: usize,
+}
+
+impl MultigridSolver {
+    pub(crate) fn new(settings: MultigridSettings) -> Self {
+        let stand_in = DirectSolver::new(DirectSettings::default());
+        Self { settings, constrained: None, hierarchy: None, stand_in, failures: 0 }
+    }
+
+    /// Brings the constraints and the hierarchy up to date, or names the multiplier that nothing determines.
+    fn prepare(&mut self, system: &System<'_>) -> Result<(), usize> {
+        let stamps = Stamps::of(system);
+        if self.constrained.as_ref().is_none_or(|(_, old)| *old != stamps) {
+            self.constrained = None;
+            self.constrained = Some((Constrained::new(system)?, stamps));
+            if let Some(hierarchy) = &mut self.hierarchy {
+                hierarchy.is_old = true;
+            }
+        }
+        let (constrained, _) = self.constrained.as_ref().expect("made above");
+        if !self.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.suits(system, constrained)) {
+            self.hierarchy = None;
+            self.hierarchy = Some(Hierarchy {
+                levels: constrained.hierarchy(system),
+                bulk_graph: system.bulk_graph,
+                prescribed: constrained.prescribed(),
+                is_old: false,
+                first: None,
+                last: 0,
+            });
+        }
+        Ok(())
+    }
+
+    fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Progress {
+        let (constrained, _) = self.constrained.as_ref().expect("prepared");
+        let hierarchy = self.hierarchy.as_mut().expect("prepared");
+        let scales = &constrained.row_scales;
+        let scale = |r: &mut [f64]| r.iter_mut().zip(scales).for_each(|(r, s)| *r *= s);
+        let mut b = rhs.to_vec();
+        scale(&mut b);
+        let multiply = |x: &[f64], y: &mut [f64]| {
+            system.mul_vec(x, y);
+            scale(y);
+        };
+        let precondition = |r: &mut [f64]| {
+            r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);
+            constrained.apply(system, &hierarchy.levels, r);
+        };
+        let MultigridSettings { tolerance, iterations, .. } = self.settings;
+        let has_multipliers = system.layout.multiplier.contains(&true);
+        let progress = if system.is_symmetric() && !has_multipliers {
+            conjugate_gradient(multiply, precondition, &b, x, iterations, tolerance)
+        } else {
+            gmres(multiply, precondition, &b, x, RESTART, iterations, tolerance)
+        };
+        hierarchy.last = progress.iterations;
+        hierarchy.first.get_or_insert(progress.iterations);
+        progress
+    }
+
+    /// The answer, or why there is none.
+    fn attempt(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, String> {
+        let start = Instant::now();
+        let undetermined = |m: usize| format!("no unknown of its own determines multiplier {m}");
+        self.prepare(system).map_err(undetermined)?;
+        let mut seconds_numeric = start.elapsed().as_secs_f64();
+        let guess = x.to_vec();
+        let mut progress = self.iterate(system, rhs, x);
+        let is_good = |progress: Progress| progress.relative_residual <= DRIFT * self.settings.tolerance;
+        if !is_good(progress) && self.hierarchy.as_ref().is_some_and(|h| h.is_old) {
+            let start = Instant::now();
+            self.hierarchy = None;
+            self.prepare(system).map_err(undetermined)?;
+            seconds_numeric += start.elapsed().as_secs_f64();
+            x.copy_from_slice(&guess);
+            progress = self.iterate(system, rhs, x);
+        }
+        if !(progress.relative_residual <= DRIFT * self.settings.tolerance) {
+            self.hierarchy = None;
+            let Progress { iterations, relative_residual } = progress;
+            return Err(format!("multigrid reached only {relative_residual:.1e} after {iterations} iterations"));
+        }
+        let size = vector::norm(rhs);
+        let mut residual = vec![0.0; rhs.len()];
+        let left = system.residual(rhs, x, &mut residual);
+        Ok(SolveReport {
+            engine: self.name(),
+            relative_residual: if size > 0.0 { left / size } else { 0.0 },
+            iterations: progress.iterations,
+            fallback: None,
+            seconds_symbolic: 0.0,
+            seconds_numeric,
+            seconds_solve: start.elapsed().as_secs_f64() - seconds_numeric,
+        })
+    }
+}
+
+impl LinearSolver for MultigridSolver {
+    fn name(&self) -> &'static str {
+        "multigrid"
+    }
+
+    fn says(&self) -> String {
+        match self.settings.least {
+            [0, 0] => self.name().to_owned(),
+            [solid, plane] if solid == plane => format!("multigrid, or direct below {solid} equations"),
+            [solid, plane] => {
+                format!("direct, or multigrid from {solid} equations in space and {plane} in the plane on")
+            }
+        }
+    }
+
+    fn takes_loads(&self) -> bool {
+        true
+    }
+
+    fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
+        check::input(system, rhs, x)?;
+        check::empty_rows(system)?;
+        if x.iter().any(|x| !x.is_finite()) {
+            x.fill(0.0);
+        }
+        let is_dense = system.bulk.entries() > MANY_ENTRIES * system.equations();
+        if system.equations() < self.settings.least[usize::from(!is_dense)] {
+            return self.stand_in.solve(system, rhs, x);
+        }
+        if self.failures >= FAILURES {
+            let mut report = self.stand_in.solve(system, rhs, x)?;
+            report.fallback.get_or_insert_with(|| "multigrid failed before".to_owned());
+            return Ok(report);
+        }
+        match self.attempt(system, rhs, x) {
+            Ok(report) => {
+                self.failures = 0;
+                Ok(report)
+            }
+            Err(why) => {
+                self.failures += 1;
+                let mut report = self.stand_in.solve(system, rhs, x)?;
+                let reasons = [Some(why), report.fallback.take()];
+                report.fallback = Some(reasons.into_iter().flatten().collect::<Vec<_>>().join("; "));
+                Ok(report)
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Multigrid alone and on systems with multipliers, against the direct engine.
+
+mod samples;
+
+use samples::{Brick, Contact, contact, fix};
+use zelus_linear_algebra::{Csr, Engine, Layout, MultigridSettings, SolveReport, Symmetry, System, create};
+
+/// Largest difference from the answer of the direct engine, as a share of the largest value.
+const AGREE: f64 = 1e-8;
+
+fn clamped_box(cells: usize) -> (Csr, Layout) {
+    let brick = Brick { cells: [cells; 3] };
+    let mut triplets = Vec::new();
+    brick.stiffness(0, 1.0, &mut triplets);
+    fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
+    let mut layout = Layout::blocked(brick.nodes(), 3);
+    layout.near_null_space = brick.rigid_motions();
+    (Csr::from_triplets(3 * brick.nodes(), &triplets), layout)
+}
+
+fn load(equations: usize) -> Vec<f64> {
+    (0..equations).map(|i| (i % 7) as f64 - 3.0).collect()
+}
+
+fn multigrid(system: &System<'_>, rhs: &[f64]) -> (Vec<f64>, SolveReport) {
+    let mut x = vec![0.0; rhs.len()];
+    let engine = Engine::Multigrid(MultigridSettings { tolerance: 1e-11, iterations: 200, least: [0; 2] });
+    let report = create(engine).solve(system, rhs, &mut x).expect("regular");
+    (x, report)
+}
+
+/// The largest difference between two answers on the displacements and on the multipliers, each over its largest value.
+fn differences(layout: &Layout, a: &[f64], b: &[f64]) -> [f64; 2] {
+    [false, true].map(|multiplier| {
+        let of = (0..a.len()).filter(|&i| layout.multiplier[i] == multiplier);
+        let [difference, size] = of.fold([0.0_f64; 2], |[d, s], i| [d.max((a[i] - b[i]).abs()), s.max(b[i].abs())]);
+        if size > 0.0 { difference / size } else { difference }
+    })
+}
+
+#[test]
+fn iterations_hardly_grow() {
+    let iterations = [8, 16, 24].map(|cells| {
+        let (bulk, layout) = clamped_box(cells);
+        let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
+        let (_, report) = multigrid(&system, &load(bulk.rows));
+        assert_eq!((report.engine, report.fallback), ("multigrid", None));
+        assert!(report.relative_residual < 1e-10);
+        report.iterations
+    });
+    assert!(iterations[2] <= iterations[0] + 10 && iterations[2] < 35, "{iterations:?}");
+}
+
+/// The sample of tied boxes with rigid motions of each.
+fn tied(cells: usize, skew: f64, active: impl Fn(usize) -> bool) -> Contact {
+    let mut sample = contact(cells, skew, active);
+    let brick = Brick { cells: [cells; 3] };
+    let motions = brick.rigid_motions();
+    let equations = sample.layout.equations();
+    sample.layout.near_null_space = motions
+        .into_iter()
+        .map(|motion| {
+            let mut both = motion.repeat(2);
+            both.resize(equations, 0.0);
+            both
+        })
+        .collect();
+    sample
+}
+
+#[test]
+fn multipliers_leave_by_their_constraints() {
+    for (skew, cells) in [(0.0, 6), (0.0, 12), (0.3, 8)] {
+        for active in [|_: usize| true, |at: usize| at % 5 != 0] {
+            let sample = tied(cells, skew, active);
+            let system = System {
+                coupling: Some(&sample.coupling),
+                coupling_symmetric: skew == 0.0,
+                ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+            };
+            let rhs = load(system.equations());
+            let (x, report) = multigrid(&system, &rhs);
+            assert_eq!((report.engine, report.fallback), ("multigrid", None), "{skew} {cells}");
+            assert!(report.iterations < 60, "{} iterations", report.iterations);
+            let mut direct = vec![0.0; rhs.len()];
+            create(Engine::default()).solve(&system, &rhs, &mut direct).expect("regular");
+            let differences = differences(&sample.layout, &x, &direct);
+            assert!(differences.iter().all(|d| *d < AGREE), "{differences:?}");
+        }
+    }
+}
+
+#[test]
+fn a_multiplier_without_a_node_of_its_own_is_carried_by_a_master() {
+    let mut sample = tied(6, 0.0, |_| true);
+    let lone = sample.layout.equations() - 1;
+    sample.layout.node[lone] = sample.layout.node.iter().max().expect("equations") + 1;
+    let system = System {
+        coupling: Some(&sample.coupling),
+        ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+    };
+    let rhs = load(system.equations());
+    let (x, report) = multigrid(&system, &rhs);
+    assert_eq!((report.engine, report.fallback), ("multigrid", None));
+    let mut direct = vec![0.0; rhs.len()];
+    create(Engine::default()).solve(&system, &rhs, &mut direct).expect("regular");
+    let differences = differences(&sample.layout, &x, &direct);
+    assert!(differences.iter().all(|d| *d < AGREE), "{differences:?}");
+}
+
+#[test]
+fn what_does_not_converge_goes_to_the_direct_engine() {
+    let (bulk, layout) = clamped_box(12);
+    let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
+    let mut solver = create(Engine::Multigrid(MultigridSettings { tolerance: 1e-11, iterations: 3, least: [0; 2] }));
+    let rhs = load(bulk.rows);
+    for reason in ["after 3 iterations", "after 3 iterations", "failed before"] {
+        let mut x = vec![0.0; bulk.rows];
+        let report = solver.solve(&system, &rhs, &mut x).expect("regular");
+        assert!(report.relative_residual < 1e-10);
+        assert!(report.fallback.is_some_and(|why| why.contains(reason)), "{reason}");
+    }
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_threads() {
+    let sample = tied(10, 0.1, |at| at % 3 != 0);
+    let system = System {
+        coupling: Some(&sample.coupling),
+        ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+    };
+    let rhs = load(system.equations());
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| multigrid(&system, &rhs).0)
+    };
+    assert!(run(1) == run(3));
+}
