@@ -262,9 +262,11 @@ struct Impact {
     displacement: f64,
     /// Kinetic energy at the end over that of the start.
     energy: f64,
+    /// What the program said.
+    said: String,
 }
 
-fn impact(method: &str, elements: usize, time_step: f64) -> Impact {
+fn impact(method: &str, elements: usize, time_step: f64, springs: Value) -> Impact {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let (n, h) = (elements, 1.0 / elements as f64);
     let mut mesh =
@@ -342,12 +344,12 @@ fn impact(method: &str, elements: usize, time_step: f64) -> Impact {
                 "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication", "Parameters": {
                     "model_part_name": "Structure", "contact_type": "Frictionless",
                     "contact_model_part": {"0": ["Interface"]}, "assume_master_slave": {"0": ["Slave"]},
-                    "search_parameters": {"search_factor": 20.0}}}],
+                    "search_parameters": {"search_factor": 20.0}, "advance_ALM_parameters": springs}}],
             "json_output_process_list": [{"python_module": "json_output_process", "kratos_module": "KratosMultiphysics",
                 "Parameters": {"output_file_name": "bar.json", "model_part_name": "Structure.Bar",
                     "output_variables": ["DISPLACEMENT", "VELOCITY"], "time_frequency": 0.0}}]}});
     write_json(&folder.path().join(DECK), &deck);
-    run(folder.path());
+    let said = run(folder.path());
     let results = Results::read(&folder.path().join("bar.json")).expect("results");
     let step = results.step(None).expect("a step");
     let time = results.times()[step];
@@ -356,7 +358,24 @@ fn impact(method: &str, elements: usize, time_step: f64) -> Impact {
         results.nodal(quantity, step).iter().map(|(&node, v)| weight(node) * v.powi(power)).sum::<f64>()
     };
     let exact = -0.001 + 0.01 * (time - 0.1 - 2.0);
-    Impact { displacement: mean("DISPLACEMENT_Y", 1) - exact, energy: mean("VELOCITY_Y", 2) / 1e-4 }
+    Impact { displacement: mean("DISPLACEMENT_Y", 1) - exact, energy: mean("VELOCITY_Y", 2) / 1e-4, said }
+}
+
+/// Contact makes no energy in explicit steps up to the critical one of the bar, whatever the penalty asked for: it is lowered to
+/// what the steps carry. One that is given stays, and is warned of.
+#[test]
+fn explicit_contact_makes_no_energy() {
+    let h = 0.05;
+    for share in [0.2, 0.4, 0.7, 0.9] {
+        for factor in [1.0, 4.0, 10.0] {
+            let found = impact("explicit", 20, share * h, json!({"stiffness_factor": factor}));
+            println!("steps of {share} h/c, {factor} E/h: energy {:.4}", found.energy);
+            assert!((found.energy - 1.0).abs() < 0.04, "steps of {share} h/c, {factor} E/h: {}", found.energy);
+            assert_eq!(found.said.contains("contact-step"), share * share * (1.0 + factor) > 1.0, "{}", found.said);
+        }
+    }
+    let given = impact("explicit", 20, 0.9 * h, json!({"manual_ALM": true, "penalty": 10.0 / h}));
+    assert!(given.said.contains("warning[contact-step]"), "{}", given.said);
 }
 
 /// The bar touches the wall for the time 2 L/c that a wave needs to its end and back, and leaves with the speed it came
@@ -364,7 +383,7 @@ fn impact(method: &str, elements: usize, time_step: f64) -> Impact {
 #[test]
 fn a_bar_rebounds_in_explicit_and_implicit_steps() {
     for method in ["explicit", "implicit"] {
-        let found = [20, 40, 80].map(|n| impact(method, n, 0.4 / n as f64));
+        let found = [20, 40, 80].map(|n| impact(method, n, 0.4 / n as f64, json!({})));
         let said: Vec<String> =
             found.iter().map(|i| format!("off by {:.2e}, energy {:.4}", i.displacement, i.energy)).collect();
         println!("{method}: {}", said.join("; "));

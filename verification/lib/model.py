@@ -15,6 +15,8 @@ FAMILIES = {
     "ALM frictional": ("alm_contact_process", "Frictional", "ALMContactFrictional"),
     "penalty": ("penalty_contact_process", "Frictionless", "PenaltyContactFrictionless"),
     "penalty frictional": ("penalty_contact_process", "Frictional", "PenaltyContactFrictional"),
+    "explicit penalty": ("explicit_penalty_contact_process", "Frictionless", "PenaltyContactFrictionless"),
+    "explicit penalty frictional": ("explicit_penalty_contact_process", "Frictional", "PenaltyContactFrictional"),
     "Uzawa": ("uzawa_contact_process", "Frictionless", "UzawaContactFrictionless"),
     "perturbed": ("perturbed_lagrangian_contact_process", "Frictionless", "PerturbedLagrangianContactFrictionless"),
     "MPC": ("mpc_contact_process", "Frictionless", None),

@@ -2,7 +2,8 @@
 //!
 //! Contact takes part as in Newton's iteration, but once a step and at the old positions: `begin_step`, `after_prediction`
 //! and `after_update` of each interaction, then its blocks in the residual. An interaction that shortens the steps while
-//! it acts sets the mark CONTACT and the value DELTA_TIME_FACTOR_FOR_CONTACT of [`crate::model::ProcessInfo`].
+//! it acts sets the mark CONTACT and the value DELTA_TIME_FACTOR_FOR_CONTACT of [`crate::model::ProcessInfo`]. One that adds
+//! stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
 
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
@@ -18,6 +19,9 @@ use crate::entities::Interaction;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, FORCE_RESIDUAL, NODAL_MASS, VELOCITY};
 use crate::parameters::Settings;
+
+/// Longest stable step of the bodies without contact, estimated last (time).
+pub const CRITICAL_STEP: &str = "CRITICAL_STEP";
 
 /// Part of the critical step that a predicted step takes.
 const SAFETY: f64 = 0.8;
@@ -266,6 +270,7 @@ impl SolutionStrategy for ExplicitStrategy {
         };
         if stale {
             let critical = self.critical_step(part)?;
+            part.info.values.insert(CRITICAL_STEP, critical);
             if self.settings.prediction_level == 0 && asked > critical {
                 let fact = format!("the step {asked:.3e} is longer than the critical one, {critical:.3e}");
                 let remedy = "the motion can grow without bound: shorten \"time_step\", or let \

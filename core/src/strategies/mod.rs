@@ -42,7 +42,7 @@ pub use criterion::{
     is_last_digit, is_round_off,
 };
 pub use displacement_criterion::DisplacementCriterion;
-pub use explicit::{ExplicitSettings, ExplicitStrategy};
+pub use explicit::{CRITICAL_STEP, ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
 pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};

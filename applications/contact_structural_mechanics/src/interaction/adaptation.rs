@@ -54,7 +54,7 @@ impl AdaptationSettings {
     /// in explicit steps those of the last step.
     pub(super) fn gaps(self, part: &ModelPart, slaves: &[u32], explicit: bool) -> Vec<f64> {
         let gaps = part.nodes.history.values(&WEIGHTED_GAP, usize::from(explicit));
-        if self.acts() { slaves.iter().map(|&n| gaps[n as usize]).collect() } else { Vec::new() }
+        if self.acts() || explicit { slaves.iter().map(|&n| gaps[n as usize]).collect() } else { Vec::new() }
     }
 
     /// Adapts INITIAL_PENALTY and DYNAMIC_FACTOR of the active slave nodes.
@@ -69,7 +69,7 @@ impl AdaptationSettings {
         previous: &[f64],
         growth: Option<Growth>,
     ) {
-        if !self.acts() {
+        if !self.acts() && growth.is_none() {
             return;
         }
         for (&node, &before) in slaves.iter().zip(previous) {
@@ -83,10 +83,10 @@ impl AdaptationSettings {
             let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at] / area;
             let before = before / area;
             let mut adapted = values.values(&INITIAL_PENALTY, 0)[at];
+            if self.rule.is_none() {
+                adapted = growth.map_or(penalty, |growth| growth.stiffened(penalty, gap));
+            }
             if self.dynamic_factor {
-                if self.rule.is_none() {
-                    adapted = growth.map_or(penalty, |growth| growth.stiffened(penalty, gap));
-                }
                 values.values_mut(&DYNAMIC_FACTOR, 0)[at] = dynamic_factor(gap, before);
             }
             if let Some(rule) = self.rule {

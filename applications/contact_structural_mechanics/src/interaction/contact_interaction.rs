@@ -11,6 +11,7 @@ use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
 
 use super::activation::{self, Start};
+use super::bearable_penalty::BearablePenalty;
 use super::calibration::{calibrate, limit};
 use super::contact_settings::ContactSettings;
 use super::cycling::{CycleGuard, Settled};
@@ -57,6 +58,7 @@ pub struct ContactInteraction {
     ramp: PenaltyRamp,
     /// How explicit steps stiffen the penalty.
     growth: Option<Growth>,
+    bearable: BearablePenalty,
     /// Overlapping pairs of every node.
     pair_counts: Vec<u32>,
     cycles: CycleGuard,
@@ -112,6 +114,7 @@ impl ContactInteraction {
             uzawa: Uzawa::default(),
             ramp: PenaltyRamp::default(),
             growth: None,
+            bearable: BearablePenalty::default(),
             pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             holding: Holding::default(),
@@ -395,7 +398,8 @@ impl Interaction for ContactInteraction {
         if !self.updates_normals() {
             part.info.marks.insert(NORMALS_OF_FIRST_ITERATION, true);
         }
-        self.settings.adaptation.dynamic_factor = self.settings.explicit.is_some()
+        // Forces of a spring by node have a potential, and keep the energy as long as nothing scales them.
+        self.settings.adaptation.dynamic_factor = (self.settings.explicit.is_some() && self.settings.weighted_penalty)
             || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
         if part.info.is(SIMPLIFIED_SEMI_SMOOTH_NEWTON) {
             let fact =
@@ -434,6 +438,11 @@ impl Interaction for ContactInteraction {
         if !self.acting {
             self.switch_off(part);
             return Ok(());
+        }
+        if let Some(explicit) = self.settings.explicit {
+            let (given, weighted) = (self.settings.manual.is_some(), self.settings.weighted_penalty);
+            let (interfaces, revolution) = (&self.pairing.interfaces, self.parameters.segmentation.revolution());
+            self.bearable.begin_step(part, interfaces, revolution, 1.0 + explicit.most, given, weighted);
         }
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
         if self.settings.mind_supports {

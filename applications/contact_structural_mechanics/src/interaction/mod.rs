@@ -2,6 +2,7 @@
 
 mod activation;
 mod adaptation;
+mod bearable_penalty;
 mod calibration;
 mod contact_interaction;
 mod contact_settings;

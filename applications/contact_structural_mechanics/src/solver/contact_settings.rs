@@ -20,7 +20,7 @@ pub const AVERAGED_EDGES: &str = "AVERAGED_EDGES";
 /// Nodes of contact keep their mass in motion.
 pub const KEEP_MASS: &str = "KEEP_MASS";
 /// Factor of explicit steps while there is contact.
-const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
+pub const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
 /// The deck asks for an active set that changes only between complete Newton loops.
 pub const SIMPLIFIED_SEMI_SMOOTH_NEWTON: &str = "SIMPLIFIED_SEMI_SMOOTH_NEWTON";
 
