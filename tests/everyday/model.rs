@@ -53,8 +53,10 @@ pub fn high(axis: usize) -> impl Fn(Vec3) -> bool {
 /// How a problem is looked at; its answer does not change with it.
 #[derive(Clone, Copy)]
 pub struct Look {
-    /// Angle about the z axis by which everything is turned.
+    /// Angle by which everything is turned.
     pub turn: f64,
+    /// The axis about which it is; a unit vector.
+    pub about: Vec3,
     /// What lengths are multiplied by.
     pub size: f64,
     /// Whether nodes and elements are numbered backwards.
@@ -62,13 +64,25 @@ pub struct Look {
 }
 
 /// As it is.
-pub const PLAIN: Look = Look { turn: 0.0, size: 1.0, backwards: false };
+pub const PLAIN: Look = Look { turn: 0.0, about: [0.0, 0.0, 1.0], size: 1.0, backwards: false };
 
 impl Look {
+    /// Rows of the rotation (Rodrigues); what is next to nothing is nothing.
+    fn rows(&self) -> [Vec3; 3] {
+        let ([x, y, z], (s, c)) = (self.about, self.turn.sin_cos());
+        let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let unit = f64::from(u8::from(i == j));
+                let entry = c * unit + s * cross[i][j] + (1.0 - c) * self.about[i] * self.about[j];
+                if (entry - entry.round()).abs() < 1e-12 { entry.round() } else { entry }
+            })
+        })
+    }
+
     /// A vector turned.
     pub fn turned(&self, v: Vec3) -> Vec3 {
-        let (s, c) = self.turn.sin_cos();
-        [c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]]
+        self.rows().map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
     }
 
     /// A vector turned back.
@@ -83,20 +97,24 @@ impl Look {
 
     /// Components of a displacement in terms of X, Y and t, turned. A quarter turn takes free components along, others none.
     fn value(&self, value: &[Value; 3]) -> [Value; 3] {
-        let (s, c) = self.turn.sin_cos();
-        let (s, c) = if c.abs() < 1e-9 { (s.round(), 0.0) } else { (s, c) };
+        let rows = self.rows();
+        let place = |axis: usize| {
+            let terms = ["U", "V", "W"].into_iter().zip(&rows).filter(|(_, row)| row[axis] != 0.0);
+            let terms: Vec<String> = terms.map(|(name, row)| format!("({:?})*{name}", row[axis] / self.size)).collect();
+            format!("({})", terms.join("+"))
+        };
         let text = |v: &Value| {
             let text = v.as_str().map_or_else(|| v.to_string(), str::to_owned);
-            let place = |by: [f64; 2]| format!("(({:?})*X+({:?})*Y)", by[0] / self.size, by[1] / self.size);
-            text.replace('X', "@").replace('Y', &place([-s, c])).replace('@', &place([c, s]))
+            let text = text.replace('X', &place(0)).replace('Y', &place(1));
+            text.replace('U', "X").replace('V', "Y").replace('W', "Z")
         };
-        let sum = |terms: [(f64, &Value); 2]| {
-            let terms: Vec<_> = terms.into_iter().filter(|(factor, _)| *factor != 0.0).collect();
+        rows.map(|row| {
+            let terms: Vec<(f64, &Value)> = row.into_iter().zip(value).filter(|(factor, _)| *factor != 0.0).collect();
             assert!(
                 terms.len() == 1 || terms.iter().all(|(_, v)| !v.is_null()),
                 "free components turn by right angles only"
             );
-            match terms.iter().all(|(_, v)| v.is_null()) {
+            match terms.iter().any(|(_, v)| v.is_null()) {
                 true => Value::Null,
                 false => {
                     let terms: Vec<String> =
@@ -104,12 +122,7 @@ impl Look {
                     json!(terms.join("+"))
                 }
             }
-        };
-        [
-            sum([(c, &value[0]), (-s, &value[1])]),
-            sum([(s, &value[0]), (c, &value[1])]),
-            sum([(1.0, &value[2]), (0.0, &value[2])]),
-        ]
+        })
     }
 }
 
@@ -128,6 +141,8 @@ pub struct Model {
     pub steps: usize,
     /// How the deck shows the problem.
     pub look: Look,
+    /// Whether bodies are of triangles or tetrahedra.
+    pub simplices: bool,
     elements: Vec<(String, Vec<usize>)>,
     bodies: Vec<(Vec<usize>, Vec<usize>, [f64; 2])>,
     constraints: Vec<(Vec<usize>, [Value; 3])>,
@@ -145,6 +160,7 @@ impl Model {
             friction,
             steps,
             look: PLAIN,
+            simplices: false,
             elements: Vec::new(),
             bodies: Vec::new(),
             constraints: Vec::new(),
@@ -152,9 +168,10 @@ impl Model {
         }
     }
 
-    /// A body of quadrilaterals or hexahedra, mapped from the unit square or cube; sides that meet are joined.
+    /// A body of quadrilaterals or hexahedra, or of simplices, mapped from the unit square or cube; sides that meet are joined.
     pub fn body(&mut self, divisions: &[usize], young: f64, poisson: f64, map: impl Fn(Vec3) -> Vec3) -> Body {
-        let shape = Shape::of(self.dim, if self.dim == 2 { 4 } else { 8 }).expect("a shape");
+        let corners = if self.simplices { self.dim + 1 } else { 1 << self.dim };
+        let shape = Shape::of(self.dim, corners).expect("a shape");
         let grid = Grid::new(shape, divisions, map);
         let size = grid.nodes.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
         let mut known: BTreeMap<[i64; 3], usize> = BTreeMap::new();

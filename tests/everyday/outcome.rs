@@ -9,16 +9,21 @@ use crate::support::{Results, read_json};
 
 /// Largest error of balance, as a share of the largest reaction: what the default tolerance of residuals leaves.
 const BALANCE: f64 = 2e-3;
-/// Forces that count in all problems.
-const LEAST_FORCE: f64 = 1e-3;
+/// Forces that count in every state, as a share of the largest of the run.
+const LEAST_FORCE: f64 = 1e-2;
 /// What the default tolerances leave of tension, of gaps in mesh sizes, and of the bound of friction.
 const TRACTION: f64 = 2e-3;
 const GAP: f64 = 1e-3;
 /// Share of a facet's length that may be uncovered where both sides are polygons.
 const COVERED: f64 = 0.02;
 
+/// Share of a node's facets, of that of a neighbour, below which it is beside the master.
+const BESIDE: f64 = 0.11;
+
 /// An accepted step, by node.
 pub struct State {
+    /// When it is, from 0 to 1.
+    pub time: f64,
     pub displacement: Vec<Vec3>,
     pub reaction: Vec<Vec3>,
     pub position: Vec<Vec3>,
@@ -86,6 +91,7 @@ impl Outcome {
                 }
             };
             State {
+                time: results.times()[step],
                 position: position.collect(),
                 reaction: vector("REACTION", step, area),
                 multiplier,
@@ -111,13 +117,12 @@ impl Outcome {
     /// What no accepted state may show, in words; `load` is the sum of the loads at a time from 0 to 1.
     pub fn faults(&self, model: &Model, load: impl Fn(f64) -> Vec3) -> Vec<String> {
         let mut faults = Vec::new();
+        let forces = self.states.iter().map(|state| state.forces(model, load(state.time)));
+        let largest = forces.fold(0.0, f64::max);
         for (number, state) in self.states.iter().enumerate() {
-            let time = (number + 1) as f64 / self.states.len() as f64;
-            let mut found: Vec<String> = state.out_of_balance(model, load(time)).into_iter().collect();
+            let mut found: Vec<String> = state.out_of_balance(model, load(state.time), largest).into_iter().collect();
             found.extend(state.contact(model));
-            if model.dim == 2 {
-                found.extend(state.uncovered(model));
-            }
+            found.extend(state.uncovered(model));
             faults.extend(found.into_iter().map(|fault| format!("step {}: {fault}", number + 1)));
         }
         faults
@@ -141,11 +146,17 @@ impl State {
         slaves(model).into_iter().filter(|&n| norm(self.multiplier[n]) > 0.0).collect()
     }
 
-    fn out_of_balance(&self, model: &Model, load: Vec3) -> Option<String> {
+    /// Sum of the sizes of all reactions, or the load where that is more.
+    fn forces(&self, model: &Model, load: Vec3) -> f64 {
         let supports: BTreeSet<usize> = model.supported.iter().copied().collect();
-        let supports: Vec<usize> = supports.into_iter().collect();
-        let sum = self.sum(&supports);
-        let size = supports.iter().map(|&n| norm(self.reaction[n])).sum::<f64>().max(norm(load)).max(LEAST_FORCE);
+        supports.into_iter().map(|n| norm(self.reaction[n])).sum::<f64>().max(norm(load))
+    }
+
+    /// `largest` is the largest [`State::forces`] of the run.
+    fn out_of_balance(&self, model: &Model, load: Vec3, largest: f64) -> Option<String> {
+        let supports: BTreeSet<usize> = model.supported.iter().copied().collect();
+        let sum = self.sum(&supports.into_iter().collect::<Vec<_>>());
+        let size = self.forces(model, load).max(LEAST_FORCE * largest);
         let off = norm(std::array::from_fn(|c| sum[c] + load[c]));
         (off > BALANCE * size).then(|| format!("reactions and loads are out of balance by {off:.2e} of {size:.2e}"))
     }
@@ -153,7 +164,8 @@ impl State {
     fn contact(&self, model: &Model) -> Vec<String> {
         let mut faults = Vec::new();
         let sizes = mesh_sizes(model);
-        let slaves = slaves(model);
+        let beside = self.beside(model);
+        let slaves: Vec<usize> = slaves(model).into_iter().filter(|n| !beside.contains(n)).collect();
         let normal = |n: usize| dot(self.multiplier[n], self.normal[n]);
         let largest = slaves.iter().map(|&n| normal(n).abs()).fold(0.0, f64::max);
         for &n in &slaves {
@@ -169,7 +181,7 @@ impl State {
             if pressure > TRACTION * largest && gap > GAP * h {
                 fault(format!("pressed by {pressure:.2e} of {largest:.2e} across a gap of {:.2e} mesh sizes", gap / h));
             }
-            let Some(friction) = model.friction else { continue };
+            let Some(friction) = model.friction.filter(|friction| *friction > 0.0) else { continue };
             let along = sub(self.multiplier[n], self.normal[n].map(|x| x * normal(n)));
             let bound = friction * pressure;
             if norm(along) > bound + TRACTION * friction * largest {
@@ -191,22 +203,37 @@ impl State {
         faults
     }
 
+    /// Nodes beside the master: the share of their facets that it faces is small against that of a neighbour.
+    fn beside(&self, model: &Model) -> BTreeSet<usize> {
+        let facets = || model.pairs.iter().flat_map(|[slave, _]| slave);
+        let mut whole: BTreeMap<usize, f64> = BTreeMap::new();
+        for facet in facets() {
+            let x: Vec<Vec3> = facet.iter().map(|&n| self.position[n]).collect();
+            facet.iter().for_each(|&n| *whole.entry(n).or_default() += direction(&x).1 / facet.len() as f64);
+        }
+        let share = |n: usize| self.area[n] / whole[&n];
+        let small = |facet: &Vec<usize>| {
+            let most = facet.iter().map(|&n| share(n)).fold(0.0, f64::max);
+            facet.iter().copied().filter(|&n| share(n) < BESIDE * most).collect::<Vec<_>>()
+        };
+        facets().flat_map(small).collect()
+    }
+
     /// Pressed nodes whose facets face the master all over integrate the whole of them.
     fn uncovered(&self, model: &Model) -> Vec<String> {
         let mut faults = Vec::new();
         for [slave, master] in &model.pairs {
             let mut area: BTreeMap<usize, Option<f64>> = BTreeMap::new();
             for facet in slave {
-                let [a, b] = [facet[0], facet[1]].map(|n| self.position[n]);
-                let length = norm(sub(b, a));
-                let outward = [(b[1] - a[1]) / length, -(b[0] - a[0]) / length, 0.0];
-                let faces = (0..=8).all(|k| {
-                    let from = std::array::from_fn(|c| a[c] + (b[c] - a[c]) * f64::from(k) / 8.0);
-                    master.iter().any(|other| self.is_hit(from, outward, length, other))
-                });
+                let x: Vec<Vec3> = facet.iter().map(|&n| self.position[n]).collect();
+                let (outward, measure) = direction(&x);
+                let reach = norm(sub(x[1], x[0]));
+                let faces = samples(&x)
+                    .into_iter()
+                    .all(|from| master.iter().any(|other| self.is_hit(from, outward, reach, other)));
                 for &n in facet {
                     let sum = area.entry(n).or_insert(Some(0.0));
-                    *sum = sum.filter(|_| faces).map(|sum| sum + 0.5 * length);
+                    *sum = sum.filter(|_| faces).map(|sum| sum + measure / facet.len() as f64);
                 }
             }
             for (n, whole) in area {
@@ -224,16 +251,58 @@ impl State {
         faults
     }
 
-    /// Whether a ray from a point both ways along `direction`, up to half of `reach`, meets a facet that looks back.
-    fn is_hit(&self, from: Vec3, direction: Vec3, reach: f64, facet: &[usize]) -> bool {
-        let [c, d] = [facet[0], facet[1]].map(|n| self.position[n]);
-        let along = sub(d, c);
-        let cross = |a: Vec3, b: Vec3| a[0] * b[1] - a[1] * b[0];
-        let by = cross(direction, along);
-        let looks_back = -by > 0.5 * norm(along);
-        let to = sub(c, from);
-        let (distance, at) = (cross(to, along) / by, cross(to, direction) / by);
-        looks_back && distance.abs() < 0.5 * reach && (-1e-6..=1.0 + 1e-6).contains(&at)
+    /// Whether a ray from a point both ways along `ray`, up to half of `reach`, meets a facet that looks back.
+    fn is_hit(&self, from: Vec3, ray: Vec3, reach: f64, facet: &[usize]) -> bool {
+        let x: Vec<Vec3> = facet.iter().map(|&n| self.position[n]).collect();
+        let (across, _) = direction(&x);
+        let slope = dot(across, ray);
+        let distance = dot(sub(x[0], from), across) / slope;
+        if slope > -0.5 || distance.abs() >= 0.5 * reach {
+            return false;
+        }
+        let foot: Vec3 = std::array::from_fn(|c| from[c] + distance * ray[c]);
+        let within = |a: Vec3, b: Vec3| {
+            let (along, to) = (sub(b, a), sub(foot, a));
+            match x.len() {
+                2 => (-1e-6..=1.0 + 1e-6).contains(&(dot(along, to) / dot(along, along))),
+                _ => dot(cross(along, to), across) >= -1e-6 * dot(along, along),
+            }
+        };
+        (0..x.len()).all(|at| within(x[at], x[(at + 1) % x.len()]))
+    }
+}
+
+fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The unit normal of a facet and its length or area.
+fn direction(x: &[Vec3]) -> (Vec3, f64) {
+    let normal = match x {
+        [a, b] => [b[1] - a[1], a[0] - b[0], 0.0],
+        [a, b, c] => cross(sub(*b, *a), sub(*c, *a)).map(|x| 0.5 * x),
+        [a, b, c, d] => cross(sub(*c, *a), sub(*d, *b)).map(|x| 0.5 * x),
+        _ => unreachable!("facets have two to four nodes"),
+    };
+    let size = norm(normal);
+    (normal.map(|x| x / size), size)
+}
+
+/// Points all over a facet, its corners among them.
+fn samples(x: &[Vec3]) -> Vec<Vec3> {
+    let mean =
+        |weights: &[f64]| -> Vec3 { std::array::from_fn(|c| weights.iter().zip(x).map(|(w, x)| w * x[c]).sum()) };
+    let steps = || (0..=4).map(|k| f64::from(k) / 4.0);
+    match x.len() {
+        2 => (0..=8).map(|k| f64::from(k) / 8.0).map(|s| mean(&[1.0 - s, s])).collect(),
+        3 => steps()
+            .flat_map(|s| steps().map(move |t| [(1.0 - s) * (1.0 - t), s * (1.0 - t), t]))
+            .map(|w| mean(&w))
+            .collect(),
+        _ => {
+            let weights = |s: f64, t: f64| [(1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t];
+            steps().flat_map(|s| steps().map(move |t| weights(s, t))).map(|w| mean(&w)).collect()
+        }
     }
 }
 

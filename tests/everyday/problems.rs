@@ -23,7 +23,7 @@ pub struct Problem {
 type Make = fn(Option<f64>, usize, usize) -> Problem;
 
 /// Every problem with the number of steps that a first attempt would take.
-pub const ALL: [(&str, Make, usize); 13] = [
+pub const ALL: [(&str, Make, usize); 19] = [
     ("press_fit", press_fit, 2),
     ("lug_with_pin", lug_with_pin, 8),
     ("gear_pair", gear_pair, 8),
@@ -37,6 +37,12 @@ pub const ALL: [(&str, Make, usize); 13] = [
     ("initial_penetration", initial_penetration, 1),
     ("strip_round_a_drum", strip_round_a_drum, 5),
     ("large_sliding", large_sliding, 20),
+    ("flat_punch", flat_punch, 2),
+    ("quarter_lug", quarter_lug, 4),
+    ("tubes", tubes, 2),
+    ("sharp_snap_fit", sharp_snap_fit, 30),
+    ("beam_over_an_edge", beam_over_an_edge, 4),
+    ("ball_on_block", ball_on_block, 3),
 ];
 
 /// A fault when a number is not what it should be, within a share of it.
@@ -434,6 +440,228 @@ fn large_sliding(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
             let off = force[0] / -force[1] - friction.unwrap_or(0.0);
             faults.extend((off.is_nan() || off.abs() > 0.03).then(|| format!("push over load is off by {off:.1e}")));
         }
+        faults
+    };
+    Problem { model, load: no_load, check: Box::new(check) }
+}
+
+/// How a flat punch and the base below it are meshed, and which of them is the slave.
+#[derive(Clone, Copy)]
+pub struct Punch {
+    pub dim: usize,
+    pub simplices: bool,
+    /// Columns of the base and of the punch.
+    pub columns: [usize; 2],
+    /// How far the punch is off the middle.
+    pub off: f64,
+    pub base_is_slave: bool,
+}
+
+/// A flat punch on a wider base: surfaces of the slave end within facets of the base, or those of the base beyond the punch.
+pub fn punch(friction: Option<f64>, steps: usize, of: Punch) -> Problem {
+    let Punch { dim, simplices, columns: [wide, narrow], off, base_is_slave } = of;
+    let mut model = Model::new(dim, friction, steps);
+    model.simplices = simplices;
+    let up = dim - 1;
+    let place = move |x: Vec3, half: f64, off: f64, low: f64| -> Vec3 {
+        std::array::from_fn(|c| match c {
+            _ if c == up => low + x[c],
+            _ if c < dim => off + half * (2.0 * x[c] - 1.0),
+            _ => 0.0,
+        })
+    };
+    let rows = |columns: usize, rows: usize| [vec![columns; up], vec![rows]].concat();
+    let base = model.body(&rows(wide, 2), 1e3, POISSON, |x| place(x, 1.5, 0.0, -1.0));
+    let top = model.body(&rows(narrow, 2), 2e3, POISSON, |x| place(x, 1.0, off, 0.0));
+    let moved = |depth: &str| -> [Value; 3] {
+        std::array::from_fn(|c| {
+            if c == up {
+                json!(depth)
+            } else if c < dim {
+                json!(0)
+            } else {
+                FREE
+            }
+        })
+    };
+    let bottom = base.nodes(low(up));
+    model.fix(&bottom, moved("0"));
+    model.fix(&top.nodes(high(up)), moved("-0.02*t"));
+    let (of_base, of_top) = (base.facets(high(up)), top.facets(low(up)));
+    match base_is_slave {
+        true => model.contact(of_base, of_top),
+        false => model.contact(of_top, of_base),
+    }
+    let check = move |_: &Model, outcome: &Outcome| {
+        let forces: Vec<f64> = outcome.states.iter().map(|state| state.sum(&bottom)[up]).collect();
+        let per_step = forces[0];
+        let straight =
+            forces.iter().enumerate().find(|(at, force)| (*force / per_step - 1.0 - *at as f64).abs() > 0.05);
+        straight
+            .filter(|_| friction.is_none())
+            .map(|(at, force)| format!("step {}: the force is {force:.3e}, the first {per_step:.3e}", at + 1))
+            .into_iter()
+            .chain((per_step < 1.0).then(|| format!("the force is {per_step:.3e}")))
+            .collect()
+    };
+    Problem { model, load: no_load, check: Box::new(check) }
+}
+
+/// A flat punch in space on a finer base, which is the slave.
+fn flat_punch(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
+    let columns = [6 * finer, 4 * finer];
+    punch(friction, steps, Punch { dim: 3, simplices: false, columns, off: 0.0, base_is_slave: true })
+}
+
+/// A pin with play that is pulled in the hole of a plate, in space: half of the length and half of the width.
+fn quarter_lug(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
+    let mut model = Model::new(3, friction, steps);
+    let plate = |x: Vec3| {
+        let angle = PI * x[1];
+        let (c, s) = (angle.cos(), angle.sin());
+        let radius = 2.0 + (4.0 / c.abs().max(s.abs()) - 2.0) * x[0].powf(1.3);
+        [radius * c, radius * s, x[2]]
+    };
+    let plate = model.body(&[4 * finer, 10 * finer, 2 * finer], STEEL, POISSON, plate);
+    let pin = |x: Vec3| {
+        let ([x, y, _], z) = (polar([0.0; 2], [0.6, 1.98], [0.0, PI])(x), 1.5 * x[2]);
+        [x, y, z]
+    };
+    let pin = model.body(&[3 * finer, 14 * finer, 3 * finer], STEEL, POISSON, pin);
+    for body in [&plate, &pin] {
+        model.fix(&body.nodes(|x| low(1)(x) || high(1)(x)), [FREE, json!(0), FREE]);
+        model.fix(&body.nodes(low(2)), [FREE, FREE, json!(0)]);
+    }
+    let held = plate.nodes(|x| high(0)(x) && x[1] > 0.75 - 1e-9);
+    model.fix(&held, [json!(0), FREE, FREE]);
+    let pulled = pin.nodes(low(0));
+    model.fix(&pulled, [json!("0.1*t"), FREE, FREE]);
+    model.contact(pin.facets(high(0)), plate.facets(low(0)));
+    let check = move |model: &Model, outcome: &Outcome| {
+        let state = outcome.last();
+        let mut faults: Vec<String> =
+            close("pull on the pin", state.sum(&pulled)[0], -state.sum(&held)[0], 2e-3).into_iter().collect();
+        faults.extend((state.touching(model).len() < 12).then(|| "fewer than twelve nodes touch".to_owned()));
+        faults
+    };
+    Problem { model, load: no_load, check: Box::new(check) }
+}
+
+/// A quarter of a tube that is meshed into another, both of unlike lengths, pressed apart and then pushed out.
+fn tubes(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
+    let mut model = Model::new(3, friction, steps);
+    let tube = |radii: [f64; 2], ends: [f64; 2]| {
+        move |x: Vec3| {
+            let [a, b, _] = polar([0.0; 2], radii, [0.0, FRAC_PI_2])(x);
+            [a, b, ends[0] + (ends[1] - ends[0]) * x[2]]
+        }
+    };
+    let inner = model.body(&[2 * finer, 9 * finer, 2 * finer], STEEL, POISSON, tube([1.5, 2.005], [0.0, 2.0]));
+    let outer = model.body(&[2 * finer, 12 * finer, 3 * finer], STEEL, POISSON, tube([2.0, 3.0], [-0.3, 2.2]));
+    for body in [&inner, &outer] {
+        model.fix(&body.nodes(low(1)), [FREE, json!(0), FREE]);
+        model.fix(&body.nodes(high(1)), [json!(0), FREE, FREE]);
+    }
+    let held = outer.nodes(low(2));
+    model.fix(&held, [FREE, FREE, json!(0)]);
+    let inside = inner.nodes(low(1));
+    let pushed = inner.nodes(high(2));
+    model.fix(&pushed, [FREE, FREE, json!("0.1*(t-0.5+abs(t-0.5))")]);
+    model.contact(outer.facets(low(0)), inner.facets(high(0)));
+    let check = move |_: &Model, outcome: &Outcome| {
+        let state = outcome.last();
+        let push = state.sum(&pushed)[2];
+        let mut faults: Vec<String> = Vec::new();
+        if let Some(friction) = friction {
+            // what a pressure all round has along y, over a quarter
+            let pressed = FRAC_PI_2 * state.sum(&inside)[1].abs();
+            faults.extend(close("push over friction", push, friction * pressed, 0.05));
+            faults.extend(close("push of the other", push, -state.sum(&held)[2], 5e-3));
+        } else {
+            let largest = state.reaction.iter().map(|&r| norm(r)).fold(0.0, f64::max);
+            faults.extend((push.abs() > 0.05 * largest).then(|| format!("a push of {push:.1e} without friction")));
+        }
+        faults
+    };
+    Problem { model, load: no_load, check: Box::new(check) }
+}
+
+/// A hook with a sharp edge that bends over a sharp ridge and is free behind it.
+fn sharp_snap_fit(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
+    let mut model = Model::new(2, friction, steps);
+    let bump = |x: f64, half: f64| (1.0 - x.abs() / half).max(0.0);
+    let hook = move |x: Vec3| {
+        let along = 20.0 * x[0];
+        let below = -bump(along - 17.5, 2.5);
+        [along, below + (1.0 - below) * x[1], 0.0]
+    };
+    let base = move |x: Vec3| {
+        let along = 18.0 + 12.0 * x[0];
+        [along, -4.0 + (bump(along - 22.5, 2.0) + 2.8) * x[1], 0.0]
+    };
+    let hook = model.body(&[40 * finer, 3 * finer], 2e3, POISSON, hook);
+    let base = model.body(&[24 * finer, 4 * finer], 2e3, POISSON, base);
+    model.fix(&hook.nodes(low(0)), [json!("8*t"), json!(0), FREE]);
+    model.fix(&base.nodes(low(1)), [json!(0), json!(0), FREE]);
+    model.contact(hook.facets(low(1)), base.facets(high(1)));
+    let tip = hook.nodes(high(0));
+    let check = move |_: &Model, outcome: &Outcome| {
+        let lift = outcome.states.iter().map(|s| s.displacement[tip[0]][1]).fold(0.0, f64::max);
+        let mut faults: Vec<String> =
+            (lift < 0.7).then(|| format!("the hook is lifted by {lift:.3} only")).into_iter().collect();
+        let end = outcome.last().displacement[tip[0]];
+        faults.extend(
+            ((end[0] - 8.0).abs().max(end[1].abs()) > 5e-3).then(|| format!("at last the hook is not free: {end:?}")),
+        );
+        faults
+    };
+    Problem { model, load: no_load, check: Box::new(check) }
+}
+
+/// A slender beam in space that a load bends over the sharp edge of a block.
+fn beam_over_an_edge(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
+    let mut model = Model::new(3, friction, steps);
+    let beam = |x: Vec3| [10.0 * x[0], 2.0 * x[1], 0.05 + 0.4 * x[2]];
+    let beam = model.body(&[16 * finer, 3 * finer, 2 * finer], 1e5, POISSON, beam);
+    let block = |x: Vec3| [5.0 + 3.0 * x[0], -0.3 + 2.6 * x[1], -2.0 + 2.0 * x[2]];
+    let block = model.body(&[5 * finer, 2 * finer, 3 * finer], 2e5, POISSON, block);
+    model.fix(&beam.nodes(low(0)), [json!(0), json!(0), json!(0)]);
+    let ground = block.nodes(low(2));
+    model.fix(&ground, [json!(0), json!(0), json!(0)]);
+    model.load(beam.facets(high(0)), [0.0, 0.0, -30.0], "t");
+    let skin = [block.facets(high(2)), block.facets(high(0)), block.facets(low(0))].concat();
+    model.contact(beam.facets(low(2)), skin);
+    let check = move |_: &Model, outcome: &Outcome| {
+        // the beam pulls up at its clamp
+        let force = outcome.last().sum(&ground)[2];
+        (force < 24.0).then(|| format!("the block bears {force:.3e}, less than the load")).into_iter().collect()
+    };
+    Problem { model, load: |t| [0.0, 0.0, -24.0 * t], check: Box::new(check) }
+}
+
+/// A cap of a ball on a block, which is the slave: Hertz's force grows as the depth to the power of 3/2.
+fn ball_on_block(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
+    let mut model = Model::new(3, friction, steps);
+    let cap = |x: Vec3| {
+        let [a, b] = [0, 1].map(|c: usize| (0.7 * (2.0 * x[c] - 1.0)).tan());
+        let radius = (2.0 - 0.8 * x[2]) / (1.0 + a * a + b * b).sqrt();
+        [radius * a, radius * b, 2.0 - radius]
+    };
+    let cap = model.body(&[8 * finer, 8 * finer, 2 * finer], STEEL, POISSON, cap);
+    let block = |x: Vec3| [3.0 * x[0] - 1.5, 3.0 * x[1] - 1.5, 1.5 * x[2] - 1.5];
+    let block = model.body(&[9 * finer, 9 * finer, 3 * finer], STEEL, POISSON, block);
+    let pushed = cap.nodes(high(2));
+    model.fix(&pushed, [json!(0), json!(0), json!("-0.1*t")]);
+    let ground = block.nodes(low(2));
+    model.fix(&ground, [json!(0), json!(0), json!(0)]);
+    model.contact(block.facets(high(2)), cap.facets(low(2)));
+    let check = move |_: &Model, outcome: &Outcome| {
+        let sum = outcome.last().sum(&ground);
+        let aside = (sum[0].hypot(sum[1])) / sum[2];
+        let mut faults: Vec<String> =
+            (aside > 1e-3).then(|| format!("a force aside of {aside:.1e}")).into_iter().collect();
+        let forces: Vec<f64> = outcome.states.iter().map(|state| state.sum(&ground)[2]).collect();
+        faults.extend((!forces.windows(2).all(|pair| pair[0] < pair[1])).then(|| format!("forces {forces:?}")));
         faults
     };
     Problem { model, load: no_load, check: Box::new(check) }

@@ -98,10 +98,20 @@ impl SlaveNumbers {
     /// Augmented normal pressure p̂ = k λ_n + c g; compression is negative.
     ///
     /// The gap of a node in contact, whose multiplier the last solve has found, is what the curvature of its path has left of
-    /// it. Against c, the stiffness of solid bodies, that would let go of the nodes of slender ones.
+    /// it. Against c, the stiffness of solid bodies, that would let go of the nodes of slender ones. A node without contact
+    /// has no multiplier but what a solve left of an old one, or what it had when all that it faced went away.
     pub fn pressure(&self) -> f64 {
-        let gap = if self.solved && self.state.is_active() { 0.0 } else { self.gap };
-        self.scale_factor * dot(self.multiplier, self.normal) + self.stiffness * gap
+        let by_multiplier = || self.scale_factor * dot(self.multiplier, self.normal);
+        match (self.solved, self.state.is_active()) {
+            (true, true) => by_multiplier(),
+            (true, false) => self.stiffness * self.gap,
+            (false, _) => by_multiplier() + self.stiffness * self.gap,
+        }
+    }
+
+    /// Whether a node without contact is in the master by more than a state may leave: `allowed` is a traction.
+    pub fn has_passed_through(&self, allowed: f64) -> bool {
+        !self.state.is_active() && -self.stiffness * self.gap > allowed.max(self.resolution.traction)
     }
 
     fn presses(&self, pressure: f64) -> bool {
@@ -324,6 +334,19 @@ mod tests {
         assert_eq!(frictionless(&solved(NodeState::Slip, -1.0)).state, NodeState::Slip);
         assert_eq!(frictionless(&solved(NodeState::Slip, 1.0)).state, NodeState::Inactive);
         assert_eq!(frictionless(&solved(NodeState::Inactive, 0.0)).state, NodeState::Inactive);
+    }
+
+    #[test]
+    fn what_is_left_of_a_multiplier_decides_nothing_without_contact() {
+        let left = |lambda: f64| SlaveNumbers { solved: true, ..node(NodeState::Inactive, [0.0, 0.0, lambda]) };
+        for lambda in [-1e20, 0.0, 1e20] {
+            assert!(frictionless(&left(lambda)).state.is_active());
+            assert!(left(lambda).has_passed_through(0.5) && !left(lambda).has_passed_through(1.5));
+        }
+        assert!(
+            !node(NodeState::Slip, [0.0; 3]).has_passed_through(0.0),
+            "nodes in contact are held by their equations"
+        );
     }
 
     #[test]

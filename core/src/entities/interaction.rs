@@ -158,6 +158,11 @@ pub trait Interaction: Send + Sync {
         MasslessNodes::default()
     }
 
+    /// Whether a step that fails again would be gone another way than the last time, whatever its length.
+    fn has_another_way(&self) -> bool {
+        false
+    }
+
     /// Keeps what a retried step must restore.
     fn save(&mut self);
 

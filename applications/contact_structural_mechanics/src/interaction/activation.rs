@@ -7,6 +7,7 @@ use zelus_core::model::flags::{ACTIVE, ISOLATED, SLIP};
 use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
+use super::cycling::ALLOWED;
 use super::holding::held_at;
 use super::step_parameters::StepParameters;
 use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
@@ -162,6 +163,30 @@ pub(super) fn decide(
         }
     }
     (decisions, states)
+}
+
+/// Why a converged state is none: slave nodes that face the master are in it without contact, by more than where no set
+/// fulfils all conditions. Rules that decide otherwise have lost sight of what is small.
+pub(super) fn passed_through(
+    part: &ModelPart,
+    slaves: &[u32],
+    family: &Family,
+    parameters: &StepParameters,
+    resolution: Resolution,
+) -> Option<String> {
+    let facing = slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ISOLATED, n as usize));
+    let nodes: Vec<(u32, SlaveNumbers)> =
+        facing.map(|n| (n, numbers(part, n as usize, family, parameters, resolution))).collect();
+    let pressed = nodes.iter().filter(|(_, numbers)| numbers.state.is_active());
+    let largest = pressed.map(|(_, numbers)| -numbers.pressure()).fold(0.0, f64::max);
+    let inside: Vec<_> = nodes.iter().filter(|(_, numbers)| numbers.has_passed_through(ALLOWED * largest)).collect();
+    let deepest = inside.iter().min_by(|(_, a), (_, b)| a.gap.total_cmp(&b.gap))?;
+    Some(format!(
+        "{} nodes without contact are in the master, node {} by {:.3e}",
+        inside.len(),
+        part.nodes.ids[deepest.0 as usize],
+        -deepest.1.gap
+    ))
 }
 
 /// Makes the decisions of an iteration the active set.
@@ -365,7 +390,7 @@ pub(super) fn weigh_multipliers(part: &mut ModelPart, slaves: &[u32], family: &F
     slaves.iter().zip(weights).for_each(|(&n, weight)| column[n as usize] = weight);
 }
 
-/// What is too small to decide on at these interface nodes: `nodes` all of them, `slaves` those with multipliers.
+/// What is too small to decide on at these interface nodes: `nodes` all of them, `slaves` those that may be in contact.
 ///
 /// Tractions are known as well as a solve leaves multipliers, and as the round-off of displacements leaves forces.
 pub(super) fn resolution(
@@ -375,6 +400,7 @@ pub(super) fn resolution(
     family: &Family,
     parameters: &StepParameters,
 ) -> Resolution {
+    let in_contact: Vec<u32> = slaves.iter().copied().filter(|&n| part.nodes.flags.is(ACTIVE, n as usize)).collect();
     let motion = farthest(nodes, |at| norm(sub(part.nodes.current[at], part.nodes.initial[at])));
     let history = &part.nodes.history;
     let traction = |at: usize| match family.multiplier {
@@ -391,7 +417,7 @@ pub(super) fn resolution(
             parameters.scale_factor * history.get(variable.name()).map_or(0.0, |field| norm(field.vector(0, at)))
         }
     };
-    Resolution::of(extent(part, nodes), farthest(slaves, traction), parameters.stiffness * motion)
+    Resolution::of(extent(part, nodes), farthest(&in_contact, traction), parameters.stiffness * motion)
 }
 
 /// Lengths at these nodes up to this are none.

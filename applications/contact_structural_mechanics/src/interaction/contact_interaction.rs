@@ -14,9 +14,11 @@ use super::activation::{self, Start};
 use super::bearable_penalty::BearablePenalty;
 use super::calibration::{calibrate, limit};
 use super::contact_settings::ContactSettings;
+use super::coverage;
 use super::cycling::{CycleGuard, Settled};
 use super::edges::turn_edges;
 use super::friction;
+use super::friction_ramp::FrictionRamp;
 use super::holding::{Holding, held_at};
 use super::impact::{coarse_impact, near_nodes};
 use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
@@ -27,6 +29,7 @@ use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
 use crate::active_set::SlipRule;
+use crate::formulations::Augmentation;
 use crate::formulations::held::along_free_tangents;
 use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces};
 use crate::mortar::SegmentationSettings;
@@ -56,9 +59,13 @@ pub struct ContactInteraction {
     uzawa: Uzawa,
     /// How much of the penalty acts, where it is all there is.
     ramp: PenaltyRamp,
+    /// Whether friction waits for contact.
+    friction_ramp: FrictionRamp,
     /// How explicit steps stiffen the penalty.
     growth: Option<Growth>,
     bearable: BearablePenalty,
+    /// Largest area that a slave node integrates.
+    largest_area: f64,
     /// Overlapping pairs of every node.
     pair_counts: Vec<u32>,
     cycles: CycleGuard,
@@ -113,8 +120,10 @@ impl ContactInteraction {
             resolution: Resolution::default(),
             uzawa: Uzawa::default(),
             ramp: PenaltyRamp::default(),
+            friction_ramp: FrictionRamp::default(),
             growth: None,
             bearable: BearablePenalty::default(),
+            largest_area: 0.0,
             pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             holding: Holding::default(),
@@ -147,6 +156,15 @@ impl ContactInteraction {
     fn ramps(&self) -> bool {
         let constant = self.settings.adaptation.rule.is_none() && self.settings.explicit.is_none();
         constant && matches!(self.settings.family.multiplier, Multiplier::None)
+    }
+
+    /// Whether friction may join contact later: where forces are multipliers alone.
+    fn may_wait_for_contact(&self) -> bool {
+        let bounded = matches!(self.parameters.slip_rule, SlipRule::Bounded(_));
+        bounded
+            && self.settings.explicit.is_none()
+            && self.settings.augmentation == Augmentation::Node
+            && matches!(self.settings.family.multiplier, Multiplier::Vector(_))
     }
 
     /// Normals of the nodes in the present configuration.
@@ -218,10 +236,18 @@ impl ContactInteraction {
         let columns = [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..])];
         let vectors = [(3, slip.as_flattened_mut()), (3, trial.as_flattened_mut())];
         add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
+        let beside = {
+            let around = self.parameters.segmentation.revolution();
+            let weight = |n: u32| around.map_or(1.0, |per_radius| per_radius * part.nodes.current[n as usize][0]);
+            let active = |n: u32| part.nodes.flags.is(ACTIVE, n as usize);
+            coverage::beside(part, &self.pairing.interfaces, &area, self.settings.least_coverage, weight, active)
+        };
         for &node in &self.slaves {
-            part.nodes.flags.set(ISOLATED, node as usize, pairs[node as usize] == 0);
+            let at = node as usize;
+            part.nodes.flags.set(ISOLATED, at, pairs[at] == 0 || beside[at]);
         }
         self.pair_counts = pairs;
+        self.largest_area = self.slaves.iter().map(|&n| area[n as usize]).fold(0.0, f64::max);
         mean.iter_mut().zip(&area).for_each(|(mean, area)| *mean = if *area > 0.0 { *mean / area } else { 0.0 });
         part.nodes.values.values_mut(&MEAN_WEIGHTED_GAP, 0).copy_from_slice(&mean);
         part.nodes.history.values_mut(&WEIGHTED_GAP, 0).copy_from_slice(&gap);
@@ -373,8 +399,8 @@ impl ContactInteraction {
 
 /// Iterations after which pairs go on as they integrate: most steps have converged by then, as in the reference program.
 const SETTLED: usize = 5;
-/// Share of the scale factor that makes redundant multipliers regular.
-const RELAXATION: f64 = 1e-8;
+/// Share of the weight k² A/c of multipliers that makes redundant ones regular.
+const RELAXATION: f64 = 1e-5;
 
 /// Searches in converged states of a step after which it counts as not converged.
 const MOST_SEARCHES: usize = 5;
@@ -434,6 +460,9 @@ impl Interaction for ContactInteraction {
         self.uzawa = Uzawa::default();
         if self.ramps() {
             self.ramp.begin_step(part);
+        }
+        if self.may_wait_for_contact() {
+            self.friction_ramp.begin_step(part, self.settings.friction.law);
         }
         if !self.acting {
             self.switch_off(part);
@@ -540,12 +569,23 @@ impl Interaction for ContactInteraction {
         if outer != Outer::Done {
             return Ok(outer);
         }
+        let law = self.settings.friction.law;
+        if self.friction_ramp.after_convergence(part, &self.slaves, law, self.resolution) == Outer::Again {
+            self.cycles.begin_step();
+            self.write_tangents(part);
+            return Ok(Outer::Again);
+        }
+        let family = self.settings.family;
+        if let Some(why) = activation::passed_through(part, &self.slaves, family, &self.parameters, self.resolution) {
+            return Ok(Outer::Failed(why));
+        }
         let touches = self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize));
         if part.info.is(ENSURE_CONTACT) && !touches {
             return Err(zelus_core::Error::NotConverged(
                 "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
             ));
         }
+        self.friction_ramp.solve();
         let (family, scale_factor) = (self.settings.family, self.parameters.scale_factor);
         Ok(coarse_impact(part, &self.slaves, family, scale_factor, &self.start_gaps, &mut self.impact_error))
     }
@@ -563,6 +603,7 @@ impl Interaction for ContactInteraction {
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.impact_error = 0.0;
+        self.friction_ramp.accept();
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);
         let cleared = |n: u32| self.settings.clear_inactive && !part.nodes.flags.is(ACTIVE, n as usize);
@@ -601,7 +642,8 @@ impl Interaction for ContactInteraction {
     }
 
     fn relaxation(&self) -> Option<f64> {
-        Some(RELAXATION * self.parameters.scale_factor)
+        let weight = self.parameters.scale_factor.powi(2) * self.largest_area / self.parameters.stiffness;
+        Some(RELAXATION * if self.largest_area > 0.0 { weight } else { self.parameters.scale_factor })
     }
 
     fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes {
@@ -612,6 +654,10 @@ impl Interaction for ContactInteraction {
         MasslessNodes { surface: self.pairing.nodes(), near: self.near_nodes.clone() }
     }
 
+    fn has_another_way(&self) -> bool {
+        self.may_wait_for_contact() && self.friction_ramp.comes_next()
+    }
+
     fn save(&mut self) {
         self.pairing.save();
     }
@@ -619,6 +665,7 @@ impl Interaction for ContactInteraction {
     fn restore(&mut self) {
         self.pairing.restore(&self.settings, &self.parameters);
         self.ramp.retry();
+        self.friction_ramp.retry();
         self.steps_since_search = usize::MAX;
     }
 

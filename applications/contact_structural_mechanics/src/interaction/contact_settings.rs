@@ -65,6 +65,8 @@ pub struct ContactSettings {
     pub adaptation: AdaptationSettings,
     /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.
     pub mind_supports: bool,
+    /// Share of a node's facets, of that of its neighbours, that must be faced for it to be in contact.
+    pub least_coverage: f64,
     /// Whether augmented pressures of inactive nodes are zero after a step.
     pub clear_inactive: bool,
     /// How far Uzawa's outer loop goes, where the family has one.

@@ -18,7 +18,7 @@ const RESTLESS: usize = 15;
 /// Converged states in which a held set may change.
 const MOST_CHANGES: usize = 30;
 /// Violation, as a share of the largest pressure, that may stay where no set fulfils all conditions.
-const ALLOWED: f64 = 0.01;
+pub(super) const ALLOWED: f64 = 0.01;
 /// Nodes that a warning names.
 const NAMED: usize = 8;
 

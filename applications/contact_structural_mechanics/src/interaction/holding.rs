@@ -7,12 +7,12 @@ use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::geometry::shape_functions;
 use zelus_core::model::ModelPart;
 use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
-use zelus_core::vector3::{add, norm, scale, sub};
+use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use crate::formulations::Held;
 use crate::formulations::held::free_normal;
 use crate::interface::{
-    Facet, Fixed, Interface, NodalNormals, NormalPatches, fixed_components, positions, symmetry_planes,
+    Facet, Fixed, Interface, NodalNormals, NormalPatches, centre_normal, fixed_components, positions, symmetry_planes,
 };
 use crate::pairs::{Family, Multiplier};
 use crate::variables::HELD_MULTIPLIER;
@@ -21,6 +21,8 @@ use crate::variables::HELD_MULTIPLIER;
 const BESIDE: f64 = 0.02;
 /// Shape functions up to this are those of nodes on the other side of an edge.
 const NO_SHARE: f64 = 1e-3;
+/// Cosine of the angle between normals beyond which a node is not moved along its own to the master.
+const LEAST_SLOPE: f64 = 0.1;
 /// Difference of prescribed motions, over their size, from which on they move a contact.
 const SAME_MOTION: f64 = 1e-9;
 
@@ -72,13 +74,13 @@ impl Holding {
         for (slave, master) in pairs {
             for &node in slave.nodes.iter().filter(|node| self.fixed.contains_key(node)) {
                 let points = positions(master, part, &mut buffer);
-                let Some(image) = local_coordinates(master.shape, points, part.nodes.current[node as usize]) else {
-                    continue;
-                };
+                let foot = foot(part, node, master, points);
+                let Some(image) = local_coordinates(master.shape, points, foot) else { continue };
                 let mut shares = [0.0; 4];
                 shape_functions(master.shape, image.xi, &mut shares[..master.nodes.len()]);
                 let beside = shares.iter().fold(0.0_f64, |most, share| most.max(-share));
-                let place = [if beside > BESIDE { beside } else { 0.0 }, image.distance];
+                let distance = norm(sub(foot, part.nodes.current[node as usize])) + image.distance;
+                let place = [if beside > BESIDE { beside } else { 0.0 }, distance];
                 if beside <= BESIDE && faced.get(&node).is_none_or(|(known, _)| place < *known) {
                     faced.insert(node, (place, self.held(part, node, master, &shares)));
                 }
@@ -180,6 +182,18 @@ impl Holding {
             if count > ids.len() { " …" } else { "" }
         );
         part.messages.push(Diagnostic::note("held-multipliers", fact));
+    }
+}
+
+/// Where a slave node meets the plane of a master along its own normal, which lies in planes of symmetry: across a gap or a
+/// penetration the point nearest to it would not. The node itself where the facets hardly face each other.
+fn foot(part: &ModelPart, node: u32, master: &Facet, points: &[[f64; 3]]) -> [f64; 3] {
+    let at = part.nodes.current[node as usize];
+    let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
+    let across = centre_normal(master.shape, points).unwrap_or([0.0; 3]);
+    match dot(normal, across) {
+        slope if slope < -LEAST_SLOPE => add(at, scale(normal, dot(sub(points[0], at), across) / slope)),
+        _ => at,
     }
 }
 

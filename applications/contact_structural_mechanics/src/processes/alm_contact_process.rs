@@ -77,6 +77,7 @@ struct Whole {
     augmentation: Option<Augmentation>,
     clear_inactive_for_post: bool,
     mind_supports: bool,
+    least_coverage: f64,
     search_parameters: Search,
     #[serde(rename = "advance_ALM_parameters")]
     parameters: Parameters,
@@ -246,6 +247,7 @@ fn interaction(
         },
         clear_inactive: whole.clear_inactive_for_post,
         mind_supports: whole.mind_supports,
+        least_coverage: whole.least_coverage,
         segmentation: segmentation(settings)?,
         axisymmetric: whole.alternative_formulations.axisymmetric,
     };

@@ -197,7 +197,9 @@ impl NewtonRaphson {
             }
             solved = self.solve_once(iteration, step, part, interactions);
         }
-        let (Err(Failed::Singular(why)), None, Some(amount)) = (&solved, step.relaxed, step.relaxation) else {
+        let (Err(Failed::Singular(why) | Failed::Inaccurate(why)), None, Some(amount)) =
+            (&solved, step.relaxed, step.relaxation)
+        else {
             return solved;
         };
         part.messages.extend(self.warn_of_redundancy(why));

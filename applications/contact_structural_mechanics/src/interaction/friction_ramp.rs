@@ -1,0 +1,97 @@
+//! Friction that joins contact once it is found, in steps that could not be solved with both at once.
+//!
+//! Pressures bound friction, and friction decides where bodies press: far from the answer the iteration may run through states
+//! of both that lead nowhere, however short the step, as where bodies are meshed into each other. Contact without friction is
+//! far easier. A step that is tried again solves it first; from there friction takes over, against the slip that it left.
+//! What converges in the end is the step as the deck has it.
+
+use zelus_core::entities::Outer;
+use zelus_core::model::flags::{ACTIVE, SLIP};
+use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::vector3::{norm, scale};
+
+use crate::friction_law::FrictionLaw;
+use crate::mortar::tangent;
+use crate::resolution::Resolution;
+use crate::variables::{NODAL_AREA, TANGENT_XI, WEIGHTED_SLIP};
+
+/// Shares of friction that act one after the other, each from where the one before has converged.
+const SHARES: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
+
+/// How much of friction acts.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct FrictionRamp {
+    /// Attempts of this step that have failed one after the other.
+    failed: usize,
+    /// Whether the present one is solved.
+    solved: bool,
+    /// Where in [`SHARES`] the step is, and the numbers of the law at the nodes, while not all of it acts.
+    waiting: Option<(usize, Vec<f64>)>,
+}
+
+impl FrictionRamp {
+    /// The step is tried again; one that was solved, and is to be shorter, has not failed.
+    pub(super) fn retry(&mut self) {
+        self.failed = if self.solved { 0 } else { self.failed + 1 };
+    }
+
+    /// The step is solved.
+    pub(super) fn solve(&mut self) {
+        self.solved = true;
+    }
+
+    /// The step is accepted.
+    pub(super) fn accept(&mut self) {
+        self.failed = 0;
+    }
+
+    /// Whether the next attempt of a step that fails once more begins without friction.
+    pub(super) fn comes_next(&self) -> bool {
+        !self.solved && self.failed % 2 == 1
+    }
+
+    /// Step start: every other attempt of a step that failed, from the third on, begins without friction, which may be all that
+    /// holds a body.
+    pub(super) fn begin_step(&mut self, part: &mut ModelPart, law: &FrictionLaw) {
+        self.solved = false;
+        let column = part.nodes.values.values_mut(law.variable, 0);
+        self.waiting = (self.failed > 0 && self.failed % 2 == 0).then(|| (0, column.to_vec()));
+        if self.waiting.is_some() {
+            column.fill(0.0);
+        }
+    }
+
+    /// The iteration has converged: more of friction acts from now on, at first against the slip at each node; nodes without
+    /// slip stick.
+    pub(super) fn after_convergence(
+        &mut self,
+        part: &mut ModelPart,
+        slaves: &[u32],
+        law: &FrictionLaw,
+        resolution: Resolution,
+    ) -> Outer {
+        let Some((stage, numbers)) = self.waiting.take() else { return Outer::Done };
+        let share = SHARES[stage + 1];
+        let column = part.nodes.values.values_mut(law.variable, 0);
+        column.iter_mut().zip(&numbers).for_each(|(now, number)| *now = share * number);
+        if stage + 2 < SHARES.len() {
+            self.waiting = Some((stage + 1, numbers));
+        }
+        if stage > 0 {
+            return Outer::Again;
+        }
+        for at in slaves.iter().map(|&n| n as usize) {
+            if !part.nodes.flags.is(ACTIVE, at) {
+                continue;
+            }
+            let vector_of = |name: &str| part.nodes.history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
+            let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
+            let slip = if area > 0.0 { scale(vector_of(WEIGHTED_SLIP.name()), area.recip()) } else { [0.0; 3] };
+            let slides = norm(resolution.vector_of(slip)) > 0.0 || law.bound_at(&part.nodes, at).is_smooth();
+            let direction = tangent(slip, vector_of(NORMAL.name()), part.info.domain_size);
+            part.nodes.flags.set(SLIP, at, slides);
+            part.nodes.values.values_mut(&TANGENT_XI, 0)[3 * at..3 * at + 3].copy_from_slice(&direction);
+        }
+        Outer::Again
+    }
+}
