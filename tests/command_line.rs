@@ -33,6 +33,42 @@ fn list_shows_what_decks_can_name() {
     assert!(text.contains("alm_contact_process") && !text.contains("SmallDisplacementElement2D4N"), "{text}");
 }
 
+/// Face pressures have opposite signs in the plane and in space: what pulls is named, and faces that are listed both ways round.
+#[test]
+fn check_says_which_way_face_pressures_act() {
+    let check = |folder: &Path| {
+        let output = zelus(folder, &["check", "ProjectParameters.json"]);
+        assert!(output.status.success(), "{}", said(&output));
+        said(&output)
+    };
+    for (name, presses, pulls) in [
+        (
+            "elements/load_patch_2D4N",
+            "\"NEGATIVE_FACE_PRESSURE\"",
+            ["\"POSITIVE_FACE_PRESSURE\"", "\"POSITIVE_FACE_PRESSURE\""],
+        ),
+        ("elements/load_patch_3D4N", "\"POSITIVE_FACE_PRESSURE\"", ["\"NEGATIVE_FACE_PRESSURE\"", "\"PRESSURE\""]),
+    ] {
+        let scratch = case(name);
+        assert!(!check(scratch.path()).contains("face-pressure"), "{name}");
+        for pulls in pulls {
+            let scratch = case(name);
+            change(scratch.path(), presses, pulls);
+            let text = check(scratch.path());
+            assert!(text.contains("note[face-pressure-pulls]") && text.contains("above zero pulls at all"), "{text}");
+            change(scratch.path(), "\"value\": 1000.0", "\"value\": -1000.0");
+            assert!(!check(scratch.path()).contains("face-pressure"), "{name} with {pulls}");
+        }
+    }
+    let scratch = case("elements/load_patch_2D4N");
+    support::change(scratch.path(), "mesh.mdpa", "3 0 8 7\n", "3 0 7 8\n");
+    let text = check(scratch.path());
+    assert!(
+        text.contains("warning[face-pressure-mixed]") && text.contains("presses on 1 faces and pulls at 1"),
+        "{text}"
+    );
+}
+
 #[test]
 fn describe_shows_settings_with_defaults() {
     let output = zelus(&root(), &["describe", "alm_contact_process"]);

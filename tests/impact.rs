@@ -84,7 +84,7 @@ fn a_bar_rebounds_with_its_energy_after_twice_the_time_of_a_wave() {
     println!("| scheme | c Δt/h | energy | momentum after | contact, L/c |\n|---|---|---|---|---|");
     for (name, loss) in [
         ("newmark", [3e-3, 3e-3, 8e-3]),
-        ("generalized_alpha", [3e-3, 3e-3, 9e-3]),
+        ("generalized_alpha", [3e-3, 3e-3, 3e-3]),
         ("bossak", [3e-3, 2e-2, 4e-2]),
         ("bdf2", [5e-3, 3e-2, 6e-2]),
     ] {
@@ -111,8 +111,10 @@ fn energy_stays_through_twenty_rebounds() {
     let bar = Bar::new(20, 2);
     let h = 1.0 / bar.count as f64;
     let round = 2.0 + 2.0 * GAP / SPEED;
-    for name in ["newmark", "generalized_alpha"] {
-        let results = bar.run(0.2 * h, 20.0 * round, &scheme(name));
+    for (name, named, ratio) in
+        [("newmark", scheme("newmark"), 0.2), ("default", json!({}), 0.2), ("default", json!({}), 1.0)]
+    {
+        let results = bar.run(ratio * h, 20.0 * round, &named);
         let begin = bar.state(&results, None).energy();
         let energies: Vec<f64> =
             (0..results.len()).step_by(10).map(|step| bar.state(&results, Some(step)).energy() / begin).collect();
@@ -127,7 +129,7 @@ fn energy_stays_through_twenty_rebounds() {
                 states.windows(2).filter(|pair| pair[0] && !pair[1]).map(|pair| pair[0]).collect::<Vec<_>>()
             })
             .collect();
-        println!("{name}: energy from {least:.4} to {most:.4} in {} rebounds", sides.len());
+        println!("{name}, {ratio}: energy from {least:.4} to {most:.4} in {} rebounds", sides.len());
         assert!(sides.len() >= 20, "{name}: {} rebounds", sides.len());
         assert!(least > 0.98 && most < 1.002, "{name}: energy from {least} to {most}");
     }
@@ -238,6 +240,6 @@ fn a_thrown_block_keeps_its_energy_and_its_way() {
         );
         assert!(end.momentum[1] > -0.5 * begin.momentum[1].abs(), "the block has not landed");
         assert!(aside < 1e-10 * begin.momentum[1].abs(), "pushed aside by {aside}");
-        assert!(most < 1.002 && least > 0.95, "energy from {least} to {most}");
+        assert!(most < 1.002 && least > 0.995, "energy from {least} to {most}");
     }
 }

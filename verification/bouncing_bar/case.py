@@ -36,8 +36,10 @@ def run(n, family="ALM", courant=1.0, dynamic=None):
 
 CASE = Case(
     "Bar between two walls", "energy of a bar that bounces without loss; balance of energy", "ANALYTIC",
-    "Energy may not grow. What the scheme damps of the sharp front is lost at each rebound, and slows the bar.",
-    [Quantity("largest energy", 1.0, 0.02, order=False), Quantity("rebounds", TIMES, (0.5, 0.3), order=False)],
+    "Energy stays. Rebounds are fewer than those of a rigid bar: the gap is as wide as the bar swings, and what the mesh makes of the "
+    "sharp front goes on swinging, so that the centre is slower or faster after each.",
+    [Quantity("largest energy", 1.0, 0.02, order=False), Quantity("energy at the end", 1.0, {"": 0.02, "double steps": 0.03}, order=False),
+     Quantity("rebounds", TIMES, (0.5, 0.3), order=False)],
     (10, 20), run, size=lambda n: 1 / n,
-    variants={"default scheme": {}, "half steps": {"courant": 0.5}, "newmark": {"dynamic": {"scheme_type": "newmark"}},
-              "generalised alpha": {"dynamic": {"scheme_type": "generalized_alpha"}}}, quick=False, slow=True)
+    variants={"default scheme": {}, "half steps": {"courant": 0.5}, "double steps": {"courant": 2.0}, "newmark": {"dynamic": {"scheme_type": "newmark"}}},
+    known={"newmark": "energy stays, and a share of it swings in the bar for good: nothing damps the waves that cells do not resolve"}, quick=False, slow=True)

@@ -33,9 +33,11 @@ def run(n, family="ALM", degrees=12.0, steps=160, dynamic=None, slave="block"):
 
 CASE = Case(
     "Thrown block", "balance of momentum and energy: without friction the momentum along the ground stays", "ANALYTIC",
-    "Momentum obeys the law to the tolerance of the iteration (1e-4); energy may only fall, by what the scheme damps.",
+    "Momentum obeys the law to the tolerance of the iteration (1e-4); energy stays but for what the scheme damps and what a step makes where contact opens.",
     [Quantity("momentum along the ground", 0.0, 1e-3, scale=1.0, order=False), Quantity("largest energy", 1.0, 0.02, order=False),
-     Quantity("energy after", 1.0, 0.4, order=False), Quantity("leaves the ground", 1.0, 0.0, order=False)],
+     Quantity("energy after", 1.0, 0.02, order=False), Quantity("leaves the ground", 1.0, 0.0, order=False)],
     (4, 8), run, size=lambda n: 1 / n,
     variants={"default scheme": {}, "flat": {"degrees": 0.0}, "320 steps": {"steps": 320}, "newmark": {"dynamic": {"scheme_type": "newmark"}},
-              "generalised alpha": {"dynamic": {"scheme_type": "generalized_alpha"}}, "40 steps": {"steps": 40}, "ground as slave": {"slave": "ground"}, "flat, ground as slave": {"degrees": 0.0, "slave": "ground"}}, quick=False)
+              "40 steps": {"steps": 40}, "ground as slave": {"slave": "ground"}, "flat, ground as slave": {"degrees": 0.0, "slave": "ground"}},
+    known={"ground as slave": "the corner of a master between two nodes of a slave twice as coarse: their weighted gaps stay open while it goes in; the finer side is the slave"},
+    quick=False)

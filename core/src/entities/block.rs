@@ -201,6 +201,11 @@ pub trait EntityBlock: Send + Sync {
     /// Writes the damping matrices of `range`, force per velocity, into `out.lhs`; they stay the same.
     fn damping(&self, _view: &StepView<'_>, _range: Range<usize>, _out: &mut LocalSystems) {}
 
+    /// Whether the `at`-th entity remembers what it went through, as one that yields does.
+    fn remembers(&self, _at: usize) -> bool {
+        false
+    }
+
     /// The step is accepted: history advances, once.
     ///
     /// # Errors

@@ -105,6 +105,11 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// Adds the constant damping matrix row by row, force per velocity.
     fn damping(&self, _entity: &Gather<'_, NODES>, _state: &Self::State, _out: &mut [f64]) {}
 
+    /// Whether the entity remembers what it went through, as one that yields does.
+    fn remembers(&self, _state: &Self::State) -> bool {
+        false
+    }
+
     /// The state after an accepted step.
     ///
     /// # Errors
@@ -289,6 +294,10 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
                 self.kernel.damping(&self.gather(at, view), &self.states[at], out.entity(slot).0);
             }
         }
+    }
+
+    fn remembers(&self, at: usize) -> bool {
+        self.states.get(at).is_some_and(|state| self.kernel.remembers(state))
     }
 
     fn accept_step(&mut self, view: &StepView<'_>) -> Result<(), EntityError> {

@@ -2,8 +2,10 @@
 
 use super::assign_scalar_variable_process::optional_value;
 use super::assign_to_entities::{AssignToEntities, Container, EntityComponent};
+use super::face_direction;
 use super::local_axes::LocalAxes;
 use super::process::{Process, ProcessRequest};
+use super::scalar_value::ScalarValue;
 use super::target::{Target, scalar_variable};
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
@@ -18,7 +20,16 @@ fn build(
     let containers = containers(settings)?;
     let components = vec![EntityComponent { variable: scalar_variable(settings)?, value: optional_value(settings)? }];
     let axes = LocalAxes::from_settings(settings)?;
-    Ok(Box::new(AssignToEntities { target: Target::new(settings, request.model)?, containers, components, axes }))
+    let assign = AssignToEntities { target: Target::new(settings, request.model)?, containers, components, axes };
+    if assign.containers.contains(&Container::Conditions) {
+        let part = request.model.root_mut(&assign.target.path)?;
+        let conditions = assign.target.selection(&part.tree)?.conditions.clone();
+        let EntityComponent { variable, value } = &assign.components[0];
+        let constant = if let ScalarValue::Number(number) = value { Some(*number) } else { None };
+        let said = face_direction::pulling(part, &conditions, *variable, constant);
+        said.into_iter().for_each(|said| request.report.push(said.at(assign.target.place.clone())));
+    }
+    Ok(Box::new(assign))
 }
 
 register! { Process "assign_scalar_variable_to_entities_process",

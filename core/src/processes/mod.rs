@@ -16,6 +16,7 @@ mod assign_scalar_input_to_entities_process;
 mod assign_scalar_variable_process;
 mod assign_vector_variable_process;
 mod assign_vector_by_direction_process;
+mod face_direction;
 mod fix_variable_process;
 mod assign_scalar_variable_to_entities_process;
 mod assign_vector_variable_to_entities_process;

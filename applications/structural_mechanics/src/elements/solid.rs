@@ -238,6 +238,10 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
         true
     }
 
+    fn remembers(&self, state: &Box<[f64]>) -> bool {
+        !state.is_empty()
+    }
+
     fn accept(&self, entity: &Gather<'_, NODES>, state: &mut Box<[f64]>, view: &StepView<'_>) -> Result<(), String> {
         if state.is_empty() {
             return Ok(());

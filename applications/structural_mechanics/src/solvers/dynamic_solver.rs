@@ -30,6 +30,10 @@ register! { Solver "Dynamic",
                     .remedy("use \"implicit\" or \"explicit\"")
                     .into());
             }
+            // A deck that names a parameter of Bossak's scheme only means that scheme.
+            if settings.is_given("damp_factor_m") && !settings.is_given("scheme_type") {
+                return Ok("bossak".to_owned());
+            }
             settings.get_str("scheme_type").map(str::to_owned)
         },
         adapt: super::adapt,

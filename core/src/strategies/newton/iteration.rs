@@ -95,11 +95,19 @@ impl NewtonRaphson {
         for interaction in interactions.iter_mut() {
             interaction.after_prediction(part)?;
         }
+        let mut residual = self.residual(part, interactions);
+        if residual.is_err() && self.scheme.has_inertia() {
+            self.stay(part);
+            for interaction in interactions.iter_mut() {
+                interaction.after_prediction(part)?;
+            }
+            residual = self.residual(part, interactions);
+        }
         Ok(Step {
             led,
             begin,
             prescribed,
-            residual: self.residual(part, interactions)?,
+            residual: residual?,
             references: References::default(),
             records: Vec::new(),
             relaxation: interactions.iter().find_map(|interaction| interaction.relaxation()),

@@ -4,11 +4,13 @@ use super::NewtonRaphson;
 use crate::assembly::impose_constraints;
 use crate::communication::world;
 use crate::diagnostics::Result;
-use crate::entities::{Interaction, MasslessNodes, MasterSlaveConstraint};
+use crate::entities::{EntityBlock, Interaction, MasslessNodes, MasterSlaveConstraint};
 use crate::model::ModelPart;
 
 impl NewtonRaphson {
     /// Takes the mass off the nodes that interactions name.
+    ///
+    /// Not where elements yield: without mass a node follows in balance, and at the limit of its material there is none.
     pub(super) fn redistribute_mass(
         &mut self,
         part: &mut ModelPart,
@@ -20,9 +22,11 @@ impl NewtonRaphson {
             nodes.surface.extend(own.surface);
             nodes.near.extend(own.near);
         }
+        let yielding = if nodes.surface.is_empty() { Vec::new() } else { yielding(part) };
         for list in [&mut nodes.surface, &mut nodes.near] {
             list.sort_unstable();
             list.dedup();
+            list.retain(|node| yielding.binary_search(node).is_err());
         }
         self.assembler.redistribute(part, &nodes)?;
         if let Some(forces) = self.scheme.kept() {
@@ -59,6 +63,18 @@ impl NewtonRaphson {
             part.move_mesh();
         }
         Ok(increment)
+    }
+
+    /// Moves free unknowns back to where the step began: the prediction led to no state that can be computed.
+    pub(super) fn stay(&self, part: &mut ModelPart) {
+        let (now, old) = (self.assembler.values(part), part.dofs.gather(&part.nodes, 1));
+        let equations = self.assembler.equations();
+        let back: Vec<f64> = (0..now.len()).map(|n| if equations.is_free(n) { old[n] - now[n] } else { 0.0 }).collect();
+        part.dofs.scatter_add(&back, &mut part.nodes);
+        self.scheme.update(part);
+        if self.settings.move_mesh {
+            part.move_mesh();
+        }
     }
 
     /// The nodes at which the mesh follows prescribed values at once, because the first iterate of the step decides on the
@@ -138,4 +154,16 @@ impl NewtonRaphson {
         part.dofs.scatter_add(&back, &mut part.nodes);
         lack
     }
+}
+
+/// Nodes of elements that remember what they went through, ascending.
+fn yielding(part: &ModelPart) -> Vec<u32> {
+    let of_block = |block: &Box<dyn EntityBlock>| {
+        let own = (0..block.len()).filter(|&at| block.remembers(at));
+        own.flat_map(|at| block.nodes(at).to_vec()).collect::<Vec<u32>>()
+    };
+    let mut nodes: Vec<u32> = part.element_blocks.iter().flat_map(of_block).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
 }

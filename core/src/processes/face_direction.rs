@@ -1,0 +1,132 @@
+//! Which way a number given to faces acts: what the faces' own conditions make of the number one.
+//!
+//! Face pressures have opposite signs in the plane and in space, as in Kratos, and follow the order of a face's nodes; a deck that
+//! means to press may pull. Numbers of which faces make no force along their normals are passed over.
+
+use std::collections::BTreeMap;
+
+use super::assign_to_entities::centre;
+use crate::diagnostics::Diagnostic;
+use crate::entities::{BlockRequest, LocalSystems, Want};
+use crate::model::{ModelPart, ScalarVariable};
+use crate::registry::{Build, Entry};
+use crate::vector3::{dot, sub};
+
+/// How many faces a positive number presses on, and how many it pulls.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Faces {
+    pressed: usize,
+    pulled: usize,
+}
+
+/// What to say where `variable` pulls at some of the `conditions`; `sign` is that of the value where it is a constant.
+pub(super) fn pulling(
+    part: &mut ModelPart,
+    conditions: &[u32],
+    variable: ScalarVariable,
+    sign: Option<f64>,
+) -> Option<Diagnostic> {
+    let sign = sign.unwrap_or(1.0);
+    if variable.component.is_some() || sign == 0.0 || part.share.is_some() {
+        return None;
+    }
+    let mut by_kind: BTreeMap<&str, (&'static Entry, Vec<u32>)> = BTreeMap::new();
+    for &at in conditions {
+        let entry = part.conditions.kinds[at as usize];
+        if entry.nodes() > 1 && part.properties.contains_key(&part.conditions.properties[at as usize]) {
+            by_kind.entry(entry.name).or_insert((entry, Vec::new())).1.push(at);
+        }
+    }
+    let owners = owners(part, conditions);
+    let mut faces = Faces::default();
+    for (entry, members) in by_kind.into_values() {
+        for (at, force) in unit_forces(part, entry, &members, variable).unwrap_or_default() {
+            let Some(element) = owners.get(&at) else { continue };
+            let middle = |nodes| centre(nodes, &part.nodes.initial);
+            let outward = sub(middle(part.conditions.nodes(at)), middle(part.elements.nodes(*element)));
+            let along = sign * dot(force, outward);
+            faces.pressed += usize::from(along < 0.0);
+            faces.pulled += usize::from(along > 0.0);
+        }
+    }
+    let (above, which) = (if sign > 0.0 { "above" } else { "below" }, variable.column);
+    let rule = "face pressures have opposite signs in the plane and in space, and follow the order of a face's nodes";
+    match faces {
+        Faces { pulled: 0, .. } => None,
+        Faces { pressed: 0, pulled } => {
+            let fact = format!("{which} {above} zero pulls at all {pulled} faces it is given to: {rule}");
+            Some(Diagnostic::note("face-pressure-pulls", fact).remedy("to press, turn the sign of the value"))
+        }
+        Faces { pressed, pulled } => {
+            let fact = format!(
+                "{which} {above} zero presses on {pressed} faces and pulls at {pulled} of the same part: {rule}"
+            );
+            let remedy = "list the nodes of all faces the same way round, seen from outside";
+            Some(Diagnostic::warning("face-pressure-mixed", fact).remedy(remedy))
+        }
+    }
+}
+
+/// Force of each condition for the number one less that for zero; `None` where its kind makes none.
+fn unit_forces(
+    part: &mut ModelPart,
+    entry: &'static Entry,
+    members: &[u32],
+    variable: ScalarVariable,
+) -> Option<Vec<(u32, [f64; 3])>> {
+    let Build::Block(make) = entry.build else { return None };
+    part.conditions.data.add_named(variable.column, 1);
+    let before = part.conditions.data.get(variable.column)?.levels[0].clone();
+    let mut forces = Vec::new();
+    for number in [1.0, 0.0] {
+        let column = part.conditions.data.get_mut(variable.column)?;
+        members.iter().for_each(|&at| column.levels[0][at as usize] = number);
+        forces.push(forces_of(part, entry, make, members));
+    }
+    part.conditions.data.get_mut(variable.column)?.levels[0] = before;
+    let (none, one) = (forces.pop()??, forces.pop()??);
+    Some(members.iter().zip(one.into_iter().zip(none)).map(|(&at, (one, none))| (at, sub(one, none))).collect())
+}
+
+fn forces_of(
+    part: &ModelPart,
+    entry: &'static Entry,
+    make: fn(&BlockRequest<'_>) -> crate::Result<Box<dyn crate::entities::EntityBlock>>,
+    members: &[u32],
+) -> Option<Vec<[f64; 3]>> {
+    let (table, nodes) = (&part.conditions, &part.nodes);
+    let mut block = make(&BlockRequest { entry, members: members.to_vec(), table, nodes, part }).ok()?;
+    block.initialize(&part.view()).ok()?;
+    let (size, mut out) = (block.unknowns().len(), LocalSystems::default());
+    out.reset(members.len(), size, Want::Residual);
+    block.local_systems(&part.view(), 0..members.len(), Want::Residual, &mut out).ok()?;
+    let force = |at: usize| {
+        let rows = block.unknowns().iter().zip(&out.rhs[at * size..(at + 1) * size]);
+        rows.fold([0.0; 3], |mut sum: [f64; 3], (unknown, value)| {
+            sum[unknown.variable.offset()] += value;
+            sum
+        })
+    };
+    Some((0..members.len()).map(force).collect())
+}
+
+/// An element behind each condition that is a face of one.
+fn owners(part: &ModelPart, conditions: &[u32]) -> BTreeMap<u32, u32> {
+    let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    conditions.iter().flat_map(|&at| part.conditions.nodes(at)).for_each(|&node| {
+        around.entry(node).or_default();
+    });
+    for element in 0..part.elements.len() as u32 {
+        for node in part.elements.nodes(element) {
+            if let Some(list) = around.get_mut(node) {
+                list.push(element);
+            }
+        }
+    }
+    let holds = |element: u32, nodes: &[u32]| nodes.iter().all(|node| part.elements.nodes(element).contains(node));
+    let owner = |at: u32| {
+        let nodes = part.conditions.nodes(at);
+        around.get(nodes.first()?)?.iter().copied().find(|&element| holds(element, nodes))
+    };
+    conditions.iter().filter_map(|&at| Some((at, owner(at)?))).collect()
+}
