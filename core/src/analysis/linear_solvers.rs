@@ -9,22 +9,41 @@ use crate::parameters::Settings;
 use crate::register;
 use crate::registry::{self, Build, Kind};
 
-/// An engine for the settings of a deck.
-pub(super) type EngineFactory = fn(&Settings, Multipliers) -> Engine;
+/// What an engine is made from.
+pub(super) struct EngineRequest<'a> {
+    /// `linear_solver_settings` of the deck.
+    pub settings: &'a Settings,
+    /// What iterative engines do with multipliers.
+    pub multipliers: Multipliers,
+    /// Relative residual below which an answer gains the iteration around it nothing.
+    pub tolerance: f64,
+}
 
-/// The solver for `linear_solver_settings`, and a sentence saying which engine serves; iterative ones treat
-/// `multipliers` so.
+/// An engine for the settings of a deck.
+pub(super) type EngineFactory = fn(&EngineRequest<'_>) -> Engine;
+
+/// Share of the tolerance of the residual that an iterative engine may leave, and the bounds of what it is asked for.
+const LEFT: f64 = 0.1;
+const TOLERANCES: [f64; 2] = [1e-10, 1e-7];
+
+/// Relative residual to ask of an iterative engine in an iteration that ends at `residual`: each then gains seven digits.
+pub(super) fn tolerance(residual: f64) -> f64 {
+    (LEFT * residual).clamp(TOLERANCES[0], TOLERANCES[1])
+}
+
+/// The solver for `linear_solver_settings`, and a sentence saying which engine serves.
 ///
 /// # Errors
 /// An unknown name.
-pub(super) fn make(settings: &Settings, multipliers: Multipliers) -> Result<(Box<dyn LinearSolver>, String)> {
+pub(super) fn make(request: &EngineRequest<'_>) -> Result<(Box<dyn LinearSolver>, String)> {
+    let settings = request.settings;
     let given = settings.node().get("solver_type").map(|n| n.str()).transpose()?.unwrap_or("");
     let name = given.rsplit('.').next().unwrap_or(given);
     let name = if name.is_empty() { "automatic" } else { name };
     let entry = registry::require(Kind::LinearSolver, name).map_err(|d| d.at(settings.key_place("solver_type")))?;
     let Build::Factory(factory) = entry.build else { unreachable!("linear solvers register a factory") };
     let factory = factory.downcast_ref::<EngineFactory>().expect("linear solvers register an EngineFactory");
-    let engine = factory(settings, multipliers);
+    let engine = factory(request);
     let condenses = matches!(&engine, Engine::ConjugateGradient(krylov) | Engine::Gmres { krylov, .. }
         if matches!(krylov.multipliers, Multipliers::Condense(_)));
     let how = if condenses { ", multipliers are condensed" } else { "" };
@@ -81,31 +100,31 @@ pub(super) fn petsc(
     Ok(Some((chosen, format!("linear solver: PETSc over all ranks, {engine}"))))
 }
 
-fn direct(_: &Settings, _: Multipliers) -> Engine {
+fn direct(_: &EngineRequest<'_>) -> Engine {
     Engine::Direct(DirectSettings::default())
 }
 
 /// Multigrid by the settings of a deck, with the direct engine below `least` equations where they do not say otherwise.
-fn multigrid_from(settings: &Settings, least: [usize; 2]) -> Engine {
-    let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
-    let usual = MultigridSettings::default();
+fn multigrid_from(request: &EngineRequest<'_>, least: [usize; 2]) -> Engine {
+    let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
     Engine::Multigrid(MultigridSettings {
-        tolerance: number("tolerance").unwrap_or(usual.tolerance).min(usual.tolerance),
+        tolerance: number("tolerance").map_or(request.tolerance, |tolerance| tolerance.min(request.tolerance)),
         least: number("direct_below").map_or(least, |equations| [equations as usize; 2]),
-        ..usual
+        ..MultigridSettings::default()
     })
 }
 
-fn multigrid(settings: &Settings, _: Multipliers) -> Engine {
-    multigrid_from(settings, MultigridSettings::default().least)
+fn multigrid(request: &EngineRequest<'_>) -> Engine {
+    multigrid_from(request, MultigridSettings::default().least)
 }
 
-fn automatic(settings: &Settings, _: Multipliers) -> Engine {
-    multigrid_from(settings, MultigridSettings::FASTER)
+fn automatic(request: &EngineRequest<'_>) -> Engine {
+    multigrid_from(request, MultigridSettings::FASTER)
 }
 
-fn krylov(settings: &Settings, multipliers: Multipliers) -> KrylovSettings {
-    let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
+fn krylov(request: &EngineRequest<'_>) -> KrylovSettings {
+    let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
+    let multipliers = request.multipliers;
     let mut krylov = KrylovSettings { preconditioner: Preconditioner::Ilu0, multipliers, ..KrylovSettings::default() };
     if let Some(tolerance) = number("tolerance") {
         krylov.tolerance = tolerance;
@@ -134,10 +153,10 @@ register! { LinearSolver "amgcl",
 register! { LinearSolver "cg",
     aliases: &["CGSolver", "conjugate_gradient"],
     about: "conjugate gradients with incomplete LU; GMRES where contact leaves no symmetry, with condensed multipliers",
-    build: Build::Factory(&((|settings, multipliers| Engine::ConjugateGradient(krylov(settings, multipliers))) as EngineFactory)),
+    build: Build::Factory(&((|request| Engine::ConjugateGradient(krylov(request))) as EngineFactory)),
 }
 register! { LinearSolver "gmres",
     aliases: &["bicgstab", "BICGSTABSolver", "tfqmr", "TFQMRSolver"],
     about: "restarted GMRES with incomplete LU; multipliers of contact are condensed",
-    build: Build::Factory(&((|settings, multipliers| Engine::Gmres { krylov: krylov(settings, multipliers), restart: 100 }) as EngineFactory)),
+    build: Build::Factory(&((|request| Engine::Gmres { krylov: krylov(request), restart: 100 }) as EngineFactory)),
 }

@@ -1,6 +1,7 @@
 //! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
 
 use super::cutting::Cutting;
+use super::linear_solvers::{self, EngineRequest};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::BlockRequest;
@@ -252,7 +253,6 @@ impl SolverSettings {
             TimeScheme::Implicit(scheme) => scheme,
         };
         let named = self.settings.sub("linear_solver_settings")?;
-        let (solver, says) = super::linear_solvers::make(&named, multipliers(&part.info))?;
         let analysis = self.settings.get_str("analysis_type")?;
         if !matches!(analysis, "linear" | "non_linear") {
             let fact = format!("\"analysis_type\" is \"{analysis}\"");
@@ -268,6 +268,12 @@ impl SolverSettings {
             return Err(self.settings.error("max_iteration", "invalid-value", fact).remedy("write at least 1").into());
         }
         let linear = analysis == "linear";
+        let residual = if linear { 0.0 } else { self.settings.get_f64("residual_relative_tolerance")? };
+        let (solver, says) = linear_solvers::make(&EngineRequest {
+            settings: &named,
+            multipliers: multipliers(&part.info),
+            tolerance: linear_solvers::tolerance(residual),
+        })?;
         let (way, advanced) = self.way_of_solution()?;
         let searched = way == "line_search" && !linear;
         let settings = NewtonSettings {
@@ -299,8 +305,7 @@ impl SolverSettings {
         let has_multipliers = part.dofs.dofs().iter().any(|dof| dof.multiplier);
         #[cfg(feature = "petsc")]
         if part.share.is_some()
-            && let Some((petsc, by_petsc)) =
-                super::linear_solvers::petsc(&named, unknowns_of_all(part), has_multipliers)?
+            && let Some((petsc, by_petsc)) = linear_solvers::petsc(&named, unknowns_of_all(part), has_multipliers)?
         {
             newton.solve_by_petsc(petsc, multipliers(&part.info));
             says = by_petsc;
