@@ -130,7 +130,8 @@ impl MultigridSolver {
         let mut seconds_numeric = start.elapsed().as_secs_f64();
         let guess = x.to_vec();
         let mut progress = self.iterate(system, rhs, x);
-        let is_good = |progress: Progress| progress.relative_residual <= DRIFT * self.settings.tolerance;
+        let accepted = DRIFT * self.settings.tolerance;
+        let is_good = |progress: Progress| progress.relative_residual <= accepted;
         if !is_good(progress) && self.hierarchy.as_ref().is_some_and(|h| h.is_old) {
             let start = Instant::now();
             self.hierarchy = None;
@@ -139,7 +140,7 @@ impl MultigridSolver {
             x.copy_from_slice(&guess);
             progress = self.iterate(system, rhs, x);
         }
-        if !(progress.relative_residual <= DRIFT * self.settings.tolerance) {
+        if !is_good(progress) {
             self.hierarchy = None;
             let Progress { iterations, relative_residual } = progress;
             return Err(format!("multigrid reached only {relative_residual:.1e} after {iterations} iterations"));

@@ -71,7 +71,7 @@ fn tied(cells: usize, skew: f64, active: impl Fn(usize) -> bool) -> Contact {
 #[test]
 fn multipliers_leave_by_their_constraints() {
     for (skew, cells) in [(0.0, 6), (0.0, 12), (0.3, 8)] {
-        for active in [|_: usize| true, |at: usize| at % 5 != 0] {
+        for active in [|_: usize| true, |at: usize| !at.is_multiple_of(5)] {
             let sample = tied(cells, skew, active);
             let system = System {
                 coupling: Some(&sample.coupling),
@@ -124,7 +124,7 @@ fn what_does_not_converge_goes_to_the_direct_engine() {
 
 #[test]
 fn the_bits_do_not_depend_on_the_threads() {
-    let sample = tied(10, 0.1, |at| at % 3 != 0);
+    let sample = tied(10, 0.1, |at| !at.is_multiple_of(3));
     let system = System {
         coupling: Some(&sample.coupling),
         ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)

@@ -9,7 +9,7 @@ use crate::vector3::norm;
 /// Sizes of the model, prescribed motion included, that no body goes within a step while something holds it.
 const FAR: f64 = 1e3;
 
-/// Farthest motion of a held body within a step: [`FAR`] times the diagonal of the box around all nodes and the largest
+/// Farthest motion of a held body within a step: a thousand times the diagonal of the box around all nodes and the largest
 /// prescribed value (length); infinite for models without extent, which are no bodies. Collective.
 pub fn reach(nodes: &Nodes, dofs: &DofTable, equations: &Equations) -> f64 {
     let prescribed = dofs.dofs().iter().enumerate().filter(|(n, dof)| is_displacement(dof) && equations.is_fixed(*n));

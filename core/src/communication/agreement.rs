@@ -1,6 +1,6 @@
 //! Errors that all ranks know of before any of them stops.
 //!
-//! Work that a rank does alone may fail there alone; [`agree`](dyn Communicator::agree) makes it fail everywhere. Errors
+//! Work that a rank does alone may fail there alone; `agree` makes it fail everywhere. Errors
 //! of what every rank does alike need no agreement. Whatever is left ends all processes, see [`end_after_failure`].
 
 use std::sync::{Mutex, PoisonError};
@@ -18,7 +18,7 @@ const CLOSING: Duration = Duration::from_secs(600);
 
 static DEFERRED: Mutex<Option<Error>> = Mutex::new(None);
 
-/// Keeps an error of this rank for the next [`agree`](dyn Communicator::agree), so that it goes on up to there.
+/// Keeps an error of this rank for the next `agree`, so that it goes on up to there.
 pub fn defer(error: Error) {
     DEFERRED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
 }

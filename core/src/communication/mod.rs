@@ -25,7 +25,7 @@ pub fn world() -> &'static dyn Communicator {
 /// Joins the other processes, if the program was started as one of several; keep the value until the end.
 ///
 /// # Errors
-/// [`Error::System`] when several processes were started and this program was built without the feature `mpi`, or when
+/// `Error::System` when several processes were started and this program was built without the feature `mpi`, or when
 /// MPI cannot be used.
 pub fn start() -> Result<Processes> {
     let count = launched();

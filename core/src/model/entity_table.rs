@@ -56,7 +56,7 @@ impl EntityTable {
 
     /// Makes the data columns as long as the table; call after the last [`EntityTable::push`].
     pub fn finish(&mut self) {
-        if self.data.len() == 0 {
+        if self.data.is_empty() {
             self.data = Fields::new(self.len(), 1);
         } else {
             self.data.grow(self.len());

@@ -21,7 +21,7 @@ pub(super) fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64]
         let dof = &dofs.dofs()[number as usize];
         let node = assembler.distribution().map_or(dof.node, |distribution| distribution.place(number as usize));
         let i = 3 * node as usize + dof.variable.offset();
-        (1.0 + (i % 7) as f64 / 7.0) * if i % 2 == 0 { 1.0 } else { -1.0 }
+        (1.0 + (i % 7) as f64 / 7.0) * if i.is_multiple_of(2) { 1.0 } else { -1.0 }
     };
     let mut x: Vec<f64> = equations.unknowns().iter().map(start).collect();
     let counts = |at: usize| assembler.counts(equations.unknowns()[at] as usize);

@@ -12,7 +12,7 @@ const TASK_WORK: f64 = 2e7;
 impl Factor {
     /// Solves with all that is eliminated; `between` gets the part of the equations kept last and must solve for it.
     ///
-    /// `x` is in the order of the equations; `between` in that of [`Symbolic::equation`] after its interior.
+    /// `x` is in the order of the equations; `between` in that of `Symbolic::equation` after its interior.
     pub(crate) fn solve(&self, x: &mut [f64], between: impl FnOnce(&mut [f64])) {
         let symbolic = &*self.symbolic;
         let mut y: Vec<f64> = match &self.scaling {

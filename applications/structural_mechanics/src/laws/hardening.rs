@@ -1,7 +1,7 @@
 //! The yield stress over the equivalent plastic strain α, as properties give it.
 //!
-//! Without HARDENING_CURVE: σ_y = YIELD_STRESS + ISOTROPIC_HARDENING_MODULUS α
-//! + (EXPONENTIAL_SATURATION_YIELD_STRESS − YIELD_STRESS)(1 − exp(−HARDENING_EXPONENT α)).
+//! Without HARDENING_CURVE, σ_y is the sum of YIELD_STRESS, ISOTROPIC_HARDENING_MODULUS α and
+//! (EXPONENTIAL_SATURATION_YIELD_STRESS − YIELD_STRESS)(1 − exp(−HARDENING_EXPONENT α)).
 //! HARDENING_CURVE 3 is constant, 4 a polynomial up to a strain and constant or straight after it, 6 a broken line through
 //! points. After the last strain of curves 4 and 6 the yield stress stays (Kratos softens there by FRACTURE_ENERGY); the
 //! curves 0, 1, 2 and 5, which soften all along, are refused: their answer depends on the mesh.

@@ -408,7 +408,11 @@ fn agree(iteration: usize, change: &SetChange, converged: bool) -> Result<()> {
 
 /// Whether any interaction takes hold of bodies that are free to move.
 fn reach_out(interactions: &mut [Box<dyn Interaction>], part: &mut ModelPart) -> bool {
-    interactions.iter_mut().fold(false, |any, interaction| interaction.reach_out(part) || any)
+    let mut any = false;
+    for interaction in interactions {
+        any |= interaction.reach_out(part);
+    }
+    any
 }
 
 fn graph_version(interactions: &[Box<dyn Interaction>]) -> u64 {
