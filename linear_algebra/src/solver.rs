@@ -192,7 +192,7 @@ pub struct MultigridSettings {
 
 impl MultigridSettings {
     /// Equations from which on multigrid is faster than factorisation: in space, and else.
-    pub const FASTER: [usize; 2] = [30_000, 300_000];
+    pub const FASTER: [usize; 2] = [15_000, 300_000];
 }
 
 impl Default for MultigridSettings {
