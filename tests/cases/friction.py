@@ -101,13 +101,12 @@ def block(folder, requirement, shape, sliding, length=1.0, stress=1.0, steps=5, 
     solver_settings = contact_solver(dim, "mesh", 1.0 / steps, method + "Contact" + kind, residual_absolute_tolerance=1e-20,
                                      residual_relative_tolerance=1e-10, max_iteration=30, buffer_size=3,
                                      contact_settings=TIGHT, **(settings or {}))
-    # of gaps, an even penetration makes an even pressure on unlike meshes
     friction = {"frictional_law": law} if law != "Coulomb" else {"friction_coefficients": given}
     write_case(folder, requirement,
                "Pressure and shear are uniform; loads and contact act on the deformed facets, which moves the answer by the "
                "strain, 1e-6.",
                parameters("mesh", solver_settings, constraints, loads,
-                          [contact_process(pairs, kind, method.lower(), **spring, **friction, **(process or {}))], outputs), materials, mesh, checks)
+                          [contact_process(pairs, kind, method.lower(), **friction, **(process or {}))], outputs), materials, mesh, checks)
 
 
 def arc():
