@@ -33,6 +33,7 @@ fn process_of(family: &str, explicit: bool) -> (&'static str, &str) {
         ("ALMContact", "alm_contact_process"),
         ("PenaltyContact", if explicit { "explicit_penalty_contact_process" } else { "penalty_contact_process" }),
         ("UzawaContact", "uzawa_contact_process"),
+        ("NitscheContact", "nitsche_contact_process"),
         ("PerturbedLagrangianContact", "perturbed_lagrangian_contact_process"),
     ];
     let found = processes.iter().find_map(|(stem, process)| Some((*process, family.strip_prefix(stem)?)));

@@ -18,14 +18,16 @@ FAMILIES = {
     "explicit penalty": ("explicit_penalty_contact_process", "Frictionless", "PenaltyContactFrictionless"),
     "explicit penalty frictional": ("explicit_penalty_contact_process", "Frictional", "PenaltyContactFrictional"),
     "Uzawa": ("uzawa_contact_process", "Frictionless", "UzawaContactFrictionless"),
+    "Nitsche": ("nitsche_contact_process", "Frictionless", "NitscheContactFrictionless"),
+    "Nitsche frictional": ("nitsche_contact_process", "Frictional", "NitscheContactFrictional"),
     "perturbed": ("perturbed_lagrangian_contact_process", "Frictionless", "PerturbedLagrangianContactFrictionless"),
     "MPC": ("mpc_contact_process", "Frictionless", None),
     "MPC frictional": ("mpc_contact_process", "Frictional", None),
     "MPC tie": ("mpc_contact_process", "MeshTying", None),
     "tie": ("mesh_tying_process", None, "ComponentsMeshTying"),
 }
-FRICTIONLESS = ["ALM", "ALM components", "penalty", "Uzawa", "perturbed", "MPC"]
-FRICTIONAL = ["ALM frictional", "penalty frictional", "MPC frictional"]
+FRICTIONLESS = ["ALM", "ALM components", "penalty", "Uzawa", "perturbed", "Nitsche", "MPC"]
+FRICTIONAL = ["ALM frictional", "penalty frictional", "Nitsche frictional", "MPC frictional"]
 LAWS = {"3d": "LinearElastic3DLaw", "strain": "LinearElasticPlaneStrain2DLaw", "stress": "LinearElasticPlaneStress2DLaw",
         "axis": "LinearElasticAxisym2DLaw", "hyper": "HyperElasticPlaneStrain2DLaw", "hyper3d": "HyperElastic3DLaw"}
 

@@ -63,6 +63,9 @@ impl SlipRule {
 /// Slip against the traction, as a traction c s and as a share of the bound, that counts.
 pub(crate) const TURNED: f64 = 1e-6;
 
+/// Share of the bound below which the mean traction of a node's points counts as sliding.
+const AT_BOUND: f64 = 1e-6;
+
 /// Nodal numbers that enter a decision; sums over the pairs of the node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlaveNumbers {
@@ -78,7 +81,7 @@ pub struct SlaveNumbers {
     pub gap: f64,
     /// Slip s of the step (length).
     pub slip: [f64; 3],
-    /// Traction q of a penalty method before the law limits it.
+    /// Traction q of a penalty method before the law limits it; the mean traction of integration points that decide.
     pub trial: [f64; 3],
     /// Unit tangent τ in which the last solve took a sliding node to slide.
     pub tangent: [f64; 3],
@@ -277,6 +280,27 @@ pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
             (false, true) => (length - bound).abs(),
             (false, false) => 0.0,
         },
+    }
+}
+
+/// Decides for a node whose integration points have decided on contact already: `trial` is the mean of their tractions.
+pub fn of_points(node: &SlaveNumbers) -> Decision {
+    let pressure = dot(node.trial, node.normal);
+    // Where no point presses there is exactly nothing.
+    if pressure >= 0.0 || !node.presses(pressure) {
+        return inactive(node, pressure);
+    }
+    let traction = tangential(node.trial, node.normal);
+    let slips = node.friction.is_smooth() || norm(traction) >= (1.0 - AT_BOUND) * node.friction.at(pressure);
+    let entered = !node.state.is_active();
+    Decision {
+        pressure,
+        traction,
+        state: if slips { NodeState::Slip } else { NodeState::Stick },
+        changed: entered,
+        slip_changed: !entered && slips != (node.state == NodeState::Slip),
+        multiplier: None,
+        excess: 0.0,
     }
 }
 

@@ -29,7 +29,7 @@ type Rule = (fn(&Family, Use) -> bool, Refusal);
 
 /// Everything that is not listed runs: every family on every pair of shapes, in the plane, in space and (in the plane)
 /// about an axis, with every `normal_variation`, law of friction, adaptation of the penalty, strategy and time integration.
-const RULES: [Rule; 4] = [
+const RULES: [Rule; 5] = [
     (
         |_, wanted| wanted.axisymmetric && wanted.dimension == 3,
         Refusal {
@@ -48,6 +48,13 @@ const RULES: [Rule; 4] = [
         |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Outer(_)),
         Refusal {
             reason: "explicit steps do not iterate, so that no outer loop can follow",
+            remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
+        },
+    ),
+    (
+        |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Body),
+        Refusal {
+            reason: "explicit steps do not iterate, and tractions of bodies answer to the step they are made in",
             remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
         },
     ),

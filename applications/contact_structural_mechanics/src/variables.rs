@@ -13,6 +13,9 @@ register_variable! {
     pub FRICTION_TRACTION: [f64; 3] = "Tangential traction on a slave node by the penalty method, carried from step to step (force per area).";
     pub TRIAL_TRACTION: [f64; 3] = "Tangential traction on a slave node before the law of friction limits it (force per area).";
     pub MEAN_WEIGHTED_GAP: f64 = "Weighted gaps of the pairs of a slave node, averaged by their areas (length times area).";
+    pub HELD_IN_CONTACT: f64 = "1 at slave nodes around which points are in contact until the next solve, whatever their pressure.";
+    pub HELD_IN_STICK: f64 = "1 at slave nodes around which points in contact stick until the next solve, whatever their traction.";
+    pub CARRIED_TRACTION: [f64; 3] = "Tangential traction of contact less that of the slave's body by Nitsche's method, carried from step to step (force per area).";
     pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
     pub HELD_MULTIPLIER: [f64; 3] = "What becomes of the components of a multiplier where supports hold both sides: 0 own equation, 1 kept, 2 as its neighbours, 3 kept in stick.";

@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::ops::Range;
 
+use super::face_point::FacePoint;
 use super::view::StepView;
 use crate::diagnostics::{Diagnostic, Error, Result};
 use crate::model::{EntityTable, ModelPart, Nodes, ScalarVariable};
@@ -231,4 +232,32 @@ pub trait EntityBlock: Send + Sync {
     fn gauss_variables(&self) -> &'static [&'static str] {
         &[]
     }
+
+    /// Why the `at`-th entity cannot say what traction acts on its faces; `None` where [`EntityBlock::traction`] does.
+    fn lacks_tractions(&self, _view: &StepView<'_>, _at: usize) -> Option<&'static str> {
+        Some(NO_TRACTIONS)
+    }
+
+    /// The traction P·N on a face of the `at`-th entity whose nodes have these displacements (force per initial area, in the
+    /// plane times the thickness), and its derivative by each unknown of the block, where `by` is given.
+    ///
+    /// P is the first Piola–Kirchhoff stress of the entity's own law, the stress itself for small displacements: the traction
+    /// that its nodal forces stand for.
+    ///
+    /// # Errors
+    /// An entity that has none, or is inverted.
+    fn traction(
+        &self,
+        _view: &StepView<'_>,
+        _at: usize,
+        _point: &FacePoint,
+        _displacements: &[[f64; 3]],
+        _by: Option<&mut [[f64; 3]]>,
+    ) -> Result<[f64; 3], EntityError> {
+        let (kind, nodes) = (self.entry().name, Vec::new());
+        Err(EntityError { kind, id: 0, nodes, fact: NO_TRACTIONS.to_owned(), remedy: "take another family of contact" })
+    }
 }
+
+/// What entities without tractions say of it.
+pub(super) const NO_TRACTIONS: &str = "its stress is not stated as a function of the displacements of its nodes";

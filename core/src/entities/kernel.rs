@@ -4,7 +4,10 @@ use std::any::Any;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
+use super::block::{
+    BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Tangent, Want,
+};
+use super::face_point::FacePoint;
 use super::view::StepView;
 use crate::diagnostics::Result;
 use crate::model::Properties;
@@ -140,6 +143,25 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// Names that [`Kernel::gauss`] answers.
     fn gauss_variables() -> &'static [&'static str] {
         &[]
+    }
+
+    /// Why the entity cannot say what traction acts on its faces; `None` where [`Kernel::traction`] does.
+    fn lacks_tractions(&self, _entity: &Gather<'_, NODES>) -> Option<&'static str> {
+        Some(NO_TRACTIONS)
+    }
+
+    /// As [`EntityBlock::traction`].
+    ///
+    /// # Errors
+    /// An entity that has none, or is inverted.
+    fn traction(
+        &self,
+        _entity: &Gather<'_, NODES>,
+        _point: &FacePoint,
+        _displacements: &[[f64; 3]; NODES],
+        _by: Option<&mut [[f64; 3]; SIZE]>,
+    ) -> Result<[f64; 3], String> {
+        Err(NO_TRACTIONS.to_owned())
     }
 }
 
@@ -332,5 +354,24 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
 
     fn gauss_variables(&self) -> &'static [&'static str] {
         K::gauss_variables()
+    }
+
+    fn lacks_tractions(&self, view: &StepView<'_>, at: usize) -> Option<&'static str> {
+        self.kernel.lacks_tractions(&self.gather(at, view))
+    }
+
+    fn traction(
+        &self,
+        view: &StepView<'_>,
+        at: usize,
+        point: &FacePoint,
+        displacements: &[[f64; 3]],
+        by: Option<&mut [[f64; 3]]>,
+    ) -> Result<[f64; 3], EntityError> {
+        let displacements = displacements.try_into().expect("one displacement a node");
+        let by = by.map(|by| by.try_into().expect("one derivative an unknown"));
+        self.kernel
+            .traction(&self.gather(at, view), point, displacements, by)
+            .map_err(|fact| self.error(at, view, fact))
     }
 }

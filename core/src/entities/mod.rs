@@ -5,12 +5,14 @@
 
 mod block;
 mod constraint;
+mod face_point;
 mod interaction;
 mod kernel;
 mod view;
 
 pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
+pub use face_point::FacePoint;
 pub use interaction::{Interaction, MasslessNodes, Outer, SetChange};
 pub use kernel::{Gather, Kernel, KernelBlock};
 pub use view::{NORMALS_OF_FIRST_ITERATION, StepView};

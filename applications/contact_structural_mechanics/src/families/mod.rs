@@ -6,6 +6,8 @@ mod alm_frictionless;
 mod alm_frictionless_components;
 mod mesh_tying;
 mod mpc;
+mod nitsche_frictional;
+mod nitsche_frictionless;
 mod penalty_frictional;
 mod penalty_frictionless;
 mod perturbed_lagrangian_frictionless;

@@ -2,7 +2,7 @@
 
 use zelus_core::geometry::Shape;
 
-use crate::pairs::{ContactBlock, PairBlock, PairFormulation, PairRequest};
+use crate::pairs::{ContactBlock, NitscheBlock, PairBlock, PairFormulation, PairRequest};
 
 /// The block of a family for a pair of shapes (slave, master); `None` for shapes that carry no contact.
 pub(super) fn block<F: PairFormulation>(
@@ -16,6 +16,23 @@ pub(super) fn block<F: PairFormulation>(
         (Shape::Tri3, Shape::Quad4) => PairBlock::<F, 3, 4, 21, 9>::boxed(request),
         (Shape::Quad4, Shape::Tri3) => PairBlock::<F, 4, 3, 21, 12>::boxed(request),
         (Shape::Quad4, Shape::Quad4) => PairBlock::<F, 4, 4, 24, 12>::boxed(request),
+        _ => return None,
+    })
+}
+
+/// The same for families whose forces are those of points.
+pub(super) fn nitsche_block(
+    slave: Shape,
+    master: Shape,
+    request: PairRequest,
+    friction: bool,
+) -> Option<Box<dyn ContactBlock>> {
+    Some(match (slave, master) {
+        (Shape::Line2, Shape::Line2) => NitscheBlock::<2, 2, 8, 4, 16>::boxed(request, friction),
+        (Shape::Tri3, Shape::Tri3) => NitscheBlock::<3, 3, 18, 9, 36>::boxed(request, friction),
+        (Shape::Tri3, Shape::Quad4) => NitscheBlock::<3, 4, 21, 9, 39>::boxed(request, friction),
+        (Shape::Quad4, Shape::Tri3) => NitscheBlock::<4, 3, 21, 12, 45>::boxed(request, friction),
+        (Shape::Quad4, Shape::Quad4) => NitscheBlock::<4, 4, 24, 12, 48>::boxed(request, friction),
         _ => return None,
     })
 }

@@ -34,6 +34,7 @@ pub(super) fn clear_inactive_multipliers(part: &mut ModelPart, multiplier: Multi
     let inactive: Vec<u32> = slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ACTIVE, n as usize)).collect();
     let history = &mut part.nodes.history;
     match multiplier {
+        Multiplier::Body => {}
         Multiplier::None => {
             if let Some(carried) = history.get_mut(FRICTION_TRACTION.name()) {
                 inactive.iter().for_each(|&n| carried.levels[0][3 * n as usize..3 * n as usize + 3].fill(0.0));
@@ -142,6 +143,7 @@ pub(super) fn decide(
         let at = node as usize;
         let numbers = numbers(part, at, family, parameters, resolution);
         let mut decision = match (family.friction, family.penalty) {
+            _ if matches!(family.multiplier, Multiplier::Body) => active_set::of_points(&numbers),
             (Friction::None, _) => active_set::frictionless(&numbers),
             (_, false) => active_set::alm_frictional(&numbers, parameters.slip_rule),
             (_, true) => active_set::penalty_frictional(&numbers, parameters.slip_rule),
@@ -149,7 +151,7 @@ pub(super) fn decide(
         if part.nodes.flags.is(ISOLATED, at) {
             decision = active_set::inactive(&numbers, decision.pressure);
         }
-        let multipliers = family.frictional() && !family.penalty;
+        let multipliers = family.frictional() && family.multiplier.is_unknown();
         if multipliers && !released.contains(&node) && active_set::is_pushed(&numbers, parameters.slip_rule) {
             pushed.push(decisions.len());
         }
@@ -231,7 +233,7 @@ pub(super) fn apply(
         }
         if let Some(multiplier) = decision.multiplier {
             match family.multiplier {
-                Multiplier::None | Multiplier::Outer(_) => {}
+                Multiplier::None | Multiplier::Outer(_) | Multiplier::Body => {}
                 Multiplier::Scalar(variable) => {
                     part.nodes.history.values_mut(variable, 0)[at] = decision.pressure / parameters.scale_factor;
                 }
@@ -262,7 +264,9 @@ fn write_pressures(part: &mut ModelPart, decisions: &[(u32, Decision)], family: 
         let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
         let augmentation = penalty * part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
         match (family.multiplier, parameters.augmentation) {
-            (Multiplier::None | Multiplier::Outer(_), _) | (_, Augmentation::Node) => decision.pressure,
+            (Multiplier::None | Multiplier::Outer(_) | Multiplier::Body, _) | (_, Augmentation::Node) => {
+                decision.pressure
+            }
             _ => parameters.scale_factor * dot(multiplier(part, at, family), normal(part, at)) + augmentation,
         }
     };
@@ -278,7 +282,7 @@ fn normal(part: &ModelPart, at: usize) -> [f64; 3] {
 /// Multiplier of a slave node; a scalar one along its normal, none without.
 fn multiplier(part: &ModelPart, at: usize, family: &Family) -> [f64; 3] {
     match family.multiplier {
-        Multiplier::None => [0.0; 3],
+        Multiplier::None | Multiplier::Body => [0.0; 3],
         Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
             scale(normal(part, at), part.nodes.history.values(variable, 0)[at])
         }
@@ -309,7 +313,7 @@ fn numbers(
     let stiffness = match family.multiplier {
         Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
         Multiplier::None if parameters.weighted_penalty => penalty * area,
-        Multiplier::None | Multiplier::Outer(_) => penalty,
+        Multiplier::None | Multiplier::Outer(_) | Multiplier::Body => penalty,
     };
     let multiplier = match family.multiplier {
         // No multiplier holds what supports move: the slip itself says what would.
@@ -404,6 +408,7 @@ pub(super) fn resolution(
     let motion = farthest(nodes, |at| norm(sub(part.nodes.current[at], part.nodes.initial[at])));
     let history = &part.nodes.history;
     let traction = |at: usize| match family.multiplier {
+        Multiplier::Body => norm(vector_at(part.nodes.values.values(&TRIAL_TRACTION, 0), at)),
         Multiplier::None => {
             let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
             let by_area = if area > 0.0 && !parameters.weighted_penalty { area.recip() } else { 1.0 };
@@ -417,7 +422,12 @@ pub(super) fn resolution(
             parameters.scale_factor * history.get(variable.name()).map_or(0.0, |field| norm(field.vector(0, at)))
         }
     };
-    Resolution::of(extent(part, nodes), farthest(&in_contact, traction), parameters.stiffness * motion)
+    let mut found = Resolution::of(extent(part, nodes), farthest(&in_contact, traction), parameters.stiffness * motion);
+    if matches!(family.multiplier, Multiplier::Body) {
+        // Where points decide, a length makes a pressure.
+        found.traction += parameters.nitsche.factor * parameters.stiffness * found.length;
+    }
+    found
 }
 
 /// Lengths at these nodes up to this are none.

@@ -24,6 +24,7 @@ use super::impact::{coarse_impact, near_nodes};
 use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
 use super::pairing::{Pairing, add_up_nodes};
 use super::penalty_ramp::PenaltyRamp;
+use super::points;
 use super::reach::Reach;
 use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
@@ -31,7 +32,7 @@ use super::uzawa::Uzawa;
 use crate::active_set::SlipRule;
 use crate::formulations::Augmentation;
 use crate::formulations::held::along_free_tangents;
-use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces};
+use crate::interface::{Bodies, Interface, Roles, add_contact_part, find_nodal_h, interfaces};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
 use crate::penalty_adaptation::Growth;
@@ -39,8 +40,8 @@ use crate::resolution::Resolution;
 use crate::search::{GapCheck, WithinStep, assign_roles, warn_of_late_pairs};
 use crate::solver::{AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, INITIAL_PENALTY, MEAN_WEIGHTED_GAP,
-    NODAL_AREA, NODAL_H, TRIAL_TRACTION, WEIGHTED_GAP, WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, CARRIED_TRACTION, INITIAL_PENALTY,
+    MEAN_WEIGHTED_GAP, NODAL_AREA, NODAL_H, TRIAL_TRACTION, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Contact in a model part.
@@ -107,6 +108,7 @@ impl ContactInteraction {
             normal_variation: settings.normal_variation,
             augmentation: settings.augmentation,
             compliant: settings.family.compliant,
+            nitsche: settings.nitsche,
         });
         Ok(Self {
             pairing: Pairing::new(interfaces, part, settings.nodal_normals),
@@ -156,6 +158,11 @@ impl ContactInteraction {
     fn ramps(&self) -> bool {
         let constant = self.settings.adaptation.rule.is_none() && self.settings.explicit.is_none();
         constant && matches!(self.settings.family.multiplier, Multiplier::None)
+    }
+
+    /// Whether integration points decide on contact.
+    fn by_points(&self) -> bool {
+        matches!(self.settings.family.multiplier, Multiplier::Body)
     }
 
     /// Whether friction may join contact later: where forces are multipliers alone.
@@ -212,7 +219,7 @@ impl ContactInteraction {
         let mut meetings = meetings.into_iter();
         let count = part.nodes.len();
         let (mut gap, mut area, mut mean) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-        let (mut slip, mut trial) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
+        let (mut slip, mut trial, mut carried) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
         let mut pairs = vec![0_u32; count];
         for (block, integrals) in self.pairing.blocks.iter_mut().zip(&integrals) {
             for (at, integral) in integrals.iter().enumerate() {
@@ -230,11 +237,12 @@ impl ContactInteraction {
                     area[node] += integral.area[local];
                     (0..3).for_each(|c| slip[node][c] += integral.slip[local][c]);
                     (0..3).for_each(|c| trial[node][c] += integral.trial[local][c]);
+                    (0..3).for_each(|c| carried[node][c] += integral.carried[local][c]);
                 }
             }
         }
         let columns = [(1, &mut gap[..]), (1, &mut area[..]), (1, &mut mean[..])];
-        let vectors = [(3, slip.as_flattened_mut()), (3, trial.as_flattened_mut())];
+        let vectors = [(3, slip.as_flattened_mut()), (3, trial.as_flattened_mut()), (3, carried.as_flattened_mut())];
         add_up_nodes(part, &self.slaves, &mut columns.into_iter().chain(vectors).collect::<Vec<_>>());
         let beside = {
             let around = self.parameters.segmentation.revolution();
@@ -261,10 +269,16 @@ impl ContactInteraction {
                 }
             }
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slip.as_flattened());
+        }
+        if self.settings.family.frictional() || self.by_points() {
             let by_area =
                 |(trial, area): ([f64; 3], &f64)| if *area > 0.0 { trial.map(|t| t / area) } else { [0.0; 3] };
             let trial: Vec<[f64; 3]> = trial.into_iter().zip(&area).map(by_area).collect();
             part.nodes.values.values_mut(&TRIAL_TRACTION, 0).copy_from_slice(trial.as_flattened());
+            if let Some(field) = part.nodes.history.get_mut(CARRIED_TRACTION.name()) {
+                let carried: Vec<[f64; 3]> = carried.into_iter().zip(&area).map(by_area).collect();
+                field.levels[0].copy_from_slice(carried.as_flattened());
+            }
         }
         activation::weigh_multipliers(part, &self.slaves, self.settings.family, &self.parameters);
         let family = self.settings.family;
@@ -279,6 +293,15 @@ impl ContactInteraction {
     /// Lets the rules of the active set decide in the present state.
     fn update_active_set(&mut self, part: &mut ModelPart) -> SetChange {
         let family = self.settings.family;
+        // What points decide they decide in each evaluation of forces: nodes only tell of it.
+        if self.by_points() {
+            let (mut decisions, before) =
+                activation::decide(part, &self.slaves, family, &self.parameters, self.resolution, &mut self.released);
+            if family.frictional() {
+                points::hold_turned(part, &mut decisions, &before, self.resolution);
+            }
+            return activation::apply(part, &decisions, &before, family, &self.parameters);
+        }
         let (mut decisions, before) =
             activation::decide(part, &self.slaves, family, &self.parameters, self.resolution, &mut self.released);
         self.cycles.restrict(&mut decisions, &before);
@@ -381,7 +404,7 @@ impl ContactInteraction {
     }
 
     fn write_tangents(&self, part: &mut ModelPart) {
-        if self.settings.family.frictional() {
+        if self.settings.family.frictional() && !self.by_points() {
             let (family, keeps) = (self.settings.family, self.settings.friction.keeps_direction);
             let (resolution, counts) = (self.resolution, &self.pair_counts);
             sliding::write_tangents(part, &self.slaves, family, &self.parameters, resolution, counts, keeps);
@@ -438,6 +461,10 @@ impl Interaction for ContactInteraction {
         let (threshold, parameters) = calibrate(part, &self.pairing.interfaces, &self.settings, &self.parameters);
         (self.threshold, self.parameters) = (threshold, Arc::new(parameters));
         self.growth = self.settings.explicit.map(|explicit| explicit.growth(part));
+        if self.by_points() {
+            let thickness = self.parameters.segmentation.axisymmetric;
+            self.pairing.bodies = Arc::new(Bodies::new(part, &self.pairing.interfaces, thickness)?);
+        }
         self.slaves = self.pairing.slaves();
         for node in self.pairing.carriers() {
             part.nodes.flags.set(ACTIVE, node as usize, false);
@@ -497,6 +524,9 @@ impl Interaction for ContactInteraction {
         };
         let friction = (self.parameters.friction_law, self.parameters.slip_rule);
         activation::start(part, &self.slaves, start, friction);
+        if self.by_points() {
+            points::hold_open_interfaces(part, &self.pairing.interfaces, self.resolution);
+        }
         friction::start_in_stick(part, &self.slaves, self.parameters.slip_rule, &self.settings.friction);
         self.pairing.refresh_normals(part, self.updates_normals());
         self.pairing.begin_step(part, &self.slaves, self.settings.segmentation.slivers);
@@ -526,6 +556,9 @@ impl Interaction for ContactInteraction {
         }
         if self.updates_normals() {
             self.pairing.refresh_normals(part, true);
+        }
+        if self.by_points() {
+            points::release(part);
         }
         let adaptation = self.settings.adaptation;
         let gaps = adaptation.gaps(part, &self.slaves, self.settings.explicit.is_some());
@@ -576,7 +609,10 @@ impl Interaction for ContactInteraction {
             return Ok(Outer::Again);
         }
         let family = self.settings.family;
-        if let Some(why) = activation::passed_through(part, &self.slaves, family, &self.parameters, self.resolution) {
+        // Points in the master press in every state that has converged.
+        if !self.by_points()
+            && let Some(why) = activation::passed_through(part, &self.slaves, family, &self.parameters, self.resolution)
+        {
             return Ok(Outer::Failed(why));
         }
         let touches = self.slaves.iter().any(|&n| part.nodes.flags.is(ACTIVE, n as usize));
@@ -594,9 +630,15 @@ impl Interaction for ContactInteraction {
         if !self.acting || self.settings.explicit.is_some() {
             return false;
         }
+        if self.by_points() && points::hold_active(part, &self.slaves) {
+            return true;
+        }
         let near = self.reach.next(part, &self.pairing.interfaces);
         let friction = (self.parameters.friction_law, self.parameters.slip_rule);
         activation::start(part, &self.slaves, Start::Touching(&near), friction);
+        if self.by_points() {
+            points::hold(part, &near);
+        }
         self.write_tangents(part);
         !near.is_empty()
     }
@@ -671,6 +713,10 @@ impl Interaction for ContactInteraction {
 
     /// The ALM values of eq. 4.11.
     fn parameters(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
+        if let Some([least, most]) = self.pairing.bodies.stiffness() {
+            let factor = self.settings.nitsche.factor;
+            return vec![("least γ", factor * least), ("largest γ", factor * most)];
+        }
         let penalty = part.info.value_or(INITIAL_PENALTY.name(), 0.0);
         vec![("penalty ε", penalty), ("scale factor k", self.parameters.scale_factor)]
     }

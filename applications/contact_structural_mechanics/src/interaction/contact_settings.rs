@@ -8,7 +8,7 @@ use super::adaptation::{AdaptationSettings, ExplicitPenalty};
 use super::friction::FrictionSettings;
 use super::step_parameters::NormalVariation;
 use super::uzawa::UzawaSettings;
-use crate::formulations::Augmentation;
+use crate::formulations::{Augmentation, Nitsche};
 use crate::interface::{AlmParameters, NodalNormals};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Family;
@@ -31,6 +31,8 @@ pub struct ContactSettings {
     pub nodal_normals: NodalNormals,
     /// Where gaps augment the forces of augmented Lagrangians.
     pub augmentation: Augmentation,
+    /// Nitsche's method, of families whose tractions are those of bodies.
+    pub nitsche: Nitsche,
     /// Which facets are looked at.
     pub search: SearchSettings,
     /// Gap, in mesh sizes, below which a node starts active.

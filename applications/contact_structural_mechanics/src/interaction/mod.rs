@@ -18,6 +18,7 @@ mod mpc_interaction;
 mod mpc_relation;
 mod pairing;
 mod penalty_ramp;
+mod points;
 mod reach;
 mod slider_forces;
 mod sliding;

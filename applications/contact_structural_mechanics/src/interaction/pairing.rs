@@ -15,7 +15,9 @@ use zelus_core::vector3::dot;
 use super::contact_settings::ContactSettings;
 use super::holding::Holding;
 use super::step_parameters::{NormalVariation, StepParameters};
-use crate::interface::{Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, slave_nodes};
+use crate::interface::{
+    Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, slave_nodes,
+};
 use crate::mortar::{Habit, SegmentationSettings};
 use crate::pairs::{
     ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes,
@@ -31,6 +33,8 @@ const FACING: f64 = 0.1;
 pub(super) struct Pairing {
     /// The interfaces the facets belong to.
     pub interfaces: Vec<Interface>,
+    /// The elements behind slaves, where the family takes tractions from them.
+    pub bodies: Arc<Bodies>,
     /// The facets that make the normals of nodes.
     pub patches: Arc<NormalPatches>,
     /// The pairs, by shape of slave and master and by the number of nodes around them.
@@ -60,6 +64,7 @@ impl Pairing {
         Self {
             patches: Arc::new(NormalPatches::new(part.nodes.len(), &interfaces, normals)),
             interfaces,
+            bodies: Arc::default(),
             blocks: Vec::new(),
             touching: BTreeSet::new(),
             graph: 1,
@@ -245,9 +250,10 @@ impl Pairing {
             let name = condition_name(&stem, slave, master);
             let entry = registry::require(Kind::Condition, &name)?;
             let patches = (parameters.normal_variation == NormalVariation::Exact).then_some(&*self.patches);
-            for (around, (pairs, nodes)) in group_by_surroundings(patches, slave.nodes(), pairs, &nodes) {
-                let (patches, parameters) = (self.patches.clone(), parameters.clone());
-                let request = PairRequest { entry, pairs, nodes, around, patches, parameters };
+            let behind = |pair: &Pair| self.bodies.nodes([pair.key.interface, pair.key.slave]).to_vec();
+            for (around, (pairs, nodes)) in group_by_surroundings(patches, behind, slave.nodes(), pairs, &nodes) {
+                let (bodies, patches, parameters) = (self.bodies.clone(), self.patches.clone(), parameters.clone());
+                let request = PairRequest { entry, pairs, nodes, around, bodies, patches, parameters };
                 let block = (settings.family.block)(slave, master, request).ok_or_else(|| {
                     Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
                 })?;

@@ -1,7 +1,7 @@
 //! What every pair of a run shares.
 
 use crate::active_set::SlipRule;
-use crate::formulations::Augmentation;
+use crate::formulations::{Augmentation, Nitsche};
 use crate::friction_law::FrictionLaw;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 
@@ -67,6 +67,8 @@ pub struct StepParameters {
     pub augmentation: Augmentation,
     /// Whether surfaces give way by traction over penalty.
     pub compliant: bool,
+    /// Nitsche's method, of families whose tractions are those of bodies.
+    pub nitsche: Nitsche,
 }
 
 impl StepParameters {

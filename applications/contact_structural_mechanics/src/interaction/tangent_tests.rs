@@ -14,7 +14,7 @@ use zelus_core::vector3::add;
 use super::sliding::write_tangents;
 use super::{NormalVariation, StepParameters};
 use crate::active_set::{Margin, SlipRule};
-use crate::formulations::Augmentation;
+use crate::formulations::{Augmentation, Nitsche};
 use crate::friction_law::COULOMB;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles, centre_normal};
 use crate::mortar::tests::Noise;
@@ -43,7 +43,7 @@ const OUT_OF_CONTACT: usize = 2;
 
 fn facet(nodes: &[u32], role: Roles) -> Facet {
     let shape = [Shape::Line2, Shape::Tri3, Shape::Quad4][nodes.len() - 2];
-    Facet { nodes: nodes.to_vec(), shape, source: FacetSource::Face(0), properties: 0, role }
+    Facet { nodes: nodes.to_vec(), shape, source: FacetSource::Face(0), element: 0, properties: 0, role }
 }
 
 /// A curved slave below a curved master, both uneven; quadrilaterals and triangles in space.
@@ -115,6 +115,7 @@ impl Contact {
             compliant: family.compliant,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
+            nitsche: Nitsche::default(),
         });
         let mut contact = Self { family, parameters, part, interface, blocks: Vec::new(), patches };
         contact.make_blocks();
@@ -144,9 +145,11 @@ impl Contact {
             group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
         {
             let entry = require(Kind::Condition, &condition_name(family.condition, slave, master)).unwrap();
-            for (around, (pairs, nodes)) in group_by_surroundings(Some(&self.patches), slave.nodes(), pairs, &nodes) {
+            for (around, (pairs, nodes)) in
+                group_by_surroundings(Some(&self.patches), |_| Vec::new(), slave.nodes(), pairs, &nodes)
+            {
                 let (patches, parameters) = (self.patches.clone(), self.parameters.clone());
-                let request = PairRequest { entry, pairs, nodes, around, patches, parameters };
+                let request = PairRequest { entry, pairs, nodes, around, bodies: Arc::default(), patches, parameters };
                 self.blocks.push((family.block)(slave, master, request).unwrap());
             }
         }

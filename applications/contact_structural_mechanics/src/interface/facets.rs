@@ -40,6 +40,8 @@ pub struct Facet {
     pub shape: Shape,
     /// What it is part of.
     pub source: FacetSource,
+    /// Index of the element whose face it is.
+    pub element: u32,
     /// Properties id with the elastic constants of the body.
     pub properties: usize,
     /// Its side.
@@ -269,7 +271,7 @@ fn facet(part: &ModelPart, mut nodes: Vec<u32>, source: FacetSource, element: u3
     };
     let elastic = |id: &usize| part.properties.get(id).is_some_and(|p| p.number("YOUNG_MODULUS").is_some());
     let properties = own.filter(elastic).unwrap_or(part.elements.properties[element as usize]);
-    Ok(Facet { nodes, shape, source, properties, role: Roles::Open })
+    Ok(Facet { nodes, shape, source, element, properties, role: Roles::Open })
 }
 
 fn boundary_faces(part: &ModelPart) -> Faces {

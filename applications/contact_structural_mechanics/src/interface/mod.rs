@@ -1,6 +1,7 @@
 //! The surfaces that may come into contact: facets, roles, normals, mesh size and the parameters derived from them.
 
 mod contact_part;
+mod bodies;
 mod facets;
 mod nodal_h;
 mod normals;
@@ -8,6 +9,7 @@ mod parameters;
 mod supports;
 mod unit_of_length;
 
+pub use bodies::{Bodies, Tractions};
 pub use contact_part::add_contact_part;
 pub use facets::{Facet, FacetSource, Interface, Roles, interfaces, slave_nodes};
 pub use nodal_h::find_nodal_h;

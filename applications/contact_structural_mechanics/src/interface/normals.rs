@@ -275,6 +275,7 @@ mod tests {
             nodes: nodes.to_vec(),
             shape: [Shape::Line2, Shape::Tri3, Shape::Quad4][nodes.len() - 2],
             source: FacetSource::Face(0),
+            element: 0,
             properties: 0,
             role: Roles::Slave,
         };

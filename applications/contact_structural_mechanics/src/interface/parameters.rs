@@ -79,6 +79,7 @@ mod tests {
             nodes: nodes.to_vec(),
             shape: Shape::Line2,
             source: FacetSource::Face(0),
+            element: 0,
             properties,
             role,
         };

@@ -32,11 +32,11 @@ impl<const NS: usize, const NM: usize> PairGeometry<f64, NS, NM> {
     /// Number of displacement unknowns: those of the master nodes, then those of the slave nodes.
     pub const UNKNOWNS: usize = dimension(NS) * (NS + NM);
 
-    /// The same pair with its coordinates as variables in the order master, slave, node by node; normals are constant.
+    /// The same pair with its coordinates as the first variables in the order master, slave, node by node; normals are constant.
     /// Replace a normal by one with a gradient to include its variation.
     #[inline]
     pub fn seeded<const NU: usize>(&self) -> PairGeometry<Dual<NU>, NS, NM> {
-        const { assert!(NU == Self::UNKNOWNS, "one variable per displacement component of the pair") };
+        const { assert!(NU >= Self::UNKNOWNS, "one variable per displacement component of the pair") };
         let dim = dimension(NS);
         let seed = |x: [f64; 3], first: usize| {
             std::array::from_fn(|c| if c < dim { Dual::variable(x[c], first + c) } else { Dual::constant(x[c]) })

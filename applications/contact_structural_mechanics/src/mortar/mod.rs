@@ -29,6 +29,7 @@ pub mod gap;
 pub mod geometry;
 pub mod habit;
 pub mod operators;
+pub mod points;
 mod quadrature;
 mod segmentation_2d;
 mod segmentation_3d;

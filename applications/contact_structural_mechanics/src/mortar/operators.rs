@@ -9,18 +9,15 @@
 use super::flat_master::FlatMaster;
 use super::geometry::PairGeometry;
 use super::habit::Habit;
-use super::quadrature;
-use super::segmentation_2d;
-use super::segmentation_3d::{Polygon, Vertex};
+use super::points::{Point, Points};
+use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
 use super::shape;
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{cross, dot, norm, sub, value};
+use zelus_core::vector3::value;
 
 /// Share of the slave's measure below which an overlap is a sliver.
 pub(crate) const SLIVER: f64 = 1e-5;
-/// Share of the slave's measure below which a cell is skipped: its normal would be rounding noise.
-const LEAST_CELL: f64 = 1e-13;
 /// Condition number (Frobenius) of Me beyond which the plain shape functions serve as Φ.
 const WORST_CONDITION: f64 = 1e-4 / f64::EPSILON;
 
@@ -63,7 +60,7 @@ pub fn operators<T: Real, const NS: usize, const NM: usize>(
     pair: &PairGeometry<T, NS, NM>,
     settings: &SegmentationSettings,
 ) -> Overlap<Operators<T, NS, NM>> {
-    integrated(Sums::new(pair, None), settings)
+    integrated(&Points { pair, flat: None }, settings)
 }
 
 /// D and M with the derivative of the reference program in space: points move on the master as if it lay in the slave's
@@ -72,7 +69,7 @@ pub fn operators_on_flat_master<T: Real, const NS: usize, const NM: usize>(
     pair: &PairGeometry<T, NS, NM>,
     settings: &SegmentationSettings,
 ) -> Overlap<Operators<T, NS, NM>> {
-    integrated(Sums::new(pair, Some(FlatMaster::new(pair))), settings)
+    integrated(&Points { pair, flat: Some(FlatMaster::new(pair)) }, settings)
 }
 
 /// The choices that gave the operators `found` of a pair.
@@ -90,24 +87,21 @@ pub fn habit_of<const NS: usize, const NM: usize>(
 }
 
 fn integrated<T: Real, const NS: usize, const NM: usize>(
-    mut sums: Sums<'_, T, NS, NM>,
+    points: &Points<'_, T, NS, NM>,
     settings: &SegmentationSettings,
 ) -> Overlap<Operators<T, NS, NM>> {
-    let pair = sums.pair;
-    let whole = shape::measure(&pair.slave.map(value));
-    let covered = if NS == 2 {
-        let revolution = settings.revolution();
-        segmentation_2d::interval(pair, settings)
-            .map_or(0.0, |ends| sums.integrate_interval(ends, settings, revolution))
-    } else {
-        Polygon::new(pair, settings).map_or(0.0, |polygon| sums.integrate_polygon(&polygon, settings, whole))
-    };
-    let least = if pair.habit.slivers { 0.0 } else { SLIVER * whole };
+    let mut sums = Sums::new();
+    let covered = points.visit(settings, |point| sums.add_point(point));
     match covered {
-        covered if covered > least => Overlap::Cells(sums.finish()),
+        covered if covered > least_overlap(points.pair) => Overlap::Cells(sums.finish(points.pair.habit)),
         covered if covered > 0.0 => Overlap::Sliver,
         _ => Overlap::None,
     }
+}
+
+/// Length or area above which an overlap counts.
+pub(crate) fn least_overlap<T: Real, const NS: usize, const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> f64 {
+    if pair.habit.slivers { 0.0 } else { SLIVER * shape::measure(&pair.slave.map(value)) }
 }
 
 impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
@@ -161,108 +155,37 @@ impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
 }
 
 /// Integrals gathered over the cells: Me (upper triangle) and ∫ N¹⊗N².
-struct Sums<'a, T, const NS: usize, const NM: usize> {
-    pair: &'a PairGeometry<T, NS, NM>,
-    flat: Option<FlatMaster<T, NS>>,
+struct Sums<T, const NS: usize, const NM: usize> {
     me: [[T; NS]; NS],
     mixed: [[T; NM]; NS],
 }
 
-impl<'a, T: Real, const NS: usize, const NM: usize> Sums<'a, T, NS, NM> {
-    fn new(pair: &'a PairGeometry<T, NS, NM>, flat: Option<FlatMaster<T, NS>>) -> Self {
-        Self { pair, flat, me: [[T::zero(); NS]; NS], mixed: [[T::zero(); NM]; NS] }
+impl<T: Real, const NS: usize, const NM: usize> Sums<T, NS, NM> {
+    fn new() -> Self {
+        Self { me: [[T::zero(); NS]; NS], mixed: [[T::zero(); NM]; NS] }
     }
 
-    /// Integrates over a segment of the slave line and returns its length.
-    fn integrate_interval(&mut self, ends: [T; 2], settings: &SegmentationSettings, revolution: Option<f64>) -> f64 {
-        let share = (ends[1] - ends[0]) * 0.5;
-        let det_j = norm(sub(self.pair.slave[1], self.pair.slave[0])) * share;
-        for &(s, weight) in quadrature::line(settings.integration_order) {
-            let xi = [ends[0] * (1.0 - s) + ends[1] * s, T::zero()];
-            let shape = shape::values::<T, NS>(xi);
-            let x = shape::interpolate(&shape, &self.pair.slave);
-            let mut weight = det_j * weight;
-            if let Some(per_radius) = revolution {
-                weight *= x[0] * per_radius;
-            }
-            self.add_point(&shape, x, weight, T::zero());
-        }
-        det_j.value()
-    }
-
-    /// Integrates over the fan of triangles of a polygon and returns their area; `whole` is the slave's.
-    fn integrate_polygon(&mut self, polygon: &Polygon<T, NS, NM>, settings: &SegmentationSettings, whole: f64) -> f64 {
-        let place = |xi: [T; 2]| shape::interpolate(&shape::values::<T, NS>(xi), &self.pair.slave);
-        let rule = quadrature::triangle(settings.integration_order);
-        let mut covered = 0.0;
-        let vertices = polygon.vertices();
-        let mut local = [polygon.local(vertices[0]), [T::zero(); 2], polygon.local(vertices[1])];
-        let mut x = [place(local[0]), [T::zero(); 3], place(local[2])];
-        let mut lifts = [self.lift(polygon, vertices[0]), T::zero(), self.lift(polygon, vertices[1])];
-        for &vertex in &vertices[2..] {
-            (lifts[1], lifts[2]) = (lifts[2], self.lift(polygon, vertex));
-            let xi = polygon.local(vertex);
-            (local[1], local[2]) = (local[2], xi);
-            (x[1], x[2]) = (x[2], shape::interpolate(&shape::values::<T, NS>(xi), &self.pair.slave));
-            let normal = cross(sub(x[1], x[0]), sub(x[2], x[0]));
-            if norm(value(normal)) <= 2.0 * LEAST_CELL * whole {
-                continue;
-            }
-            let area = norm(normal) * 0.5;
-            covered += area.value();
-            for (barycentric, weight) in rule {
-                let mut x = shape::combine(barycentric, &x);
-                let mut xi = shape::combine(barycentric, &local);
-                let mut slave_shape = shape::values::<T, NS>(xi);
-                if NS == 4 {
-                    // Cells are flat and straight in space, a warped quadrilateral and its local coordinates are not.
-                    xi = shape::closest_point(&self.pair.slave, x, xi.map(T::value));
-                    slave_shape = shape::values::<T, NS>(xi);
-                    x = shape::interpolate(&slave_shape, &self.pair.slave);
-                }
-                let lift = (0..3).fold(T::zero(), |sum, n| sum + lifts[n] * barycentric[n]);
-                self.add_point(&slave_shape, x, area * *weight, lift);
-            }
-        }
-        covered
-    }
-
-    fn lift(&self, polygon: &Polygon<T, NS, NM>, vertex: Vertex) -> T {
-        self.flat.as_ref().map_or(T::zero(), |flat| polygon.weigh(vertex, &flat.lift))
-    }
-
-    /// Adds a point of the slave with its shape functions, weight × det J and what [`FlatMaster`] lifts it by.
     #[inline]
-    fn add_point(&mut self, slave_shape: &[T; NS], x: [T; 3], weight: T, lift: T) {
-        let pair = self.pair;
-        let normal = shape::interpolate(slave_shape, &pair.nodal_normals);
-        let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
-        let mut projected = x;
-        (0..3).for_each(|c| projected[c].add_product(normal[c], distance));
-        let xi = match &self.flat {
-            None => shape::closest_point(&pair.master, projected, shape::centre::<NM>()),
-            Some(flat) => flat.local(&pair.master, projected, x, lift),
-        };
-        let master_shape = shape::values::<T, NM>(xi);
+    fn add_point(&mut self, point: &Point<T, NS, NM>) {
         for j in 0..NS {
-            let weighted = slave_shape[j] * weight;
+            let weighted = point.slave[j] * point.weight;
             for k in j..NS {
-                self.me[j][k].add_product(weighted, slave_shape[k]);
+                self.me[j][k].add_product(weighted, point.slave[k]);
             }
             for l in 0..NM {
-                self.mixed[j][l].add_product(weighted, master_shape[l]);
+                self.mixed[j][l].add_product(weighted, point.master[l]);
             }
         }
     }
 
     /// D and M from the integrals.
-    fn finish(mut self) -> Operators<T, NS, NM> {
+    fn finish(mut self, habit: Habit) -> Operators<T, NS, NM> {
         for j in 0..NS {
             for k in 0..j {
                 self.me[j][k] = self.me[k][j];
             }
         }
-        let inverse = inverse(self.me.map(|row| row.map(T::value))).filter(|_| !self.pair.habit.plain);
+        let inverse = inverse(self.me.map(|row| row.map(T::value))).filter(|_| !habit.plain);
         let Some(inverse) = inverse else {
             return Operators { d: self.me, m: self.mixed };
         };

@@ -72,6 +72,26 @@ pub fn corner<const N: usize>(n: usize) -> [f64; 2] {
     }
 }
 
+/// Local coordinates of a point inside a facet with `N` nodes, one near each node `n`: those of the Gauss rule with as many.
+#[inline]
+pub fn inner_point<const N: usize>(n: usize) -> [f64; 2] {
+    let corner = corner::<N>(n);
+    if N == 3 { corner.map(|x| 0.5 * x + 1.0 / 6.0) } else { corner.map(|x| x / 3.0_f64.sqrt()) }
+}
+
+/// The functions of the facet's space that are one at one of its [`inner_point`]s and zero at the others.
+#[inline]
+pub fn inner_values<T: Real, const N: usize>(xi: [T; 2]) -> [T; N] {
+    values(if N == 3 { xi.map(|x| x * 2.0 - 1.0 / 3.0) } else { xi.map(|x| x * 3.0_f64.sqrt()) })
+}
+
+/// Length or area of a facet by its local coordinates at a local point.
+pub fn density<T: Real, const N: usize>(nodes: &[[T; 3]; N], xi: [f64; 2]) -> T {
+    let gradient = gradients::<N>(xi);
+    let along = |c: usize| combine(&gradient.map(|g| g[c]), nodes);
+    zelus_core::vector3::norm(if N == 2 { along(0) } else { cross(along(0), along(1)) })
+}
+
 /// Local coordinates of the centre of a facet with `N` nodes.
 #[inline]
 pub fn centre<const N: usize>() -> [f64; 2] {
@@ -224,6 +244,19 @@ mod tests {
         round_trip([[0.1, 0.2, 0.0], [1.3, -0.4, 0.0]], [0.37, 0.0]);
         round_trip([[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [0.1, 1.0, -0.3]], [0.2, 0.5]);
         round_trip([[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [1.2, 1.1, -0.3], [-0.1, 0.9, 0.1]], [-0.7, 0.4]);
+    }
+
+    #[test]
+    fn inner_functions_are_one_at_their_points() {
+        fn check<const N: usize>() {
+            for g in 0..N {
+                let found: [f64; N] = inner_values(inner_point::<N>(g));
+                assert!((0..N).all(|k| (found[k] - f64::from(u8::from(k == g))).abs() < 1e-14), "{found:?}");
+            }
+        }
+        check::<2>();
+        check::<3>();
+        check::<4>();
     }
 
     #[test]

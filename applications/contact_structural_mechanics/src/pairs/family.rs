@@ -11,7 +11,7 @@ use zelus_core::{Result, diagnostics::Diagnostic};
 use super::contact_block::ContactBlock;
 use super::pair::Pair;
 use crate::interaction::StepParameters;
-use crate::interface::NormalPatches;
+use crate::interface::{Bodies, NormalPatches};
 
 /// The multipliers of a family.
 #[derive(Clone, Copy)]
@@ -24,6 +24,8 @@ pub enum Multiplier {
     Outer(&'static Variable<f64>),
     /// One a slave node and direction.
     Vector(&'static Variable<[f64; 3]>),
+    /// None: tractions of the slave's own elements serve, and integration points decide on contact, by Nitsche's method.
+    Body,
 }
 
 impl Multiplier {
@@ -35,7 +37,7 @@ impl Multiplier {
     /// The unknowns in `dimension` dimensions.
     pub fn unknowns(self, dimension: usize) -> Vec<ScalarVariable> {
         match self {
-            Self::None | Self::Outer(_) => Vec::new(),
+            Self::None | Self::Outer(_) | Self::Body => Vec::new(),
             Self::Scalar(variable) => vec![variable.scalar()],
             Self::Vector(variable) => (0..dimension as u8).map(|c| variable.component(c)).collect(),
         }
@@ -61,8 +63,10 @@ pub struct PairRequest {
     pub pairs: Vec<Pair>,
     /// Node indices of each pair: those around it, master nodes, slave nodes.
     pub nodes: Vec<u32>,
-    /// Number of nodes around each pair, which turn the normals of its slave nodes with it.
+    /// Number of nodes around each pair, which turn the normals of its slave nodes with it or are of the slave's element.
     pub around: usize,
+    /// The elements behind slaves, where the family takes tractions from them.
+    pub bodies: Arc<Bodies>,
     /// The facets around nodes.
     pub patches: Arc<NormalPatches>,
     /// Settings and numbers of the step.

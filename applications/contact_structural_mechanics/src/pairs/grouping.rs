@@ -31,10 +31,11 @@ pub fn group_by_shapes<T>(
 
 /// Sorts pairs of like shapes by the number of nodes around them, and puts those before the `nodes` of each pair.
 ///
-/// Around a pair are the nodes, beside its own, that turn the normals of its slave nodes; none without `patches`. Numbers
-/// are rounded up to few: a node that fills a place is one of the pair.
+/// Around a pair are the nodes, beside its own, that turn the normals of its slave nodes, none without `patches`, and those
+/// `behind` it. Numbers are rounded up to few: a node that fills a place is one of the pair.
 pub fn group_by_surroundings<T>(
     patches: Option<&NormalPatches>,
+    behind: impl Fn(&T) -> Vec<u32>,
     slaves: usize,
     pairs: Vec<T>,
     nodes: &[u32],
@@ -43,9 +44,11 @@ pub fn group_by_surroundings<T>(
     let mut groups: BTreeMap<usize, (Vec<T>, Vec<u32>)> = BTreeMap::new();
     for (pair, own) in pairs.into_iter().zip(nodes.chunks_exact(size.max(1))) {
         let turned = &own[size - slaves..];
-        let mut around: Vec<u32> = patches.map_or_else(Vec::new, |patches| {
-            turned.iter().flat_map(|&node| patches.neighbours(node)).filter(|node| !own.contains(node)).collect()
-        });
+        let mut around = behind(&pair);
+        if let Some(patches) = patches {
+            around.extend(turned.iter().flat_map(|&node| patches.neighbours(node)));
+        }
+        around.retain(|node| !own.contains(node));
         around.sort_unstable();
         around.dedup();
         around.resize(around.len().next_multiple_of(PLACES), own[0]);

@@ -4,6 +4,7 @@ mod contact_block;
 mod facet_operators;
 mod family;
 mod grouping;
+mod nitsche_block;
 mod pair;
 mod pair_block;
 mod tying_block;
@@ -14,6 +15,7 @@ pub use family::{
     ByNode, Family, Friction, Multiplier, PairRequest, TyingFamily, find_family, find_tying_family, variables_of,
 };
 pub use grouping::{Groups, condition_name, group_by_shapes, group_by_surroundings};
+pub use nitsche_block::NitscheBlock;
 pub use pair::{Integral, Pair, PairKey, Previous};
 pub use pair_block::{PairBlock, PairFormulation};
 pub use tying_block::{TyingRequest, tying_block};

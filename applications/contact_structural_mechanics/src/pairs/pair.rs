@@ -66,6 +66,8 @@ pub struct Integral {
     pub slip: [[f64; 3]; 4],
     /// Area times trial traction, where a family carries tractions from state to state.
     pub trial: [[f64; 3]; 4],
+    /// Area times traction that the body lacks, where integration points decide on friction.
+    pub carried: [[f64; 3]; 4],
     /// D and M themselves.
     pub operators: Previous,
 }

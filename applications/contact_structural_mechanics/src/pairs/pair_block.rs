@@ -77,7 +77,13 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
 {
     /// The block of a request.
     pub fn boxed(request: PairRequest) -> Box<dyn ContactBlock> {
-        let PairRequest { entry, pairs, nodes, around, patches, parameters } = request;
+        let formulation = F::new(&request.parameters);
+        Box::new(Self::new(request, formulation))
+    }
+
+    /// The block of a request with this formulation.
+    pub(super) fn new(request: PairRequest, formulation: F) -> Self {
+        let PairRequest { entry, pairs, nodes, around, patches, parameters, .. } = request;
         let dim = dimension(NS);
         let displacements = |nodes: Range<usize>| {
             nodes.flat_map(move |node| {
@@ -90,8 +96,25 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
         }
         unknowns.extend(displacements(0..around));
-        let formulation = F::new(&parameters);
-        Box::new(Self { entry, pairs, nodes, around, patches, parameters, formulation, unknowns })
+        Self { entry, pairs, nodes, around, patches, parameters, formulation, unknowns }
+    }
+
+    pub(super) fn parameters(&self) -> &StepParameters {
+        &self.parameters
+    }
+
+    pub(super) fn formulation(&self) -> &F {
+        &self.formulation
+    }
+
+    /// Row of the first displacement of a node of the `at`-th pair.
+    pub(super) fn first_row(&self, at: usize, node: u32) -> usize {
+        let dim = dimension(NS);
+        let place = self.nodes(at).iter().rposition(|&n| n == node).expect("the node belongs to the pair");
+        match place.checked_sub(self.around) {
+            Some(place) => dim * place,
+            None => self.unknowns.len() - dim * (self.around - place),
+        }
     }
 
     fn first(&self, at: usize) -> usize {
@@ -102,11 +125,11 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         std::array::from_fn(|n| self.nodes[self.first(at) + n])
     }
 
-    fn slaves(&self, at: usize) -> [u32; NS] {
+    pub(super) fn slaves(&self, at: usize) -> [u32; NS] {
         std::array::from_fn(|n| self.nodes[self.first(at) + NM + n])
     }
 
-    fn geometry(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
+    pub(super) fn geometry(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
         let normals = view.nodes.history.values(&NORMAL, 0);
         let pair = &self.pairs[at];
         PairGeometry {
@@ -120,8 +143,11 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
     }
 
     /// The pair with displacements as variables, and normals of facets too where the settings ask for it.
-    fn seeded(&self, geometry: &PairGeometry<f64, NS, NM>) -> PairGeometry<Dual<NU>, NS, NM> {
-        let mut seeded = geometry.seeded::<NU>();
+    pub(super) fn seeded<const NV: usize>(
+        &self,
+        geometry: &PairGeometry<f64, NS, NM>,
+    ) -> PairGeometry<Dual<NV>, NS, NM> {
+        let mut seeded = geometry.seeded::<NV>();
         if self.parameters.normal_variation.knows_facets() {
             seeded.slave_normal = facet_normal(&seeded.slave);
             seeded.master_normal = facet_normal(&seeded.master);
@@ -151,23 +177,30 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             history,
             keep,
         );
-        let (dim, rows) = (dimension(NS), width - dimension(NS) * self.around);
+        let rows = width - dimension(NS) * self.around;
+        self.spread_turning(at, view, &by_normals[..rows], (lhs, width));
+    }
+
+    /// Adds −∂b/∂n ∂n/∂x to the first rows of a tangent, whose ∂b/∂n are given.
+    pub(super) fn spread_turning(
+        &self,
+        at: usize,
+        view: &StepView<'_>,
+        by_normals: &[[f64; NN]],
+        (lhs, width): (&mut [f64], usize),
+    ) {
+        let dim = dimension(NS);
         let own = self.pairs[at].key;
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
-        let local = self.nodes(at);
         let of_master = view.nodes.values.values(&NORMAL_OF_MASTER, 0);
         for (j, node) in self.slaves(at).into_iter().enumerate() {
             if of_master.get(node as usize).is_some_and(|edge| *edge != 0.0) {
                 continue;
             }
             self.patches.variation(node, &view.nodes.current, knows, |by, matrix| {
-                let place = local.iter().rposition(|&n| n == by).expect("the nodes of its patch are around a pair");
-                let column = match place.checked_sub(self.around) {
-                    Some(place) => dim * place,
-                    None => rows + dim * place,
-                };
-                for (row, derivatives) in by_normals[..rows].iter().enumerate() {
+                let column = self.first_row(at, by);
+                for (row, derivatives) in by_normals.iter().enumerate() {
                     let entries = &mut lhs[row * width + column..row * width + column + dim];
                     for (c, entry) in entries.iter_mut().enumerate() {
                         *entry -= (0..dim).map(|r| derivatives[dim * j + r] * matrix[r][c]).sum::<f64>();
@@ -188,7 +221,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         }
     }
 
-    fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
+    pub(super) fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
         let displacement = &view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns").levels;
         let back = &displacement[self.parameters.levels_back.min(displacement.len() - 1)];
         let position = |n: u32| {
@@ -256,7 +289,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
     fn multipliers(&self, at: usize, view: &StepView<'_>) -> [[f64; 3]; NS] {
         let history = &view.nodes.history;
         self.slaves(at).map(|n| match F::multiplier() {
-            Multiplier::None => [0.0; 3],
+            Multiplier::None | Multiplier::Body => [0.0; 3],
             Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
                 [history.values(variable, 0)[n as usize], 0.0, 0.0]
             }
@@ -340,7 +373,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                 let lhs = &mut lhs[..rows * width];
                 formulations::tangent(
                     &self.formulation,
-                    &self.seeded(&geometry),
+                    &self.seeded::<NU>(&geometry),
                     settings,
                     self.operator_tangent(view),
                     &nodes,

@@ -16,7 +16,7 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search, segmentation, without_computing_part};
 use crate::active_set::Margin;
 use crate::compatibility::{Refusal, Use, refusal};
-use crate::formulations::Augmentation;
+use crate::formulations::{Augmentation, Nitsche, NitscheVariant};
 use crate::interaction::{
     AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, NormalVariation,
     UzawaSettings,
@@ -75,8 +75,15 @@ struct Whole {
     nodal_normals: NodalNormals,
     /// Processes whose families have their forces from penalties lack it.
     augmentation: Option<Augmentation>,
+    /// Only the process of Nitsche's method has it.
+    #[serde(default)]
+    nitsche_variant: NitscheVariant,
+    /// Only the process of Nitsche's method has it.
+    nitsche_factor: Option<f64>,
     clear_inactive_for_post: bool,
     mind_supports: bool,
+    /// Where points decide, nodes decide nothing.
+    #[serde(default)]
     least_coverage: f64,
     search_parameters: Search,
     #[serde(rename = "advance_ALM_parameters")]
@@ -198,6 +205,7 @@ fn interaction(
     let augmentation =
         whole.augmentation.unwrap_or(if family.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
     let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
+    let factor = nitsche_factor(settings, whole.nitsche_factor)?;
     let rule = whole.parameters.adaptation_rule.unwrap_or(PenaltyRule::AugmentedLagrangian);
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
@@ -207,6 +215,7 @@ fn interaction(
         normal_variation,
         nodal_normals: whole.nodal_normals,
         augmentation,
+        nitsche: Nitsche::new(whole.nitsche_variant, factor, family.frictional().then_some(tangent_factor)),
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             distance: whole.search_parameters.search_distance,
@@ -256,6 +265,18 @@ fn interaction(
     check_variables(part, family, settings)?;
     let interaction = ContactInteraction::new(chosen, part)?;
     Ok((whole.model_part_name, interaction))
+}
+
+/// γ₀ of Nitsche's method; `None` for that of the variant.
+fn nitsche_factor(settings: &Settings, given: Option<f64>) -> Result<Option<f64>> {
+    match given {
+        Some(factor) if factor < 0.0 => {
+            let fact = format!("\"nitsche_factor\" is {factor}, it must not be negative");
+            let problem = settings.error("nitsche_factor", "invalid-value", fact);
+            Err(problem.remedy("write a number above 0, or 0 for the default of the variant").into())
+        }
+        given => Ok(given.filter(|factor| *factor > 0.0)),
+    }
 }
 
 /// How far the outer loop goes; processes without one have no such keys.

@@ -8,6 +8,7 @@ mod interface_settings;
 mod mesh_tying_process;
 mod mpc_contact_process;
 mod simple_mortar_mapper_process;
+mod nitsche_contact_process;
 mod penalty_contact_process;
 mod perturbed_lagrangian_contact_process;
 mod uzawa_contact_process;

@@ -6,12 +6,13 @@
 //! ε̄ = ε + (θ̄ − θ)/3 1, in the plane with its component across. The element remembers what its law does at each point.
 
 mod kinematics;
+mod traction;
 
 use std::f64::consts::PI;
 use std::marker::PhantomData;
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{BlockRequest, FacePoint, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::model::variables::DISPLACEMENT;
 
@@ -281,5 +282,19 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
 
     fn gauss_variables() -> &'static [&'static str] {
         results::VARIABLES
+    }
+
+    fn lacks_tractions(&self, entity: &Gather<'_, NODES>) -> Option<&'static str> {
+        Self::unknown_tractions(self.material(entity))
+    }
+
+    fn traction(
+        &self,
+        entity: &Gather<'_, NODES>,
+        point: &FacePoint,
+        displacements: &[[f64; 3]; NODES],
+        by: Option<&mut [[f64; 3]; SIZE]>,
+    ) -> Result<[f64; 3], String> {
+        self.face_traction(self.material(entity), entity, point, displacements, by)
     }
 }

@@ -12,7 +12,7 @@ use crate::elements::formulation::Formulation;
 use crate::elements::gradients::{gradient, nodal_vectors, padded, physical_gradients};
 use crate::elements::material::Material;
 use crate::laws::StrainState;
-use crate::tensor::{IDENTITY, determinant, inverse, pairs, product, strain_vector, stress_tensor, transposed};
+use crate::tensor::{IDENTITY, Tensor, determinant, inverse, pairs, product, strain_vector, stress_tensor, transposed};
 
 /// One Gauss point of one element.
 pub(super) struct Point<'a, const NODES: usize, const DIM: usize, const S: usize> {
@@ -26,6 +26,16 @@ pub(super) struct Point<'a, const NODES: usize, const DIM: usize, const S: usize
     pub(super) weight: f64,
     /// Strain, deformation gradient and what the law remembers.
     pub(super) state: StrainState<'a, S>,
+}
+
+/// How the material is deformed at a point.
+pub(super) struct Deformation<const S: usize> {
+    /// Green–Lagrange strain, or the small strain (shear doubled).
+    pub(super) strain: [f64; S],
+    /// Deformation gradient; 1 + strain for small displacements.
+    pub(super) f: Tensor,
+    /// Its determinant.
+    pub(super) det_f: f64,
 }
 
 /// The motion of an element's nodes as a formulation reads it.
@@ -91,6 +101,51 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         sum
     }
 
+    /// How an element is deformed where its shape functions are `n` and their gradients on the initial configuration `dn`,
+    /// and the mean gradients less `dn`, over 3.
+    pub(super) fn deformation(
+        n: &[f64; NODES],
+        dn: &[[f64; DIM]; NODES],
+        grad_u: &[[f64; DIM]; DIM],
+        u: &[[f64; 3]; NODES],
+        mean: &[[f64; DIM]; NODES],
+        initial: &[[f64; 3]; NODES],
+    ) -> (Deformation<S>, [[f64; DIM]; NODES]) {
+        let mut f = IDENTITY;
+        let mut h = [[0.0; 3]; 3];
+        for a in 0..DIM {
+            for b in 0..DIM {
+                h[a][b] = if F::FINITE { grad_u[a][b] } else { 0.5 * (grad_u[a][b] + grad_u[b][a]) };
+                f[a][b] += h[a][b];
+            }
+        }
+        let mut excess = [[0.0; DIM]; NODES];
+        if F::MEAN_DILATATION {
+            let mut more = 0.0;
+            for (((excess, mean), dn), u) in excess.iter_mut().zip(mean).zip(dn).zip(u) {
+                for a in 0..DIM {
+                    excess[a] = (mean[a] - dn[a]) / 3.0;
+                    more += excess[a] * u[a];
+                }
+            }
+            (0..3).for_each(|a| {
+                h[a][a] += more;
+                f[a][a] += more;
+            });
+        }
+        if Self::AXISYMMETRIC {
+            h[2][2] = radius(n, u) / radius(n, initial);
+            f[2][2] += h[2][2];
+        }
+        let mut strain = strain_vector(&h);
+        if F::FINITE {
+            let square = strain_vector::<S>(&product(&transposed(&h), &h));
+            strain.iter_mut().zip(square).for_each(|(e, q)| *e += 0.5 * q);
+        }
+        let det_f = determinant(&f);
+        (Deformation { strain, f, det_f }, excess)
+    }
+
     /// Kinematics at Gauss point `g` of a motion; `mean` are the mean gradients, `state` is the element's.
     pub(super) fn point<'a>(
         material: &Material<S>,
@@ -119,34 +174,11 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 }
             }
         }
-        let mut f = IDENTITY;
-        let mut h = [[0.0; 3]; 3];
-        for a in 0..DIM {
-            for b in 0..DIM {
-                h[a][b] = if F::FINITE { grad_u[a][b] } else { 0.5 * (grad_u[a][b] + grad_u[b][a]) };
-                f[a][b] += h[a][b];
-            }
-        }
-        let mut excess = [[0.0; DIM]; NODES];
-        if F::MEAN_DILATATION {
-            let mut more = 0.0;
-            for (((excess, mean), dn), u) in excess.iter_mut().zip(mean).zip(&dn).zip(u) {
-                for a in 0..DIM {
-                    excess[a] = (mean[a] - dn[a]) / 3.0;
-                    more += excess[a] * u[a];
-                }
-            }
-            (0..3).for_each(|a| {
-                h[a][a] += more;
-                f[a][a] += more;
-            });
-        }
+        let (Deformation { strain, f, det_f }, excess) = Self::deformation(n, &dn, &grad_u, u, mean, &entity.initial);
         let mut hoop = [0.0; NODES];
         let mut turn = material.thickness;
         if Self::AXISYMMETRIC {
             let initial = radius(n, &entity.initial);
-            h[2][2] = radius(n, u) / initial;
-            f[2][2] += h[2][2];
             let r = if F::PRESENT { radius(n, &entity.current) } else { initial };
             if r <= 0.0 || r.is_nan() {
                 return Err(format!("the radius at Gauss point {} is {r}, not positive", g + 1));
@@ -154,12 +186,6 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             hoop = n.map(|n| n / r);
             turn = 2.0 * PI * r;
         }
-        let mut strain = strain_vector(&h);
-        if F::FINITE {
-            let square = strain_vector::<S>(&product(&transposed(&h), &h));
-            strain.iter_mut().zip(square).for_each(|(e, q)| *e += 0.5 * q);
-        }
-        let det_f = determinant(&f);
         if (F::FINITE || !material.law.is_linear()) && (det_f <= 0.0 || det_f.is_nan()) {
             return Err(format!("turned inside out at Gauss point {} (det F = {det_f:.3e})", g + 1));
         }

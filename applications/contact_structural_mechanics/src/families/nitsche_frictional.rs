@@ -1,0 +1,28 @@
+//! Contact with friction by Nitsche's method.
+
+use zelus_core::register;
+use zelus_core::registry::Build;
+
+use super::shapes::{nitsche_block, register_shapes};
+use crate::pairs::{Family, Friction, Multiplier};
+
+register! { Condition "NitscheContactFrictional",
+    about: "Coulomb friction by Nitsche's method: tractions of the slave's elements, no multipliers",
+    source: "Chouly, Hild and Renard (2015)",
+    build: Build::Factory(&Family {
+        condition: "NitscheFrictionalMortarContactCondition",
+        multiplier: Multiplier::Body,
+        variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3), ("CARRIED_TRACTION", 3)],
+        friction: Friction::Coulomb,
+        penalty: false,
+        compliant: false,
+        by_node: None,
+        weighted_gaps: false,
+        block: |slave, master, request| nitsche_block(slave, master, request, true),
+    }),
+}
+register_shapes!(
+    "NitscheFrictionalMortarContactCondition",
+    "NitscheFrictionalAxisymMortarContactCondition2D2N",
+    "pair of the family NitscheContactFrictional"
+);

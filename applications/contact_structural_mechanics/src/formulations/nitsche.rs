@@ -1,0 +1,256 @@
+//! Nitsche's method: tractions of the slave's own element take the place of multipliers.
+//!
+//! With the traction t(u) on the slave, its normal part σ = n·t, the gap g, positive where open, and γ = γ₀ M A/V, each
+//! integration point has the contact pressure and, with friction, the tangential traction
+//! - P = σ + γ g, p = min(P, 0);
+//! - q = t − σ n + r° + κ γ s, τ = q where |q| ≤ b(p) and else b(p) q/|q|, with the slip s of the step against the motion.
+//!
+//! r = τ − (t − σ n) is what the tractions of a mesh lack; r° is that of the last accepted state, averaged at the nodes and
+//! turned with the facet. Without it bodies that stick would slip by it in every step.
+//!
+//! The force f = p n + τ acts on the slave, −f on the master, and the slave's element has the consistent term
+//! −θ/γ ∫ (f − f°)·δt, where f° = t with friction and σ n without. θ = 1 is symmetric, 0 incomplete, −1 skew. The term is
+//! there too where p = 0; beside the master there is none, and no force (Chouly, Hild and Renard 2015). M is the stiffness of
+//! the material across the face, A the face, V the volume of the element, all in the initial state: γ = M A/V is what the
+//! trace inequality of an element of constant stress asks of the symmetric variant.
+//!
+//! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
+//! where the element is a parallelepiped, and divided there by the change of area.
+
+use super::{Formulation, Kinematics, LastState, Multipliers, PairResidual, PenaltyFrictional, SlaveNode};
+use crate::friction_law::Bound;
+use crate::mortar::operators::least_overlap;
+use crate::mortar::points::for_each_point;
+use crate::mortar::{PairGeometry, SegmentationSettings, Turn, shape, tangential};
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, value};
+
+/// Share of a facet's nodes that takes hold of a point.
+const HELD: f64 = 0.5;
+
+/// Which consistent term Nitsche's method has.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NitscheVariant {
+    /// θ = 1: forces have a potential; stable for γ₀ that is large enough.
+    Symmetric,
+    /// θ = −1: stable for every γ₀.
+    #[default]
+    Skew,
+    /// θ = 0: no consistent term.
+    Incomplete,
+}
+
+/// Nitsche's method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nitsche {
+    /// θ.
+    pub theta: f64,
+    /// γ₀ > 0.
+    pub factor: f64,
+    /// Ratio κ of what slips and gaps count with; `None` without friction.
+    pub friction: Option<f64>,
+}
+
+impl Default for Nitsche {
+    fn default() -> Self {
+        Self::new(NitscheVariant::default(), None, None)
+    }
+}
+
+impl Nitsche {
+    /// The method of a variant and γ₀, by default 1 where every factor is stable and else 4, since elements whose stress
+    /// varies need more than the 1 of those of constant stress.
+    pub fn new(variant: NitscheVariant, factor: Option<f64>, friction: Option<f64>) -> Self {
+        let theta = match variant {
+            NitscheVariant::Symmetric => 1.0,
+            NitscheVariant::Incomplete => 0.0,
+            NitscheVariant::Skew => -1.0,
+        };
+        let factor = factor.unwrap_or(if variant == NitscheVariant::Skew { 1.0 } else { 4.0 });
+        Self { theta, factor, friction }
+    }
+}
+
+/// The face of the slave's element, in the initial state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlaveFace<const NS: usize> {
+    /// Length or area by local coordinates at the inner points; about an axis times the radius.
+    pub densities: [f64; NS],
+    /// M A/V (stress by length, in the plane times the thickness).
+    pub stiffness: f64,
+    /// What tractions are multiplied by, where the weights of points are divided by it.
+    pub thickness: f64,
+}
+
+/// What a point takes from the slave nodes around it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NodeOfPoints {
+    /// Limit of the tangential traction.
+    pub friction: Bound,
+    /// r° of the last accepted state (force per area).
+    pub carried: [f64; 3],
+    /// 1 where points are in contact whatever their pressure, until the next solve; else 0.
+    pub held: f64,
+    /// 1 where points in contact stick whatever their traction, until the next solve; else 0.
+    pub stuck: f64,
+}
+
+/// What the points of a pair add up to.
+#[derive(Debug, Clone, Copy)]
+pub struct PointForces<T, const NS: usize, const NM: usize> {
+    /// Forces on slave nodes.
+    pub slave: [[T; 3]; NS],
+    /// Forces on master nodes.
+    pub master: [[T; 3]; NM],
+    /// ∫ N (τ − t + σ n) over the points in contact, with friction.
+    pub carried: [[T; 3]; NS],
+    /// What works on changes of the tractions at the inner points (a length times an area).
+    pub by_traction: [[T; 3]; NS],
+}
+
+impl Nitsche {
+    /// Forces of a pair whose slave has these tractions of the initial area at its inner points; `None` without overlap.
+    pub fn forces<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &PairGeometry<T, NS, NM>,
+        tractions: &[[T; 3]; NS],
+        (face, nodes): (&SlaveFace<NS>, &[NodeOfPoints; NS]),
+        last: &LastState<NS, NM>,
+        settings: &SegmentationSettings,
+    ) -> Option<PointForces<T, NS, NM>> {
+        let zero = [T::zero(); 3];
+        let mut out =
+            PointForces { slave: [zero; NS], master: [zero; NM], carried: [zero; NS], by_traction: [zero; NS] };
+        let origin = value(pair.slave[0]);
+        let relative = |x: [T; 3]| std::array::from_fn(|c| x[c] - origin[c]);
+        let (slave, master) = (pair.slave.map(relative), pair.master.map(relative));
+        // By how much the facet has become smaller at its inner points.
+        let shrunk: [T; NS] = std::array::from_fn(|g| {
+            let xi = shape::inner_point::<NS>(g);
+            let mut now = shape::density(&pair.slave, xi);
+            if settings.axisymmetric.is_some() {
+                now *= shape::combine(&shape::values::<f64, NS>(xi), &pair.slave)[0];
+            }
+            now.recip() * (face.densities[g] * face.thickness)
+        });
+        let gamma = self.factor * face.stiffness * face.thickness;
+        let turn = Turn::of_facet(&pair.slave, &last.slave);
+        let covered = for_each_point(pair, settings, |point| {
+            let normal = normalised(shape::interpolate(&point.slave, &pair.nodal_normals));
+            let inner: [T; NS] = shape::inner_values(point.local);
+            let mut traction = zero;
+            for g in 0..NS {
+                let share = inner[g] * shrunk[g];
+                (0..3).for_each(|c| traction[c].add_product(share, tractions[g][c]));
+            }
+            let jump = sub(shape::interpolate(&point.slave, &slave), shape::interpolate(&point.master, &master));
+            let stress = dot(normal, traction);
+            let pressure = stress - dot(normal, jump) * gamma;
+            let share = |of: fn(&NodeOfPoints) -> f64| {
+                nodes.iter().zip(&point.slave).map(|(node, n)| of(node) * n.value()).sum::<f64>() > HELD
+            };
+            let held = share(|node| node.held);
+            let pressing = held || pressure.value() < 0.0;
+            let mut force = if pressing { scale(normal, pressure) } else { zero };
+            let mut own = scale(normal, stress);
+            if let Some(ratio) = self.friction {
+                own = traction;
+                if pressing {
+                    let before = jump_before(&point.slave, &point.master, last);
+                    let slip = tangential(sub(turn.apply(before), jump), normal);
+                    let weights = point.slave.map(T::value);
+                    let mut carried = zero;
+                    for (node, n) in nodes.iter().zip(&point.slave) {
+                        (0..3).for_each(|c| carried[c].add_scaled(*n, node.carried[c]));
+                    }
+                    let carried = tangential(turn.apply(carried), normal);
+                    let along = sub(traction, scale(normal, stress));
+                    let trial = add(add(along, carried), scale(slip, T::constant(gamma * ratio)));
+                    let sticks = held || share(|node| node.stuck);
+                    let friction = limited(trial, pressure, mean_bound(nodes, &weights), sticks);
+                    force = add(force, friction);
+                    let apart = sub(friction, along);
+                    for k in 0..NS {
+                        let weight = point.slave[k] * point.weight;
+                        (0..3).for_each(|c| out.carried[k][c].add_product(weight, apart[c]));
+                    }
+                }
+            }
+            for k in 0..NS {
+                let weight = point.slave[k] * point.weight;
+                (0..3).for_each(|c| out.slave[k][c].add_product(weight, force[c]));
+            }
+            for l in 0..NM {
+                let weight = point.master[l] * point.weight;
+                (0..3).for_each(|c| out.master[l][c].add_product(weight, -force[c]));
+            }
+            if self.theta != 0.0 {
+                let lack = sub(force, own);
+                for g in 0..NS {
+                    let weight = inner[g] * shrunk[g] * point.weight * (-self.theta / gamma);
+                    (0..3).for_each(|c| out.by_traction[g][c].add_product(weight, lack[c]));
+                }
+            }
+        });
+        (covered > least_overlap(pair)).then_some(out)
+    }
+}
+
+/// x¹ − x² of a point in the last accepted state.
+fn jump_before<T: Real, const NS: usize, const NM: usize>(
+    slave: &[T; NS],
+    master: &[T; NM],
+    last: &LastState<NS, NM>,
+) -> [T; 3] {
+    let origin = last.slave[0];
+    let relative = |x: [f64; 3]| constant(sub(x, origin));
+    sub(shape::interpolate(slave, &last.slave.map(relative)), shape::interpolate(master, &last.master.map(relative)))
+}
+
+fn mean_bound<const NS: usize>(nodes: &[NodeOfPoints; NS], weights: &[f64; NS]) -> Bound {
+    let mean = |of: fn(&Bound) -> f64| nodes.iter().zip(weights).map(|(node, n)| n * of(&node.friction)).sum();
+    Bound { coefficient: mean(|bound| bound.coefficient), threshold: mean(|bound| bound.threshold) }
+}
+
+/// The trial traction, cut to the bound unless the point is made to stick.
+fn limited<T: Real>(trial: [T; 3], pressure: T, bound: Bound, sticks: bool) -> [T; 3] {
+    if bound.is_smooth() {
+        return [T::zero(); 3];
+    }
+    let limit = bound.at(pressure);
+    let size = norm(value(trial));
+    if sticks || size <= limit.value() {
+        trial
+    } else if limit.value() <= 0.0 {
+        [T::zero(); 3]
+    } else {
+        scale(trial, limit / norm(trial))
+    }
+}
+
+/// By operators there is nothing: forces are those of points.
+impl Formulation for Nitsche {
+    const MULTIPLIERS: Multipliers = Multipliers::None;
+    type History<const NS: usize, const NM: usize> = LastState<NS, NM>;
+
+    fn residual<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        _pair: &Kinematics<T, NS, NM>,
+        _nodes: &[SlaveNode; NS],
+        _last: &LastState<NS, NM>,
+    ) -> PairResidual<T, NS, NM> {
+        PairResidual::zero()
+    }
+}
+
+impl Nitsche {
+    /// Weighted slips of a pair since its last accepted state.
+    pub fn slip<const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<f64, NS, NM>,
+        last: &LastState<NS, NM>,
+    ) -> [[f64; 3]; NS] {
+        if self.friction.is_some() { PenaltyFrictional::slip(pair, last) } else { [[0.0; 3]; NS] }
+    }
+}

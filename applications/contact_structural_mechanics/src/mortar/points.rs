@@ -1,0 +1,144 @@
+//! The integration points of the overlap of a pair: Gauss points on its cells, and where they go on the master.
+
+use super::flat_master::FlatMaster;
+use super::geometry::PairGeometry;
+use super::quadrature;
+use super::segmentation_2d;
+use super::segmentation_3d::{Polygon, Vertex};
+use super::settings::SegmentationSettings;
+use super::shape;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{cross, dot, norm, sub, value};
+
+/// Share of the slave's measure below which a cell is skipped: its normal would be rounding noise.
+const LEAST_CELL: f64 = 1e-13;
+
+/// A point of the slave that faces a point of the master.
+#[derive(Debug, Clone, Copy)]
+pub struct Point<T, const NS: usize, const NM: usize> {
+    /// Local coordinates on the slave.
+    pub local: [T; 2],
+    /// Shape functions of the slave.
+    pub slave: [T; NS],
+    /// Shape functions of the master.
+    pub master: [T; NM],
+    /// Length or area that it stands for; about an axis also 2π r by the thickness.
+    pub weight: T,
+}
+
+/// Visits the points of the overlap; gives its length or area, without the turn about an axis.
+pub fn for_each_point<T: Real, const NS: usize, const NM: usize>(
+    pair: &PairGeometry<T, NS, NM>,
+    settings: &SegmentationSettings,
+    visit: impl FnMut(&Point<T, NS, NM>),
+) -> f64 {
+    Points { pair, flat: None }.visit(settings, visit)
+}
+
+/// A pair whose overlap is walked.
+pub(super) struct Points<'a, T, const NS: usize, const NM: usize> {
+    pub(super) pair: &'a PairGeometry<T, NS, NM>,
+    pub(super) flat: Option<FlatMaster<T, NS>>,
+}
+
+impl<T: Real, const NS: usize, const NM: usize> Points<'_, T, NS, NM> {
+    /// As [`for_each_point`].
+    #[inline]
+    pub(super) fn visit(&self, settings: &SegmentationSettings, visit: impl FnMut(&Point<T, NS, NM>)) -> f64 {
+        if NS == 2 {
+            segmentation_2d::interval(self.pair, settings).map_or(0.0, |ends| self.of_interval(ends, settings, visit))
+        } else {
+            Polygon::new(self.pair, settings).map_or(0.0, |polygon| self.of_polygon(&polygon, settings, visit))
+        }
+    }
+
+    /// Points of a segment of the slave line; gives its length.
+    #[inline]
+    fn of_interval(
+        &self,
+        ends: [T; 2],
+        settings: &SegmentationSettings,
+        mut visit: impl FnMut(&Point<T, NS, NM>),
+    ) -> f64 {
+        let share = (ends[1] - ends[0]) * 0.5;
+        let det_j = norm(sub(self.pair.slave[1], self.pair.slave[0])) * share;
+        let revolution = settings.revolution();
+        for &(s, weight) in quadrature::line(settings.integration_order) {
+            let local = [ends[0] * (1.0 - s) + ends[1] * s, T::zero()];
+            let slave = shape::values::<T, NS>(local);
+            let x = shape::interpolate(&slave, &self.pair.slave);
+            let mut weight = det_j * weight;
+            if let Some(per_radius) = revolution {
+                weight *= x[0] * per_radius;
+            }
+            let master = self.on_master(&slave, x, T::zero());
+            visit(&Point { local, slave, master, weight });
+        }
+        det_j.value()
+    }
+
+    /// Points of the fan of triangles of a polygon; gives their area.
+    #[inline]
+    fn of_polygon(
+        &self,
+        polygon: &Polygon<T, NS, NM>,
+        settings: &SegmentationSettings,
+        mut visit: impl FnMut(&Point<T, NS, NM>),
+    ) -> f64 {
+        let whole = shape::measure(&self.pair.slave.map(value));
+        let place = |xi: [T; 2]| shape::interpolate(&shape::values::<T, NS>(xi), &self.pair.slave);
+        let rule = quadrature::triangle(settings.integration_order);
+        let mut covered = 0.0;
+        let vertices = polygon.vertices();
+        let mut local = [polygon.local(vertices[0]), [T::zero(); 2], polygon.local(vertices[1])];
+        let mut x = [place(local[0]), [T::zero(); 3], place(local[2])];
+        let mut lifts = [self.lift(polygon, vertices[0]), T::zero(), self.lift(polygon, vertices[1])];
+        for &vertex in &vertices[2..] {
+            (lifts[1], lifts[2]) = (lifts[2], self.lift(polygon, vertex));
+            let xi = polygon.local(vertex);
+            (local[1], local[2]) = (local[2], xi);
+            (x[1], x[2]) = (x[2], shape::interpolate(&shape::values::<T, NS>(xi), &self.pair.slave));
+            let normal = cross(sub(x[1], x[0]), sub(x[2], x[0]));
+            if norm(value(normal)) <= 2.0 * LEAST_CELL * whole {
+                continue;
+            }
+            let area = norm(normal) * 0.5;
+            covered += area.value();
+            for (barycentric, weight) in rule {
+                let mut x = shape::combine(barycentric, &x);
+                let mut xi = shape::combine(barycentric, &local);
+                let mut slave = shape::values::<T, NS>(xi);
+                if NS == 4 {
+                    // Cells are flat and straight in space, a warped quadrilateral and its local coordinates are not.
+                    xi = shape::closest_point(&self.pair.slave, x, xi.map(T::value));
+                    slave = shape::values::<T, NS>(xi);
+                    x = shape::interpolate(&slave, &self.pair.slave);
+                }
+                let lift = (0..3).fold(T::zero(), |sum, n| sum + lifts[n] * barycentric[n]);
+                let master = self.on_master(&slave, x, lift);
+                visit(&Point { local: xi, slave, master, weight: area * *weight });
+            }
+        }
+        covered
+    }
+
+    fn lift(&self, polygon: &Polygon<T, NS, NM>, vertex: Vertex) -> T {
+        self.flat.as_ref().map_or(T::zero(), |flat| polygon.weigh(vertex, &flat.lift))
+    }
+
+    /// Shape functions of the master where a point of the slave goes along the interpolated normal; `lift` is what
+    /// [`FlatMaster`] lifts it by.
+    #[inline]
+    fn on_master(&self, slave: &[T; NS], x: [T; 3], lift: T) -> [T; NM] {
+        let pair = self.pair;
+        let normal = shape::interpolate(slave, &pair.nodal_normals);
+        let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
+        let mut projected = x;
+        (0..3).for_each(|c| projected[c].add_product(normal[c], distance));
+        let xi = match &self.flat {
+            None => shape::closest_point(&pair.master, projected, shape::centre::<NM>()),
+            Some(flat) => flat.local(&pair.master, projected, x, lift),
+        };
+        shape::values::<T, NM>(xi)
+    }
+}

@@ -1,0 +1,258 @@
+//! A block of pairs by Nitsche's method: slave and master facets, and the slave's element with the tractions on its face.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::registry::Entry;
+use zelus_core::scalar::{Dual, Real};
+use zelus_core::vector3::{constant, dot};
+
+use super::contact_block::{ContactBlock, Own};
+use super::family::PairRequest;
+use super::pair::{Integral, Pair};
+use super::pair_block::PairBlock;
+use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
+use crate::interface::{Bodies, Tractions};
+use crate::mortar::{PairGeometry, dimension};
+use crate::variables::{CARRIED_TRACTION, HELD_IN_CONTACT, HELD_IN_STICK};
+
+/// Pairs with `NS` slave and `NM` master nodes, `NU` displacement unknowns of the facets, `NN` components of nodal normals,
+/// and `NV` = `NU` + 2 `NN` variables: displacements, normals, and tractions at the inner points of the slave.
+///
+/// Other nodes of the slave's element are among those around the pair.
+pub struct NitscheBlock<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> {
+    pairs: PairBlock<Nitsche, NS, NM, NU, NN>,
+    bodies: Arc<Bodies>,
+}
+
+impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize>
+    NitscheBlock<NS, NM, NU, NN, NV>
+{
+    /// The block of a request, with friction or without.
+    pub fn boxed(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
+        const { assert!(NV == NU + 2 * NN && NN == dimension(NS) * NS, "a variable for each unknown of the formula") };
+        let (bodies, parameters) = (request.bodies.clone(), request.parameters.clone());
+        let friction = friction.then_some(parameters.tangent_factor);
+        let formulation = Nitsche { friction, ..parameters.nitsche };
+        Box::new(Self { pairs: PairBlock::new(request, formulation), bodies })
+    }
+
+    fn key(&self, at: usize) -> [u32; 2] {
+        let key = self.pairs.pairs()[at].key;
+        [key.interface, key.slave]
+    }
+
+    fn nodes_of_points(&self, at: usize, view: &StepView<'_>) -> [NodeOfPoints; NS] {
+        let column = |variable, node: u32| view.nodes.values.values(variable, 0).get(node as usize).copied();
+        let law = self.pairs.parameters().friction_law;
+        let carried = view.nodes.history.get(CARRIED_TRACTION.name());
+        self.pairs.slaves(at).map(|node| NodeOfPoints {
+            carried: carried.map_or([0.0; 3], |field| field.vector(1, node as usize)),
+            friction: law.bound_at(view.nodes, node as usize),
+            held: column(&HELD_IN_CONTACT, node).unwrap_or(0.0),
+            stuck: column(&HELD_IN_STICK, node).unwrap_or(0.0),
+        })
+    }
+
+    fn last(&self, at: usize, view: &StepView<'_>) -> LastState<NS, NM> {
+        let previous = self.pairs.previous(at, view);
+        LastState { slave: previous.slave, master: previous.master }
+    }
+
+    fn forces<T: Real>(
+        &self,
+        at: usize,
+        view: &StepView<'_>,
+        geometry: &PairGeometry<T, NS, NM>,
+        tractions: &[[T; 3]; NS],
+    ) -> Option<PointForces<T, NS, NM>> {
+        let face = self.bodies.slave_face(self.key(at));
+        let nodes = self.nodes_of_points(at, view);
+        let settings = &self.pairs.parameters().segmentation;
+        self.pairs.formulation().forces(geometry, tractions, (&face, &nodes), &self.last(at, view), settings)
+    }
+
+    /// The right-hand side alone.
+    fn residual(&self, at: usize, view: &StepView<'_>, rhs: &mut [f64]) -> Result<(), EntityError> {
+        let key = self.key(at);
+        let consistent = self.pairs.formulation().theta != 0.0;
+        let tractions = self.bodies.tractions::<NS>(key, view, consistent)?;
+        let Some(out) = self.forces(at, view, &self.pairs.geometry(at, view), &tractions.values) else { return Ok(()) };
+        let dim = dimension(NS);
+        let facets = out.master.iter().chain(&out.slave).flat_map(|force| &force[..dim]);
+        rhs.iter_mut().zip(facets).for_each(|(row, force)| *row += force);
+        if consistent {
+            let unknowns = self.bodies.unknowns(key);
+            for (r, &(node, c)) in unknowns.iter().enumerate() {
+                let work = |g: usize| dot(out.by_traction[g], tractions.by[g * unknowns.len() + r]);
+                rhs[self.pairs.first_row(at, node) + c] += (0..NS).map(work).sum::<f64>();
+            }
+        }
+        Ok(())
+    }
+
+    /// Right-hand side and tangent.
+    fn system(
+        &self,
+        at: usize,
+        view: &StepView<'_>,
+        (lhs, width): (&mut [f64], usize),
+        rhs: &mut [f64],
+    ) -> Result<(), EntityError> {
+        let (key, dim) = (self.key(at), dimension(NS));
+        let Tractions { values, by } = self.bodies.tractions::<NS>(key, view, true)?;
+        let plain = self.pairs.geometry(at, view);
+        let mut geometry = self.pairs.seeded::<NV>(&plain);
+        let variable = |vector: [f64; 3], first: usize| -> [Dual<NV>; 3] {
+            let mut out = constant(vector);
+            (0..dim).for_each(|c| out[c] = Dual::variable(vector[c], first + c));
+            out
+        };
+        if self.pairs.parameters().normal_variation.knows_nodes() {
+            geometry.nodal_normals = std::array::from_fn(|j| variable(plain.nodal_normals[j], NU + dim * j));
+        }
+        let tractions = std::array::from_fn(|g| variable(values[g], NU + NN + dim * g));
+        let Some(out) = self.forces(at, view, &geometry, &tractions) else { return Ok(()) };
+
+        // The rows of all local unknowns by the variables of the formula.
+        let mut rows = vec![[0.0; NV]; width];
+        let facets = out.master.iter().chain(&out.slave).flat_map(|force| &force[..dim]);
+        for (row, force) in facets.enumerate() {
+            rhs[row] += force.value;
+            rows[row] = force.gradient;
+        }
+        let unknowns = self.bodies.unknowns(key);
+        let size = unknowns.len();
+        let places: Vec<usize> = unknowns.iter().map(|&(node, c)| self.pairs.first_row(at, node) + c).collect();
+        for (r, &row) in places.iter().enumerate() {
+            for g in 0..NS {
+                for c in 0..dim {
+                    let factor = by[g * size + r][c];
+                    rhs[row] += out.by_traction[g][c].value * factor;
+                    let gradient = &out.by_traction[g][c].gradient;
+                    rows[row].iter_mut().zip(gradient).for_each(|(sum, d)| *sum += factor * d);
+                }
+            }
+        }
+
+        for (row, derivatives) in rows.iter().enumerate() {
+            let lhs = &mut lhs[row * width..(row + 1) * width];
+            lhs.iter_mut().zip(&derivatives[..NU]).for_each(|(entry, d)| *entry -= d);
+            for (r, &column) in places.iter().enumerate() {
+                let (by_traction, by) = (&derivatives[NU + NN..], &by);
+                let slope = |g: usize| (0..dim).map(move |c| by_traction[dim * g + c] * by[g * size + r][c]);
+                lhs[column] -= (0..NS).flat_map(slope).sum::<f64>();
+            }
+        }
+        if self.pairs.parameters().normal_variation.knows_nodes() {
+            let by_normals: Vec<[f64; NN]> = rows.iter().map(|row| std::array::from_fn(|n| row[NU + n])).collect();
+            self.pairs.spread_turning(at, view, &by_normals, (lhs, width));
+        }
+        if self.pairs.formulation().theta != 0.0 {
+            let weights = out.by_traction.map(|work| work.map(|w| w.value));
+            self.bodies
+                .add_second_derivative(key, view, &weights, |r, s, d| lhs[places[r] * width + places[s]] -= d)?;
+        }
+        Ok(())
+    }
+}
+
+impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> EntityBlock
+    for NitscheBlock<NS, NM, NU, NN, NV>
+{
+    fn entry(&self) -> &'static Entry {
+        self.pairs.entry()
+    }
+
+    fn members(&self) -> &[u32] {
+        &[]
+    }
+
+    fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    fn nodes(&self, at: usize) -> &[u32] {
+        self.pairs.nodes(at)
+    }
+
+    fn unknowns(&self) -> &[LocalUnknown] {
+        self.pairs.unknowns()
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::General
+    }
+
+    fn is_active(&self, at: usize, view: &StepView<'_>) -> bool {
+        self.pairs.is_active(at, view)
+    }
+
+    fn local_systems(
+        &self,
+        view: &StepView<'_>,
+        range: Range<usize>,
+        want: Want,
+        out: &mut LocalSystems,
+    ) -> Result<(), EntityError> {
+        for (slot, at) in range.enumerate() {
+            if !self.pairs.is_active(at, view) {
+                continue;
+            }
+            let width = out.size;
+            let (lhs, rhs) = out.entity(slot);
+            if want == Want::Both {
+                self.system(at, view, (lhs, width), rhs)?;
+            } else {
+                self.residual(at, view, rhs)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> ContactBlock
+    for NitscheBlock<NS, NM, NU, NN, NV>
+{
+    fn pairs(&self) -> &[Pair] {
+        self.pairs.pairs()
+    }
+
+    fn pairs_mut(&mut self) -> &mut [Pair] {
+        self.pairs.pairs_mut()
+    }
+
+    fn slave_nodes(&self, at: usize) -> &[u32] {
+        self.pairs.slave_nodes(at)
+    }
+
+    /// The forces of points stand for area times traction. Where an element is inverted there are none; the assembly, which
+    /// meets the same element, says so.
+    fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral> {
+        let mut integrals = self.pairs.integrate(view, own);
+        integrals.par_iter_mut().enumerate().with_min_len(32).filter(|(_, found)| found.overlapping).for_each(
+            |(at, found)| {
+                let Ok(tractions) = self.bodies.tractions::<NS>(self.key(at), view, false) else { return };
+                if let Some(forces) = self.forces(at, view, &self.pairs.geometry(at, view), &tractions.values) {
+                    found.trial[..NS].copy_from_slice(&forces.slave);
+                    found.carried[..NS].copy_from_slice(&forces.carried);
+                }
+            },
+        );
+        integrals
+    }
+
+    fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>) {
+        self.pairs.keep_operators(view, own);
+    }
+
+    fn keep_habits(&mut self, view: &StepView<'_>, own: Own<'_>) {
+        self.pairs.keep_habits(view, own);
+    }
+
+    fn as_entities(&self) -> &dyn EntityBlock {
+        self
+    }
+}
