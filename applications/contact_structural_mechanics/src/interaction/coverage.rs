@@ -26,7 +26,9 @@ pub(super) fn beside(
     let mut whole = vec![0.0; area.len()];
     for facet in facets() {
         let own = measure(positions(facet, part, &mut [[0.0; 3]; 4])) / facet.nodes.len() as f64;
-        facet.nodes.iter().for_each(|&node| whole[node as usize] += own * weight(node));
+        let mean = facet.nodes.iter().map(|&node| weight(node)).sum::<f64>() / facet.nodes.len() as f64;
+        // What the shape function of a node integrates of a weight along a line: on the axis it is not nothing.
+        facet.nodes.iter().for_each(|&node| whole[node as usize] += own * (weight(node) + 2.0 * mean) / 3.0);
     }
     let share = |node: u32| match whole[node as usize] {
         whole if whole > 0.0 => area[node as usize] / whole,
