@@ -1,4 +1,4 @@
-//! Whether an iteration that has used up its number is on its way to the end.
+//! Whether an iteration that has used up its number is on its way to the end, and whether one swings between two states.
 
 use super::records::IterationRecord;
 
@@ -19,12 +19,29 @@ pub(super) fn contracts(records: &[IterationRecord], more: usize) -> bool {
     })
 }
 
+/// Largest change, as a share, of a measure that comes back every other iteration.
+const SAME: f64 = 0.02;
+
+/// Whether the iteration goes to and fro between two states while no interaction changes its own: points that yield in the
+/// one and not in the other.
+pub(super) fn swings(records: &[IterationRecord]) -> bool {
+    let [.., a, b, c, d] = records else { return false };
+    if [a, b, c, d].iter().any(|record| record.active_set_changes + record.stick_slip_changes > 0) {
+        return false;
+    }
+    let back = |(before, now): (&IterationRecord, &IterationRecord)| {
+        let mut open = before.checks.iter().zip(&now.checks).filter(|(_, now)| !now.converged).peekable();
+        open.peek().is_some() && open.all(|(before, now)| (now.ratio - before.ratio).abs() <= SAME * before.ratio)
+    };
+    [(a, c), (b, d)].into_iter().all(back)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::strategies::Check;
 
-    fn records(ratios: [f64; 3], changes: usize) -> Vec<IterationRecord> {
+    fn records<const N: usize>(ratios: [f64; N], changes: usize) -> Vec<IterationRecord> {
         let record = |(at, ratio): (usize, f64)| IterationRecord {
             iteration: at,
             checks: vec![Check {
@@ -54,5 +71,13 @@ mod tests {
         assert!(!contracts(&records([0.1, 0.3, 0.009], 0), 4), "up and down");
         assert!(!contracts(&records([0.1, 0.09, 0.081], 0), 100), "too slow");
         assert!(!contracts(&steady[1..], 4), "two are no rate");
+    }
+
+    #[test]
+    fn two_states_in_turn_are_no_progress() {
+        assert!(swings(&records([0.1, 0.3688, 0.3837, 0.3690, 0.3838], 0)));
+        assert!(!swings(&records([0.3688, 0.3837, 0.3690], 0)), "once is not to and fro");
+        assert!(!swings(&records([0.3688, 0.3837, 0.3690, 0.3838], 1)), "states still change");
+        assert!(!swings(&records([0.4, 0.3, 0.2, 0.1], 0)) && !swings(&records([0.1, 0.1, 1e-5, 1e-5], 0)));
     }
 }

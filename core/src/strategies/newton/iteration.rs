@@ -5,11 +5,14 @@ use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, Outer, SetChange};
 use crate::model::ModelPart;
-use crate::strategies::contraction::contracts;
+use crate::strategies::contraction::{contracts, swings};
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::reactions::write_reactions;
 use crate::strategies::records::{IterationRecord, Monitor};
 use crate::strategies::strategy::update_interactions;
+
+/// Share of the increment that ends a swing between two states.
+const HALF: f64 = 0.5;
 
 /// What the iterations of a step hand on to each other.
 struct Step {
@@ -290,6 +293,9 @@ impl NewtonRaphson {
         let searched = self.settings.line_search.filter(|_| is_still);
         increment.iter_mut().zip(&step.prescribed).for_each(|(sum, d)| *sum += d);
         step.prescribed.fill(0.0);
+        if is_still && searched.is_none() && swings(&step.records) {
+            increment.iter_mut().for_each(|d| *d *= HALF);
+        }
         match searched {
             Some(search) => self.search(&search, part, interactions, &step.residual, &mut increment)?,
             None => self.move_by(part, &increment),

@@ -158,11 +158,11 @@ impl NewtonRaphson {
 
 /// Nodes of elements that remember what they went through, ascending.
 fn yielding(part: &ModelPart) -> Vec<u32> {
-    let of_block = |block: &Box<dyn EntityBlock>| {
+    let of_block = |block: &dyn EntityBlock| {
         let own = (0..block.len()).filter(|&at| block.remembers(at));
         own.flat_map(|at| block.nodes(at).to_vec()).collect::<Vec<u32>>()
     };
-    let mut nodes: Vec<u32> = part.element_blocks.iter().flat_map(of_block).collect();
+    let mut nodes: Vec<u32> = part.element_blocks.iter().flat_map(|block| of_block(block.as_ref())).collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes
