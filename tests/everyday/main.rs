@@ -46,8 +46,9 @@ fn answer(name: &str, friction: Option<f64>, look: Look, more: usize) -> Result<
     let mut problem = make(friction, steps * more, 1);
     problem.model.look = look;
     let kind = if friction.is_some() { "_friction" } else { "" };
-    let place =
-        format!("{name}{kind}_{:.0}_{}_{}_{}", look.turn.to_degrees(), look.size, look.backwards, problem.model.steps);
+    let method = if look.penalty { "_penalty" } else { "" };
+    let (turn, steps) = (look.turn.to_degrees(), problem.model.steps);
+    let place = format!("{name}{kind}{method}_{turn:.0}_{}_{}_{steps}", look.size, look.backwards);
     let outcome = problem.model.run(&place).map_err(|said| vec![said])?;
     println!("{place}: {} steps, {} iterations", outcome.states.len(), outcome.iterations);
     let mut faults = outcome.faults(&problem.model, problem.load);
@@ -102,6 +103,14 @@ fn none(faults: impl Iterator<Item = Vec<String>>) {
 #[test]
 fn steps_change_nothing_without_friction() {
     none(STEADY.into_iter().map(|name| same(name, None, PLAIN, 2)));
+}
+
+/// A penalty ends like multipliers.
+#[test]
+fn penalties_change_nothing() {
+    let look = Look { penalty: true, ..PLAIN };
+    let cases = STEADY.into_iter().flat_map(|name| [None, Some(FRICTION)].map(|friction| (name, friction)));
+    none(cases.map(|(name, friction)| same(name, friction, look, 1)));
 }
 
 /// Turned problems end alike: by any angle where supports hold all components, else by a right one.

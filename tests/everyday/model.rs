@@ -61,10 +61,12 @@ pub struct Look {
     pub size: f64,
     /// Whether nodes and elements are numbered backwards.
     pub backwards: bool,
+    /// Whether contact is by penalty, in the place of multipliers.
+    pub penalty: bool,
 }
 
 /// As it is.
-pub const PLAIN: Look = Look { turn: 0.0, about: [0.0, 0.0, 1.0], size: 1.0, backwards: false };
+pub const PLAIN: Look = Look { turn: 0.0, about: [0.0, 0.0, 1.0], size: 1.0, backwards: false, penalty: false };
 
 impl Look {
     /// Rows of the rotation (Rodrigues); what is next to nothing is nothing.
@@ -264,10 +266,10 @@ impl Model {
                     "direction": self.look.turned(*traction), "interval": [0.0, "End"]}),
             ));
         }
-        let (family, kind) = match self.friction {
-            None => ("ALMContactFrictionless", "Frictionless"),
-            Some(_) => ("ALMContactFrictional", "Frictional"),
-        };
+        let kind = if self.friction.is_some() { "Frictional" } else { "Frictionless" };
+        let (method, module) =
+            if self.look.penalty { ("Penalty", "penalty_contact_process") } else { ("ALM", "alm_contact_process") };
+        let family = format!("{method}Contact{kind}");
         let [contacts, slaves] = contact;
         let mut settings = json!({"model_part_name": "Structure", "contact_type": kind, "contact_model_part": contacts,
             "assume_master_slave": slaves});
@@ -300,7 +302,7 @@ impl Model {
             "processes": {
                 "constraints_process_list": processes,
                 "loads_process_list": loads,
-                "contact_process_list": [{"python_module": "alm_contact_process", "kratos_module": CONTACT, "Parameters": settings}],
+                "contact_process_list": [{"python_module": module, "kratos_module": CONTACT, "Parameters": settings}],
                 "json_output_process_list": [output("results.json", &variables, true), output("areas.json", &["NODAL_AREA"], false)]}});
         let pretty = |value: &Value| serde_json::to_string_pretty(value).expect("JSON");
         let write = |name: &str, text: String| std::fs::write(folder.join(name), text).expect("a file");
