@@ -397,3 +397,21 @@ fn a_bar_rebounds_in_explicit_and_implicit_steps() {
         assert!(lost(&found[2]) < 0.02 && lost(&found[2]) < lost(&found[0]).max(0.01), "{method}: {said:?}");
     }
 }
+
+/// Contact that always slides stands still under a load that grows: friction of either sign moved it the other way, for ever.
+#[test]
+fn pure_slip_stands_still() {
+    let scratch = case("contact_2d/friction_pure_slip");
+    let mut deck = read_json(&scratch.path().join(DECK)).expect("the deck");
+    deck["problem_data"]["end_time"] = json!(1.9);
+    // sliding until t = 0.4
+    deck["processes"]["constraints_process_list"][1]["Parameters"]["value"][0] = json!("2.5e-6*(t+0.4-abs(t-0.4))");
+    for load in deck["processes"]["loads_process_list"].as_array_mut().expect("loads") {
+        if load["Parameters"]["model_part_name"] == "Structure.Top" {
+            load["Parameters"]["modulus"] = json!("1000.0*(1.0+t)");
+        }
+    }
+    write_json(&scratch.path().join(DECK), &deck);
+    let said = run(scratch.path());
+    assert!(said.contains("10 steps converged") && !said.contains("retried"), "{said}");
+}

@@ -18,7 +18,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use model::{Look, PLAIN};
 use outcome::{Outcome, norm};
-use problems::{ALL, Punch, punch};
+use problems::{ALL, Punch, ball, punch};
 
 /// Problems that are looked at in several ways.
 const STEADY: [&str; 10] = [
@@ -174,6 +174,25 @@ fn surfaces_end_within_facets() {
                         faults.extend(found.map(|fault| format!("{place}: {fault}")));
                     }
                 }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// What touches by a billionth of its size at the origin is known as well as what lies around it: gaps of nodes there stalled.
+#[test]
+fn light_touches_end() {
+    let mut faults = Vec::new();
+    for friction in [None, Some(FRICTION)] {
+        for (columns, depth) in [([6, 7], 1e-7), ([6, 6], 1e-9), ([8, 10], 1e-8)] {
+            let problem = ball(friction, 3, columns, depth, true);
+            match problem.model.run(&format!("touch_{friction:?}_{columns:?}_{depth:e}")) {
+                Err(said) => faults.push(said),
+                Ok(outcome) if outcome.last().touching(&problem.model).is_empty() => {
+                    faults.push(format!("{columns:?} {depth:e}: no contact"));
+                }
+                Ok(outcome) => faults.extend(outcome.faults(&problem.model, problem.load)),
             }
         }
     }

@@ -641,20 +641,29 @@ fn beam_over_an_edge(friction: Option<f64>, steps: usize, finer: usize) -> Probl
 
 /// A cap of a ball on a block, which is the slave: Hertz's force grows as the depth to the power of 3/2.
 fn ball_on_block(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
+    ball(friction, steps, [8 * finer, 9 * finer], 0.1, false)
+}
+
+/// See [`ball_on_block`]: columns of ball and block, how deep the ball is pushed, and whether it is the slave.
+pub fn ball(friction: Option<f64>, steps: usize, [own, wide]: [usize; 2], depth: f64, is_slave: bool) -> Problem {
     let mut model = Model::new(3, friction, steps);
     let cap = |x: Vec3| {
         let [a, b] = [0, 1].map(|c: usize| (0.7 * (2.0 * x[c] - 1.0)).tan());
         let radius = (2.0 - 0.8 * x[2]) / (1.0 + a * a + b * b).sqrt();
         [radius * a, radius * b, 2.0 - radius]
     };
-    let cap = model.body(&[8 * finer, 8 * finer, 2 * finer], STEEL, POISSON, cap);
+    let cap = model.body(&[own, own, own / 4 + 1], STEEL, POISSON, cap);
     let block = |x: Vec3| [3.0 * x[0] - 1.5, 3.0 * x[1] - 1.5, 1.5 * x[2] - 1.5];
-    let block = model.body(&[9 * finer, 9 * finer, 3 * finer], STEEL, POISSON, block);
+    let block = model.body(&[wide, wide, wide / 3], STEEL, POISSON, block);
     let pushed = cap.nodes(high(2));
-    model.fix(&pushed, [json!(0), json!(0), json!("-0.1*t")]);
+    model.fix(&pushed, [json!(0), json!(0), json!(format!("-{depth:?}*t"))]);
     let ground = block.nodes(low(2));
     model.fix(&ground, [json!(0), json!(0), json!(0)]);
-    model.contact(block.facets(high(2)), cap.facets(low(2)));
+    let (of_block, of_cap) = (block.facets(high(2)), cap.facets(low(2)));
+    match is_slave {
+        true => model.contact(of_cap, of_block),
+        false => model.contact(of_block, of_cap),
+    }
     let check = move |_: &Model, outcome: &Outcome| {
         let sum = outcome.last().sum(&ground);
         let aside = (sum[0].hypot(sum[1])) / sum[2];

@@ -356,8 +356,14 @@ impl Assembler {
             product
         };
         let coupling = &self.coupling.matrix;
-        let [coupled, pushed, gaps] =
+        let [mut coupled, pushed, gaps] =
             [&position, &multiplier, &farthest].map(|x| product(coupling, &coupling.values, x));
+        // Gaps are integrated over facets: a node at the origin is known no better than what lies around it.
+        for (n, _) in part.dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.multiplier) {
+            let (columns, values) = coupling.row(n);
+            let most = columns.iter().map(|&c| position[c as usize]).fold(0.0, f64::max);
+            coupled[n] = most * values.iter().map(|value| value.abs()).sum::<f64>();
+        }
         let mut bodies = vec![0.0; values.len()];
         if let Some(values) = self.bulk_values() {
             abs_product(&self.pattern.zero, values, bulk, &mut out);

@@ -1,6 +1,6 @@
 //! The contact of all pairs of a deck: search at step start, gaps and active set in every iteration.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use zelus_core::Result;
@@ -72,6 +72,8 @@ pub struct ContactInteraction {
     cycles: CycleGuard,
     /// Slave nodes that supports hold.
     holding: Holding,
+    /// How often nodes that always slide have turned back in this step.
+    reversals: BTreeMap<u32, usize>,
     /// Nodes that were pushed along their motion in this step and stick since.
     released: BTreeSet<u32>,
     /// What open interfaces have taken hold of in this step because a body was free to move.
@@ -129,6 +131,7 @@ impl ContactInteraction {
             pair_counts: Vec::new(),
             cycles: CycleGuard::default(),
             holding: Holding::default(),
+            reversals: BTreeMap::new(),
             released: BTreeSet::new(),
             reach: Reach::default(),
             searches: 0,
@@ -403,11 +406,12 @@ impl ContactInteraction {
         }
     }
 
-    fn write_tangents(&self, part: &mut ModelPart) {
+    fn write_tangents(&mut self, part: &mut ModelPart) {
         if self.settings.family.frictional() && !self.by_points() {
             let (family, keeps) = (self.settings.family, self.settings.friction.keeps_direction);
             let (resolution, counts) = (self.resolution, &self.pair_counts);
-            sliding::write_tangents(part, &self.slaves, family, &self.parameters, resolution, counts, keeps);
+            let reversals = &mut self.reversals;
+            sliding::write_tangents(part, &self.slaves, family, &self.parameters, resolution, counts, keeps, reversals);
         }
     }
 
@@ -482,6 +486,7 @@ impl Interaction for ContactInteraction {
         self.acting = self.settings.interval.contains(part.info.time);
         self.cycles.begin_step();
         self.released.clear();
+        self.reversals.clear();
         self.reach = Reach::default();
         self.searches = 0;
         self.uzawa = Uzawa::default();

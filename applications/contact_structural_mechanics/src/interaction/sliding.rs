@@ -1,5 +1,7 @@
 //! The direction in which nodes slide, anew in every iteration, and how it turns.
 
+use std::collections::BTreeMap;
+
 use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::{add, cross, dot, norm, normalised, scale};
 
@@ -16,6 +18,8 @@ use crate::variables::{
     INITIAL_PENALTY, NODAL_AREA, TANGENT_ETA, TANGENT_XI, TRIAL_TRACTION, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP,
 };
 
+/// Times in a step that a node which always slides may turn back.
+const MOST_REVERSALS: usize = 4;
 /// Length of the free part of a unit tangent below which a node cannot slide.
 const LEAST_FREE: f64 = 1e-3;
 
@@ -24,7 +28,8 @@ const LEAST_FREE: f64 = 1e-3;
 /// The direction is that of the tangential multiplier of an active node. Where contact always slides it is that of the
 /// weighted slip. For sliding nodes in space, whose direction is more than a sign, and without multipliers it is that of the
 /// trial traction. A node that has none of them above round-off keeps the direction it had: at step start that is a far
-/// better guess than any fixed tangent. In the plane sliding nodes keep theirs, where `keeps_direction`. `pair_counts` holds
+/// better guess than any fixed tangent; so does one that always slides and turned back [`MOST_REVERSALS`] times in the step
+/// (`reversals` counts them): it stands still, and friction of either sign moves it the other way. In the plane sliding nodes keep theirs, where `keeps_direction`. `pair_counts` holds
 /// the number of overlapping pairs of every node.
 pub(super) fn write_tangents(
     part: &mut ModelPart,
@@ -34,6 +39,7 @@ pub(super) fn write_tangents(
     resolution: Resolution,
     pair_counts: &[u32],
     keeps_direction: bool,
+    reversals: &mut BTreeMap<u32, usize>,
 ) {
     let dimension = part.info.domain_size;
     let pure = parameters.slip_rule == SlipRule::Pure;
@@ -91,7 +97,12 @@ pub(super) fn write_tangents(
             }
             _ => by_slip(),
         };
-        let kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
+        let mut kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
+        if pure && !kept && dot(direction, before(at)) < 0.0 {
+            let count = reversals.entry(node).or_default();
+            *count += 1;
+            kept = *count > MOST_REVERSALS;
+        }
         let any = tangent(if kept { before(at) } else { direction }, normal, dimension);
         let free = along_free_tangents(any, normal, held);
         tangents.push(if norm(free) > LEAST_FREE { normalised(free) } else { any });
