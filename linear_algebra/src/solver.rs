@@ -22,6 +22,16 @@ pub struct SolveReport {
     pub seconds_solve: f64,
 }
 
+impl SolveReport {
+    /// Counts the iterations and seconds of another solve for the same answer.
+    pub fn add_effort(&mut self, other: &Self) {
+        self.iterations += other.iterations;
+        self.seconds_symbolic += other.seconds_symbolic;
+        self.seconds_numeric += other.seconds_numeric;
+        self.seconds_solve += other.seconds_solve;
+    }
+}
+
 /// Why a solve gave no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SolveError {

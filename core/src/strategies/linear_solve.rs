@@ -157,24 +157,26 @@ fn solve_here(
         }
         last = size;
         correction.fill(0.0);
-        solver.solve(system, &residual, &mut correction).map_err(explain)?;
+        let again = solver.solve(system, &residual, &mut correction).map_err(explain)?;
+        report.add_effort(&again);
         vector::add_scaled(1.0, &correction, &mut increment);
     }
     if report.relative_residual <= 1e-6 {
         return Ok((increment, report));
     }
-    let merged: Csr = system.bulk.plus(loads);
+    let bulk: Csr = system.bulk.plus(loads);
     let [bulk_graph, bulk_values] = merged_stamps;
     let whole = System {
-        bulk: &merged,
+        bulk: &bulk,
         bulk_symmetry: zelus_linear_algebra::Symmetry::General,
         bulk_graph,
         bulk_values,
         ..*system
     };
     increment.fill(0.0);
-    let report = solver.solve(&whole, rhs, &mut increment).map_err(explain)?;
-    Ok((increment, report))
+    let mut merged = solver.solve(&whole, rhs, &mut increment).map_err(explain)?;
+    merged.add_effort(&report);
+    Ok((increment, merged))
 }
 
 fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_>) -> Failed {
