@@ -70,6 +70,12 @@ impl MultigridSolver {
         Self { settings, constrained: None, hierarchy: None, stand_in, failures: 0 }
     }
 
+    /// Whether multigrid is to solve a system, by its size and what came of it before.
+    fn serves(&self, system: &System<'_>) -> bool {
+        let is_dense = system.bulk.entries() > MANY_ENTRIES * system.equations();
+        self.failures < FAILURES && system.equations() >= self.settings.least[usize::from(!is_dense)]
+    }
+
     /// Brings the constraints and the hierarchy up to date, or names the multiplier that nothing determines.
     fn prepare(&mut self, system: &System<'_>) -> Result<(), usize> {
         let stamps = Stamps::of(system);
@@ -175,8 +181,8 @@ impl LinearSolver for MultigridSolver {
         }
     }
 
-    fn takes_loads(&self) -> bool {
-        true
+    fn takes_loads(&self, system: &System<'_>) -> bool {
+        self.serves(system)
     }
 
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
@@ -185,13 +191,11 @@ impl LinearSolver for MultigridSolver {
         if x.iter().any(|x| !x.is_finite()) {
             x.fill(0.0);
         }
-        let is_dense = system.bulk.entries() > MANY_ENTRIES * system.equations();
-        if system.equations() < self.settings.least[usize::from(!is_dense)] {
-            return self.stand_in.solve(system, rhs, x);
-        }
-        if self.failures >= FAILURES {
+        if !self.serves(system) {
             let mut report = self.stand_in.solve(system, rhs, x)?;
-            report.fallback.get_or_insert_with(|| "multigrid failed before".to_owned());
+            if self.failures >= FAILURES {
+                report.fallback.get_or_insert_with(|| "multigrid failed before".to_owned());
+            }
             return Ok(report);
         }
         match self.attempt(system, rhs, x) {

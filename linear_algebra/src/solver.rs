@@ -84,8 +84,8 @@ pub trait LinearSolver: Send {
     /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
 
-    /// Whether a small part without symmetry may join the coupling at no cost.
-    fn takes_loads(&self) -> bool {
+    /// Whether a small part without symmetry may join the coupling of this system at no cost.
+    fn takes_loads(&self, _: &System<'_>) -> bool {
         false
     }
 

@@ -119,7 +119,8 @@ mod tests {
 
     #[test]
     fn unknown_laws_are_refused_with_a_suggestion() {
-        let error = find_friction_law("Coulom").err().expect("there is no such law").to_string();
+        let Err(error) = find_friction_law("Coulom") else { panic!("there is no such law") };
+        let error = error.to_string();
         assert!(error.contains("Coulom") && error.contains("\"Coulomb\""), "{error}");
         assert!(find_friction_law("Tresca").is_ok());
     }

@@ -124,7 +124,7 @@ fn solve_here(
     let explain = |error: SolveError| explain(&error, Some(system), meaning);
     let mut increment = vec![0.0; rhs.len()];
     if let Some(loads) = loads
-        && solver.takes_loads()
+        && solver.takes_loads(system)
     {
         let coupling = system.coupling.map_or_else(|| loads.clone(), |coupling| coupling.plus(loads));
         let [graph, values] = merged_stamps;

@@ -291,7 +291,7 @@ fn sign_of_the_contact_force() {
     };
     let mut rhs = [0.0; 24];
     // Each slave node: D = 1/4, g = −0.01, force = 50 · 0.01 · 1/4 against the normal; of weighted gaps a quarter of it.
-    let mut check = |force: f64, rhs: &[f64]| {
+    let check = |force: f64, rhs: &[f64]| {
         for n in 0..4 {
             assert!((rhs[3 * n + 2] - force).abs() < 1e-14, "the master, below, is pushed up");
             assert!((rhs[12 + 3 * n + 2] + force).abs() < 1e-14, "the slave is pushed down");

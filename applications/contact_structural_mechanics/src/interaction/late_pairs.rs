@@ -120,7 +120,7 @@ pub(super) fn late_pairs(
     if part.share.is_some() {
         world().any_of(&mut missed);
     }
-    let missed = pairs.into_iter().zip(missed).filter_map(|(pair, missed)| missed.then(|| pair.clone()));
+    let missed = pairs.into_iter().zip(missed).filter(|(_, missed)| *missed).map(|(pair, _)| pair.clone());
     Ok(Late { missed: missed.collect(), nodes: nodes.into_iter().collect() })
 }
 

@@ -17,7 +17,7 @@ pub fn unit_of_length(points: &[[f64; 3]]) -> f64 {
         let all = world().gather_numbers(&own);
         all.iter().fold((own[0], own[1]), |(least, most), of_rank| (least.min(of_rank[0]), most.max(of_rank[1])))
     };
-    let sides = [0, 1, 2].map(|c| bounds(c)).map(|(least, most)| most - least);
+    let sides = [0, 1, 2].map(bounds).map(|(least, most)| most - least);
     let extent = zelus_core::vector3::norm(sides);
     if extent.is_finite() && extent > 0.0 { 1000.0_f64.powi((extent.log10() / 3.0).round() as i32) } else { 1.0 }
 }
