@@ -15,9 +15,6 @@ const TOLERANCE: f64 = 1e-9;
 /// much larger ones in the stiff body, whose round-off is 1e-8 of the pressure.
 const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-7;
 
-/// The same where one body is a hundred times stiffer: the residual ends in the round-off of its forces, at 1e-9.
-const TOLERANCE_OF_STIFF_BODIES: f64 = 1e-8;
-
 /// Values below are zero but for round-off; the cases are of size one.
 const ZERO: f64 = 1e-18;
 
@@ -147,7 +144,6 @@ fn difference(folder: &Path) -> Result<(), String> {
     let name = folder.to_string_lossy();
     let tolerance = match () {
         () if name.contains("spheres_light") => TOLERANCE_OF_LIGHT_LOADS,
-        () if name.contains("hertz_spheres") => TOLERANCE_OF_STIFF_BODIES,
         () => TOLERANCE,
     };
     let (one, other) = (histories(one.path()), histories(other.path()));
