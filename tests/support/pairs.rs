@@ -223,8 +223,7 @@ impl Setting {
         part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));
         block.keep_operators(&part.view(), &|_| true);
         part.nodes.current = here;
-        for (row, value) in self.multiplier_rows(block.as_ref()).into_iter().zip(self.multiplier_values(block.as_ref()))
-        {
+        for (row, value) in self.multiplier_rows(block.as_ref()).zip(self.multiplier_values(block.as_ref())) {
             set(&mut part, block.as_ref(), row, value);
         }
         Some((part, block))

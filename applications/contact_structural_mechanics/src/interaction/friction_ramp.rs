@@ -55,7 +55,7 @@ impl FrictionRamp {
     pub(super) fn begin_step(&mut self, part: &mut ModelPart, law: &FrictionLaw) {
         self.solved = false;
         let column = part.nodes.values.values_mut(law.variable, 0);
-        self.waiting = (self.failed > 0 && self.failed % 2 == 0).then(|| (0, column.to_vec()));
+        self.waiting = (self.failed > 0 && self.failed.is_multiple_of(2)).then(|| (0, column.to_vec()));
         if self.waiting.is_some() {
             column.fill(0.0);
         }

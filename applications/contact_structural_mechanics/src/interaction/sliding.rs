@@ -29,8 +29,8 @@ const LEAST_FREE: f64 = 1e-3;
 /// weighted slip. For sliding nodes in space, whose direction is more than a sign, and without multipliers it is that of the
 /// trial traction. A node that has none of them above round-off keeps the direction it had: at step start that is a far
 /// better guess than any fixed tangent; so does one that always slides and turned back [`MOST_REVERSALS`] times in the step
-/// (`reversals` counts them): it stands still, and friction of either sign moves it the other way. In the plane sliding nodes keep theirs, where `keeps_direction`. `pair_counts` holds
-/// the number of overlapping pairs of every node.
+/// (`reversals` counts them): it stands still, and friction of either sign moves it the other way. In the plane sliding nodes
+/// keep theirs, where `keeps_direction`. `pair_counts` holds the number of overlapping pairs of every node.
 pub(super) fn write_tangents(
     part: &mut ModelPart,
     slaves: &[u32],

@@ -236,6 +236,7 @@ impl Contact {
                 Resolution::default(),
                 &counts,
                 false,
+                &mut std::collections::BTreeMap::new(),
             );
         }
     }

@@ -8,7 +8,7 @@
 //!    true slave surface;
 //! 4. `quadrature`, [`shape`]: Gauss points on each cell; each goes to the master along the interpolated nodal normal
 //!    n = Σ N¹_j n_j, x² = x¹ + n ((x²₀ − x¹)·n_m)/(n·n_m), and gets its local coordinates there;
-//! 5. [`operators`]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
+//! 5. [mod@operators]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
 //! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration;
 //! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments;
 //! 8. [`turn`]: how a facet has turned since, with what it carries along.

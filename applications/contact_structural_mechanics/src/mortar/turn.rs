@@ -22,8 +22,8 @@ impl<T: Real> Turn<T> {
         for (x, x_before) in now.iter().zip(before) {
             let arm = turn.tilt(constant(sub(*x_before, centre_before)));
             let arm_now = sub(*x, centre);
-            along = along + dot(arm, arm_now) - dot(turn.normal, arm) * dot(turn.normal, arm_now);
-            across = across + dot(turn.normal, cross(arm, arm_now));
+            along += dot(arm, arm_now) - dot(turn.normal, arm) * dot(turn.normal, arm_now);
+            across += dot(turn.normal, cross(arm, arm_now));
         }
         [turn.cosine, turn.sine, _] = normalised([along, across, T::zero()]);
         turn
@@ -49,7 +49,7 @@ impl<T: Real> Turn<T> {
 
 fn centre<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
     let mut sum = [T::zero(); 3];
-    x.iter().for_each(|x| (0..3).for_each(|c| sum[c] = sum[c] + x[c] * (1.0 / N as f64)));
+    x.iter().for_each(|x| (0..3).for_each(|c| sum[c] += x[c] * (1.0 / N as f64)));
     sum
 }
 
