@@ -18,6 +18,7 @@ const PATCH: Stack = Stack {
     tilt: 20.0,
     gap: 0.0,
     turn: 0.0,
+    axis: [0.0, -1.0, 0.0],
     size: 1.0,
     guided: true,
     family: ALM,
@@ -115,6 +116,26 @@ fn blocks_with_a_gap_in_space() {
         }
     }
     assert!(sweep(&stacks) >= 3);
+}
+
+/// Gaps that a load closes are as wide in any position: what ends with a result upright does so turned.
+#[test]
+fn gaps_turned_about_odd_axes() {
+    let (mut upright, mut turned) = (Vec::new(), Vec::new());
+    for family in [SMOOTH, ALM, PENALTY] {
+        for (divisions, gap, tilt) in
+            [([2, 3], 1e-3, 0.0), ([3, 2], 1e-3, 20.0), ([3, 4], 0.0, -20.0), ([4, 3], 0.02, 0.0)]
+        {
+            let stack = Stack { space: 3, divisions, family, gap, tilt, guided: false, ..PATCH };
+            upright.push(stack);
+            for (axis, turn) in [([1.0, 1.0, 0.3], 40.0), ([0.2, -1.0, 0.7], 125.0), ([1.0, 0.0, 0.0], 90.0)] {
+                turned.push(Stack { axis, turn, ..stack });
+            }
+        }
+    }
+    let (of_upright, of_turned) = (sweep(&upright), sweep(&turned));
+    assert_eq!(3 * of_upright, of_turned);
+    assert!(of_upright > 0);
 }
 
 /// Without a gap, friction or curvature a shorter step is the same problem: cutting ends with the second attempt.

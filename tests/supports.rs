@@ -30,16 +30,16 @@ fn run(deck: &Deck, folder: &Path, change: impl FnOnce(&mut Value)) -> Result<(S
     Ok((said(&output), (1..=count).map(|n| [zero(&x, n), zero(&y, n), zero(&z, n)]).collect()))
 }
 
-/// Two blocks in a box of size one on each other, cut at `middle` of the first coordinate, with the parts of their sides.
-fn column(space: usize, divisions: [usize; 2], upper_is_slave: bool, middle: impl Fn(f64) -> f64) -> Mesh {
-    let (last, mut mesh) = (space - 1, Mesh::new(space));
+/// Two blocks in a box of size one on each other, cut at the height `middle` of the coordinates across, with the parts of their sides.
+fn column(mut mesh: Mesh, divisions: [usize; 2], upper_is_slave: bool, middle: impl Fn(Vec3) -> f64) -> Mesh {
+    let (space, last) = (mesh.space, mesh.space - 1);
     let grid = |n: usize| std::array::from_fn(|c| if c == last { (n / 2).max(2) } else { n });
     let lower = mesh.block("Lower", grid(divisions[0]), |mut x| {
-        x[last] *= middle(x[0]);
+        x[last] *= middle(x);
         x
     });
     let upper = mesh.block("Upper", grid(divisions[1]), |mut x| {
-        x[last] = middle(x[0]) + x[last] * (1.0 - middle(x[0]));
+        x[last] = middle(x) + x[last] * (1.0 - middle(x));
         x
     });
     meet(&mut mesh, [&lower, &upper], upper_is_slave, space);
@@ -98,7 +98,7 @@ fn tilted_patches_with_friction_end_on_supports() {
     {
         for divisions in MESHES {
             let rise = f64::to_radians(tilt).tan();
-            let mesh = column(2, divisions, upper_is_slave, |x| 0.5 + rise * (x - 0.5));
+            let mesh = column(Mesh::new(2), divisions, upper_is_slave, |x| 0.5 + rise * (x[0] - 0.5));
             let supports = [vec![("Bottom".to_owned(), holds(&[1]))], planes(2)].concat();
             let deck = Deck { mesh, joint: Joint::Frictional(friction), supports, pressure: load, young, steps: 1 };
             let folder = tempfile::tempdir().expect("a folder");
@@ -128,6 +128,55 @@ fn tilted_patches_with_friction_end_on_supports() {
     assert!(problems.is_empty(), "{} fail\n{}", problems.len(), problems.join("\n"));
 }
 
+/// The same in space, tilted along one or both coordinates: without slip the column is as one, at any friction it is held by
+/// its planes of symmetry and its bottom carries the load.
+#[test]
+fn tilted_patches_in_space_end_on_supports() {
+    let (load, young, mut problems) = (1e4, 1e9, Vec::new());
+    let strain = load / young;
+    let joints = [Joint::Frictionless, Joint::Frictional(0.3), Joint::Frictional(1.0)];
+    for (simplices, upper_is_slave, joint) in [false, true]
+        .into_iter()
+        .flat_map(|of| [true, false].into_iter().flat_map(move |s| joints.map(|joint| (of, s, joint))))
+    {
+        for (divisions, rises) in [
+            ([2, 3], [0.36, 0.0]),
+            ([3, 2], [-0.36, 0.0]),
+            ([3, 4], [0.25, -0.25]),
+            ([4, 3], [-0.3, -0.2]),
+            ([4, 4], [0.25, 0.3]),
+        ] {
+            let mesh = if simplices { Mesh::of_simplices(3) } else { Mesh::new(3) };
+            let middle = |x: Vec3| 0.5 + (0..2).map(|c| rises[c] * (x[c] - 0.5)).sum::<f64>();
+            let mesh = column(mesh, divisions, upper_is_slave, middle);
+            let supports = [vec![("Bottom".to_owned(), holds(&[2]))], planes(3)].concat();
+            let deck = Deck { mesh, joint, supports, pressure: load, young, steps: 1 };
+            let folder = tempfile::tempdir().expect("a folder");
+            let place = format!(
+                "rises {rises:?}, {joint:?}, tetrahedra {simplices}, upper slave {upper_is_slave}, {divisions:?}"
+            );
+            match run(&deck, folder.path(), |_| {}) {
+                Err(said) => problems.push(format!("{place}: {said}")),
+                Ok((said, _)) if said.contains("warning[") => problems.push(format!("{place}: {said}")),
+                Ok((_, found)) if joint == Joint::Frictional(1.0) => {
+                    let field = |[x, y, z]: Vec3| [POISSON * strain * x, POISSON * strain * y, -strain * z];
+                    let error = difference(&found, &deck.mesh.nodes, field, strain);
+                    if error.is_nan() || error > 10.0 * strain {
+                        problems.push(format!("{place}: off by {error:e}"));
+                    }
+                }
+                Ok((_, found)) => {
+                    let largest = found.iter().flatten().fold(0.0_f64, |most, u| most.max(u.abs()));
+                    if largest.is_nan() || largest > 2.5 * strain || largest < strain {
+                        problems.push(format!("{place}: moves by {largest:e}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{} fail\n{}", problems.len(), problems.join("\n"));
+}
+
 /// An affine field on a column, prescribed all around its faces, or by its planes of symmetry and its top.
 fn patch(
     space: usize,
@@ -138,7 +187,7 @@ fn patch(
     all: bool,
 ) -> Result<f64, String> {
     let strain = 1e-5;
-    let mesh = column(space, divisions, upper_is_slave, |x| 0.5 + rise * (x - 0.5));
+    let mesh = column(Mesh::new(space), divisions, upper_is_slave, |x| 0.5 + rise * (x[0] - 0.5));
     let last = space - 1;
     let across = if space == 2 { POISSON / (1.0 - POISSON) } else { POISSON };
     let gradient: [Vec3; 3] = if all {
@@ -351,7 +400,7 @@ fn a_quarter_with_friction_is_the_same_in_metres_and_millimetres() {
 fn a_slave_node_at_the_origin_is_as_any_other() {
     let (load, young) = (1e4, 1e9);
     for shift in [[0.0, -0.5, 0.0], [-1.0 / 3.0, -0.5, 0.0], [1e-9, -0.5, 0.0]] {
-        let mut mesh = column(2, [3, 2], false, |_| 0.5);
+        let mut mesh = column(Mesh::new(2), [3, 2], false, |_| 0.5);
         mesh.nodes.iter_mut().for_each(|x| (0..3).for_each(|c| x[c] += shift[c]));
         let supports = [vec![("Bottom".to_owned(), holds(&[1]))], planes(2)].concat();
         let deck = Deck { mesh, joint: Joint::Frictional(0.3), supports, pressure: load, young, steps: 1 };

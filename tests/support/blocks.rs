@@ -8,7 +8,7 @@ use std::path::Path;
 /// A point or a displacement.
 pub type Vec3 = [f64; 3];
 
-/// A mesh of quadrilaterals or hexahedra with its parts.
+/// A mesh of quadrilaterals or hexahedra, or of what they are cut into, with its parts.
 #[derive(Default)]
 pub struct Mesh {
     /// Places of the nodes; node n is number n + 1.
@@ -16,7 +16,9 @@ pub struct Mesh {
     elements: Vec<Vec<usize>>,
     facets: Vec<Vec<usize>>,
     parts: BTreeMap<String, [Vec<usize>; 3]>,
-    space: usize,
+    /// Dimensions, 2 or 3.
+    pub space: usize,
+    simplices: bool,
 }
 
 /// Nodes and facets of the sides of a block, by axis and end.
@@ -26,6 +28,24 @@ impl Mesh {
     /// No block yet in this number of dimensions.
     pub fn new(space: usize) -> Self {
         Self { space, ..Self::default() }
+    }
+
+    /// The same, its cells cut into triangles or tetrahedra, its facets in space into triangles.
+    pub fn of_simplices(space: usize) -> Self {
+        Self { simplices: true, ..Self::new(space) }
+    }
+
+    /// A cell as it is, or cut along the diagonals that rise in all coordinates: cells side by side agree on them.
+    fn cut(&self, cell: Vec<usize>) -> Vec<Vec<usize>> {
+        let parts: &[&[usize]] = match cell.len() {
+            4 => &[&[0, 1, 2], &[0, 2, 3]],
+            8 => &[&[0, 1, 2, 6], &[0, 2, 3, 6], &[0, 3, 7, 6], &[0, 7, 4, 6], &[0, 4, 5, 6], &[0, 5, 1, 6]],
+            _ => return vec![cell],
+        };
+        if !self.simplices {
+            return vec![cell];
+        }
+        parts.iter().map(|part| part.iter().map(|&n| cell[n]).collect()).collect()
     }
 
     /// A grid over the unit cube, mapped; the facets of its sides become conditions.
@@ -57,7 +77,8 @@ impl Mesh {
         let axes: Vec<usize> = (0..space).collect();
         let cells: [usize; 3] = std::array::from_fn(|c| if c < space { divisions[c] } else { 1 });
         let first = self.elements.len() + 1;
-        self.elements.extend(grid(cells).map(|at| corners(at, &axes)));
+        let solids: Vec<Vec<usize>> = grid(cells).flat_map(|at| self.cut(corners(at, &axes))).collect();
+        self.elements.extend(solids);
         let mut sides = Sides::new();
         let mut own = Vec::new();
         for axis in 0..space {
@@ -66,13 +87,15 @@ impl Mesh {
                 let level = end * divisions[axis];
                 let nodes = grid(counts).filter(|at| at[axis] == level).map(id).collect();
                 let flat: [usize; 3] = std::array::from_fn(|c| if c == axis { 1 } else { cells[c] });
-                let facets: Vec<usize> = grid(flat)
-                    .map(|mut at| {
+                let side: Vec<Vec<usize>> = grid(flat)
+                    .flat_map(|mut at| {
                         at[axis] = level;
-                        self.facets.push(corners(at, &others));
-                        self.facets.len()
+                        self.cut(corners(at, &others))
                     })
                     .collect();
+                let first = self.facets.len() + 1;
+                self.facets.extend(side);
+                let facets: Vec<usize> = (first..=self.facets.len()).collect();
                 own.extend(&facets);
                 sides.insert((axis, end), (nodes, facets));
             }
@@ -96,13 +119,14 @@ impl Mesh {
             writeln!(out, "{} {x:e} {y:e} {z:e}", at + 1).expect("a string");
         }
         let numbers = |list: &[usize]| list.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let shape = if self.space == 2 { "2D4N" } else { "3D8N" };
-        writeln!(out, "End Nodes\nBegin Elements SmallDisplacementElement{shape}").expect("a string");
+        let shape = |of: &[Vec<usize>]| format!("{}D{}N", self.space, of[0].len());
+        let solid = shape(&self.elements);
+        writeln!(out, "End Nodes\nBegin Elements SmallDisplacementElement{solid}").expect("a string");
         for (at, nodes) in self.elements.iter().enumerate() {
             writeln!(out, "{} 0 {}", at + 1, numbers(nodes)).expect("a string");
         }
         out += "End Elements\n";
-        let (kind, shape) = if self.space == 2 { ("Line", "2D2N") } else { ("Surface", "3D4N") };
+        let (kind, shape) = (if self.space == 2 { "Line" } else { "Surface" }, shape(&self.facets));
         for (name, loaded) in [("", false), ("Load", true)] {
             writeln!(out, "Begin Conditions {kind}{name}Condition{shape}").expect("a string");
             for (at, nodes) in self.facets.iter().enumerate().filter(|(at, _)| load.contains(&(at + 1)) == loaded) {

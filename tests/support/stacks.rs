@@ -19,6 +19,8 @@ pub struct Stack {
     pub gap: f64,
     /// Turn of everything (degrees).
     pub turn: f64,
+    /// In space, the axis of the turn (along, across, up), of any length.
+    pub axis: [f64; 3],
     /// Factor of all lengths.
     pub size: f64,
     /// Whether the sides x = 0 of both blocks, interface included, are held across; in space the sides y = 0 too.
@@ -95,11 +97,20 @@ impl Stack {
         self.turned([0.0, 0.0, -1.0])
     }
 
-    /// A point (along, across, up), turned and in the axes of the deck.
-    fn turned(&self, [x, w, h]: [f64; 3]) -> [f64; 3] {
+    /// A point (along, across, up), turned and in the axes of the deck. In the plane the turn is anticlockwise.
+    fn turned(&self, x: [f64; 3]) -> [f64; 3] {
         let (sin, cos) = self.turn.to_radians().sin_cos();
-        let (x, h) = (cos * x - sin * h, sin * x + cos * h);
-        if self.space == 2 { [x, h, 0.0] } else { [x, w, h] }
+        if self.space == 2 {
+            return [cos * x[0] - sin * x[2], sin * x[0] + cos * x[2], 0.0];
+        }
+        // Rodrigues' formula.
+        let length = self.axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let a = self.axis.map(|c| c / length);
+        let along: f64 = (0..3).map(|c| a[c] * x[c]).sum();
+        std::array::from_fn(|c| {
+            let (d, e) = ((c + 1) % 3, (c + 2) % 3);
+            cos * x[c] + sin * (a[d] * x[e] - a[e] * x[d]) + (1.0 - cos) * along * a[c]
+        })
     }
 
     /// Writes mesh, materials and deck into a folder; `change` has the last word on the deck.
