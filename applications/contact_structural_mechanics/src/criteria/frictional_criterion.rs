@@ -106,29 +106,39 @@ fn split(measures: &Measures<'_>, vector: &[f64], signed: bool) -> Sizes {
     sizes
 }
 
-/// Size of the tractions that the equations of sliding nodes state: what is left of them is little or much beside that, also
-/// where it was nothing but round-off from the start of the step.
+/// Size of the tractions between the bodies, as the equations of sliding nodes state them: sliding parts of friction of all
+/// nodes in contact, normal parts of sliding nodes without friction.
 fn tractions(measures: &Measures<'_>) -> Sizes {
     let weights = measures.nodes.values.values(&MULTIPLIER_WEIGHT, 0);
-    let slides = |node: usize| NodeState::of_flags(&measures.nodes.flags, node) == NodeState::Slip;
     let is_smooth = smooth_nodes(measures.nodes);
     let mut sizes = Sizes::default();
     for &unknown in measures.equations.unknowns() {
         let dof = &measures.dofs.dofs()[unknown as usize];
         let node = dof.node as usize;
-        if dof.multiplier && slides(node) {
+        let part = match NodeState::of_flags(&measures.nodes.flags, node) {
+            NodeState::Slip if is_smooth(node) => 0,
+            NodeState::Slip | NodeState::Stick if !is_smooth(node) => 2,
+            _ => continue,
+        };
+        if dof.multiplier {
             let size = weights.get(node).map_or(0.0, |weight| weight * measures.values[unknown as usize]);
-            sizes.squares[if is_smooth(node) { 0 } else { 2 }] += size * size;
+            sizes.squares[part] += size * size;
         }
     }
     sizes
 }
 
-/// The residuals that a relative measure refers to. A node that has come to slide obeys another equation than at the start
-/// of the step, so what it left when states last changed counts too.
-fn references(measures: &Measures<'_>) -> Vec<Sizes> {
+/// The sizes that a relative measure of residuals refers to. A node that has come to slide obeys another equation than at the
+/// start of the step, so what it left when states last changed counts too. Where nodes slide, friction is what bodies bear now:
+/// a drag far beyond it begins with residuals that say nothing of that.
+fn references(measures: &Measures<'_>) -> [f64; 3] {
     let start = measures.references.iter().map(Vec::as_slice);
-    start.chain(measures.switched).map(|r| split(measures, r, true)).chain([tractions(measures)]).collect()
+    let left: Vec<Sizes> = start.chain(measures.switched).map(|r| split(measures, r, true)).collect();
+    let now = tractions(measures);
+    std::array::from_fn(|part| match now.norm(part) {
+        of_slip if part == 2 && of_slip > 0.0 => of_slip,
+        of_now => left.iter().map(|sizes| sizes.norm(part)).fold(of_now, f64::max),
+    })
 }
 
 impl ConvergenceCriterion for FrictionalCriterion {
@@ -144,15 +154,15 @@ impl ConvergenceCriterion for FrictionalCriterion {
                 Some(split(measures, measures.round_off, false)),
             ),
             Form::Increment => {
-                (split(measures, measures.increment, true), vec![split(measures, measures.values, true)], None)
+                let values = split(measures, measures.values, true);
+                (split(measures, measures.increment, true), std::array::from_fn(|part| values.norm(part)), None)
             }
         };
         let normal = sizes.norm(0) / (sizes.counts[0].max(1) as f64).sqrt();
         for part in 0..3 {
             let size = sizes.norm(part);
             let absolute = size / (sizes.counts[part].max(1) as f64).sqrt();
-            let reference = references.iter().map(|r: &Sizes| r.norm(part)).fold(0.0, f64::max);
-            let reference = if reference > 0.0 { reference } else { size };
+            let reference = if references[part] > 0.0 { references[part] } else { size };
             let ratio = if size > 0.0 { size / reference } else { 0.0 };
             let tolerance = self.tolerances[part];
             let converged = round_off.map_or(is_last_digit(size, reference), |r| is_round_off(size, r.norm(part)))
