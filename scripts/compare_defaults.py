@@ -299,7 +299,8 @@ def compare(deck, most_nodes):
         row["nearer"] = f"not refined: {error}"
         return row
     if fine is None or fine_like is None:
-        row["nearer"] = "the refined deck does not end: " + ("ours" if fine is None else "like Kratos")
+        stopped = [name for name, run in (("ours", fine), ("like Kratos", fine_like)) if run is None]
+        row["nearer"] = "the refined deck does not end: " + " and ".join(stopped)
         return row
     # Tractions at single nodes do not converge at edges; displacements do.
     far = [difference(run, fine, "DISPLACEMENT") for run in (ours, theirs)]
