@@ -243,3 +243,41 @@ fn a_thrown_block_keeps_its_energy_and_its_way() {
         assert!(most < 1.002 && least > 0.995, "energy from {least} to {most}");
     }
 }
+
+/// With friction a block that lands on an edge rolls on it, and friction takes energy: it pushes no node along its motion.
+#[test]
+fn friction_makes_no_energy_where_a_thrown_block_rolls() {
+    let material = [1.0, 0.2, 1.0];
+    for (dimension, count, angle) in [(2, 4, 0.0), (2, 4, 0.2), (2, 4, 0.6), (3, 2, 0.2)] {
+        for friction in [0.1, 0.3, 1.0] {
+            let mut boxes = Boxes::new(dimension);
+            let faces = ["x-", "x+", "y-", "y+", "z-", "z+"].map(|face| (face, "Skin"));
+            let velocity = |_| [0.009, -0.012, 0.0];
+            boxes.add("Block", [[0.0; 3], [1.0; 3]], [count; 3], angle, &faces[..2 * dimension], velocity);
+            let lowest = boxes.nodes.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min) - 0.03;
+            let ground = [[-2.0, lowest - 0.5, -1.0], [4.0, lowest, 2.0]];
+            boxes.add("Ground", ground, [6, 1, 3], 0.0, &[("y+", "Top")], |_| [0.0; 3]);
+            let contact = json!({"contact_type": "Frictional", "friction_coefficients": {"0": friction}});
+            let settings = json!({"contact_settings": {"mortar_type": "ALMContactFrictional"}});
+            let results = solve(&boxes, |folder| {
+                let process = ("alm_contact_process", &contact);
+                let fixed = [("Ground", [true; 3])];
+                boxes.write(folder, material, &[("Skin", "Top")], &fixed, [0.6, 60.0], &settings, process);
+            });
+            let state = |step| boxes.state("Block", material, &results, step);
+            let begin = state(None);
+            let energies = (0..results.len()).map(|step| state(Some(step)).energy() / begin.energy());
+            let (mut least, mut gain) = (1.0_f64, 0.0_f64);
+            for energy in energies {
+                least = least.min(energy);
+                gain = gain.max(energy - least);
+            }
+            let end = state(Some(results.len() - 1));
+            let along = end.momentum[0] / begin.momentum[0];
+            println!("{dimension}D, turned by {angle}, {friction}: gain {gain:.4}, least {least:.4}, along {along:.3}");
+            assert!(end.momentum[1] > 0.0, "the block has not rebounded");
+            assert!(along < 0.99, "friction has not acted");
+            assert!(gain < 0.02, "{dimension}D, {angle}, {friction}: {gain} of the energy is gained");
+        }
+    }
+}
