@@ -20,6 +20,7 @@ const BLOCKS: Stack = Stack {
     tilt: 15.0,
     gap: 0.0,
     turn: 0.0,
+    axis: [0.0, -1.0, 0.0],
     size: 1.0,
     guided: true,
     family: ("", ""),
