@@ -76,6 +76,11 @@ def main():
         row = [found[k, eps] for eps in PENALTIES]
         if any(after < 0.98 * before for before, after in zip(row, row[1:])):
             sys.exit(f"k = {k:g}: κ does not grow with ε: {row}")
+    # κ ≥ k σ/μ, which it comes to as k grows (README.md).
+    bound = 0.98 * found[SCALES[-1], PENALTIES[0]] / SCALES[-1]
+    for (k, eps), kappa in found.items():
+        if kappa < bound * k:
+            sys.exit(f"k = {k:g}, ε = {eps:g}: κ = {kappa:g} is below k σ/μ = {bound * k:g}")
     # The valley: between 10 and 100, where κ is that of the bodies; beyond it κ rises with k and with 1/k.
     for k, eps in ((k, eps) for k in (10.0, 100.0) for eps in PENALTIES if eps <= 100.0):
         if abs(found[k, eps] / 1.74e4 - 1.0) > 0.03:
