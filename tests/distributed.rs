@@ -176,6 +176,39 @@ fn penalty_contact() {
     equals_serial("contact_3d/hexahedra_nonmatching", &[&common[..], &frictional].concat(), EQUAL, true);
 }
 
+/// Points decide on contact by the traction of the slave's own element, which every rank has for each slave facet.
+#[test]
+fn contact_by_tractions_of_elements() {
+    equals_serial("contact_2d/nitsche", &[], EXACT, true);
+    equals_serial("contact_3d/nitsche", &[], EXACT, true);
+    let family = [("alm_contact_process", "nitsche_contact_process"), ("ALMContact", "NitscheContact")];
+    let parted = [&family[..], &[("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", "WEIGHTED_GAP")]].concat();
+    equals_serial("contact_2d/opening", &parted, EQUAL, true);
+    equals_serial("contact_3d/opening", &parted, EQUAL, true);
+    let rubbed = [&family[..], &[("\"VECTOR_LAGRANGE_MULTIPLIER\", \"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")]].concat();
+    equals_serial("contact_2d/friction_slide", &rubbed, EQUAL, true);
+    equals_serial("contact_3d/friction_slide", &rubbed, EQUAL, true);
+    equals_serial("contact_3d/friction_stick", &rubbed, EQUAL, true);
+}
+
+/// A node's traction is the penalty times its gap over all its pairs, which several ranks evaluate.
+#[test]
+fn friction_by_penalties_of_nodes() {
+    equals_serial("contact_2d/friction_penalty_slide", &[], EQUAL, true);
+    equals_serial("contact_3d/friction_penalty_slide", &[], EQUAL, true);
+    equals_serial("contact_3d/friction_penalty_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")], EQUAL, true);
+}
+
+/// The block goes beyond the end of its ground, which then covers a twelfth of the last but one facet.
+#[test]
+fn nodes_beside_the_master() {
+    let beyond = ("2.0*(t-1.0)", "2.73*(t-1.0)");
+    equals_serial("contact_2d/slid_past", &[beyond], EQUAL, true);
+    let of_nodes = ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", "WEIGHTED_GAP");
+    let by_penalty = [("alm_contact_process", "penalty_contact_process"), ("ALMContact", "PenaltyContact"), of_nodes];
+    equals_serial("contact_2d/slid_past", &[&by_penalty[..], &[beyond]].concat(), EQUAL, true);
+}
+
 #[test]
 fn tied_meshes() {
     equals_serial("mesh_tying/triangles_on_quadrilaterals", &[], EXACT, true);
@@ -269,6 +302,48 @@ fn contact_by_constraints() {
     equals_serial("mpc/pressed_and_opened_hexahedra", &[], EXACT, true);
     equals_serial("mpc/tying_matching", &[], EXACT, true);
     equals_serial("mpc/tying_matching_hexahedra", &[], EXACT, true);
+}
+
+/// Constraints hand on forces to nodes that other ranks own.
+#[test]
+fn reactions_of_supports_that_constraints_reach() {
+    let all = ("[\"DISPLACEMENT\"]", "[\"DISPLACEMENT\", \"REACTION\"]");
+    equals_serial("mpc/pressed_and_opened", &[all], EQUAL, true);
+    equals_serial("mpc/tying_matching_hexahedra", &[all], EQUAL, true);
+    let part = "\"Parameters\": {\n          \"model_part_name\": \"Structure\",\n";
+    let rubbed = part.to_owned() + "\"contact_type\": \"Frictional\", \"friction_coefficients\": {\"0\": 0.3},";
+    let friction =
+        [all, ("{\"contact_type\": \"Frictionless\"}", "{\"contact_type\": \"Frictional\"}"), (part, &rubbed)];
+    equals_serial("mpc/pressed_and_opened_hexahedra", &friction, EQUAL, true);
+}
+
+/// Rank 0 gathers the equations with the motions of bodies that multigrid coarsens by.
+#[test]
+fn multigrid_of_rank_0() {
+    let asks = "\"Static\", \"linear_solver_settings\": {\"solver_type\": \"amgcl\", \"direct_below\": 0}";
+    let asks = [("\"Static\"", asks)];
+    for case in ["contact_3d/hexahedra_nonmatching", "contact_3d/friction_slide", "contact_3d/nitsche"] {
+        equals_serial(case, &asks, EQUAL, true);
+    }
+    // More equations than the coarsest level takes: without the motions of bodies the iteration is a longer one.
+    let folder = scratch_copy(&root().join("examples/hertz_sphere"));
+    change(folder.path(), DECK, asks[0].0, asks[0].1);
+    change(folder.path(), DECK, "\"end_time\": 1.0", "\"end_time\": 0.25");
+    let arguments = ["run", DECK, "--report", "report.json"];
+    let solves = |output: Output| -> Vec<f64> {
+        assert!(output.status.success(), "{}", said(&output));
+        let report = read_json(&folder.path().join("report.json")).expect("the report");
+        let iterations = report["steps"][0]["iterations"].as_array().expect("iterations");
+        assert!(iterations.iter().all(|iteration| iteration["engine"] == "multigrid"), "{}", said(&output));
+        iterations.iter().map(|iteration| iteration["linear_iterations"].as_f64().expect("a number")).collect()
+    };
+    let alone = solves(zelus(folder.path(), &arguments));
+    for ranks in [2, 3] {
+        let Some(output) = distributed(folder.path(), ranks, &arguments) else { return };
+        let shared = solves(output);
+        let alike = shared.len() == alone.len() && shared.iter().zip(&alone).all(|(a, b)| (a - b).abs() <= 2.0);
+        assert!(alike, "{ranks} ranks: {shared:?} iterations, not {alone:?}");
+    }
 }
 
 /// What a picture holds, whatever its pieces: columns of each node and of each cell, by id, and the corners of the cells.
