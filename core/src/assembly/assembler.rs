@@ -359,10 +359,12 @@ impl Assembler {
         let [mut coupled, pushed, gaps] =
             [&position, &multiplier, &farthest].map(|x| product(coupling, &coupling.values, x));
         // Gaps are integrated over facets: a node at the origin is known no better than what lies around it.
-        for (n, _) in part.dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.multiplier) {
+        let dofs = part.dofs.dofs();
+        for (n, _) in dofs.iter().enumerate().filter(|(_, dof)| dof.multiplier) {
             let (columns, values) = coupling.row(n);
-            let most = columns.iter().map(|&c| position[c as usize]).fold(0.0, f64::max);
-            coupled[n] = most * values.iter().map(|value| value.abs()).sum::<f64>();
+            let motions = || columns.iter().zip(values).filter(|(column, _)| !dofs[**column as usize].multiplier);
+            let most = motions().map(|(&column, _)| position[column as usize]).fold(0.0, f64::max);
+            coupled[n] = most * motions().map(|(_, value)| value.abs()).sum::<f64>();
         }
         let mut bodies = vec![0.0; values.len()];
         if let Some(values) = self.bulk_values() {
