@@ -26,7 +26,7 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
     let space = if slave == Shape::Line2 { 2 } else { 3 };
     let multipliers = family.multiplier.unknowns(space);
     let tied = match family.multiplier {
-        Multiplier::Scalar(_) | Multiplier::Outer(_) | Multiplier::None | Multiplier::Body => {
+        Multiplier::Scalar(_) | Multiplier::None | Multiplier::Body => {
             vec![DISPLACEMENT.component(0)]
         }
         Multiplier::Vector(_) => (0..space as u8).map(|c| DISPLACEMENT.component(c)).collect(),

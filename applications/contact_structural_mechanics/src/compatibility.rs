@@ -29,7 +29,7 @@ type Rule = (fn(&Family, Use) -> bool, Refusal);
 
 /// Everything that is not listed runs: every family on every pair of shapes, in the plane, in space and (in the plane)
 /// about an axis, with every `normal_variation`, law of friction, adaptation of the penalty, strategy and time integration.
-const RULES: [Rule; 5] = [
+const RULES: [Rule; 4] = [
     (
         |_, wanted| wanted.axisymmetric && wanted.dimension == 3,
         Refusal {
@@ -45,13 +45,6 @@ const RULES: [Rule; 5] = [
         },
     ),
     (
-        |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Outer(_)),
-        Refusal {
-            reason: "explicit steps do not iterate, so that no outer loop can follow",
-            remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
-        },
-    ),
-    (
         |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Body),
         Refusal {
             reason: "explicit steps do not iterate, and tractions of bodies answer to the step they are made in",
@@ -59,7 +52,7 @@ const RULES: [Rule; 5] = [
         },
     ),
     (
-        |family, wanted| wanted.arc_length && matches!(family.multiplier, Multiplier::Outer(_)),
+        |family, wanted| wanted.arc_length && family.updated,
         Refusal {
             reason: "an outer loop would go along the path with every update of the multipliers",
             remedy: "use alm_contact_process, or \"solving_strategy_settings\" of the type \"newton_raphson\"",

@@ -6,6 +6,7 @@ register_variable! {
     pub LAGRANGE_MULTIPLIER_CONTACT_PRESSURE: f64 = "Normal contact pressure divided by SCALE_FACTOR, negative in compression.";
     pub VECTOR_LAGRANGE_MULTIPLIER: [f64; 3] = "Contact traction on the slave divided by SCALE_FACTOR, along the outward normal of the slave in tension.";
     pub SCALAR_LAGRANGE_MULTIPLIER: f64 = "Multiplier of a tied scalar.";
+    pub KEPT_CONTACT_PRESSURE: f64 = "Normal contact pressure that Uzawa's iteration keeps between updates, negative in compression (force per area).";
     pub WEIGHTED_GAP: f64 = "Gap integrated with the dual shape function of a slave node, negative in penetration (length times area).";
     pub WEIGHTED_SLIP: [f64; 3] = "Slip of the step integrated with the dual shape function of a slave node (length times area).";
     pub WEIGHTED_SCALAR_RESIDUAL: f64 = "Residual of a tied scalar, integrated with dual shape functions.";

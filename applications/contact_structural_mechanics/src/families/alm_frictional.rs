@@ -70,6 +70,7 @@ pub(super) const fn family(friction: Friction) -> Family {
         penalty: false,
         weighted_gaps: true,
         compliant: false,
+        updated: false,
         by_node: None,
         block: shapes::block::<AlmFrictional>,
     }

@@ -89,6 +89,7 @@ const BY_PAIR: Family = Family {
     penalty: true,
     weighted_gaps: false,
     compliant: false,
+    updated: false,
     by_node: None,
     block: shapes::block::<PenaltyFrictional>,
 };

@@ -1,9 +1,10 @@
 //! Frictionless contact by the augmented Lagrangian with a scalar multiplier (eq. 4.9, D.11).
 //!
-//! Active: p = f (k λ + ε̂ g̃) n and b_λ = k (g̃ − A k λ/ε). Inactive: p = 0 and b_λ = −k² (A/c) λ. λ < 0 in compression.
+//! Active: p = f (k λ + ε̂ g̃) n and b_λ = k (g̃ − A (k λ − p°)/ε). Inactive: p = 0 and b_λ = −k² (A/c) λ. λ < 0 in compression.
 //!
 //! 1/ε is zero but for the perturbed Lagrangian, ∫ k λ g − (k λ)²/(2ε), and for penalties by node: over the pairs of a node its
-//! pressure k λ is then ε times its gap.
+//! pressure k λ is then ε times its gap. p° is zero but for Uzawa's iteration (eq. D.10), which updates it outside, p° ← k λ, until
+//! k λ − p° and with it the gap vanish.
 
 use super::{Augmentation, Formulation, Kinematics, Multipliers, PairResidual, SlaveNode};
 use zelus_core::scalar::Real;
@@ -36,7 +37,8 @@ impl Formulation for AlmFrictionless {
             if node.state.is_active() {
                 let pressure = (lambda * k + gap[j] * self.augmentation.penalty(node)) * node.dynamic_factor;
                 out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
-                out.multipliers[j][0] = (gap[j] - pair.area(j) * lambda * (k * node.compliance)) * k;
+                let gives_way = lambda * k - node.kept;
+                out.multipliers[j][0] = (gap[j] - pair.area(j) * gives_way * node.compliance) * k;
             } else {
                 out.multipliers[j][0] = lambda * (-k * k * self.augmentation.softness(node));
             }

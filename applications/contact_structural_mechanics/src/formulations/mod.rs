@@ -27,7 +27,6 @@ pub mod penalty_by_node;
 pub mod penalty_frictional;
 pub mod penalty_frictionless;
 pub mod system;
-pub mod uzawa_frictionless;
 
 pub use alm_frictional::{AlmFrictional, SlipHistory};
 pub use alm_frictionless::AlmFrictionless;
@@ -40,7 +39,6 @@ pub use penalty_by_node::PenaltyByNode;
 pub use penalty_frictional::{LastState, PenaltyFrictional};
 pub use penalty_frictionless::PenaltyFrictionless;
 pub use system::{OperatorTangent, by_normals, local_size, residual, tangent};
-pub use uzawa_frictionless::UzawaFrictionless;
 
 use zelus_core::scalar::Real;
 

@@ -45,6 +45,8 @@ pub struct SlaveNode {
     pub penalty: f64,
     /// 1/ε of families whose surfaces give way, penetration by pressure; 0 of all others.
     pub compliance: f64,
+    /// Pressure p° under which surfaces that give way do not: that which an outer loop keeps, compression negative; 0 without one.
+    pub kept: f64,
     /// c > 0: stiffness by length, for rows that state tractions beside others that state gaps and slips.
     pub stiffness: f64,
     /// A > 0: the area that this pair has of the node, or all pairs where they augment; constant in the tangent.

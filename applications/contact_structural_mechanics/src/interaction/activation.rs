@@ -20,8 +20,8 @@ use crate::pairs::{Family, Friction, Multiplier};
 use crate::resolution::Resolution;
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, FRICTION_TRACTION, INITIAL_PENALTY,
-    MEAN_WEIGHTED_GAP, MULTIPLIER_WEIGHT, NODAL_AREA, NODAL_H, NORMAL_GAP, TANGENT_XI, TRIAL_TRACTION, WEIGHTED_GAP,
-    WEIGHTED_SLIP,
+    KEPT_CONTACT_PRESSURE, MEAN_WEIGHTED_GAP, MULTIPLIER_WEIGHT, NODAL_AREA, NODAL_H, NORMAL_GAP, TANGENT_XI,
+    TRIAL_TRACTION, WEIGHTED_GAP, WEIGHTED_SLIP,
 };
 
 /// Gap, in mesh sizes, of the simple activation.
@@ -29,7 +29,7 @@ const SIMPLE_REACH: f64 = 2e-3;
 /// Gap of a node that nothing faces.
 const FAR: f64 = 1e12;
 
-/// Sets the multipliers of inactive nodes to zero, or the tractions that the penalty method carries.
+/// Sets the multipliers of inactive nodes to zero and what is kept of them, or the tractions that the penalty method carries.
 pub(super) fn clear_inactive_multipliers(part: &mut ModelPart, multiplier: Multiplier, slaves: &[u32]) {
     let inactive: Vec<u32> = slaves.iter().copied().filter(|&n| !part.nodes.flags.is(ACTIVE, n as usize)).collect();
     let history = &mut part.nodes.history;
@@ -40,9 +40,12 @@ pub(super) fn clear_inactive_multipliers(part: &mut ModelPart, multiplier: Multi
                 inactive.iter().for_each(|&n| carried.levels[0][3 * n as usize..3 * n as usize + 3].fill(0.0));
             }
         }
-        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
+        Multiplier::Scalar(variable) => {
             let column = history.values_mut(variable, 0);
             inactive.iter().for_each(|&n| column[n as usize] = 0.0);
+            if let Some(kept) = history.get_mut(KEPT_CONTACT_PRESSURE.name()) {
+                inactive.iter().for_each(|&n| kept.levels[0][n as usize] = 0.0);
+            }
         }
         Multiplier::Vector(variable) => {
             let column = history.values_mut(variable, 0);
@@ -220,11 +223,6 @@ pub(super) fn apply(
             part.nodes.flags.undefine(SLIP, at);
             part.nodes.history.values_mut(&WEIGHTED_SLIP, 0)[3 * at..3 * at + 3].fill(0.0);
         }
-        if let Multiplier::Outer(variable) = family.multiplier
-            && !active
-        {
-            part.nodes.history.values_mut(variable, 0)[at] = 0.0;
-        }
         let slides = decision.state == NodeState::Slip && was != NodeState::Slip;
         if slides && family.frictional() && decision.traction != [0.0; 3] {
             let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, at));
@@ -233,7 +231,7 @@ pub(super) fn apply(
         }
         if let Some(multiplier) = decision.multiplier {
             match family.multiplier {
-                Multiplier::None | Multiplier::Outer(_) | Multiplier::Body => {}
+                Multiplier::None | Multiplier::Body => {}
                 Multiplier::Scalar(variable) => {
                     part.nodes.history.values_mut(variable, 0)[at] = decision.pressure / parameters.scale_factor;
                 }
@@ -264,9 +262,7 @@ fn write_pressures(part: &mut ModelPart, decisions: &[(u32, Decision)], family: 
         let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
         let augmentation = penalty * part.nodes.history.values(&WEIGHTED_GAP, 0)[at];
         match (family.multiplier, parameters.augmentation) {
-            (Multiplier::None | Multiplier::Outer(_) | Multiplier::Body, _) | (_, Augmentation::Node) => {
-                decision.pressure
-            }
+            (Multiplier::None | Multiplier::Body, _) | (_, Augmentation::Node) => decision.pressure,
             _ => parameters.scale_factor * dot(multiplier(part, at, family), normal(part, at)) + augmentation,
         }
     };
@@ -283,9 +279,7 @@ fn normal(part: &ModelPart, at: usize) -> [f64; 3] {
 fn multiplier(part: &ModelPart, at: usize, family: &Family) -> [f64; 3] {
     match family.multiplier {
         Multiplier::None | Multiplier::Body => [0.0; 3],
-        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
-            scale(normal(part, at), part.nodes.history.values(variable, 0)[at])
-        }
+        Multiplier::Scalar(variable) => scale(normal(part, at), part.nodes.history.values(variable, 0)[at]),
         Multiplier::Vector(variable) => {
             part.nodes.history.get(variable.name()).map_or([0.0; 3], |field| field.vector(0, at))
         }
@@ -294,7 +288,8 @@ fn multiplier(part: &ModelPart, at: usize, family: &Family) -> [f64; 3] {
 
 /// What the rules look at, of one slave node.
 ///
-/// The penalty method states tractions ε WG, those of all others are multipliers.
+/// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
+/// kept until the next update, also of a node that is not in contact meanwhile.
 fn numbers(
     part: &ModelPart,
     at: usize,
@@ -308,12 +303,13 @@ fn numbers(
     let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
     let by_area = if area > 0.0 { area.recip() } else { 0.0 };
     let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0)[at];
+    let kept = history.get(KEPT_CONTACT_PRESSURE.name()).map_or(0.0, |field| field.levels[0][at] / penalty);
     let held = held_at(part, at);
     let slip = resolution.vector_of(slip(part, at, family.multiplier, parameters));
     let stiffness = match family.multiplier {
         Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
         Multiplier::None if parameters.weighted_penalty => penalty * area,
-        Multiplier::None | Multiplier::Outer(_) | Multiplier::Body => penalty,
+        Multiplier::None | Multiplier::Body => penalty,
     };
     let multiplier = match family.multiplier {
         // No multiplier holds what supports move: the slip itself says what would.
@@ -332,7 +328,7 @@ fn numbers(
         normal,
         multiplier,
         solved: family.multiplier.is_unknown(),
-        gap: resolution.length_of(counted_gap(part, at, parameters) * by_area),
+        gap: resolution.length_of(counted_gap(part, at, parameters) * by_area + kept),
         slip,
         trial: vector_at(part.nodes.values.values(&TRIAL_TRACTION, 0), at),
         tangent: vector_at(part.nodes.values.values(&TANGENT_XI, 0), at),
@@ -415,9 +411,7 @@ pub(super) fn resolution(
             let gap = counted_gap(part, at, parameters).min(0.0).abs();
             part.nodes.values.values(&INITIAL_PENALTY, 0)[at] * gap * by_area
         }
-        Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
-            parameters.scale_factor * history.values(variable, 0)[at].abs()
-        }
+        Multiplier::Scalar(variable) => parameters.scale_factor * history.values(variable, 0)[at].abs(),
         Multiplier::Vector(variable) => {
             parameters.scale_factor * history.get(variable.name()).map_or(0.0, |field| norm(field.vector(0, at)))
         }

@@ -587,9 +587,9 @@ impl Interaction for ContactInteraction {
         if !self.acting {
             return Ok(Outer::Done);
         }
-        if let Multiplier::Outer(variable) = self.settings.family.multiplier {
+        if self.settings.family.updated {
             let (scale_factor, settings) = (self.parameters.scale_factor, self.settings.uzawa);
-            let outer = self.uzawa.update(part, &self.slaves, variable, scale_factor, settings);
+            let outer = self.uzawa.update(part, &self.slaves, scale_factor, settings);
             if outer != Outer::Done {
                 return Ok(outer);
             }
@@ -740,7 +740,7 @@ impl Interaction for ContactInteraction {
         if self.pairing.moved > 0 {
             out.push(("pairs moved to other ranks", self.pairing.moved as f64));
         }
-        if matches!(self.settings.family.multiplier, Multiplier::Outer(_)) {
+        if self.settings.family.updated {
             out.extend([("multiplier updates", self.uzawa.updates as f64), ("rate", self.uzawa.rate)]);
         }
         out

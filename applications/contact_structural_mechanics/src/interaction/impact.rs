@@ -61,7 +61,7 @@ pub(super) fn coarse_impact(
     }
     let history = &part.nodes.history;
     let pressure = |node: u32, level: usize| match family.multiplier {
-        Multiplier::None | Multiplier::Outer(_) | Multiplier::Body => 0.0,
+        Multiplier::None | Multiplier::Body => 0.0,
         Multiplier::Scalar(variable) => scale_factor * history.values(variable, level)[node as usize].abs(),
         Multiplier::Vector(variable) => {
             scale_factor * history.get(variable.name()).map_or(0.0, |field| norm(field.vector(level, node as usize)))

@@ -1,10 +1,10 @@
-//! Uzawa's outer loop: multipliers follow the penalty's forces until they carry the pressure alone (eq. D.10).
+//! Uzawa's outer loop: the pressure that is kept follows the multipliers until nothing gives way (eq. D.10).
 
 use zelus_core::entities::Outer;
+use zelus_core::model::ModelPart;
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{ModelPart, Variable};
 
-use crate::variables::{INITIAL_PENALTY, NODAL_AREA, WEIGHTED_GAP};
+use crate::variables::{KEPT_CONTACT_PRESSURE, LAGRANGE_MULTIPLIER_CONTACT_PRESSURE};
 
 /// How far the outer loop goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,31 +20,30 @@ pub struct UzawaSettings {
 pub(super) struct Uzawa {
     /// Updates made in this step.
     pub(super) updates: usize,
-    /// Size of the last change and of the multipliers.
+    /// Size of the last change.
     last: f64,
     /// Ratio of the last two changes: the rate of linear convergence.
     pub(super) rate: f64,
 }
 
 impl Uzawa {
-    /// k λ ← k λ + ε ḡ at the active slave nodes, with the mean gap ḡ of a node.
+    /// p° ← k λ at the slave nodes in contact, none that pulls; zero at all others.
     pub(super) fn update(
         &mut self,
         part: &mut ModelPart,
         slaves: &[u32],
-        variable: &Variable<f64>,
         scale_factor: f64,
         settings: UzawaSettings,
     ) -> Outer {
-        let penalty = part.nodes.values.values(&INITIAL_PENALTY, 0);
-        let gaps = part.nodes.history.values(&WEIGHTED_GAP, 0);
-        let areas = part.nodes.values.values(&NODAL_AREA, 0);
-        let multipliers = part.nodes.history.values(variable, 0);
-        let active: Vec<usize> =
-            slaves.iter().map(|&n| n as usize).filter(|&n| part.nodes.flags.is(ACTIVE, n) && areas[n] > 0.0).collect();
-        let changes: Vec<f64> = active.iter().map(|&n| penalty[n] * gaps[n] / (areas[n] * scale_factor)).collect();
-        let change = changes.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let total = active.iter().zip(&changes).map(|(&n, c)| (multipliers[n] + c).powi(2)).sum::<f64>().sqrt();
+        let multipliers = part.nodes.history.values(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE, 0);
+        let active = |n: usize| part.nodes.flags.is(ACTIVE, n);
+        let pressure =
+            |&n: &u32| if active(n as usize) { (scale_factor * multipliers[n as usize]).min(0.0) } else { 0.0 };
+        let pressures: Vec<f64> = slaves.iter().map(pressure).collect();
+        let kept = part.nodes.history.values(&KEPT_CONTACT_PRESSURE, 0);
+        let size = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
+        let change = size(&mut slaves.iter().zip(&pressures).map(|(&n, p)| p - kept[n as usize]));
+        let total = size(&mut pressures.iter().copied());
         if self.updates > 0 && self.last > 0.0 {
             self.rate = change / self.last;
         }
@@ -61,8 +60,8 @@ impl Uzawa {
             ));
         }
         self.updates += 1;
-        let column = part.nodes.history.values_mut(variable, 0);
-        active.iter().zip(&changes).for_each(|(&n, c)| column[n] += c);
+        let column = part.nodes.history.values_mut(&KEPT_CONTACT_PRESSURE, 0);
+        slaves.iter().zip(pressures).for_each(|(&n, p)| column[n as usize] = p);
         Outer::Again
     }
 }

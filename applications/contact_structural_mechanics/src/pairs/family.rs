@@ -20,8 +20,6 @@ pub enum Multiplier {
     None,
     /// One a slave node, along its normal.
     Scalar(&'static Variable<f64>),
-    /// One a slave node, along its normal: a number that an outer loop updates, no unknown.
-    Outer(&'static Variable<f64>),
     /// One a slave node and direction.
     Vector(&'static Variable<[f64; 3]>),
     /// None: tractions of the slave's own elements serve, and integration points decide on contact, by Nitsche's method.
@@ -37,7 +35,7 @@ impl Multiplier {
     /// The unknowns in `dimension` dimensions.
     pub fn unknowns(self, dimension: usize) -> Vec<ScalarVariable> {
         match self {
-            Self::None | Self::Outer(_) | Self::Body => Vec::new(),
+            Self::None | Self::Body => Vec::new(),
             Self::Scalar(variable) => vec![variable.scalar()],
             Self::Vector(variable) => (0..dimension as u8).map(|c| variable.component(c)).collect(),
         }
@@ -98,6 +96,8 @@ pub struct Family {
     pub weighted_gaps: bool,
     /// Whether its surfaces give way by traction over penalty, the traction being a multiplier.
     pub compliant: bool,
+    /// Whether an outer loop takes away by how much, by Uzawa's iteration.
+    pub updated: bool,
     /// The families that take its place where its penalty is that of whole nodes.
     pub by_node: Option<ByNode>,
     /// Makes the block of one pair of shapes (slave, master).

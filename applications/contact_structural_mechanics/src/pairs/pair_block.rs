@@ -20,8 +20,8 @@ use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::mortar::{Habit, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
 use crate::variables::{
-    DYNAMIC_FACTOR, FRICTION_TRACTION, HELD_MULTIPLIER, INITIAL_PENALTY, NODAL_AREA, NORMAL_OF_MASTER, TANGENT_XI,
-    TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_GAP,
+    DYNAMIC_FACTOR, FRICTION_TRACTION, HELD_MULTIPLIER, INITIAL_PENALTY, KEPT_CONTACT_PRESSURE, NODAL_AREA,
+    NORMAL_OF_MASTER, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_GAP,
 };
 
 /// A formulation as the blocks use it.
@@ -238,6 +238,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
 
     fn slave_states(&self, at: usize, view: &StepView<'_>) -> [SlaveNode; NS] {
         let penalty = view.nodes.values.values(&INITIAL_PENALTY, 0);
+        let kept = view.nodes.history.get(KEPT_CONTACT_PRESSURE.name());
         let factor = view.nodes.values.values(&DYNAMIC_FACTOR, 0);
         let areas = view.nodes.values.values(&NODAL_AREA, 0);
         let positive = |area: Option<&f64>| area.copied().filter(|area| *area > 0.0).unwrap_or(1.0);
@@ -263,6 +264,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                 state: NodeState::of_flags(&view.nodes.flags, node),
                 penalty: penalty[node],
                 compliance: if self.parameters.compliant { penalty[node].recip() } else { 0.0 },
+                kept: kept.map_or(0.0, |field| field.levels[0][node]),
                 stiffness,
                 area: positive(if by_pair { areas.get(node) } else { own.get(j) }),
                 dynamic_factor: factor[node],
@@ -290,9 +292,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         let history = &view.nodes.history;
         self.slaves(at).map(|n| match F::multiplier() {
             Multiplier::None | Multiplier::Body => [0.0; 3],
-            Multiplier::Scalar(variable) | Multiplier::Outer(variable) => {
-                [history.values(variable, 0)[n as usize], 0.0, 0.0]
-            }
+            Multiplier::Scalar(variable) => [history.values(variable, 0)[n as usize], 0.0, 0.0],
             Multiplier::Vector(variable) => vector(history.values(variable, 0), n),
         })
     }

@@ -1,4 +1,4 @@
-//! Contact by Uzawa's iteration: that of the augmented Lagrangian without multipliers among the unknowns.
+//! Contact by Uzawa's iteration, with the settings of the augmented Lagrangian.
 
 use zelus_core::register;
 use zelus_core::registry::Build;
@@ -9,7 +9,7 @@ const FAMILIES: Stem = Stem { name: "UzawaContact", penalty_factor: 1e1, least_p
 
 register! { Process "uzawa_contact_process",
     aliases: &["UzawaContactProcess"],
-    about: "contact by Uzawa's iteration on the penalty kernel",
+    about: "contact by Uzawa's iteration: multipliers of surfaces that give way until an outer loop has taken that away",
     source: "eqs. 4.11, D.10",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/uzawa_contact_process.json"))],
