@@ -363,8 +363,11 @@ impl Assembler {
         for (n, _) in dofs.iter().enumerate().filter(|(_, dof)| dof.multiplier) {
             let (columns, values) = coupling.row(n);
             let motions = || columns.iter().zip(values).filter(|(column, _)| !dofs[**column as usize].multiplier);
-            let most = motions().map(|(&column, _)| position[column as usize]).fold(0.0, f64::max);
-            coupled[n] = most * motions().map(|(_, value)| value.abs()).sum::<f64>();
+            let [sum, count] =
+                motions().fold([0.0, 0.0], |[s, c], (&column, _)| [s + position[column as usize], c + 1.0]);
+            let mean = if count > 0.0 { sum / count } else { 0.0 };
+            coupled[n] =
+                motions().map(|(&column, value)| value.abs() * position[column as usize].max(mean)).sum::<f64>();
         }
         let mut bodies = vec![0.0; values.len()];
         if let Some(values) = self.bulk_values() {
