@@ -18,6 +18,7 @@ impl PairFormulation for AlmFrictional {
             operator_threshold: parameters.operator_threshold,
             augmentation: parameters.augmentation,
             compliant: parameters.compliant,
+            dynamic: parameters.dynamic,
         }
     }
 

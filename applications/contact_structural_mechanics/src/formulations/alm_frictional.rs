@@ -13,9 +13,10 @@
 //! slip is not elastic. t° is the traction of the last accepted state, turned with the facet by R.
 //!
 //! In space the direction τ of sliding turns with the trial traction, which the tangent knows.
-//! The slip s is that of [`turned_slip`]: its rate is what the tractions do work on, so that friction makes no energy. Where pairs
-//! augment, as in Kratos, it is the objective one when both operators changed by more than a threshold since the start of the
-//! step, otherwise −P [D δ¹ − M δ²] with δ = x − x_reference.
+//! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
+//! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference. In dynamics and where surfaces give way it is that of [`turned_slip`]: its
+//! rate is what the tractions do work on, so that friction makes no energy. Where pairs augment, as in Kratos, it never is. In long
+//! static steps the objective one is nearer to the closed forms: it measures the change of what faces what.
 
 use super::{Augmentation, Formulation, Kinematics, Multipliers, NodeState, PairResidual, SlaveNode, Turning};
 use crate::mortar::{
@@ -37,6 +38,8 @@ pub struct AlmFrictional {
     pub augmentation: Augmentation,
     /// Whether surfaces give way by the nodes' [`SlaveNode::compliance`].
     pub compliant: bool,
+    /// Whether bodies have inertia, so that friction must make no energy.
+    pub dynamic: bool,
 }
 
 /// A pair as it was when slip began to be counted.
@@ -57,7 +60,7 @@ impl AlmFrictional {
         pair: &Kinematics<T, NS, NM>,
         history: &SlipHistory<NS, NM>,
     ) -> [[T; 3]; NS] {
-        if self.compliant || self.augmentation == Augmentation::Node {
+        if self.compliant || (self.dynamic && self.augmentation == Augmentation::Node) {
             let (slave, master) = (&history.reference_slave, &history.reference_master);
             return turned_slip(&pair.operators, (&pair.slave, slave), (&pair.master, master), &pair.normals);
         }

@@ -142,7 +142,14 @@ fn last_state<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>
 
 fn frictional(area: f64) -> AlmFrictional {
     let operator_threshold = OperatorThreshold { share: 0.0, area };
-    AlmFrictional { scale_factor: 1.7, tangent_factor: 0.3, operator_threshold, augmentation: PAIR, compliant: false }
+    AlmFrictional {
+        scale_factor: 1.7,
+        tangent_factor: 0.3,
+        operator_threshold,
+        augmentation: PAIR,
+        compliant: false,
+        dynamic: false,
+    }
 }
 
 fn all_families<const NS: usize, const NM: usize, const NU: usize>() {

@@ -110,6 +110,7 @@ impl ContactInteraction {
             normal_variation: settings.normal_variation,
             augmentation: settings.augmentation,
             compliant: settings.family.compliant,
+            dynamic: false,
             nitsche: settings.nitsche,
         });
         Ok(Self {
@@ -694,6 +695,9 @@ impl Interaction for ContactInteraction {
     }
 
     fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes {
+        if !self.parameters.dynamic {
+            self.parameters = Arc::new(StepParameters { dynamic: true, ..(*self.parameters).clone() });
+        }
         if !self.acting || part.info.is(KEEP_MASS) {
             return MasslessNodes::default();
         }

@@ -67,6 +67,8 @@ pub struct StepParameters {
     pub augmentation: Augmentation,
     /// Whether surfaces give way by traction over penalty.
     pub compliant: bool,
+    /// Whether the step has inertia, so that friction must make no energy.
+    pub dynamic: bool,
     /// Nitsche's method, of families whose tractions are those of bodies.
     pub nitsche: Nitsche,
 }

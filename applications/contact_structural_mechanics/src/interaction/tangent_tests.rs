@@ -113,6 +113,7 @@ impl Contact {
             normal_variation: NormalVariation::Exact,
             augmentation,
             compliant: family.compliant,
+            dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
