@@ -136,6 +136,7 @@ impl Contact {
             normal_variation: NormalVariation::Exact,
             augmentation: Augmentation::Node,
             compliant: false,
+            dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::new(variant, Some(2.0), None),

@@ -193,6 +193,7 @@ impl Setting {
             normal_variation: NormalVariation::Update,
             augmentation: Augmentation::Node,
             compliant: family.compliant,
+            dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
