@@ -362,6 +362,10 @@ impl Assembler {
         let dofs = part.dofs.dofs();
         for (n, _) in dofs.iter().enumerate().filter(|(_, dof)| dof.multiplier) {
             let (columns, values) = coupling.row(n);
+            // Rows with multipliers are no gaps alone.
+            if columns.iter().zip(values).any(|(column, v)| *v != 0.0 && dofs[*column as usize].multiplier) {
+                continue;
+            }
             let motions = || columns.iter().zip(values).filter(|(column, _)| !dofs[**column as usize].multiplier);
             let [sum, count] =
                 motions().fold([0.0, 0.0], |[s, c], (&column, _)| [s + position[column as usize], c + 1.0]);
