@@ -102,6 +102,13 @@ impl<'a> System<'a> {
         self.coupling.filter(|coupling| coupling.entries() > 0)
     }
 
+    /// Entries of a row of both parts that are not zero: columns with values, those of the bulk first.
+    pub(crate) fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + use<'a> {
+        let of = move |matrix: &'a Csr| matrix.row(i).0.iter().zip(matrix.row(i).1);
+        let parts = [Some(self.bulk), self.active_coupling()];
+        parts.into_iter().flatten().flat_map(of).map(|(&j, &value)| (j as usize, value)).filter(|(_, v)| *v != 0.0)
+    }
+
     /// `y = (bulk + coupling) x`.
     ///
     /// # Panics

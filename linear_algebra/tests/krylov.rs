@@ -2,21 +2,11 @@
 
 mod samples;
 
-use samples::{Brick, contact, fix};
+use samples::{clamped_box, contact};
 use zelus_linear_algebra::{Csr, Engine, KrylovSettings, Layout, Preconditioner, Symmetry, System, create};
 
 const PRECONDITIONERS: [Preconditioner; 3] =
     [Preconditioner::Identity, Preconditioner::BlockJacobi, Preconditioner::Ilu0];
-
-fn clamped_box(cells: usize) -> (Csr, Layout) {
-    let brick = Brick { cells: [cells; 3] };
-    let mut triplets = Vec::new();
-    brick.stiffness(0, 1.0, &mut triplets);
-    fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
-    let mut layout = Layout::blocked(brick.nodes(), 3);
-    layout.near_null_space = brick.rigid_motions();
-    (Csr::from_triplets(3 * brick.nodes(), &triplets), layout)
-}
 
 fn engines(preconditioner: Preconditioner) -> [Engine; 2] {
     let settings = KrylovSettings { tolerance: 1e-9, iterations: 600, preconditioner, ..Default::default() };

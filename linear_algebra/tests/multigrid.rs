@@ -2,21 +2,11 @@
 
 mod samples;
 
-use samples::{Brick, Contact, contact, fix};
+use samples::{Brick, Contact, clamped_box, contact};
 use zelus_linear_algebra::{Csr, Engine, Layout, MultigridSettings, SolveReport, Symmetry, System, create};
 
 /// Largest difference from the answer of the direct engine, as a share of the largest value.
 const AGREE: f64 = 1e-8;
-
-fn clamped_box(cells: usize) -> (Csr, Layout) {
-    let brick = Brick { cells: [cells; 3] };
-    let mut triplets = Vec::new();
-    brick.stiffness(0, 1.0, &mut triplets);
-    fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
-    let mut layout = Layout::blocked(brick.nodes(), 3);
-    layout.near_null_space = brick.rigid_motions();
-    (Csr::from_triplets(3 * brick.nodes(), &triplets), layout)
-}
 
 fn load(equations: usize) -> Vec<f64> {
     (0..equations).map(|i| (i % 7) as f64 - 3.0).collect()

@@ -261,7 +261,7 @@ fn groups(system: &System<'_>) -> (Vec<Vec<u32>>, Vec<u32>) {
     let mut acts = vec![false; of_node.len()];
     for i in (0..n).filter(|&i| !layout.multiplier[i]) {
         if let Some(&at) = of_node.get(&layout.node[i]) {
-            acts[at] |= entries(system, i).any(|(j, _)| layout.multiplier[j] && layout.node[j] == layout.node[i]);
+            acts[at] |= system.row(i).any(|(j, _)| layout.multiplier[j] && layout.node[j] == layout.node[i]);
         }
     }
     let mut group = vec![NONE; n];
@@ -277,13 +277,6 @@ fn groups(system: &System<'_>) -> (Vec<Vec<u32>>, Vec<u32>) {
         }
     }
     (lists, group)
-}
-
-/// Entries of a row of both parts of a system that are not zero.
-fn entries<'a>(system: &System<'a>, i: usize) -> impl Iterator<Item = (usize, f64)> + use<'a> {
-    let parts = [Some(system.bulk), system.active_coupling()];
-    let of = move |matrix: &'a Csr| matrix.row(i).0.iter().zip(matrix.row(i).1).map(|(&j, &value)| (j as usize, value));
-    parts.into_iter().flatten().flat_map(of).filter(|(_, value)| *value != 0.0)
 }
 
 /// Copies an equation of the bulk alone that has its diagonal; `false`, and nothing done, for any other.
@@ -317,7 +310,7 @@ fn columns_of_multipliers(system: &System<'_>, places: &Places, tolerance: f64) 
     let mut own = vec![0.0_f64; n];
     let mut off: Vec<(f64, u32)> = vec![(0.0, NONE); n];
     for i in 0..n {
-        for (j, value) in entries(system, i).filter(|&(j, _)| system.layout.multiplier[j]) {
+        for (j, value) in system.row(i).filter(|&(j, _)| system.layout.multiplier[j]) {
             let size = value.abs();
             largest[j] = largest[j].max(size);
             if places.group[i] == places.group[j] {
@@ -348,7 +341,7 @@ fn eliminate(
     let (mut g, mut h) = (vec![0.0; s * m], vec![0.0; s * own]);
     let mut alpha = 0.0_f64;
     for (p, &e) in equations.iter().enumerate() {
-        for (j, value) in entries(system, e as usize).filter(|&(j, _)| places.group[j] == places.group[e as usize]) {
+        for (j, value) in system.row(e as usize).filter(|&(j, _)| places.group[j] == places.group[e as usize]) {
             let at = equations.iter().position(|&e| e as usize == j).expect("an equation of the group");
             if at < own {
                 h[p * own + at] += value;

@@ -1,6 +1,6 @@
 //! A sparse row that is summed up of others.
 
-use super::{NONE, entries};
+use super::NONE;
 use crate::csr::Csr;
 use crate::system::System;
 
@@ -41,7 +41,7 @@ impl SparseRow {
         if factor == 0.0 {
             return;
         }
-        for (j, value) in entries(system, equation) {
+        for (j, value) in system.row(equation) {
             if left[j] == NONE {
                 multiplier(j, factor * value);
             } else {

@@ -220,9 +220,11 @@ fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
         if largest == 0.0 {
             continue;
         }
-        (0..h).filter(|&k| (0..h).all(|l| lu[k + h * l] == 0.0)).collect::<Vec<_>>().into_iter().for_each(|k| {
-            lu[k + h * k] = largest;
-        });
+        for k in 0..h {
+            if (0..h).all(|l| lu[k + h * l] == 0.0) {
+                lu[k + h * k] = largest;
+            }
+        }
         let pivots = dense_lu::factorise(&mut lu, h, 1e-6 * largest);
         let mut column = vec![0.0; h];
         for w in 0..h {

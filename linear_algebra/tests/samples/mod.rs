@@ -103,6 +103,17 @@ pub fn fix(triplets: &mut Vec<(usize, usize, f64)>, equations: impl IntoIterator
     triplets.extend(fixed.into_iter().map(|i| (i, i, scale)));
 }
 
+/// A box of `cells` unit cubes in each direction that is held at its bottom, with its rigid motions.
+pub fn clamped_box(cells: usize) -> (Csr, Layout) {
+    let brick = Brick { cells: [cells; 3] };
+    let mut triplets = Vec::new();
+    brick.stiffness(0, 1.0, &mut triplets);
+    fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
+    let mut layout = Layout::blocked(brick.nodes(), 3);
+    layout.near_null_space = brick.rigid_motions();
+    (Csr::from_triplets(3 * brick.nodes(), &triplets), layout)
+}
+
 /// Two boxes, one on the other, the upper one held by multipliers only.
 pub struct Contact {
     pub layout: Layout,

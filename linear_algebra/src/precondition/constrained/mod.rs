@@ -58,13 +58,6 @@ pub(crate) struct Constrained {
     pub(crate) row_scales: Vec<f64>,
 }
 
-/// Entries of a row of both parts of a system that are not zero.
-fn entries<'a>(system: &System<'a>, i: usize) -> impl Iterator<Item = (usize, f64)> + use<'a> {
-    let of = move |matrix: &'a crate::Csr| matrix.row(i).0.iter().zip(matrix.row(i).1);
-    let parts = [Some(system.bulk), system.active_coupling()];
-    parts.into_iter().flatten().flat_map(of).map(|(&j, &v)| (j as usize, v)).filter(|(_, v)| *v != 0.0)
-}
-
 /// Columns of a row of both parts of a system, zeros among them.
 fn pattern(system: &System<'_>, i: usize) -> Vec<u32> {
     let mut columns = system.bulk.row(i).0.to_vec();
@@ -157,7 +150,7 @@ impl Constrained {
                 multipliers.iter().partition(|&&m| action(m) > 1e-10 * largest && largest > 0.0);
             for m in idle {
                 let diagonal = entry(system, m as usize, m as usize);
-                let size = entries(system, m as usize).fold(0.0_f64, |s, (_, v)| s.max(v.abs()));
+                let size = system.row(m as usize).fold(0.0_f64, |s, (_, v)| s.max(v.abs()));
                 if diagonal.abs() > DETERMINES * size {
                     self.idle.push((m, diagonal));
                     self.row_scales[m as usize] = 1.0 / diagonal.abs();
@@ -184,7 +177,7 @@ impl Constrained {
     fn carrier(&self, system: &System<'_>, multiplier: u32) -> Option<(u32, f64)> {
         let m = multiplier as usize;
         let mut best: Option<(u32, f64, f64)> = None;
-        for (j, c) in entries(system, m).filter(|&(j, _)| !system.layout.multiplier[j] && self.group_of[j] == NONE) {
+        for (j, c) in system.row(m).filter(|&(j, _)| !system.layout.multiplier[j] && self.group_of[j] == NONE) {
             let action = entry(system, j, m).abs();
             if best.is_none_or(|(_, _, most)| action * c.abs() > most) && action > 0.0 {
                 best = Some((j as u32, action, action * c.abs()));
@@ -238,7 +231,7 @@ impl Constrained {
                 let mut terms = std::collections::BTreeMap::<u32, f64>::new();
                 for (p, &condition) in group.multipliers.iter().enumerate() {
                     let factor = group.elimination.conditions[row * m + p] * group.scales[p];
-                    for (j, value) in entries(system, condition as usize) {
+                    for (j, value) in system.row(condition as usize) {
                         if !system.layout.multiplier[j] && !is_own(j) {
                             *terms.entry(j as u32).or_default() += factor * value;
                         }
@@ -262,7 +255,8 @@ impl Constrained {
             if system.layout.multiplier[i as usize] || is_own(i as usize) {
                 continue;
             }
-            let acting: Vec<(u32, f64)> = entries(system, i as usize)
+            let acting: Vec<(u32, f64)> = system
+                .row(i as usize)
                 .filter(|&(j, _)| system.layout.multiplier[j] && self.group_of[j] != NONE)
                 .map(|(j, value)| (j as u32, value))
                 .collect();
@@ -350,16 +344,16 @@ impl Constrained {
                 }
                 let i = equation as usize;
                 if plain[i] && self.group_of[i] == NONE {
-                    entries(system, i).filter(|&(j, _)| self.place[j] != NONE).for_each(|(j, value)| {
+                    system.row(i).filter(|&(j, _)| self.place[j] != NONE).for_each(|(j, value)| {
                         add(row, k, self.place[j], value);
                     });
                     continue;
                 }
                 let left = self.left(b * w + k, loads[i]);
                 idle |= u64::from(left.is_empty()) << k;
-                let columns = left.into_iter().flat_map(|(e, factor)| {
-                    entries(system, e as usize).map(move |(j, value)| (j as u32, factor * value))
-                });
+                let columns = left
+                    .into_iter()
+                    .flat_map(|(e, factor)| system.row(e as usize).map(move |(j, value)| (j as u32, factor * value)));
                 for (j, value) in summed(columns.collect()) {
                     if self.group_of[j as usize] != NONE {
                         self.right(j).into_iter().for_each(|(place, weight)| add(row, k, place, value * weight));
@@ -437,7 +431,7 @@ impl Constrained {
         if prescribes {
             // Only unknowns that groups prescribe differ from zero.
             let changes: Vec<f64> =
-                self.beside.iter().map(|&e| entries(system, e as usize).map(|(j, v)| v * z[j]).sum()).collect();
+                self.beside.iter().map(|&e| system.row(e as usize).map(|(j, v)| v * z[j]).sum()).collect();
             self.beside.iter().zip(changes).for_each(|(&e, change)| r[e as usize] -= change);
         }
         let mut b: Vec<f64> = self.equation.iter().map(|&e| if e == NONE { 0.0 } else { r[e as usize] }).collect();
@@ -474,7 +468,7 @@ impl Constrained {
             let mut kept = kept.iter();
             let known = group.stack(|e| {
                 let known = kept.next().expect("as many as the group has rows");
-                known - entries(system, e as usize).map(|(j, v)| v * z[j]).sum::<f64>()
+                known - system.row(e as usize).map(|(j, v)| v * z[j]).sum::<f64>()
             });
             let s = group.equations();
             for (k, &m) in group.multipliers.iter().enumerate() {
@@ -486,7 +480,7 @@ impl Constrained {
             group.multipliers.iter().for_each(|&m| z[m as usize] = multipliers[m as usize]);
         }
         for (&(m, diagonal), value) in self.idle.iter().zip(idle_rows) {
-            let others: f64 = entries(system, m as usize).map(|(j, v)| v * z[j]).sum();
+            let others: f64 = system.row(m as usize).map(|(j, v)| v * z[j]).sum();
             z[m as usize] = (value - others) / diagonal;
         }
         r.copy_from_slice(&z);
