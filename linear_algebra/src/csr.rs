@@ -5,6 +5,23 @@ use rayon::prelude::*;
 /// Rows handled by one task of a product; fixed, so that results do not depend on the number of threads.
 const ROWS_PER_TASK: usize = 512;
 
+/// Rows of a run at most.
+const LONGEST_RUN: usize = 3;
+
+/// Successive rows of a matrix that have the same columns.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Runs {
+    lengths: Vec<u8>,
+    /// First run of each task, and the number of runs.
+    tasks: Vec<usize>,
+}
+
+impl Runs {
+    fn of_task(&self, task: usize) -> &[u8] {
+        &self.lengths[self.tasks[task]..self.tasks[task + 1]]
+    }
+}
+
 /// A square sparse matrix by rows; columns of a row ascend and occur once.
 ///
 /// `row_starts` has `rows + 1` entries; the entries of row `i` are `row_starts[i]..row_starts[i + 1]` of `columns`
@@ -189,6 +206,57 @@ impl Csr {
         }
     }
 
+    /// Lengths of the runs of up to [`LONGEST_RUN`] rows with the same columns that the rows fall into, as those of a node do;
+    /// no run crosses the border of a task.
+    pub(crate) fn runs(&self) -> Runs {
+        let mut lengths = Vec::with_capacity(self.rows / LONGEST_RUN + 1);
+        let mut tasks = Vec::with_capacity(self.rows / ROWS_PER_TASK + 2);
+        let mut row = 0;
+        while row < self.rows {
+            if row % ROWS_PER_TASK == 0 {
+                tasks.push(lengths.len());
+            }
+            let most = LONGEST_RUN.min(self.rows - row).min(ROWS_PER_TASK - row % ROWS_PER_TASK);
+            let columns = self.row(row).0;
+            let length = (1..most).find(|k| self.row(row + k).0 != columns).unwrap_or(most);
+            lengths.push(length as u8);
+            row += length;
+        }
+        tasks.push(lengths.len());
+        Runs { lengths, tasks }
+    }
+
+    /// As [`Csr::mul_vec`], to the bit, with the columns of each of `runs` read once.
+    pub(crate) fn mul_vec_by_runs(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
+        assert_eq!(x.len(), self.rows, "length of x");
+        assert_eq!(y.len(), self.rows, "length of y");
+        y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, mut out)| {
+            let mut row = task * ROWS_PER_TASK;
+            for &length in runs.of_task(task) {
+                let (now, rest) = out.split_at_mut(length as usize);
+                match length {
+                    1 => self.run_product::<1>(row, x, now),
+                    2 => self.run_product::<2>(row, x, now),
+                    _ => self.run_product::<LONGEST_RUN>(row, x, now),
+                }
+                row += length as usize;
+                out = rest;
+            }
+        });
+    }
+
+    /// The product of `N` rows with the columns of the first.
+    fn run_product<const N: usize>(&self, row: usize, x: &[f64], out: &mut [f64]) {
+        let columns = self.row(row).0;
+        let values: [&[f64]; N] = std::array::from_fn(|k| &self.row(row + k).1[..columns.len()]);
+        let mut sums = [0.0; N];
+        for (at, &j) in columns.iter().enumerate() {
+            let x = x[j as usize];
+            (0..N).for_each(|k| sums[k] += values[k][at] * x);
+        }
+        out.copy_from_slice(&sums);
+    }
+
     /// The transposed matrix.
     pub fn transpose(&self) -> Self {
         let mut row_starts = vec![0; self.rows + 1];
@@ -258,6 +326,22 @@ mod tests {
         assert_eq!(matrix.row_starts, [0, 2, 2, 3]);
         assert_eq!(matrix.columns, [0, 2, 1]);
         assert_eq!((matrix.find(0, 2), matrix.find(1, 1)), (Some(1), None));
+    }
+
+    #[test]
+    fn products_by_runs_are_the_same_to_the_bit() {
+        let n = 1300;
+        let of_node =
+            |i: usize| -> Vec<u32> { [0, i / 3 * 3, i / 3 * 3 + 1, n - 1].map(|j| j.min(n - 1) as u32).into() };
+        let mut matrix = Csr::from_pattern(&(0..n).map(of_node).collect::<Vec<_>>());
+        matrix.values.iter_mut().enumerate().for_each(|(k, v)| *v = (k as f64 * 0.7).sin());
+        let x: Vec<f64> = (0..n).map(|i| (i as f64 * 0.3).cos()).collect();
+        let (mut y, mut by_runs) = (vec![0.0; n], vec![0.0; n]);
+        matrix.mul_vec(&x, &mut y);
+        let runs = matrix.runs();
+        matrix.mul_vec_by_runs(&runs, &x, &mut by_runs);
+        assert!(y.iter().zip(&by_runs).all(|(a, b)| a.to_bits() == b.to_bits()));
+        assert!(runs.lengths.len() < n / 2, "{} runs", runs.lengths.len());
     }
 
     #[test]

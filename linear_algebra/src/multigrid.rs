@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use crate::check;
+use crate::csr::Runs;
 use crate::direct::DirectSolver;
-use crate::krylov::{Progress, conjugate_gradient, gmres};
+use crate::krylov::{Answers, Progress, conjugate_gradient, gmres};
 use crate::precondition::{Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::system::{Stamps, System};
@@ -13,8 +14,10 @@ use crate::vector;
 
 /// Directions kept before a restart.
 const RESTART: usize = 80;
-/// Growth of the iterations, and their number beside it, from which on the hierarchy is made anew.
-const STALE: (f64, usize) = (1.3, 2);
+/// Growth of the iterations by digit, and their number beside it, from which on the hierarchy is made anew.
+const STALE: (f64, f64) = (1.3, 0.3);
+/// Digits from which on they say how well a hierarchy does.
+const TELLING: f64 = 2.0;
 /// Entries of a row, on average, from which on factors fill like those of solids in space.
 const MANY_ENTRIES: usize = 40;
 /// Failures in a row after which multigrid is not tried again.
@@ -32,8 +35,9 @@ struct Hierarchy {
     prescribed: Vec<(u32, u32)>,
     /// Whether the matrix has changed since.
     is_old: bool,
-    first: Option<usize>,
-    last: usize,
+    /// Iterations by digit, of the first solve and of the last.
+    first: Option<f64>,
+    last: f64,
 }
 
 impl Hierarchy {
@@ -44,12 +48,11 @@ impl Hierarchy {
         if !self.is_old {
             return true;
         }
-        let first = self.first.unwrap_or(0);
         let prescribed = constrained.prescribed();
         let before: BTreeSet<_> = self.prescribed.iter().collect();
         let changed = prescribed.iter().filter(|now| !before.contains(now)).count()
             + self.prescribed.len().saturating_sub(prescribed.len());
-        self.last <= (STALE.0 * first as f64) as usize + STALE.1
+        self.last <= STALE.0 * self.first.unwrap_or(self.last) + STALE.1
             && changed as f64 <= CHANGED * self.prescribed.len() as f64
     }
 }
@@ -58,7 +61,12 @@ impl Hierarchy {
 pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
+    /// Of the bulk's rows, with the stamp of its graph.
+    runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
+    answers: Answers,
+    /// Relative residual to reach.
+    tolerance: f64,
     stand_in: DirectSolver,
     /// Solves one after the other that multigrid did not do.
     failures: usize,
@@ -67,7 +75,8 @@ pub(crate) struct MultigridSolver {
 impl MultigridSolver {
     pub(crate) fn new(settings: MultigridSettings) -> Self {
         let stand_in = DirectSolver::new(DirectSettings::default());
-        Self { settings, constrained: None, hierarchy: None, stand_in, failures: 0 }
+        let (tolerance, answers) = (settings.tolerance, Answers::default());
+        Self { settings, constrained: None, runs: None, hierarchy: None, answers, tolerance, stand_in, failures: 0 }
     }
 
     /// Whether multigrid is to solve a system, by its size and what came of it before.
@@ -78,6 +87,9 @@ impl MultigridSolver {
 
     /// Brings the constraints and the hierarchy up to date, or names the multiplier that nothing determines.
     fn prepare(&mut self, system: &System<'_>) -> Result<(), usize> {
+        if self.runs.as_ref().is_none_or(|(graph, _)| *graph != system.bulk_graph) {
+            self.runs = Some((system.bulk_graph, system.bulk.runs()));
+        }
         let stamps = Stamps::of(system);
         if self.constrained.as_ref().is_none_or(|(_, old)| *old != stamps) {
             self.constrained = None;
@@ -95,7 +107,7 @@ impl MultigridSolver {
                 prescribed: constrained.prescribed(),
                 is_old: false,
                 first: None,
-                last: 0,
+                last: 0.0,
             });
         }
         Ok(())
@@ -104,27 +116,34 @@ impl MultigridSolver {
     fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Progress {
         let (constrained, _) = self.constrained.as_ref().expect("prepared");
         let hierarchy = self.hierarchy.as_mut().expect("prepared");
+        let (_, runs) = self.runs.as_ref().expect("prepared");
         let scales = &constrained.row_scales;
         let scale = |r: &mut [f64]| r.iter_mut().zip(scales).for_each(|(r, s)| *r *= s);
         let mut b = rhs.to_vec();
         scale(&mut b);
         let multiply = |x: &[f64], y: &mut [f64]| {
-            system.mul_vec(x, y);
+            system.mul_vec_by_runs(runs, x, y);
             scale(y);
         };
+        if x.iter().all(|x| *x == 0.0) {
+            self.answers.start(system.bulk_graph, multiply, &b, 0.5 * self.tolerance, x);
+        }
         let precondition = |r: &mut [f64]| {
             r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);
             constrained.apply(system, &hierarchy.levels, r);
         };
-        let MultigridSettings { tolerance, iterations, .. } = self.settings;
+        let (tolerance, iterations) = (self.tolerance, self.settings.iterations);
         let has_multipliers = system.layout.multiplier.contains(&true);
         let progress = if system.is_symmetric() && !has_multipliers {
             conjugate_gradient(multiply, precondition, &b, x, iterations, tolerance)
         } else {
             gmres(multiply, precondition, &b, x, RESTART, iterations, tolerance)
         };
-        hierarchy.last = progress.iterations;
-        hierarchy.first.get_or_insert(progress.iterations);
+        let digits = (progress.start / progress.relative_residual).log10();
+        if digits > TELLING {
+            hierarchy.last = progress.iterations as f64 / digits;
+            hierarchy.first.get_or_insert(hierarchy.last);
+        }
         progress
     }
 
@@ -136,7 +155,7 @@ impl MultigridSolver {
         let mut seconds_numeric = start.elapsed().as_secs_f64();
         let guess = x.to_vec();
         let mut progress = self.iterate(system, rhs, x);
-        let accepted = DRIFT * self.settings.tolerance;
+        let accepted = DRIFT * self.tolerance;
         let is_good = |progress: Progress| progress.relative_residual <= accepted;
         if !is_good(progress) && self.hierarchy.as_ref().is_some_and(|h| h.is_old) {
             let start = Instant::now();
@@ -148,9 +167,10 @@ impl MultigridSolver {
         }
         if !is_good(progress) {
             self.hierarchy = None;
-            let Progress { iterations, relative_residual } = progress;
+            let Progress { iterations, relative_residual, .. } = progress;
             return Err(format!("multigrid reached only {relative_residual:.1e} after {iterations} iterations"));
         }
+        self.answers.keep(system.bulk_graph, x);
         let size = vector::norm(rhs);
         let mut residual = vec![0.0; rhs.len()];
         let left = system.residual(rhs, x, &mut residual);
@@ -179,6 +199,11 @@ impl LinearSolver for MultigridSolver {
                 format!("direct, or multigrid from {solid} equations in space and {plane} in the plane on")
             }
         }
+    }
+
+    fn aim(&mut self, tolerance: f64) {
+        let MultigridSettings { tolerance: tightest, loosest, .. } = self.settings;
+        self.tolerance = tolerance.clamp(tightest, loosest.max(tightest));
     }
 
     fn takes_loads(&self, system: &System<'_>) -> bool {

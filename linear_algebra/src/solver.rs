@@ -84,6 +84,9 @@ pub trait LinearSolver: Send {
     /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
 
+    /// Says what relative residual is enough for the next solves; engines ask no more of themselves than their settings do.
+    fn aim(&mut self, _: f64) {}
+
     /// Whether a small part without symmetry may join the coupling of this system at no cost.
     fn takes_loads(&self, _: &System<'_>) -> bool {
         false
@@ -194,6 +197,8 @@ pub enum Preconditioner {
 pub struct MultigridSettings {
     /// Relative residual at which iteration stops, with the equations of multipliers at the size of forces.
     pub tolerance: f64,
+    /// The same for solves of which less is asked ([`LinearSolver::aim`]), at most.
+    pub loosest: f64,
     /// Largest number of iterations.
     pub iterations: usize,
     /// Equations below which the direct engine solves: where rows have many entries, as those of solids in space, and else.
@@ -207,6 +212,6 @@ impl MultigridSettings {
 
 impl Default for MultigridSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, iterations: 300, least: [3_000; 2] }
+        Self { tolerance: 1e-9, loosest: 1e-9, iterations: 300, least: [3_000; 2] }
     }
 }

@@ -1,6 +1,6 @@
 //! What a solver is given: the equations and their matrix in two parts.
 
-use crate::csr::Csr;
+use crate::csr::{Csr, Runs};
 
 /// What is known of a matrix before it is factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,6 +115,14 @@ impl<'a> System<'a> {
     /// When a length is not the number of equations.
     pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
         self.bulk.mul_vec(x, y);
+        if let Some(coupling) = self.active_coupling() {
+            coupling.mul_vec_add(x, y);
+        }
+    }
+
+    /// As [`System::mul_vec`], to the bit, with the runs of the bulk's rows.
+    pub(crate) fn mul_vec_by_runs(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
+        self.bulk.mul_vec_by_runs(runs, x, y);
         if let Some(coupling) = self.active_coupling() {
             coupling.mul_vec_add(x, y);
         }

@@ -3,7 +3,7 @@
 mod samples;
 
 use samples::{clamped_box, contact};
-use zelus_linear_algebra::{Csr, Engine, KrylovSettings, Layout, Preconditioner, Symmetry, System, create};
+use zelus_linear_algebra::{Engine, KrylovSettings, Preconditioner, Symmetry, System, create};
 
 const PRECONDITIONERS: [Preconditioner; 3] =
     [Preconditioner::Identity, Preconditioner::BlockJacobi, Preconditioner::Ilu0];

@@ -3,7 +3,7 @@
 mod samples;
 
 use samples::{Brick, Contact, clamped_box, contact};
-use zelus_linear_algebra::{Csr, Engine, Layout, MultigridSettings, SolveReport, Symmetry, System, create};
+use zelus_linear_algebra::{Engine, Layout, MultigridSettings, SolveReport, Symmetry, System, create};
 
 /// Largest difference from the answer of the direct engine, as a share of the largest value.
 const AGREE: f64 = 1e-8;
@@ -14,7 +14,12 @@ fn load(equations: usize) -> Vec<f64> {
 
 fn multigrid(system: &System<'_>, rhs: &[f64]) -> (Vec<f64>, SolveReport) {
     let mut x = vec![0.0; rhs.len()];
-    let engine = Engine::Multigrid(MultigridSettings { tolerance: 1e-11, iterations: 200, least: [0; 2] });
+    let engine = Engine::Multigrid(MultigridSettings {
+        tolerance: 1e-11,
+        iterations: 200,
+        least: [0; 2],
+        ..MultigridSettings::default()
+    });
     let report = create(engine).solve(system, rhs, &mut x).expect("regular");
     (x, report)
 }
@@ -102,7 +107,12 @@ fn a_multiplier_without_a_node_of_its_own_is_carried_by_a_master() {
 fn what_does_not_converge_goes_to_the_direct_engine() {
     let (bulk, layout) = clamped_box(12);
     let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
-    let mut solver = create(Engine::Multigrid(MultigridSettings { tolerance: 1e-11, iterations: 3, least: [0; 2] }));
+    let mut solver = create(Engine::Multigrid(MultigridSettings {
+        tolerance: 1e-11,
+        iterations: 3,
+        least: [0; 2],
+        ..MultigridSettings::default()
+    }));
     let rhs = load(bulk.rows);
     for reason in ["after 3 iterations", "after 3 iterations", "failed before"] {
         let mut x = vec![0.0; bulk.rows];

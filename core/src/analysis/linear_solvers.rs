@@ -26,6 +26,9 @@ pub(super) type EngineFactory = fn(&EngineRequest<'_>) -> Engine;
 const LEFT: f64 = 0.1;
 const TOLERANCES: [f64; 2] = [1e-10, 1e-7];
 
+/// Relative residual that an iterative engine may leave where an iteration around it needs less, if the deck names none.
+const LOOSEST: f64 = 1e-3;
+
 /// Relative residual to ask of an iterative engine in an iteration that ends at `residual`: each then gains seven digits.
 pub(super) fn tolerance(residual: f64) -> f64 {
     (LEFT * residual).clamp(TOLERANCES[0], TOLERANCES[1])
@@ -107,8 +110,10 @@ fn direct(_: &EngineRequest<'_>) -> Engine {
 /// Multigrid by the settings of a deck, with the direct engine below `least` equations where they do not say otherwise.
 fn multigrid_from(request: &EngineRequest<'_>, least: [usize; 2]) -> Engine {
     let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
+    let tolerance = number("tolerance").map_or(request.tolerance, |tolerance| tolerance.min(request.tolerance));
     Engine::Multigrid(MultigridSettings {
-        tolerance: number("tolerance").map_or(request.tolerance, |tolerance| tolerance.min(request.tolerance)),
+        tolerance,
+        loosest: if number("tolerance").is_some() { tolerance } else { LOOSEST },
         least: number("direct_below").map_or(least, |equations| [equations as usize; 2]),
         ..MultigridSettings::default()
     })

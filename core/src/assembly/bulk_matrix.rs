@@ -6,7 +6,7 @@ use zelus_linear_algebra::Csr;
 use super::dof_table::DofTable;
 use super::local::{BATCH, evaluate};
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
+use crate::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Want};
 
 /// Row ranges that are filled side by side; fixed, so that results do not depend on the number of threads.
 const ROW_PARTS: usize = 4;
@@ -98,6 +98,18 @@ impl BulkPattern {
         self.offsets[range.start + at] as usize
     }
 
+    /// Place of each unknown of an entity, whose nodes and unknowns these are, in the rows of its local node `of`.
+    fn places(&self, nodes: &[u32], unknowns: &[LocalUnknown], numbers: &[u32], of: u8, places: &mut [usize]) {
+        let mut known = (u8::MAX, 0);
+        for ((unknown, &number), place) in unknowns.iter().zip(numbers).zip(places) {
+            let node = nodes[unknown.node as usize];
+            if known.0 != unknown.node {
+                known = (unknown.node, self.offset(nodes[of as usize], node));
+            }
+            *place = known.1 + (number - self.first[node as usize]) as usize;
+        }
+    }
+
     /// Adds the local matrices of a block to `values`.
     ///
     /// `compute` writes the local systems of a range. Every entry receives its contributions in the order of the
@@ -128,30 +140,25 @@ impl BulkPattern {
                 rest = tail;
             }
             parts.into_par_iter().for_each(|(first_row, last_row, part)| {
+                let is_here = |row: u32| (first_row..last_row).contains(&(row as usize));
                 let base = self.zero.row_starts[first_row];
+                // Place of each unknown of an entity in the rows of one of its nodes.
+                let mut places = vec![0; size];
                 for at in range.clone() {
                     let entity_nodes = block.nodes(at);
                     let numbers = &numbers[at * size..(at + 1) * size];
-                    if numbers.iter().all(|&n| !(first_row..last_row).contains(&(n as usize))) {
+                    if !numbers.iter().any(|&row| is_here(row)) {
                         continue;
                     }
                     let lhs = super::local::entity_lhs(&chunks, at - begin, size);
-                    for (i, &row) in numbers.iter().enumerate() {
-                        let row = row as usize;
-                        if !(first_row..last_row).contains(&row) {
-                            continue;
+                    let mut of_node = None;
+                    for (i, &row) in numbers.iter().enumerate().filter(|(_, row)| is_here(**row)) {
+                        if of_node.replace(unknowns[i].node) != Some(unknowns[i].node) {
+                            self.places(entity_nodes, unknowns, numbers, unknowns[i].node, &mut places);
                         }
-                        let a = entity_nodes[unknowns[i].node as usize];
-                        let start = self.zero.row_starts[row] - base;
-                        let mut previous = (u8::MAX, 0);
-                        for (j, &column) in numbers.iter().enumerate() {
-                            let local = unknowns[j].node;
-                            if local != previous.0 {
-                                let b = entity_nodes[local as usize];
-                                previous = (local, start + self.offset(a, b));
-                            }
-                            let b = entity_nodes[local as usize] as usize;
-                            part[previous.1 + (column - self.first[b]) as usize] += lhs[i * size + j];
+                        let start = self.zero.row_starts[row as usize] - base;
+                        for (place, value) in places.iter().zip(&lhs[i * size..(i + 1) * size]) {
+                            part[start + place] += value;
                         }
                     }
                 }

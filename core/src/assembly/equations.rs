@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use zelus_linear_algebra::{Csr, Layout};
 
 use super::dof_table::DofTable;
@@ -15,6 +16,9 @@ use crate::entities::MasterSlaveConstraint;
 use crate::model::Nodes;
 use crate::register;
 use crate::registry::Build;
+
+/// Rows that one task copies.
+const ROWS: usize = 1024;
 
 /// What became of an unknown.
 #[derive(Debug, Clone, PartialEq)]
@@ -212,16 +216,21 @@ impl Equations {
             }
             *into = Csr::from_sorted_pattern(row_starts, columns);
         }
-        let mut at = 0;
-        for &n in &self.free {
-            let (cols, _) = full.row(n as usize);
-            for (&column, &value) in cols.iter().zip(&values[full.row_starts[n as usize]..]) {
-                if self.is_free(column as usize) {
-                    into.values[at] = value;
-                    at += 1;
-                }
-            }
+        let mut parts = Vec::with_capacity(self.free.len() / ROWS + 1);
+        let mut rest = &mut into.values[..];
+        for (task, rows) in self.free.chunks(ROWS).enumerate() {
+            let [from, to] = [0, rows.len()].map(|row| into.row_starts[task * ROWS + row]);
+            let (now, later) = rest.split_at_mut(to - from);
+            parts.push((rows, now));
+            rest = later;
         }
+        parts.into_par_iter().for_each(|(rows, out)| {
+            let entries = rows.iter().flat_map(|&n| {
+                let values = &values[full.row_starts[n as usize]..];
+                full.row(n as usize).0.iter().zip(values).filter(|(column, _)| self.is_free(**column as usize))
+            });
+            out.iter_mut().zip(entries).for_each(|(out, (_, value))| *out = *value);
+        });
     }
 
     /// Whether a constrained unknown has entries; the pattern is symmetric.

@@ -88,11 +88,18 @@ impl GroupMatrix {
     pub fn assemble(&mut self, blocks: &[&dyn EntityBlock], view: &StepView<'_>) -> Result<(), EntityError> {
         let mut matrix = std::mem::take(&mut self.matrix);
         matrix.zero();
+        let mut places = Vec::new();
         let result = self.each(blocks, view, Want::Both, |block, at, rows, lhs, _| {
             if block.is_active(at, view) {
                 for (i, &row) in rows.iter().enumerate() {
-                    for (j, &column) in rows.iter().enumerate() {
-                        matrix.add(row as usize, column as usize, lhs[i * rows.len() + j]);
+                    let columns = matrix.row(row as usize).0;
+                    // Unknowns of a node have rows with the same columns.
+                    if i == 0 || columns != matrix.row(rows[i - 1] as usize).0 {
+                        find_all(columns, rows, &mut places);
+                    }
+                    let values = &mut matrix.values[matrix.row_starts[row as usize]..];
+                    for (&place, value) in places.iter().zip(&lhs[i * rows.len()..]) {
+                        values[place] += value;
                     }
                 }
             }
@@ -114,6 +121,19 @@ impl GroupMatrix {
                 self.matrix.add(row, row, diagonal);
             }
         }
+    }
+}
+
+/// Places of `wanted` among ascending `columns`, which hold them all.
+fn find_all(columns: &[u32], wanted: &[u32], places: &mut Vec<usize>) {
+    places.clear();
+    for &column in wanted {
+        let next = places.last().map_or(0, |place| place + 1);
+        let place = match columns.get(next) {
+            Some(&follows) if follows == column => next,
+            _ => columns.binary_search(&column).expect("the pattern holds all entities"),
+        };
+        places.push(place);
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) fn conjugate_gradient(
     let scale = norm(b);
     if scale == 0.0 {
         x.fill(0.0);
-        return Progress { iterations: 0, relative_residual: 0.0 };
+        return Progress { iterations: 0, start: 0.0, relative_residual: 0.0 };
     }
     let mut image = vec![0.0; b.len()];
     multiply(x, &mut image);
@@ -26,10 +26,11 @@ pub(crate) fn conjugate_gradient(
     let mut preconditioned = residual.clone();
     let mut old_product = 1.0;
     let mut iterations = 0;
+    let start = norm(&residual) / scale;
     loop {
         let relative_residual = norm(&residual) / scale;
         if relative_residual <= tolerance || iterations >= most || relative_residual.is_nan() {
-            return Progress { iterations, relative_residual };
+            return Progress { iterations, start, relative_residual };
         }
         preconditioned.copy_from_slice(&residual);
         precondition(&mut preconditioned);
@@ -39,7 +40,7 @@ pub(crate) fn conjugate_gradient(
         multiply(&direction, &mut image);
         let curvature = dot(&direction, &image);
         if curvature <= 0.0 || product <= 0.0 || !curvature.is_finite() {
-            return Progress { iterations, relative_residual };
+            return Progress { iterations, start, relative_residual };
         }
         let alpha = product / curvature;
         add_scaled(alpha, &direction, x);

@@ -19,21 +19,24 @@ pub(crate) fn gmres(
     let scale = norm(b);
     if scale == 0.0 {
         x.fill(0.0);
-        return Progress { iterations: 0, relative_residual: 0.0 };
+        return Progress { iterations: 0, start: 0.0, relative_residual: 0.0 };
     }
     let restart = restart.clamp(1, most.max(1));
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let mut work = vec![0.0; n];
     let mut iterations = 0;
-    let mut last = f64::INFINITY;
+    let (mut start, mut last) = (f64::NAN, f64::INFINITY);
     loop {
         multiply(x, &mut work);
         let residual: Vec<f64> = b.iter().zip(&work).map(|(b, ax)| b - ax).collect();
         let size = norm(&residual);
         let relative_residual = size / scale;
+        if iterations == 0 {
+            start = relative_residual;
+        }
         let stagnates = relative_residual > 0.9 * last && restart < most;
         if relative_residual <= tolerance || iterations >= most || relative_residual.is_nan() || stagnates {
-            return Progress { iterations, relative_residual };
+            return Progress { iterations, start, relative_residual };
         }
         last = relative_residual;
         basis.clear();
@@ -85,7 +88,7 @@ pub(crate) fn gmres(
             }
         }
         if triangle.is_empty() {
-            return Progress { iterations, relative_residual };
+            return Progress { iterations, start, relative_residual };
         }
         let mut coefficients = vec![0.0; triangle.len()];
         for i in (0..triangle.len()).rev() {

@@ -1,11 +1,13 @@
 //! Krylov engines: conjugate gradients and restarted GMRES with a preconditioner, on systems whose multipliers are
 //! condensed.
 
+mod answers;
 mod conjugate_gradient;
 mod gmres;
 
 use std::time::Instant;
 
+pub(crate) use answers::Answers;
 pub(crate) use conjugate_gradient::conjugate_gradient;
 pub(crate) use gmres::gmres;
 
@@ -22,6 +24,8 @@ use crate::vector;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Progress {
     pub(crate) iterations: usize,
+    /// Relative residual of the first guess.
+    pub(crate) start: f64,
     pub(crate) relative_residual: f64,
 }
 
@@ -139,7 +143,7 @@ impl KrylovSolver {
         };
         let left = condensation.system();
         let mut sum = Iterated {
-            progress: Progress { iterations: 0, relative_residual: 1.0 },
+            progress: Progress { iterations: 0, start: 1.0, relative_residual: 1.0 },
             method: self.method_for(&left),
             seconds_preconditioner: start.elapsed().as_secs_f64(),
         };

@@ -20,6 +20,7 @@ mod small_displacement;
 mod small_displacement_bbar;
 mod solid;
 mod spring_damper;
+mod stiffness;
 #[cfg(test)]
 mod reference_tests;
 #[cfg(test)]

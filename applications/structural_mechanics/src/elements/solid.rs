@@ -21,6 +21,7 @@ use super::formulation::Formulation;
 use super::gradients::{nodal_vectors, physical_gradients};
 use super::material::Material;
 use super::results;
+use super::stiffness::add_stiffness;
 use crate::laws::StrainState;
 use crate::tensor::{inverse, product, stress_vector, transposed};
 use crate::variables::VOLUME_ACCELERATION;
@@ -157,19 +158,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const
             if lhs.is_empty() {
                 continue;
             }
-            let mut db = [[0.0; SIZE]; S];
-            for (row, d) in db.iter_mut().zip(&d) {
-                for (d, b) in d.iter().zip(&b) {
-                    let factor = point.weight * d;
-                    row.iter_mut().zip(b).for_each(|(out, b)| *out += factor * b);
-                }
-            }
-            for (b, db) in b.iter().zip(&db) {
-                for (r, (out, &b)) in upper.iter_mut().zip(b).enumerate() {
-                    let first = if whole { 0 } else { r };
-                    out[first..].iter_mut().zip(&db[first..]).for_each(|(out, db)| *out += b * db);
-                }
-            }
+            add_stiffness(point.weight, &d, &b, whole, &mut upper);
             if F::CONSTANT_PRESSURE {
                 let f = inverse(&point.state.f);
                 let inverse_c = stress_vector::<S>(&product(&f, &transposed(&f)));

@@ -6,6 +6,7 @@ use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, Outer, SetChange};
 use crate::model::ModelPart;
 use crate::strategies::contraction::{contracts, swings};
+use crate::strategies::criterion::Check;
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::reactions::write_reactions;
 use crate::strategies::records::{IterationRecord, Monitor};
@@ -13,6 +14,9 @@ use crate::strategies::strategy::update_interactions;
 
 /// Share of the increment that ends a swing between two states.
 const HALF: f64 = 0.5;
+
+/// Share of the tolerances that a linear solve may leave.
+const LEFT: f64 = 0.01;
 
 /// What the iterations of a step hand on to each other.
 struct Step {
@@ -34,6 +38,18 @@ struct Step {
     /// The last iteration it may take, and the last when it converges steadily.
     last: usize,
     most: usize,
+}
+
+impl Step {
+    /// The relative residual a linear solve may leave, so that what it leaves counts nothing beside the tolerances; none in
+    /// the first iteration, which may be the last.
+    fn needed(&self) -> f64 {
+        let missing = |check: &Check| {
+            (check.ratio_tolerance / check.ratio).max(check.absolute_tolerance / check.absolute).min(1.0)
+        };
+        let last = self.records.last();
+        last.map_or(0.0, |record| LEFT * record.checks.iter().map(missing).fold(1.0, f64::min))
+    }
 }
 
 /// How an iteration ends.
@@ -242,6 +258,7 @@ impl NewtonRaphson {
         if iteration == 1 {
             interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
         }
+        self.solver.aim(step.needed());
         self.solve(part, &rhs)
     }
 

@@ -1,0 +1,109 @@
+//! Answers of earlier solves as the start of the next one.
+//!
+//! Loads that grow over steps and a tangent that changes little make answers that are nearly combinations of those before.
+//! The start is the combination `x = Σ y_i x_i` that leaves the least `‖b - A x‖` (Fischer, Comput. Methods Appl. Mech.
+//! Engrg. 163 (1998)), with the matrix of the present solve: what has changed costs digits of the start, never of the answer.
+
+use std::collections::VecDeque;
+
+use crate::vector::{add_scaled, dot, norm};
+
+/// Answers kept.
+const KEPT: usize = 6;
+/// Share of a product that must be left beside those of later answers for it to count.
+const INDEPENDENT: f64 = 1e-7;
+
+/// The latest answers of a solver.
+#[derive(Default)]
+pub(crate) struct Answers {
+    /// What they are answers of.
+    graph: u64,
+    latest: VecDeque<Vec<f64>>,
+}
+
+impl Answers {
+    /// Keeps an answer for systems with this graph.
+    pub(crate) fn keep(&mut self, graph: u64, x: &[f64]) {
+        if self.graph != graph {
+            self.latest.clear();
+            self.graph = graph;
+        }
+        let size = norm(x);
+        if size > 0.0 && size.is_finite() {
+            let mut kept = if self.latest.len() < KEPT { None } else { self.latest.pop_back() }.unwrap_or_default();
+            kept.clear();
+            kept.extend(x.iter().map(|x| x / size));
+            self.latest.push_front(kept);
+        }
+    }
+
+    /// Sets `x` to the combination of answers that leaves the least of `b`, or no more than `enough` times its norm;
+    /// `multiply(x, y)` is `y = A x`.
+    pub(crate) fn start(
+        &self,
+        graph: u64,
+        mut multiply: impl FnMut(&[f64], &mut [f64]),
+        b: &[f64],
+        enough: f64,
+        x: &mut [f64],
+    ) {
+        if self.graph != graph || self.latest.iter().any(|kept| kept.len() != x.len()) {
+            return;
+        }
+        // Orthonormal products, with what each had of those before it and the part of b along it.
+        let mut basis: Vec<(&[f64], Vec<f64>, Vec<f64>, f64)> = Vec::new();
+        let mut rest = b.to_vec();
+        let least = enough * norm(b);
+        for kept in &self.latest {
+            if norm(&rest) <= least {
+                break;
+            }
+            let mut product = vec![0.0; b.len()];
+            multiply(kept, &mut product);
+            let before = norm(&product);
+            let mut column: Vec<f64> = Vec::with_capacity(basis.len() + 1);
+            for (_, q, _, _) in &basis {
+                let along = dot(q, &product);
+                add_scaled(-along, q, &mut product);
+                column.push(along);
+            }
+            let left = norm(&product);
+            if left > INDEPENDENT * before && left.is_finite() {
+                product.iter_mut().for_each(|p| *p /= left);
+                column.push(left);
+                let along = dot(&product, &rest);
+                add_scaled(-along, &product, &mut rest);
+                basis.push((kept, product, column, along));
+            }
+        }
+        let mut factors: Vec<f64> = basis.iter().map(|(_, _, _, along)| *along).collect();
+        for (k, (kept, _, column, _)) in basis.iter().enumerate().rev() {
+            factors[k] /= column[k];
+            (0..k).for_each(|i| factors[i] -= factors[k] * column[i]);
+            add_scaled(factors[k], kept, x);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_combination_of_answers_is_found_and_no_more() {
+        let diagonal = [1.0, 2.0, 4.0, 8.0];
+        let multiply = |x: &[f64], y: &mut [f64]| y.iter_mut().zip(x).zip(diagonal).for_each(|((y, x), d)| *y = d * x);
+        let mut answers = Answers::default();
+        answers.keep(7, &[1.0, 1.0, 0.0, 0.0]);
+        answers.keep(7, &[0.0, 1.0, 1.0, 0.0]);
+        answers.keep(7, &[2.0, 2.0, 0.0, 0.0]);
+        let mut x = [0.0; 4];
+        answers.start(7, multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut x);
+        // 3 (1, 1, 0, 0) and the best multiple of (0, 1, 1, 0) for (0, -4, -8, 0.8).
+        let expected = [3.0, 1.0, -2.0, 0.0];
+        assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
+        let mut other = [0.0; 4];
+        answers.start(8, multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut other);
+        assert_eq!(other, [0.0; 4], "answers of another system");
+    }
+}
