@@ -18,12 +18,18 @@ const SPEED: f64 = 1e-3;
 const GAP: f64 = 7e-5;
 
 fn solve(boxes: &Boxes, write: impl Fn(&std::path::Path)) -> Results {
+    let (results, said) = attempt(boxes, write);
+    results.unwrap_or_else(|| panic!("{said}"))
+}
+
+/// Results, where the run has ended well, and what the program has said.
+fn attempt(boxes: &Boxes, write: impl Fn(&std::path::Path)) -> (Option<Results>, String) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     write(folder.path());
     let output = zelus(folder.path(), &["run", "ProjectParameters.json", "--threads", "2"]);
-    assert!(output.status.success(), "{}", said(&output));
     assert!(!boxes.nodes.is_empty());
-    Results::read(&folder.path().join("results.json")).expect("results")
+    let results = || Results::read(&folder.path().join("results.json")).expect("results");
+    (output.status.success().then(results), said(&output))
 }
 
 /// A bar of length 1 flies onto a rigid wall, or to and fro between two.
@@ -280,4 +286,49 @@ fn friction_makes_no_energy_where_a_thrown_block_rolls() {
             assert!(gain < 0.02, "{dimension}D, {angle}, {friction}: {gain} of the energy is gained");
         }
     }
+}
+
+/// A corner that goes in between the nodes of a coarser slave side makes or takes energy: no such motion passes unnoticed.
+#[test]
+fn energy_that_a_coarse_slave_makes_is_named() {
+    let material = [1.0, 0.2, 1.0];
+    let (mut refused, mut warned) = (0, 0);
+    for angle in [0.09_f64, 0.21, 0.35, 0.58, 0.785] {
+        let mut boxes = Boxes::new(2);
+        let faces = ["x-", "x+", "y-", "y+"].map(|face| (face, "Skin"));
+        boxes.add("Block", [[0.0; 3], [1.0; 3]], [8; 3], angle, &faces, |_| [0.009, -0.012, 0.0]);
+        let lowest = boxes.nodes.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min) - 0.1;
+        boxes.add("Ground", [[-2.0, lowest - 0.5, 0.0], [4.0, lowest, 0.0]], [12, 1, 0], 0.0, &[("y+", "Top")], |_| {
+            [0.0; 3]
+        });
+        let (results, said) = attempt(&boxes, |folder| {
+            let process = ("alm_contact_process", &json!({}));
+            boxes.write(
+                folder,
+                material,
+                &[("Top", "Skin")],
+                &[("Ground", [true; 3])],
+                [0.8, 128.0],
+                &json!({}),
+                process,
+            );
+        });
+        let Some(results) = results else {
+            assert!(said.contains("from nothing") || said.contains("inside out"), "turned by {angle}: {said}");
+            refused += usize::from(said.contains("from nothing"));
+            continue;
+        };
+        let energy = |step| boxes.state("Block", material, &results, step).energy();
+        let shares = (0..results.len()).map(|step| energy(Some(step)) / energy(None));
+        let [least, most] = shares.fold([1.0_f64; 2], |[least, most], share| [least.min(share), most.max(share)]);
+        let named = said.contains("contact-energy");
+        println!("turned by {angle}: energy from {least:.4} to {most:.4}, named: {named}");
+        assert!(most < 1.15, "turned by {angle}: {most} of the energy was accepted");
+        assert!(
+            named || (least > 0.95 && most < 1.05),
+            "turned by {angle}: energy from {least} to {most}, and no word of it"
+        );
+        warned += usize::from(named);
+    }
+    assert!(refused >= 2 && warned >= 1, "{refused} refused, {warned} named");
 }

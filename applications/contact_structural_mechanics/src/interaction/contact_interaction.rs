@@ -29,6 +29,7 @@ use super::reach::Reach;
 use super::sliding;
 use super::step_parameters::{NormalVariation, StepParameters};
 use super::uzawa::Uzawa;
+use super::work::ContactWork;
 use crate::active_set::SlipRule;
 use crate::formulations::Augmentation;
 use crate::formulations::held::along_free_tangents;
@@ -87,6 +88,7 @@ pub struct ContactInteraction {
     start_gaps: Vec<f64>,
     /// What the last attempt at the step made of the energy of motion, where that was too much.
     impact_error: f64,
+    work: ContactWork,
 }
 
 impl ContactInteraction {
@@ -140,6 +142,7 @@ impl ContactInteraction {
             near_nodes: Vec::new(),
             start_gaps: Vec::new(),
             impact_error: 0.0,
+            work: ContactWork::default(),
         })
     }
 
@@ -628,6 +631,12 @@ impl Interaction for ContactInteraction {
             ));
         }
         self.friction_ramp.solve();
+        if self.parameters.dynamic {
+            self.work.of_step(part, &self.pairing.as_entities())?;
+            if let Some(why) = self.work.too_much(part) {
+                return Ok(Outer::Failed(why));
+            }
+        }
         let (family, scale_factor) = (self.settings.family, self.parameters.scale_factor);
         Ok(coarse_impact(part, &self.slaves, family, scale_factor, &self.start_gaps, &mut self.impact_error))
     }
@@ -651,6 +660,12 @@ impl Interaction for ContactInteraction {
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.impact_error = 0.0;
+        if self.parameters.dynamic {
+            let family = self.settings.family;
+            let stores = family.compliant || matches!(family.multiplier, Multiplier::None);
+            let conserves = !stores && !family.frictional();
+            part.messages.extend(self.work.accept(part, conserves));
+        }
         self.friction_ramp.accept();
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         activation::clear_inactive_multipliers(part, self.settings.family.multiplier, &self.slaves);

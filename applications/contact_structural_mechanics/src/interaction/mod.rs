@@ -27,6 +27,7 @@ mod step_parameters;
 mod tangent_tests;
 mod tying_interaction;
 mod uzawa;
+mod work;
 
 pub use adaptation::{AdaptationSettings, ExplicitPenalty};
 pub use contact_interaction::ContactInteraction;

@@ -19,6 +19,8 @@ pub const IMPACT_TOLERANCE: &str = "IMPACT_TOLERANCE";
 pub const AVERAGED_EDGES: &str = "AVERAGED_EDGES";
 /// Nodes of contact keep their mass in motion.
 pub const KEEP_MASS: &str = "KEEP_MASS";
+/// Share of the energy of motion that contact may make before a step is refused; 0: any.
+pub const LARGEST_ENERGY_GAIN: &str = "LARGEST_ENERGY_GAIN";
 /// Factor of explicit steps while there is contact.
 pub const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
 /// The deck asks for an active set that changes only between complete Newton loops.
@@ -86,13 +88,19 @@ register! { SolverExtension "contact_settings",
                 let fact = format!("\"{key}\" is {factor}, it must be above 0 and at most 1");
                 return Err(settings.error(key, "invalid-value", fact).remedy("0.5 is the usual value").into());
             }
-            let key = "impact_energy_tolerance";
-            let tolerance = settings.get_f64(key)?;
-            if tolerance < 0.0 {
-                let fact = format!("\"{key}\" is {tolerance}, it must not be negative");
-                return Err(settings.error(key, "invalid-value", fact).remedy("1e-3 is the usual value").into());
+            let mut values = vec![(DELTA_TIME_FACTOR, factor)];
+            for (key, name, usual) in [
+                ("impact_energy_tolerance", IMPACT_TOLERANCE, "1e-3"),
+                ("largest_energy_gain", LARGEST_ENERGY_GAIN, "0.1"),
+            ] {
+                let share = settings.get_f64(key)?;
+                if share < 0.0 {
+                    let fact = format!("\"{key}\" is {share}, it must not be negative");
+                    let remedy = format!("{usual} is the usual value");
+                    return Err(settings.error(key, "invalid-value", fact).remedy(remedy).into());
+                }
+                values.push((name, share));
             }
-            let mut values = vec![(DELTA_TIME_FACTOR, factor), (IMPACT_TOLERANCE, tolerance)];
             for (key, name) in [
                 ("mixed_ulm_solver_parameters.dual_lm_off_node_tolerance", OFF_NODE_TOLERANCE),
                 ("mixed_ulm_solver_parameters.dual_lm_zero_row_tolerance", ZERO_ROW_TOLERANCE),

@@ -1,0 +1,119 @@
+//! The work that contact does on the bodies in motion, ½ Σ (f_n + f_{n+1}) · (u_{n+1} − u_n) over the nodes of its pairs.
+//!
+//! What contact does to one body the other one takes, springs give back what they took, and friction only takes. A sum above
+//! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
+
+use zelus_core::Result;
+use zelus_core::communication::world;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::entities::{EntityBlock, LocalSystems, Want};
+use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
+use zelus_core::strategies::ENERGY_OF_MOTION;
+
+use crate::solver::{KEEP_MASS, LARGEST_ENERGY_GAIN};
+
+/// Share of the energy of motion that contact may have made, or lost without friction, before a warning says so.
+const WORTH_A_WARNING: f64 = 0.02;
+
+const REMEDY: &str = "make the finer of the two sides the slave, or refine the slave; shorten the step; \
+     keep \"contact_stabilisation\" and \"impact_energy_tolerance\" of \"contact_settings\" at their defaults";
+
+/// Sums over the present step.
+#[derive(Debug, Clone, Copy, Default)]
+struct Step {
+    /// Work on all nodes.
+    work: f64,
+    /// What one body has handed to another: half the work without its signs.
+    handed_on: f64,
+}
+
+/// Forces of contact on the nodes of a model part, and the work that they have done since the run began.
+#[derive(Debug, Clone, Default)]
+pub(super) struct ContactWork {
+    /// Forces at the end of the last accepted step (3 a node); empty before the first one.
+    before: Vec<f64>,
+    /// Forces at the end of the present one.
+    now: Vec<f64>,
+    step: Step,
+    /// Sums over all accepted steps.
+    sum: Step,
+    warned: bool,
+}
+
+impl ContactWork {
+    /// Adds up the work of the present step, at whose end `blocks` act.
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    pub(super) fn of_step(&mut self, part: &ModelPart, blocks: &[&dyn EntityBlock]) -> Result<()> {
+        let forces = forces(part, blocks, std::mem::take(&mut self.now));
+        self.now = world().agree(forces)?;
+        self.before.resize(self.now.len(), 0.0);
+        let mut sums = [0.0; 2];
+        let history = &part.nodes.history;
+        let motion = history.values(&DISPLACEMENT, 0).iter().zip(history.values(&DISPLACEMENT, 1));
+        for ((now, before), (end, start)) in self.now.iter().zip(&self.before).zip(motion) {
+            let work = 0.5 * (now + before) * (end - start);
+            sums[0] += work;
+            sums[1] += 0.5 * work.abs();
+        }
+        world().sum(&mut sums);
+        self.step = Step { work: sums[0], handed_on: sums[1] };
+        Ok(())
+    }
+
+    /// What contact has made with the present step, as a share of the energy there was or was handed on; below zero what it took.
+    fn gain(&self, part: &ModelPart) -> f64 {
+        let gain = self.sum.work + self.step.work;
+        let energy = part.info.value_or(ENERGY_OF_MOTION, 0.0) - gain.max(0.0);
+        let scale = energy.max(self.sum.handed_on + self.step.handed_on);
+        if scale > 0.0 { gain / scale } else { 0.0 }
+    }
+
+    /// Why the present step cannot be accepted, when contact has made too much energy by its end; where nodes of contact keep
+    /// their mass, as a deck may ask, every step can.
+    pub(super) fn too_much(&self, part: &ModelPart) -> Option<String> {
+        let (gain, most) = (self.gain(part), part.info.value_or(LARGEST_ENERGY_GAIN, 0.0));
+        let fact = || format!("contact has made {:.1} % of the energy of motion from nothing: {REMEDY}", 100.0 * gain);
+        (most > 0.0 && gain > most && !part.info.is(KEEP_MASS)).then(fact)
+    }
+
+    /// The step is accepted: a warning when contact has made energy or, where it can only `conserve` it, lost some; once.
+    pub(super) fn accept(&mut self, part: &ModelPart, conserves: bool) -> Option<Diagnostic> {
+        let gain = self.gain(part);
+        std::mem::swap(&mut self.before, &mut self.now);
+        let Step { work, handed_on } = std::mem::take(&mut self.step);
+        self.sum = Step { work: self.sum.work + work, handed_on: self.sum.handed_on + handed_on };
+        let change = if conserves { gain.abs() } else { gain };
+        if change <= WORTH_A_WARNING || std::mem::replace(&mut self.warned, true) {
+            return None;
+        }
+        let (time, percent) = (part.info.time, 100.0 * gain.abs());
+        let how = if gain > 0.0 { "made" } else { "lost" };
+        let fact = format!(
+            "at time {time}, contact has {how} {percent:.1} % of the energy of motion, where it can only hand it on"
+        );
+        Some(Diagnostic::warning("contact-energy", fact).remedy(REMEDY))
+    }
+}
+
+/// Forces of the active pairs of `blocks` on all nodes (3 a node), written into `out`.
+fn forces(part: &ModelPart, blocks: &[&dyn EntityBlock], mut out: Vec<f64>) -> Result<Vec<f64>> {
+    out.clear();
+    out.resize(3 * part.nodes.len(), 0.0);
+    let (view, mut systems) = (part.view(), LocalSystems::default());
+    for block in blocks {
+        let component = |unknown| (0..3_u8).find(|&c| DISPLACEMENT.component(c) == unknown);
+        let unknowns = block.unknowns().iter().enumerate();
+        let rows: Vec<(usize, usize, usize)> = unknowns
+            .filter_map(|(row, at)| component(at.variable).map(|c| (row, usize::from(at.node), usize::from(c))))
+            .collect();
+        for entity in (0..block.len()).filter(|&entity| block.is_active(entity, &view)) {
+            systems.reset(1, block.unknowns().len(), Want::Residual);
+            block.local_systems(&view, entity..entity + 1, Want::Residual, &mut systems)?;
+            let nodes = block.nodes(entity);
+            rows.iter().for_each(|&(row, node, c)| out[3 * nodes[node] as usize + c] += systems.rhs[row]);
+        }
+    }
+    Ok(out)
+}
