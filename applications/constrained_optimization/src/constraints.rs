@@ -12,6 +12,9 @@ use zelus_core::registry::Build;
 
 use crate::variables::POSITION;
 
+/// Mark of a model part on which a method imposes the constraints.
+pub const IMPOSED: &str = "CONSTRAINTS_ARE_IMPOSED";
+
 /// Name of every interaction that imposes constraints.
 pub const INTERACTION: &str = "constraints";
 
@@ -34,11 +37,12 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// Those conditions of the part at `path` that are constraints.
+    /// Those conditions of the part at `path` that are constraints; the part is marked as one on which a method imposes them.
     ///
     /// # Errors
     /// A path without a part.
-    pub fn among(root: &ModelPart, path: &str) -> Result<Vec<u32>> {
+    pub fn imposed(root: &mut ModelPart, path: &str) -> Result<Vec<u32>> {
+        root.info.marks.insert(IMPOSED, true);
         let is_constraint = |at: &&u32| {
             let name = root.conditions.kinds[**at as usize].name;
             name == WALL || LINEAR.contains(&name)
@@ -103,7 +107,7 @@ impl<const NODES: usize> Kernel<NODES, 1> for Stated {
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
-        if request.part.interactions.iter().any(|interaction| interaction.name() == INTERACTION) {
+        if request.part.info.is(IMPOSED) {
             return Ok(Self);
         }
         let fact = format!("no process says how {} is imposed", request.entry.name);

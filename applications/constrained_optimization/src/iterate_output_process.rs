@@ -78,12 +78,11 @@ impl Column {
 }
 
 impl Process for IterateOutput {
-    fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let part = model.root_mut(&self.root)?;
+    fn interaction(&mut self, model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
+        let part = model.root(&self.root)?;
         let found: Result<_> = self.columns.iter().map(|column| column.find(part)).collect();
         let columns = found.map_err(|error| error.at(&self.place))?;
-        part.interactions.push(Box::new(Watch { columns, table: Arc::clone(&self.table) }));
-        Ok(())
+        Ok(Some((self.root.clone(), Box::new(Watch { columns, table: Arc::clone(&self.table) }))))
     }
 
     fn finalize(&mut self, _model: &mut Model) -> Result<()> {

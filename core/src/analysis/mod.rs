@@ -1,5 +1,7 @@
 //! The stage loop: from a deck to results.
 //!
+//! A stage holds the system of one model part, a strategy and processes.
+//!
 //! [`run`] reads `ProjectParameters.json` and runs its stage, or, in the form with an orchestrator, its stages one after
 //! another on one model. [`check`] does everything that can be done without solving.
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::deck::{open, stages};
 use super::report::RunReport;
-use super::stage::Stage;
+use super::stage::{Stage, Systems};
 use crate::communication::fair_threads;
 use crate::diagnostics::{Diagnostic, Error, Result};
 use crate::model::Model;
@@ -26,11 +26,12 @@ pub fn run(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (Res
     with_threads(options, |report| {
         let (deck, folder) = open(path)?;
         let mut model = Model::default();
+        let mut systems = Systems::new();
         warn_of_checkpoints(&deck, report, monitor);
         let all = stages(&deck, report)?;
         for at in 0..all.len() {
-            Stage::prepare(&all[at..], &folder, options.like.as_deref(), &mut model, report, monitor)?
-                .run(&mut model, report, monitor)?;
+            Stage::prepare(&all[at..], &folder, options.like.as_deref(), &mut model, &mut systems, report, monitor)?
+                .run(&mut model, &mut systems, report, monitor)?;
         }
         report.converged = true;
         Ok(())
@@ -42,10 +43,11 @@ pub fn check(path: &Path, options: &RunOptions, monitor: &mut dyn Monitor) -> (R
     with_threads(options, |report| {
         let (deck, folder) = open(path)?;
         let mut model = Model::default();
+        let mut systems = Systems::new();
         warn_of_checkpoints(&deck, report, monitor);
         let all = stages(&deck, report)?;
         for at in 0..all.len() {
-            Stage::prepare(&all[at..], &folder, options.like.as_deref(), &mut model, report, monitor)?;
+            Stage::prepare(&all[at..], &folder, options.like.as_deref(), &mut model, &mut systems, report, monitor)?;
             report.stages.push(all[at].name.clone());
         }
         Ok(())

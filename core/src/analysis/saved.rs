@@ -1,8 +1,7 @@
 //! The state to which a step goes back that did not converge.
 
-use crate::assembly::DofTable;
-use crate::entities::MasterSlaveConstraint;
-use crate::model::{Fields, Flags, ModelPart, Nodes, ProcessInfo};
+use crate::assembly::System;
+use crate::model::{Fields, Flags, MasterSlaveConstraint, ModelPart, Nodes, ProcessInfo};
 
 /// What a retried step must find again: all that processes and the solution of a step change.
 pub(super) struct Saved {
@@ -10,34 +9,31 @@ pub(super) struct Saved {
     elements: (Fields, Flags),
     conditions: (Fields, Flags),
     constraints: Vec<MasterSlaveConstraint>,
-    dofs: DofTable,
     info: ProcessInfo,
 }
 
 impl Saved {
     /// The present state.
-    pub(super) fn of(part: &mut ModelPart) -> Self {
-        part.interactions.iter_mut().for_each(|interaction| interaction.save());
+    pub(super) fn of(part: &ModelPart, system: &mut System) -> Self {
+        system.interactions.iter_mut().for_each(|interaction| interaction.save());
         Self {
             nodes: part.nodes.clone(),
             elements: (part.elements.data.clone(), part.elements.flags.clone()),
             conditions: (part.conditions.data.clone(), part.conditions.flags.clone()),
             constraints: part.constraints.clone(),
-            dofs: part.dofs.clone(),
             info: part.info.clone(),
         }
     }
 
     /// Puts the state back.
-    pub(super) fn restore(self, part: &mut ModelPart) {
+    pub(super) fn restore(self, part: &mut ModelPart, system: &mut System) {
         part.nodes = self.nodes;
         (part.elements.data, part.elements.flags) = self.elements;
         (part.conditions.data, part.conditions.flags) = self.conditions;
         part.elements.finish();
         part.conditions.finish();
         part.constraints = self.constraints;
-        part.dofs = self.dofs;
         part.info = self.info;
-        part.interactions.iter_mut().for_each(|interaction| interaction.restore());
+        system.interactions.iter_mut().for_each(|interaction| interaction.restore());
     }
 }

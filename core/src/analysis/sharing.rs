@@ -5,9 +5,9 @@ use std::hash::{Hash, Hasher};
 use super::solver::has_inertia;
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
-use crate::model::{ModelPart, Properties};
+use crate::model::{ModelPart, Properties, Share};
 use crate::parameters::Node;
-use crate::partition::{Partition, Share, Surface, common_nodes, everywhere, keep_share, partition, surfaces};
+use crate::partition::{Partition, Surface, common_nodes, everywhere, keep_share, partition, surfaces};
 use crate::strategies::Monitor;
 
 /// Gives every rank its share of the mesh, where there are several ranks and enough to share; from then on a rank has its

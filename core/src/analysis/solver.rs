@@ -2,11 +2,11 @@
 
 use super::cutting::Cutting;
 use super::linear_solvers::{self, EngineRequest};
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Report, Result};
-use crate::entities::BlockRequest;
+use crate::model::ModelPart;
 use crate::model::variables::ACCELERATION;
-use crate::model::{EntityTable, ModelPart};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registry::{self, Build, Entry, Kind};
 use crate::strategies::{
@@ -244,10 +244,15 @@ impl SolverSettings {
     ///
     /// # Errors
     /// Names that are not registered.
-    pub fn strategy(&self, part: &mut ModelPart, report: &mut Report) -> Result<(Box<dyn SolutionStrategy>, String)> {
+    pub fn strategy(
+        &self,
+        part: &mut ModelPart,
+        system: &mut System,
+        report: &mut Report,
+    ) -> Result<(Box<dyn SolutionStrategy>, String)> {
         let scheme = match self.scheme()? {
             TimeScheme::Explicit(scheme) => {
-                let strategy = ExplicitStrategy::new(ExplicitSettings::new(&self.settings)?, scheme, part)?;
+                let strategy = ExplicitStrategy::new(ExplicitSettings::new(&self.settings)?, scheme, part, system)?;
                 return Ok((Box::new(strategy), "explicit: no linear solver".to_owned()));
             }
             TimeScheme::Implicit(scheme) => scheme,
@@ -297,15 +302,16 @@ impl SolverSettings {
         }
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
-        let mut newton = NewtonRaphson::new(settings, scheme, criterion, solver, part);
+        let mut newton = NewtonRaphson::new(settings, scheme, criterion, solver, part, system);
         newton.solver_named_at(named.key_place("solver_type"));
         #[cfg(feature = "petsc")]
         let mut says = says;
         #[cfg(feature = "petsc")]
-        let has_multipliers = part.dofs.dofs().iter().any(|dof| dof.multiplier);
+        let has_multipliers = system.dofs.dofs().iter().any(|dof| dof.multiplier);
         #[cfg(feature = "petsc")]
         if part.share.is_some()
-            && let Some((petsc, by_petsc)) = linear_solvers::petsc(&named, unknowns_of_all(part), has_multipliers)?
+            && let Some((petsc, by_petsc)) =
+                linear_solvers::petsc(&named, unknowns_of_all(part, system), has_multipliers)?
         {
             newton.solve_by_petsc(petsc, multipliers(&part.info));
             says = by_petsc;
@@ -362,51 +368,9 @@ pub(super) fn has_inertia(deck: &Node) -> bool {
     })
 }
 
-/// Makes the blocks of a part from its tables: one for each kind and properties, with the entities of this rank. Elements
-/// take over what those of an earlier stage remember.
-///
-/// # Errors
-/// Every block that cannot be made and every entity that cannot be computed with.
-pub fn make_blocks(part: &mut ModelPart) -> Result<()> {
-    let mut report = Report::new();
-    let mut both = [Vec::new(), Vec::new()];
-    let tables = [(Kind::Element, &part.elements), (Kind::Condition, &part.conditions)];
-    for (blocks, (kind, table)) in both.iter_mut().zip(tables) {
-        let is_own = |at: usize| part.evaluates(kind, at);
-        for (entry, members) in groups(table, is_own) {
-            let Build::Block(factory) = entry.build else { continue };
-            let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
-            if let Some(block) = report.absorb(factory(&request)) {
-                blocks.push(block);
-            }
-        }
-    }
-    for blocks in &mut both {
-        for block in blocks.iter_mut() {
-            report.absorb(block.initialize(&part.view()));
-        }
-    }
-    report.finish()?;
-    let [mut elements, conditions] = both;
-    for earlier in &part.element_blocks {
-        elements.iter_mut().for_each(|block| block.inherit(earlier.as_ref()));
-    }
-    part.element_blocks = elements;
-    part.condition_blocks = conditions;
-    Ok(())
-}
-
-fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static Entry, Vec<u32>)> {
-    let mut groups: std::collections::BTreeMap<(&'static str, usize), Vec<u32>> = std::collections::BTreeMap::new();
-    for at in (0..table.len()).filter(|&at| is_own(at)) {
-        groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);
-    }
-    groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()
-}
-
 /// Unknowns of all ranks; collective.
-pub(super) fn unknowns_of_all(part: &ModelPart) -> usize {
-    let own = part.dofs.dofs().iter().filter(|dof| part.owns_node(dof.node as usize)).count();
+pub(super) fn unknowns_of_all(part: &ModelPart, system: &System) -> usize {
+    let own = system.dofs.dofs().iter().filter(|dof| part.owns_node(dof.node as usize)).count();
     if part.share.is_some() { world().total(own as f64) as usize } else { own }
 }
 

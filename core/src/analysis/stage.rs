@@ -11,20 +11,26 @@ use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
 use super::sharing::{distribute, read_the_same};
-use super::solver::{SolverSettings, check_dimensions, make_blocks, unknowns_of_all};
+use super::solver::{SolverSettings, check_dimensions, unknowns_of_all};
 use super::time_stepping::TimeStepping;
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
+use crate::entities::Interaction;
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
 use crate::processes::Process;
 use crate::strategies::{Monitor, SolutionStrategy, StepRecord};
 
+/// The systems of earlier stages by their root parts: what elements remember goes on with them.
+pub(super) type Systems = BTreeMap<String, System>;
+
 /// A stage that is ready to run.
 pub(super) struct Stage {
     name: String,
     root: String,
+    system: System,
     start_time: f64,
     end_time: f64,
     stepping: TimeStepping,
@@ -45,6 +51,7 @@ impl Stage {
         folder: &Path,
         like: Option<&str>,
         model: &mut Model,
+        systems: &mut Systems,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
     ) -> Result<Self> {
@@ -132,23 +139,26 @@ impl Stage {
         distribute(model.root_mut(&root)?, &decks, changes, monitor)?;
         let mut processes = make_processes(&deck, folder, model, &mut problems);
         problems = problems_of_all(problems)?;
+        let mut system = systems.remove(&root).unwrap_or_default();
         for process in &mut processes {
-            let initialized = process.initialize(model);
-            problems.absorb(initialized);
+            let initialized = process.initialize(model).and_then(|()| process.interaction(model));
+            let Some((of, interaction)) = problems.absorb(initialized).flatten() else { continue };
+            match of.split('.').next() == Some(&root) {
+                true => system.interactions.push(interaction),
+                false => problems.push(other_root(interaction.as_ref(), &of, &root)),
+            }
         }
         problems = problems_of_all(problems)?;
         let part = model.root_mut(&root)?;
-        problems.absorb(make_blocks(part));
+        problems.absorb(system.make_blocks(part));
         problems = problems_of_all(problems)?;
-        warn_of_lonely_nodes(part, &mut problems);
-        let mut interactions = std::mem::take(&mut part.interactions);
-        for interaction in &mut interactions {
+        warn_of_lonely_nodes(part, &system, &mut problems);
+        for interaction in &mut system.interactions {
             problems.absorb(interaction.initialize(part));
         }
-        part.interactions = interactions;
         problems = problems_of_all(problems)?;
-        report.parameters = tell_parameters(part, monitor);
-        let (strategy, says) = solver.strategy(part, &mut problems)?;
+        report.parameters = tell_parameters(part, &system, monitor);
+        let (strategy, says) = solver.strategy(part, &mut system, &mut problems)?;
         monitor.note(&says);
         report.linear_solver = says;
         let sizes = part.sizes();
@@ -157,10 +167,10 @@ impl Stage {
             elements: sizes.elements,
             conditions: sizes.conditions,
             constraints: part.constraints.len(),
-            unknowns: unknowns_of_all(part),
+            unknowns: unknowns_of_all(part, &system),
         };
         for process in &processes {
-            let checked = process.check(model, &mut problems);
+            let checked = process.check(model, &system, &mut problems);
             problems.absorb(checked);
         }
         for warning in problems_of_all(problems)?.finish()? {
@@ -172,6 +182,7 @@ impl Stage {
         Ok(Self {
             name: stage.name.clone(),
             root,
+            system,
             start_time,
             end_time,
             stepping: stepping.expect("checked above"),
@@ -186,7 +197,13 @@ impl Stage {
     ///
     /// # Errors
     /// A step that does not converge, however short; a failed solver, process or file.
-    pub(super) fn run(mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
+    pub(super) fn run(
+        mut self,
+        model: &mut Model,
+        systems: &mut Systems,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+    ) -> Result<()> {
         report.stages.push(self.name.clone());
         let result = self.all_steps(model, report, monitor);
         if result.is_err() {
@@ -206,9 +223,7 @@ impl Stage {
         report.add_seconds("assemble: residual", assembly.residual);
         report.add_seconds("assemble: elements", assembly.bulk);
         report.add_seconds("assemble: interactions", assembly.coupling);
-        let part = model.root_mut(&self.root)?;
-        part.interactions.clear();
-        part.condition_blocks.clear();
+        systems.insert(self.root, System { elements: self.system.elements, ..System::default() });
         result.and(finals.finish().map(|_| ()))
     }
 
@@ -220,7 +235,8 @@ impl Stage {
         let mut time = self.start_time;
         while time < self.end_time {
             let asked = self.stepping.next(time)?;
-            let target = time + self.strategy.step_length(model.root_mut(&self.root)?, asked)?;
+            let part = model.root_mut(&self.root)?;
+            let target = time + self.strategy.step_length(part, &self.system, asked)?;
             self.reach(target, model, report, monitor)?;
             time = model.root(&self.root)?.info.time;
         }
@@ -242,13 +258,13 @@ impl Stage {
             let from = model.root(&self.root)?.info.time;
             let (to, last) = lengths.next(from, target);
             let part = model.root_mut(&self.root)?;
-            let saved = self.strategy.can_retry().then(|| Saved::of(part));
+            let saved = self.strategy.can_retry().then(|| Saved::of(part, &mut self.system));
             let record = self.attempt(to, model, report, monitor)?;
             if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
                 let factor = self.cutting.factor;
                 monitor
                     .note(&format!("step {} to time {to}: {why}; made anew with 1/{factor} of the step", record.step));
-                saved.expect("just asked for").restore(model.root_mut(&self.root)?);
+                saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);
                 continue;
             }
             if record.converged {
@@ -263,9 +279,8 @@ impl Stage {
             }
             let failure = record.failure.clone().unwrap_or_default();
             let can_cut = saved.is_some() && self.cutting.times > 0;
-            let interactions = &model.root(&self.root)?.interactions;
             let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
-                && !interactions.iter().any(|interaction| interaction.has_another_way());
+                && !self.system.interactions.iter().any(|interaction| interaction.has_another_way());
             let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
                 let tried = match self.cutting {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),
@@ -287,7 +302,7 @@ impl Stage {
             };
             let factor = self.cutting.factor;
             monitor.note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
-            saved.restore(model.root_mut(&self.root)?);
+            saved.restore(model.root_mut(&self.root)?, &mut self.system);
             failed = Some(record);
         }
     }
@@ -310,7 +325,7 @@ impl Stage {
             world().agree(process.begin_step(model))?;
         }
         let start = Instant::now();
-        let record = self.strategy.solve_step(model.root_mut(&self.root)?, monitor)?;
+        let record = self.strategy.solve_step(model.root_mut(&self.root)?, &mut self.system, monitor)?;
         report.add_seconds("solve steps", start.elapsed().as_secs_f64());
         self.pass_on_messages(model, report, monitor)?;
         if announced || !record.converged {
@@ -321,10 +336,10 @@ impl Stage {
     }
 
     fn accept(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
-        self.strategy.accept_step(model.root_mut(&self.root)?)?;
+        self.strategy.accept_step(model.root_mut(&self.root)?, &mut self.system)?;
         let start = Instant::now();
         for process in &mut self.processes {
-            world().agree(process.end_step(model))?;
+            world().agree(process.end_step(model, &self.system))?;
         }
         let mut writers = Vec::new();
         for (at, process) in self.processes.iter_mut().enumerate() {
@@ -334,10 +349,10 @@ impl Stage {
         }
         if !writers.is_empty() {
             for process in &mut self.processes {
-                world().agree(process.before_output(model))?;
+                world().agree(process.before_output(model, &self.system))?;
             }
             for at in writers {
-                world().agree(self.processes[at].print_output(model))?;
+                world().agree(self.processes[at].print_output(model, &self.system))?;
             }
         }
         report.add_seconds("output", start.elapsed().as_secs_f64());
@@ -374,10 +389,16 @@ fn problems_of_all(problems: Report) -> Result<Report> {
     if all.has_errors() { Err(finish(all)) } else { Ok(all) }
 }
 
+/// The problem that something acts on another part than the one that is solved for.
+fn other_root(interaction: &dyn Interaction, of: &str, root: &str) -> Diagnostic {
+    let fact = format!("{} acts on {of}, the solver of the stage on {root}", interaction.name());
+    Diagnostic::error("other-model-part", fact).remedy("name parts of the solver's \"model_part_name\"")
+}
+
 /// Says what numbers the interactions chose for the run, and gives them.
-fn tell_parameters(part: &ModelPart, monitor: &mut dyn Monitor) -> BTreeMap<String, f64> {
+fn tell_parameters(part: &ModelPart, system: &System, monitor: &mut dyn Monitor) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
-    for interaction in &part.interactions {
+    for interaction in &system.interactions {
         let chosen = interaction.parameters(part);
         if !chosen.is_empty() {
             let words: Vec<String> = chosen.iter().map(|(name, value)| format!("{name} {value:.6e}")).collect();
@@ -389,9 +410,9 @@ fn tell_parameters(part: &ModelPart, monitor: &mut dyn Monitor) -> BTreeMap<Stri
 }
 
 /// The warning that nodes belong to nothing; collective.
-fn warn_of_lonely_nodes(part: &ModelPart, problems: &mut Report) {
+fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report) {
     let mut used = vec![0.0; part.nodes.len()];
-    for blocks in [&part.element_blocks, &part.condition_blocks] {
+    for blocks in [&system.elements, &system.conditions] {
         for block in blocks {
             (0..block.len()).for_each(|at| block.nodes(at).iter().for_each(|&n| used[n as usize] = 1.0));
         }

@@ -12,7 +12,7 @@ mod tangents;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use zelus_linear_algebra::{Csr, Symmetry, System};
+use zelus_linear_algebra::{Csr, Symmetry};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 
@@ -25,6 +25,7 @@ use super::near_null_space::{Place, near_null_space};
 use super::numbering::Numbering;
 use super::reach::{is_displacement, reach};
 use super::redistribution::Redistribution;
+use super::system::System;
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
@@ -101,13 +102,13 @@ struct Traits {
 }
 
 impl Traits {
-    fn of(part: &ModelPart) -> Self {
-        let variable_elements = part.element_blocks.iter().any(|b| is_variable(b.as_ref()));
+    fn of(system: &System) -> Self {
+        let variable_elements = system.elements.iter().any(|b| is_variable(b.as_ref()));
         let mut flags = [
             variable_elements,
-            part.element_blocks.iter().any(|b| b.tangent() == Tangent::General),
+            system.elements.iter().any(|b| b.tangent() == Tangent::General),
             // Follower loads are not symmetric and have a matrix of their own.
-            variable_elements || part.condition_blocks.iter().any(|b| b.tangent() == Tangent::Symmetric),
+            variable_elements || system.conditions.iter().any(|b| b.tangent() == Tangent::Symmetric),
         ];
         world().any_of(&mut flags);
         let [variable_elements, general_elements, variable_bulk] = flags;
@@ -117,9 +118,9 @@ impl Traits {
 
 impl Assembler {
     /// Numbers the unknowns of the part and lays out the patterns that last.
-    pub fn new(part: &mut ModelPart, interactions: &[Box<dyn Interaction>], lumped_mass: bool) -> Self {
+    pub fn new(part: &ModelPart, system: &mut System, lumped_mass: bool) -> Self {
         let mut carriers: Vec<Carriers> = Vec::new();
-        for block in part.element_blocks.iter().chain(&part.condition_blocks) {
+        for block in system.elements.iter().chain(&system.conditions) {
             for unknown in block.unknowns() {
                 let nodes = (0..block.len()).map(|at| block.nodes(at)[unknown.node as usize]);
                 match carriers.iter_mut().find(|(known, ..)| *known == unknown.variable) {
@@ -132,28 +133,26 @@ impl Assembler {
             carriers = carriers_of_all(carriers, part.nodes.len(), &share.halo);
         }
         carriers.sort_by_key(|(variable, ..)| *variable);
-        for interaction in interactions {
+        for interaction in &system.interactions {
             carriers.extend(interaction.unknowns(part).into_iter().map(|(variable, nodes)| (variable, true, nodes)));
         }
-        let mut dofs = std::mem::take(&mut part.dofs);
-        dofs.number(&part.nodes, &carriers);
-        part.dofs = dofs;
+        system.dofs.number(&part.nodes, &carriers);
         let numbers = |blocks: &[Box<dyn EntityBlock>]| -> Vec<Vec<u32>> {
-            blocks.iter().map(|block| block_numbers(block.as_ref(), &part.dofs)).collect()
+            blocks.iter().map(|block| block_numbers(block.as_ref(), &system.dofs)).collect()
         };
-        let distribution = Distribution::new(&part.dofs, part);
-        let pattern = bulk_pattern(part, &[]);
-        let loads: Blocks<'_> = load_blocks(part);
+        let distribution = Distribution::new(&system.dofs, part);
+        let pattern = bulk_pattern(part, system, &[]);
+        let loads: Blocks<'_> = load_blocks(system);
         let interaction_unknowns: Vec<u32> =
-            (0..part.dofs.len() as u32).filter(|&n| part.dofs.dofs()[n as usize].multiplier).collect();
+            (0..system.dofs.len() as u32).filter(|&n| system.dofs.dofs()[n as usize].multiplier).collect();
         Self {
-            element_numbers: numbers(&part.element_blocks),
-            condition_numbers: numbers(&part.condition_blocks),
-            loads: GroupMatrix::new(&part.dofs, &loads, &[], |_| true),
+            element_numbers: numbers(&system.elements),
+            condition_numbers: numbers(&system.conditions),
+            loads: GroupMatrix::new(&system.dofs, &loads, &[], |_| true),
             pattern,
             lumped: lumped_mass,
             interaction_unknowns,
-            traits: Traits::of(part),
+            traits: Traits::of(system),
             distribution,
             ..Self::default()
         }
@@ -174,14 +173,14 @@ impl Assembler {
     ///
     /// # Errors
     /// Constraints that contradict each other.
-    pub fn begin_step(&mut self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<()> {
-        let equations = world().agree(Equations::new(&part.dofs, &part.nodes, &part.constraints))?;
+    pub fn begin_step(&mut self, part: &ModelPart, system: &System) -> Result<()> {
+        let equations = world().agree(Equations::new(&system.dofs, &part.nodes, &part.constraints))?;
         let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
         if world().any(changed) {
             self.equations = equations;
             if self.distribution.is_none() {
                 let place = |&number: &u32| {
-                    let dof = &part.dofs.dofs()[number as usize];
+                    let dof = &system.dofs.dofs()[number as usize];
                     (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]))
                 };
                 let places: Vec<Place> = self.equations.unknowns().iter().map(place).collect();
@@ -194,11 +193,12 @@ impl Assembler {
         } else {
             self.equations.leaning = equations.leaning;
         }
-        let graph = interactions.iter().fold(1_u64, |sum, i| sum.wrapping_mul(31).wrapping_add(i.graph_version()));
+        let graph =
+            system.interactions.iter().fold(1_u64, |sum, i| sum.wrapping_mul(31).wrapping_add(i.graph_version()));
         if self.coupling_graph != Some(graph) {
-            let blocks = blocks_of(interactions);
+            let blocks = blocks_of(&system.interactions);
             let is_own = |nodes: &[u32]| part.evaluates_pair(nodes);
-            self.coupling = GroupMatrix::new(&part.dofs, &blocks, &self.interaction_unknowns, is_own);
+            self.coupling = GroupMatrix::new(&system.dofs, &blocks, &self.interaction_unknowns, is_own);
             self.coupling_graph = Some(graph);
             self.stamps.coupling_graph += 1;
             let coupling = &self.coupling.matrix;
@@ -208,21 +208,16 @@ impl Assembler {
     }
 
     /// Present values of all unknowns.
-    pub fn values(&self, part: &ModelPart) -> Vec<f64> {
-        part.dofs.gather(&part.nodes, 0)
+    pub fn values(&self, part: &ModelPart, system: &System) -> Vec<f64> {
+        system.dofs.gather(&part.nodes, 0)
     }
 
     /// External minus internal forces over all unknowns; at supports, minus the reaction.
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn residual(
-        &mut self,
-        part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        inertia: Option<&Inertia>,
-    ) -> Result<Vec<f64>> {
-        let own = self.own_residual(part, interactions, inertia);
+    pub fn residual(&mut self, part: &ModelPart, system: &System, inertia: Option<&Inertia>) -> Result<Vec<f64>> {
+        let own = self.own_residual(part, system, inertia);
         let start = Instant::now();
         let mut rhs = world().agree(own)?;
         self.add_up(&mut rhs);
@@ -231,23 +226,18 @@ impl Assembler {
     }
 
     /// What the entities of this rank give to the residual.
-    fn own_residual(
-        &mut self,
-        part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        inertia: Option<&Inertia>,
-    ) -> Result<Vec<f64>> {
-        self.ensure_constant(part)?;
+    fn own_residual(&mut self, part: &ModelPart, system: &System, inertia: Option<&Inertia>) -> Result<Vec<f64>> {
+        self.ensure_constant(part, system)?;
         let start = Instant::now();
         let view = part.view();
-        let mut rhs = vec![0.0; part.dofs.len()];
-        let values = self.values(part);
+        let mut rhs = vec![0.0; system.dofs.len()];
+        let values = self.values(part, system);
         let constant = self.constant.as_ref().expect("ensured");
-        if part.element_blocks.iter().chain(&part.condition_blocks).any(|b| b.tangent() == Tangent::Constant) {
+        if system.elements.iter().chain(&system.conditions).any(|b| b.tangent() == Tangent::Constant) {
             self.mul_subtract(constant, &values, &mut rhs);
         }
-        let numbered = part.element_blocks.iter().zip(&self.element_numbers);
-        for (block, numbers) in numbered.chain(part.condition_blocks.iter().zip(&self.condition_numbers)) {
+        let numbered = system.elements.iter().zip(&self.element_numbers);
+        for (block, numbers) in numbered.chain(system.conditions.iter().zip(&self.condition_numbers)) {
             match block.tangent() {
                 Tangent::Constant if block.has_external(&view) => {
                     add_residual(block.as_ref(), numbers, &view, Want::External, &mut rhs)?;
@@ -257,10 +247,10 @@ impl Assembler {
             }
         }
         if let Some(inertia) = inertia {
-            let forces = self.own_inertia_forces(part, inertia)?;
+            let forces = self.own_inertia_forces(part, system, inertia)?;
             rhs.iter_mut().zip(forces).for_each(|(r, force)| *r -= force);
         }
-        self.coupling.add_residual(&blocks_of(interactions), &view, &mut rhs)?;
+        self.coupling.add_residual(&blocks_of(&system.interactions), &view, &mut rhs)?;
         self.seconds.residual += start.elapsed().as_secs_f64();
         Ok(rhs)
     }
@@ -269,24 +259,24 @@ impl Assembler {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn loads(&self, part: &ModelPart) -> Result<Vec<f64>> {
-        let mut out = world().agree(self.own_loads(part))?;
+    pub fn loads(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+        let mut out = world().agree(self.own_loads(part, system))?;
         self.add_up(&mut out);
         Ok(out)
     }
 
-    fn own_loads(&self, part: &ModelPart) -> Result<Vec<f64>> {
+    fn own_loads(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let view = part.view();
-        let mut out = vec![0.0; part.dofs.len()];
-        for (block, numbers) in part.condition_blocks.iter().zip(&self.condition_numbers) {
+        let mut out = vec![0.0; system.dofs.len()];
+        for (block, numbers) in system.conditions.iter().zip(&self.condition_numbers) {
             add_residual(block.as_ref(), numbers, &view, Want::Residual, &mut out)?;
         }
         Ok(out)
     }
 
     /// The equations to solve, without the follower loads.
-    pub fn system(&self) -> System<'_> {
-        System {
+    pub fn system(&self) -> zelus_linear_algebra::System<'_> {
+        zelus_linear_algebra::System {
             layout: &self.equations.layout,
             bulk: &self.reduced_bulk,
             bulk_symmetry: if self.bulk_general || !self.equations.keep_symmetry() {
@@ -325,12 +315,12 @@ impl Assembler {
     ///
     /// Terms of constant blocks scale with displacements, those of all others with positions. No term is larger than
     /// stiffness times [`reach`]: bodies that have gone farther, and multipliers that push farther, measure no accuracy.
-    pub fn round_off(&self, part: &ModelPart) -> Vec<f64> {
-        let reach = reach(&part.nodes, &part.dofs, &self.equations);
-        let before = part.dofs.gather(&part.nodes, 1);
-        let values = self.values(part);
+    pub fn round_off(&self, part: &ModelPart, system: &System) -> Vec<f64> {
+        let reach = reach(&part.nodes, &system.dofs, &self.equations);
+        let before = system.dofs.gather(&part.nodes, 1);
+        let values = self.values(part, system);
         // Of every unknown: its displacement, its position, its size as a multiplier, and how far it may go.
-        let sizes: Vec<[f64; 4]> = part
+        let sizes: Vec<[f64; 4]> = system
             .dofs
             .dofs()
             .iter()
@@ -359,7 +349,7 @@ impl Assembler {
         let [mut coupled, pushed, gaps] =
             [&position, &multiplier, &farthest].map(|x| product(coupling, &coupling.values, x));
         // Gaps are integrated over facets: a node at the origin is known no better than what lies around it.
-        let dofs = part.dofs.dofs();
+        let dofs = system.dofs.dofs();
         for (n, _) in dofs.iter().enumerate().filter(|(_, dof)| dof.multiplier) {
             let (columns, values) = coupling.row(n);
             // Rows with multipliers are no gaps alone.
@@ -378,7 +368,7 @@ impl Assembler {
             abs_product(&self.pattern.zero, values, bulk, &mut out);
             bodies = product(&self.pattern.zero, values, &farthest);
         }
-        for (n, dof) in part.dofs.dofs().iter().enumerate() {
+        for (n, dof) in system.dofs.dofs().iter().enumerate() {
             // Multipliers stand in the tangent of turning normals, too: forces are bounded by the bodies alone.
             out[n] += match dof.multiplier {
                 true => coupled[n] + pushed[n].min(gaps[n]),
@@ -402,12 +392,13 @@ impl Assembler {
     fn add_blocks(
         &self,
         part: &ModelPart,
+        system: &System,
         wanted: impl Fn(&dyn EntityBlock) -> bool,
         values: &mut [f64],
     ) -> Result<()> {
         let view = part.view();
-        let numbered = part.element_blocks.iter().zip(&self.element_numbers);
-        for (block, numbers) in numbered.chain(part.condition_blocks.iter().zip(&self.condition_numbers)) {
+        let numbered = system.elements.iter().zip(&self.element_numbers);
+        for (block, numbers) in numbered.chain(system.conditions.iter().zip(&self.condition_numbers)) {
             if wanted(block.as_ref()) {
                 let compute = |range, out: &mut LocalSystems| block.local_systems(&view, range, Want::Both, out);
                 self.pattern.add(block.as_ref(), numbers, values, &compute)?;
@@ -416,11 +407,11 @@ impl Assembler {
         Ok(())
     }
 
-    fn ensure_constant(&mut self, part: &ModelPart) -> Result<()> {
+    fn ensure_constant(&mut self, part: &ModelPart, system: &System) -> Result<()> {
         if self.constant.is_none() {
             let start = Instant::now();
             let mut values = vec![0.0; self.pattern.zero.entries()];
-            self.add_blocks(part, |block| block.tangent() == Tangent::Constant, &mut values)?;
+            self.add_blocks(part, system, |block| block.tangent() == Tangent::Constant, &mut values)?;
             self.constant = Some(values);
             self.seconds.bulk += start.elapsed().as_secs_f64();
         }
@@ -429,22 +420,18 @@ impl Assembler {
 }
 
 /// The pattern of elements and conditions, and of `groups` of nodes beside them.
-fn bulk_pattern(part: &ModelPart, groups: &[Vec<u32>]) -> BulkPattern {
-    let blocks = part.element_blocks.iter().chain(&part.condition_blocks).map(AsRef::as_ref);
+fn bulk_pattern(part: &ModelPart, system: &System, groups: &[Vec<u32>]) -> BulkPattern {
+    let blocks = system.elements.iter().chain(&system.conditions).map(AsRef::as_ref);
     let blocks = blocks.filter(|b: &&dyn EntityBlock| b.tangent() != Tangent::Zero);
-    BulkPattern::new(&part.dofs, part.nodes.len(), blocks, groups, |node| part.owns_node(node))
+    BulkPattern::new(&system.dofs, part.nodes.len(), blocks, groups, |node| part.owns_node(node))
 }
 
 fn is_variable(block: &dyn EntityBlock) -> bool {
     matches!(block.tangent(), Tangent::Symmetric | Tangent::General)
 }
 
-fn load_blocks(part: &ModelPart) -> Blocks<'_> {
-    part.condition_blocks
-        .iter()
-        .map(AsRef::as_ref)
-        .filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::General)
-        .collect()
+fn load_blocks(system: &System) -> Blocks<'_> {
+    system.conditions.iter().map(AsRef::as_ref).filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::General).collect()
 }
 
 fn blocks_of(interactions: &[Box<dyn Interaction>]) -> Blocks<'_> {

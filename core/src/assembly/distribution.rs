@@ -1,8 +1,7 @@
 //! Vectors over the unknowns of several ranks: each has those of its nodes, and sums pass through the owners.
 
 use crate::communication::world;
-use crate::model::ModelPart;
-use crate::partition::Halo;
+use crate::model::{Halo, ModelPart};
 
 use super::dof_table::DofTable;
 

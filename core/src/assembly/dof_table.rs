@@ -1,4 +1,4 @@
-//! Unknowns of the model: which exist, which are fixed, and their numbers.
+//! Unknowns of a system: which exist, and their numbers.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,6 @@ pub struct Dof {
 pub struct DofTable {
     dofs: Vec<Dof>,
     numbers: BTreeMap<ScalarVariable, Vec<u32>>,
-    fixed: BTreeMap<ScalarVariable, Vec<bool>>,
     version: u64,
 }
 
@@ -110,17 +109,5 @@ impl DofTable {
                 field.levels[0][node * components + offset] += increment[number as usize];
             }
         }
-    }
-
-    /// Fixes or frees an unknown of some nodes.
-    pub fn set_fixed(&mut self, variable: ScalarVariable, nodes: &[u32], fixed: bool, node_count: usize) {
-        let column = self.fixed.entry(variable).or_insert_with(|| vec![false; node_count]);
-        column.resize(node_count, false);
-        nodes.iter().for_each(|&node| column[node as usize] = fixed);
-    }
-
-    /// Whether an unknown is fixed now.
-    pub fn is_fixed(&self, variable: ScalarVariable, node: u32) -> bool {
-        self.fixed.get(&variable).is_some_and(|column| column[node as usize])
     }
 }

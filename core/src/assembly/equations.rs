@@ -12,8 +12,7 @@ use zelus_linear_algebra::{Csr, Layout};
 
 use super::dof_table::DofTable;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::entities::MasterSlaveConstraint;
-use crate::model::Nodes;
+use crate::model::{MasterSlaveConstraint, Nodes};
 use crate::register;
 use crate::registry::Build;
 
@@ -84,7 +83,7 @@ impl Equations {
         let mut free = Vec::with_capacity(dofs.len());
         for (number, dof) in dofs.dofs().iter().enumerate() {
             let is_slave = slaves.contains_key(&(number as u32));
-            if !is_slave && !dofs.is_fixed(dof.variable, dof.node) {
+            if !is_slave && !nodes.is_fixed(dof.variable, dof.node) {
                 roles[number] = Role::Free(free.len() as u32);
                 free.push(number as u32);
             }
@@ -349,11 +348,12 @@ mod tests {
         part.nodes = Nodes::new(vec![1, 2, 3], vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         let x = DISPLACEMENT.component(0);
         part.nodes.history.add(&DISPLACEMENT);
-        part.dofs.number(&part.nodes, &[(x, false, vec![0, 1, 2])]);
-        part.dofs.set_fixed(x, fixed, true, 3);
+        let mut dofs = DofTable::default();
+        dofs.number(&part.nodes, &[(x, false, vec![0, 1, 2])]);
+        part.nodes.set_fixed(x, fixed, true);
         let masters = vec![((0, x), 0.5), ((1, x), 0.5)];
         let constraint = MasterSlaveConstraint { id: 1, slave: (2, x), masters, forces, constant: 0.0, active: true };
-        Equations::new(&part.dofs, &part.nodes, &[constraint]).unwrap()
+        Equations::new(&dofs, &part.nodes, &[constraint]).unwrap()
     }
 
     #[test]

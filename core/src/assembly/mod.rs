@@ -12,6 +12,7 @@ mod numbering;
 mod reach;
 mod redistribution;
 mod supports;
+mod system;
 
 pub use assembler::{Assembler, AssemblySeconds, Inertia, damped_by_properties, strongest_damping};
 pub use distribution::Distribution;
@@ -20,3 +21,4 @@ pub use equations::{Equations, impose_constraints};
 pub use near_null_space::{Place, near_null_space};
 pub use numbering::Numbering;
 pub use reach::{is_displacement, reach};
+pub use system::System;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{EntityTable, Nodes, ProcessInfo, Properties};
+use crate::model::{EntityTable, ModelPart, Nodes, ProcessInfo, Properties};
 
 /// Fields and step data at one moment, to read only.
 #[derive(Clone, Copy)]
@@ -17,6 +17,19 @@ pub struct StepView<'a> {
     pub properties: &'a BTreeMap<usize, Properties>,
     /// Time, counters, named values.
     pub info: &'a ProcessInfo,
+}
+
+impl ModelPart {
+    /// What kernels see: fields and step data, never the model.
+    pub fn view(&self) -> StepView<'_> {
+        StepView {
+            nodes: &self.nodes,
+            elements: &self.elements,
+            conditions: &self.conditions,
+            properties: &self.properties,
+            info: &self.info,
+        }
+    }
 }
 
 /// Mark of a model in whose steps the first iteration decides the normals of contact.

@@ -8,12 +8,11 @@ use rustc_hash::FxHashMap;
 use super::mdpa::{self, DataBlock, DataColumn, DataEntry, DataValue, EntityBlock, EntityNames, Line, MdpaDocument};
 use super::variables::{kind_of, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
-use crate::entities::MasterSlaveConstraint;
 use crate::geometry::Shape;
 use crate::model::flags::{FLAGS, flag};
 use crate::model::{
-    EntityTable, Fields, Flags, ModelPart, Named, Nodes, Properties, PropertyValue, ScalarVariable, SubPart, Table,
-    VariableKind, named,
+    EntityTable, Fields, Flags, MasterSlaveConstraint, ModelPart, Named, Nodes, Properties, PropertyValue,
+    ScalarVariable, SubPart, Table, VariableKind, named,
 };
 use crate::registry::{self, Kind};
 
@@ -253,7 +252,7 @@ impl Import<'_> {
                 let held = block.ids.iter().zip(fixed).filter(|(_, fixed)| **fixed);
                 let held: Vec<u32> = held.filter_map(|(&id, _)| part.nodes.find(id as usize)).collect();
                 if !held.is_empty() {
-                    part.set_fixed(variable, &held, true);
+                    part.nodes.set_fixed(variable, &held, true);
                 }
             }
         }

@@ -63,7 +63,7 @@ fn a_mesh_becomes_a_model_part() {
     assert_eq!((part.conditions.nodes(1), part.conditions.properties[1]), (&[1, 2][..], 4));
     assert_eq!(part.nodes.history.values(&DISPLACEMENT, 0), [0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 2.0, 0.0]);
     assert_eq!(part.nodes.history.levels(), 2);
-    let fixed: Vec<bool> = (0..3).map(|node| part.dofs.is_fixed(DISPLACEMENT.component(1), node)).collect();
+    let fixed: Vec<bool> = (0..3).map(|node| part.nodes.is_fixed(DISPLACEMENT.component(1), node)).collect();
     assert_eq!(fixed, [false, true, false]);
     assert!(part.nodes.flags.is("SLAVE", 2) && part.nodes.flags.get("SLAVE", 0).is_none());
     assert_eq!(part.elements.data.get("IO_TEST_MODULUS").unwrap().levels[0], [7.5]);

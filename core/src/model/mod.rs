@@ -4,14 +4,18 @@
 //! ([`Field`]) found by the name of their [`Variable`]. Nodes are stored in ascending order of id, so loops over indices
 //! run in the order in which the reference program loops over ids.
 
+mod constraint;
 mod entity_table;
 mod fields;
+mod fixities;
 pub mod flags;
 mod geometries;
+mod halo;
 mod model_part;
 mod nodes;
 mod process_info;
 mod properties;
+mod share;
 mod sub_part;
 mod table;
 mod variable;
@@ -19,14 +23,18 @@ pub mod variables;
 
 use std::collections::BTreeMap;
 
+pub use constraint::{MasterSlaveConstraint, NodeUnknown};
 pub use entity_table::EntityTable;
 pub use fields::{Field, Fields};
+pub use fixities::Fixities;
 pub use flags::Flags;
 pub use geometries::Geometries;
+pub use halo::Halo;
 pub use model_part::ModelPart;
 pub use nodes::Nodes;
 pub use process_info::ProcessInfo;
 pub use properties::{Properties, PropertyValue};
+pub use share::{MeshSizes, Share};
 pub use sub_part::SubPart;
 pub use table::Table;
 pub use variable::{ColumnType, Named, ScalarVariable, Variable, VariableEntry, VariableKind, named, variables};

@@ -1,20 +1,18 @@
-//! A model part: the mesh, its data, the blocks that compute on it, and its named sub parts.
+//! A model part: the mesh, its data, and its named sub parts. It knows nothing of what computes on it.
 
 use std::collections::BTreeMap;
 
+use super::constraint::MasterSlaveConstraint;
 use super::entity_table::EntityTable;
 use super::geometries::Geometries;
 use super::nodes::Nodes;
 use super::process_info::ProcessInfo;
 use super::properties::{Properties, PropertyValue};
+use super::share::{MeshSizes, Share};
 use super::sub_part::SubPart;
 use super::table::Table;
-use super::variable::ScalarVariable;
-use crate::assembly::DofTable;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
-use crate::entities::{EntityBlock, Interaction, MasterSlaveConstraint, StepView};
-use crate::partition::{MeshSizes, Share};
 use crate::registry::Kind;
 
 /// A root model part; sub parts select from it by index.
@@ -42,14 +40,6 @@ pub struct ModelPart {
     pub tree: SubPart,
     /// Linear relations between unknowns.
     pub constraints: Vec<MasterSlaveConstraint>,
-    /// Unknowns: fixity and numbers.
-    pub dofs: DofTable,
-    /// Kernels over the elements, made by the solver from [`ModelPart::elements`].
-    pub element_blocks: Vec<Box<dyn EntityBlock>>,
-    /// Kernels over the conditions, made by the solver from [`ModelPart::conditions`].
-    pub condition_blocks: Vec<Box<dyn EntityBlock>>,
-    /// What acts between bodies, e.g. contact.
-    pub interactions: Vec<Box<dyn Interaction>>,
     /// What this rank has of a mesh that several share; `None` when this process computes everything.
     pub share: Option<Share>,
     /// Warnings met while running; the stage passes them on after each step.
@@ -61,17 +51,6 @@ impl ModelPart {
     pub fn new(name: impl Into<String>) -> Self {
         let name = name.into();
         Self { tree: SubPart::new(name.clone()), name, ..Self::default() }
-    }
-
-    /// What kernels see: fields and step data, never the model.
-    pub fn view(&self) -> StepView<'_> {
-        StepView {
-            nodes: &self.nodes,
-            elements: &self.elements,
-            conditions: &self.conditions,
-            properties: &self.properties,
-            info: &self.info,
-        }
     }
 
     /// The sub part at a full dotted path (`Structure.Parts.Left`) or one relative to the root.
@@ -188,11 +167,6 @@ impl ModelPart {
             constraint.slave.0 = new_nodes[constraint.slave.0 as usize];
             constraint.masters.iter_mut().for_each(|((node, _), _)| *node = new_nodes[*node as usize]);
         }
-    }
-
-    /// Fixes or frees an unknown of some nodes; unknowns not in the system are remembered all the same.
-    pub fn set_fixed(&mut self, variable: ScalarVariable, nodes: &[u32], fixed: bool) {
-        self.dofs.set_fixed(variable, nodes, fixed, self.nodes.len());
     }
 
     /// Moves the nodes to their initial position plus DISPLACEMENT.

@@ -3,7 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::fields::Fields;
+use super::fixities::Fixities;
 use super::flags::Flags;
+use super::variable::ScalarVariable;
 
 /// All nodes of a model part; an index counts them by ascending id.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -20,6 +22,8 @@ pub struct Nodes {
     pub values: Fields,
     /// Flags.
     pub flags: Flags,
+    /// What is prescribed.
+    pub fixities: Fixities,
     index: FxHashMap<usize, u32>,
 }
 
@@ -39,6 +43,7 @@ impl Nodes {
             history: Fields::new(count, 1),
             values: Fields::new(count, 1),
             flags: Flags::default(),
+            fixities: Fixities::default(),
             index,
         }
     }
@@ -54,6 +59,7 @@ impl Nodes {
             history: self.history.pick(nodes),
             values: self.values.pick(nodes),
             flags: self.flags.pick(nodes),
+            fixities: self.fixities.pick(nodes),
         }
     }
 
@@ -70,6 +76,16 @@ impl Nodes {
     /// Index of the node with that id.
     pub fn find(&self, id: usize) -> Option<u32> {
         self.index.get(&id).copied()
+    }
+
+    /// Fixes or frees a variable of some nodes, whether a system solves for it or not.
+    pub fn set_fixed(&mut self, variable: ScalarVariable, nodes: &[u32], fixed: bool) {
+        self.fixities.set(variable, nodes, fixed, self.ids.len());
+    }
+
+    /// Whether a variable of a node is fixed now.
+    pub fn is_fixed(&self, variable: ScalarVariable, node: u32) -> bool {
+        self.fixities.holds(variable, node)
     }
 
     /// Moves one node to its initial position plus DISPLACEMENT.

@@ -1,6 +1,6 @@
 //! Pairs of facets shared out among ranks anew, when one rank has many more of them than others.
 
-use super::Share;
+use crate::model::Share;
 
 /// The fullest rank may have this many times the mean before pairs move.
 const IMBALANCE: f64 = 1.25;

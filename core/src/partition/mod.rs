@@ -3,15 +3,14 @@
 //! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind
 //! facets that face each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Every
 //! rank can compute it for itself and gets the same. [`surfaces`] finds the facets' surfaces in a deck, and [`Counts`]
-//! says what a partition costs. [`keep_share`] then cuts the mesh of a rank down to its [`Share`], and
-//! [`Share::balance_pairs`] shares out pairs anew once they are known.
+//! says what a partition costs. [`keep_share`] then cuts the mesh of a rank down to its [`Share`](crate::model::Share), and
+//! [`Share::balance_pairs`](crate::model::Share::balance_pairs) shares out pairs anew once they are known.
 
 mod balance;
 mod common;
 mod counts;
 mod faces;
 mod facets;
-mod halo;
 mod interfaces;
 mod share;
 #[cfg(test)]
@@ -20,9 +19,8 @@ mod tests;
 pub use common::common_nodes;
 pub use counts::{Counts, PRODUCTS, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
-pub use halo::Halo;
 pub use interfaces::{Surface, surfaces};
-pub use share::{MeshSizes, Share, everywhere, keep_share};
+pub use share::{everywhere, keep_share};
 
 use zelus_linear_algebra::{WeightedGraph, partition_graph};
 

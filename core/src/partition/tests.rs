@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 
 use super::share::Kept;
-use super::{Counts, Partition, Repeats, Share, Surface, Traffic, common_nodes, partition, surfaces};
+use super::{Counts, Partition, Repeats, Surface, Traffic, common_nodes, partition, surfaces};
 use crate::geometry::Shape;
 use crate::model::{ModelPart, Nodes, SubPart};
 use crate::parameters::Document;
@@ -211,7 +211,9 @@ fn ranks_keep_their_elements_and_the_interface() {
         shares.push(share);
     }
     for (a, b) in (0..ranks).flat_map(|a| (0..ranks).map(move |b| (a, b))).filter(|(a, b)| a != b) {
-        let places = |share: &Share, list: &[u32]| list.iter().map(|&n| share.places[n as usize]).collect::<Vec<u32>>();
+        let places = |share: &crate::model::Share, list: &[u32]| {
+            list.iter().map(|&n| share.places[n as usize]).collect::<Vec<u32>>()
+        };
         assert_eq!(places(&shares[a], &shares[a].halo.copied[b]), places(&shares[b], &shares[b].halo.copies[a]));
         for (of_a, of_b) in shares[a].halo.everywhere.iter().zip(&shares[b].halo.everywhere) {
             assert_eq!(places(&shares[a], of_a), places(&shares[b], of_b));

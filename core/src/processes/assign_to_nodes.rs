@@ -8,6 +8,7 @@ use super::local_axes::LocalAxes;
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
+use crate::assembly::{DofTable, System};
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::model::{Model, ModelPart, ScalarVariable};
 use crate::parameters::SpaceTime;
@@ -52,12 +53,11 @@ impl AssignToNodes {
         if !self.target.interval.contains(time) {
             return Ok(false);
         }
-        let count = part.nodes.len();
         let nodes = &self.target.selection(&part.tree)?.nodes;
         for component in &self.components {
             let variable = component.variable;
             if component.fixed {
-                part.dofs.set_fixed(variable, nodes, true, count);
+                part.nodes.set_fixed(variable, nodes, true);
             }
             let Some(value) = &component.value else { continue };
             let field = part.nodes.history.field_mut(variable.column).map_err(|e| e.at(&self.target.place))?;
@@ -84,23 +84,22 @@ impl AssignToNodes {
     }
 
     fn release(&self, part: &mut ModelPart) -> Result<()> {
-        let count = part.nodes.len();
         let nodes = &self.target.selection(&part.tree)?.nodes;
         for component in self.components.iter().filter(|c| c.fixed) {
-            part.dofs.set_fixed(component.variable, nodes, false, count);
+            part.nodes.set_fixed(component.variable, nodes, false);
         }
         Ok(())
     }
 
     /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.
-    fn fixed_in_vain(&self, part: &ModelPart) -> Option<Diagnostic> {
+    fn fixed_in_vain(&self, dofs: &DofTable) -> Option<Diagnostic> {
         let solved =
-            |column: &str| MOTION.contains(&column) || part.dofs.variables().any(|variable| variable.column == column);
+            |column: &str| MOTION.contains(&column) || dofs.variables().any(|variable| variable.column == column);
         let component = self.components.iter().find(|c| c.fixed && !solved(c.variable.column))?;
         let Target { process, place, .. } = &self.target;
         let fact = format!("{process} fixes {}, which is not an unknown: it gives a value only", component.variable);
         let warning = Diagnostic::warning("not-an-unknown", fact).at(place.clone());
-        (!part.dofs.is_empty()).then(|| warning.remedy("set \"constrained\": false"))
+        (!dofs.is_empty()).then(|| warning.remedy("set \"constrained\": false"))
     }
 }
 
@@ -116,8 +115,8 @@ impl Process for AssignToNodes {
         Ok(())
     }
 
-    fn check(&self, model: &Model, warnings: &mut Report) -> Result<()> {
-        if let Some(warning) = self.fixed_in_vain(model.root(&self.target.path)?) {
+    fn check(&self, _model: &Model, system: &System, warnings: &mut Report) -> Result<()> {
+        if let Some(warning) = self.fixed_in_vain(&system.dofs) {
             warnings.push(warning);
         }
         Ok(())
@@ -136,7 +135,7 @@ impl Process for AssignToNodes {
         Ok(())
     }
 
-    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+    fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
         if std::mem::take(&mut self.active) | std::mem::take(&mut self.held) {
             self.release(model.root_mut(&self.target.path)?)?;
         }

@@ -7,6 +7,7 @@ use super::local_axes::LocalAxes;
 use super::process::{Process, ProcessRequest};
 use super::scalar_value::ScalarValue;
 use super::target::{Target, scalar_variable, vector_variable};
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::{Model, ScalarVariable};
@@ -68,7 +69,7 @@ impl Process for CheckNodes {
         Ok(())
     }
 
-    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+    fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
         let part = model.root(&self.target.path)?;
         let time = part.info.time;
         if !self.target.interval.contains(time) {

@@ -5,9 +5,9 @@
 use std::ops::Range;
 
 use super::process::{Process, ProcessRequest};
+use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
-use crate::entities::MasterSlaveConstraint;
-use crate::model::{Model, Named, ScalarVariable, SubPart, VariableKind, named};
+use crate::model::{MasterSlaveConstraint, Model, Named, ScalarVariable, SubPart, VariableKind, named};
 use crate::parameters::{Interval, Settings};
 use crate::register;
 use crate::registry::Build;
@@ -115,12 +115,12 @@ impl Process for ImposeRigidMovement {
         Ok(())
     }
 
-    fn check(&self, model: &Model, _warnings: &mut Report) -> Result<()> {
+    fn check(&self, model: &Model, system: &System, _warnings: &mut Report) -> Result<()> {
         let part = model.root(&self.root)?;
         let missing = self.variables.iter().flat_map(|&(slave, master)| {
             self.slaves.iter().map(move |&node| (node, slave)).chain([(self.master, master)])
         });
-        match missing.into_iter().find(|&(node, variable)| part.dofs.number_of(variable, node).is_none()) {
+        match missing.into_iter().find(|&(node, variable)| system.dofs.number_of(variable, node).is_none()) {
             None => Ok(()),
             Some((node, variable)) => {
                 let fact = format!("{variable} is not an unknown of node {}", part.nodes.ids[node as usize]);

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use crate::assembly::System;
 use crate::diagnostics::{Report, Result};
+use crate::entities::Interaction;
 use crate::model::Model;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::registry::Entry;
@@ -22,11 +24,19 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// What acts between bodies by its doing, and on which part: asked once, after [`Process::initialize`].
+    ///
+    /// # Errors
+    /// As [`Process::initialize`].
+    fn interaction(&mut self, _model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
+        Ok(None)
+    }
+
     /// All unknowns are known, nothing has run and nothing is written; `zelus check` ends here.
     ///
     /// # Errors
     /// As [`Process::initialize`].
-    fn check(&self, _model: &Model, _warnings: &mut Report) -> Result<()> {
+    fn check(&self, _model: &Model, _system: &System, _warnings: &mut Report) -> Result<()> {
         Ok(())
     }
 
@@ -50,7 +60,7 @@ pub trait Process: Send {
     ///
     /// # Errors
     /// As [`Process::initialize`]; a check of results that fails.
-    fn end_step(&mut self, _model: &mut Model) -> Result<()> {
+    fn end_step(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
         Ok(())
     }
 
@@ -63,7 +73,7 @@ pub trait Process: Send {
     ///
     /// # Errors
     /// As [`Process::initialize`].
-    fn before_output(&mut self, _model: &mut Model) -> Result<()> {
+    fn before_output(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
         Ok(())
     }
 
@@ -71,7 +81,7 @@ pub trait Process: Send {
     ///
     /// # Errors
     /// A file that cannot be written.
-    fn print_output(&mut self, _model: &mut Model) -> Result<()> {
+    fn print_output(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
         Ok(())
     }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::assembly::System;
 use crate::diagnostics::{Report, Result};
 use crate::geometry::Shape;
 use crate::model::{Model, ModelPart, Nodes, ScalarVariable, SubPart, named};
@@ -28,11 +29,16 @@ fn model() -> Model {
     part.tree.nodes = vec![0, 1, 2];
     part.tree.conditions = vec![0, 1];
     part.tree.children.insert("Edge".into(), edge);
-    part.dofs.number(
-        &part.nodes,
-        &[(scalar("DISPLACEMENT_X"), false, vec![0, 1, 2]), (scalar("DISPLACEMENT_Y"), false, vec![0, 1, 2])],
-    );
     Model { parts: [("Structure".to_owned(), part)].into() }
+}
+
+/// The displacements of [`model`] are unknowns.
+fn system() -> System {
+    let mut system = System::default();
+    let displacement = |name| (scalar(name), false, vec![0, 1, 2]);
+    let nodes = &model().parts["Structure"].nodes;
+    system.dofs.number(nodes, &["DISPLACEMENT_X", "DISPLACEMENT_Y"].map(displacement));
+    system
 }
 
 fn scalar(name: &str) -> ScalarVariable {
@@ -55,7 +61,7 @@ fn refused(module: &str, parameters: &str) -> String {
     let run = |model: &mut Model| {
         let mut process = make(module, parameters, model)?;
         process.initialize(model)?;
-        process.check(model, &mut Report::new())?;
+        process.check(model, &system(), &mut Report::new())?;
         process.before_loop(model)?;
         step(&mut *process, model, 0.1)
     };
@@ -76,7 +82,7 @@ fn value(model: &mut Model, name: &str, node: usize) -> f64 {
 }
 
 fn fixed(model: &mut Model, name: &str, node: u32) -> bool {
-    part(model).dofs.is_fixed(scalar(name), node)
+    part(model).nodes.is_fixed(scalar(name), node)
 }
 
 #[test]
@@ -90,7 +96,7 @@ fn a_scalar_is_fixed_and_set_in_the_step_and_released_after() {
     assert_eq!([0, 1, 2].map(|n| fixed(&mut model, "DISPLACEMENT_X", n)), [false, true, true]);
     step(&mut *process, &mut model, 0.1).unwrap();
     assert_eq!(value(&mut model, "DISPLACEMENT_X", 2), 3.2);
-    process.end_step(&mut model).unwrap();
+    process.end_step(&mut model, &system()).unwrap();
     assert!(!fixed(&mut model, "DISPLACEMENT_X", 2));
     // the end point is outside when the interval begins at 0; the value stays as the start of the next step
     step(&mut *process, &mut model, 0.2).unwrap();
@@ -108,7 +114,7 @@ fn what_is_fixed_before_the_loop_stays_fixed_through_the_first_step() {
     step(&mut *process, &mut model, 0.1).unwrap();
     assert!(fixed(&mut model, "DISPLACEMENT_Y", 0));
     assert_eq!(value(&mut model, "DISPLACEMENT_Y", 0), 1.5);
-    process.end_step(&mut model).unwrap();
+    process.end_step(&mut model, &system()).unwrap();
     assert!(!fixed(&mut model, "DISPLACEMENT_Y", 0));
 }
 
@@ -117,14 +123,14 @@ fn a_retried_shorter_step_acts_at_its_own_time() {
     let mut model = model();
     let text = r#"{"model_part_name": "Structure", "variable_name": "DISPLACEMENT_Y", "value": "t", "interval": [1.0, "End"]}"#;
     let mut process = make("assign_scalar_variable_process", text, &mut model).unwrap();
-    let saved = part(&mut model).dofs.clone();
+    let saved = part(&mut model).nodes.fixities.clone();
     step(&mut *process, &mut model, 1.0).unwrap();
     assert!(fixed(&mut model, "DISPLACEMENT_Y", 0));
-    part(&mut model).dofs = saved;
+    part(&mut model).nodes.fixities = saved;
     // another process holds the unknown now; this one must not release it
-    part(&mut model).set_fixed(scalar("DISPLACEMENT_Y"), &[0], true);
+    part(&mut model).nodes.set_fixed(scalar("DISPLACEMENT_Y"), &[0], true);
     step(&mut *process, &mut model, 0.5).unwrap();
-    process.end_step(&mut model).unwrap();
+    process.end_step(&mut model, &system()).unwrap();
     assert!(fixed(&mut model, "DISPLACEMENT_Y", 0));
 }
 
@@ -187,7 +193,7 @@ fn fixing_leaves_values_alone() {
     step(&mut *process, &mut model, 0.5).unwrap();
     assert!(fixed(&mut model, "DISPLACEMENT_X", 0) && !fixed(&mut model, "DISPLACEMENT_Y", 0));
     assert_eq!(value(&mut model, "DISPLACEMENT_X", 0), 7.0);
-    process.end_step(&mut model).unwrap();
+    process.end_step(&mut model, &system()).unwrap();
     assert!(!fixed(&mut model, "DISPLACEMENT_X", 0));
     let text = r#"{"model_part_name": "Structure", "variable_name": "DISPLACEMENT_X"}"#;
     let mut process = make("fix_scalar_variable_process", text, &mut model).unwrap();
@@ -206,7 +212,7 @@ fn conditions_see_functions_at_their_present_and_initial_centre() {
     step(&mut *process, &mut model, 0.25).unwrap();
     let data = |model: &mut Model| part(model).conditions.data.get("TEST_PRESSURE").unwrap().levels[0].clone();
     assert_eq!(data(&mut model), [0.0, 31.25]);
-    process.end_step(&mut model).unwrap();
+    process.end_step(&mut model, &system()).unwrap();
     step(&mut *process, &mut model, 0.35).unwrap();
     assert_eq!(data(&mut model), [0.0, 31.25]);
 }
@@ -377,7 +383,7 @@ fn fixing_what_is_no_unknown_is_a_warning() {
     let (mut model, mut warnings) = (model(), Report::new());
     let parameters = "{\"model_part_name\": \"Structure\", \"variable_name\": \"TEST_PRESSURE\"}";
     let process = make("assign_scalar_variable_process", parameters, &mut model).unwrap();
-    process.check(&model, &mut warnings).unwrap();
+    process.check(&model, &system(), &mut warnings).unwrap();
     let said = warnings.diagnostics()[0].to_string();
     let expected = "warning[not-an-unknown] deck.json:1:2: assign_scalar_variable_process fixes TEST_PRESSURE";
     assert!(said.starts_with(expected), "{said}");
@@ -393,7 +399,7 @@ fn checks_of_nodes_count_decimals() {
     let mut check = |parameters: &str, module: &str| {
         let mut process = make(module, parameters, &mut model).unwrap();
         process.initialize(&mut model).unwrap();
-        process.end_step(&mut model).map_err(|e| e.to_string())
+        process.end_step(&mut model, &system()).map_err(|e| e.to_string())
     };
     let vector = "check_vector_components_to_nodes_process";
     let base = r#""model_part_name": "Structure", "variable_name": "DISPLACEMENT""#;

@@ -8,10 +8,9 @@ use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
-use crate::assembly::Assembler;
+use crate::assembly::{Assembler, System};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::entities::Interaction;
 use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::register;
@@ -79,11 +78,11 @@ impl ArcLength {
     }
 
     /// Derivative of the residual by the load factor in the present state.
-    fn reference_load(&mut self, part: &mut ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {
+    fn reference_load(&mut self, part: &mut ModelPart, system: &System) -> Result<Vec<f64>> {
         if self.settings.loads.is_empty() {
-            return self.newton.assembler.loads(part);
+            return self.newton.assembler.loads(part, system);
         }
-        let mut full = self.newton.assembler.residual(part, interactions, None)?;
+        let mut full = self.newton.assembler.residual(part, system, None)?;
         let nodes = part.nodes.history.clone();
         let conditions = part.conditions.data.clone();
         for (name, variable) in &self.settings.loads {
@@ -99,7 +98,7 @@ impl ArcLength {
                 }
             }
         }
-        let rest = self.newton.assembler.residual(part, interactions, None);
+        let rest = self.newton.assembler.residual(part, system, None);
         part.nodes.history = nodes;
         part.conditions.data = conditions;
         full.iter_mut().zip(rest?).for_each(|(all, rest)| *all -= rest);
@@ -107,29 +106,30 @@ impl ArcLength {
     }
 
     /// The solve, and its increment of all unknowns; `relaxation` is taken on where multipliers make it singular.
-    fn solve(&mut self, part: &mut ModelPart, rhs: &[f64], relaxation: &mut Relaxation) -> Result<(Vec<f64>, Solved)> {
+    fn solve(
+        &mut self,
+        part: &mut ModelPart,
+        system: &System,
+        rhs: &[f64],
+        relaxation: &mut Relaxation,
+    ) -> Result<(Vec<f64>, Solved)> {
         let rhs = self.newton.assembler.equations().reduce(rhs);
-        let mut solved = self.newton.solve(part, &rhs);
+        let mut solved = self.newton.solve(part, system, &rhs);
         if let (Err(Failed::Singular(why)), Relaxation { amount: Some(amount), taken: taken @ false }) =
             (&solved, relaxation)
         {
             part.messages.extend(self.newton.warn_of_redundancy(why));
             *taken = true;
-            self.newton.assembler.relax_multipliers(&part.dofs, *amount);
-            solved = self.newton.solve(part, &rhs);
+            self.newton.assembler.relax_multipliers(&system.dofs, *amount);
+            solved = self.newton.solve(part, system, &rhs);
         }
         let solved = solved?;
         Ok((self.newton.assembler.equations().expand(&solved.increment), solved))
     }
 
-    fn residual(
-        &mut self,
-        part: &mut ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        factor: f64,
-    ) -> Result<(Vec<f64>, Vec<f64>)> {
-        let load = self.reference_load(part, interactions)?;
-        let mut residual = self.newton.assembler.residual(part, interactions, None)?;
+    fn residual(&mut self, part: &mut ModelPart, system: &System, factor: f64) -> Result<(Vec<f64>, Vec<f64>)> {
+        let load = self.reference_load(part, system)?;
+        let mut residual = self.newton.assembler.residual(part, system, None)?;
         residual.iter_mut().zip(&load).for_each(|(r, q)| *r += (factor - 1.0) * q);
         Ok((residual, load))
     }
@@ -137,42 +137,42 @@ impl ArcLength {
     fn iterate(
         &mut self,
         part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
+        system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<IterationRecord>, Option<String>)> {
         self.pending = None;
         part.info.nl_iteration = 0;
-        for interaction in interactions.iter_mut() {
+        for interaction in &mut system.interactions {
             interaction.begin_step(part)?;
         }
-        self.newton.assembler.begin_step(part, interactions)?;
-        if world().any(self.newton.start(part, None)?.iter().any(|d| *d != 0.0)) {
+        self.newton.assembler.begin_step(part, system)?;
+        if world().any(self.newton.start(part, system, None)?.iter().any(|d| *d != 0.0)) {
             let fact = "arc length scales loads, but a prescribed displacement changes";
             return Err(Diagnostic::error("arc-length", fact)
                 .remedy("keep it constant, or use \"newton_raphson\"")
                 .into());
         }
-        for interaction in interactions.iter_mut() {
+        for interaction in &mut system.interactions {
             interaction.after_prediction(part)?;
         }
-        let amount = interactions.iter().find_map(|interaction| interaction.relaxation());
+        let amount = system.interactions.iter().find_map(|interaction| interaction.relaxation());
         let mut relaxation = Relaxation { amount, taken: false };
         let mut factor = self.factor;
         let mut predictor = Vec::new();
-        let mut step = vec![0.0; part.dofs.len()];
+        let mut step = vec![0.0; system.dofs.len()];
         let mut references = References::default();
         let mut records = Vec::new();
-        let (mut residual, mut load) = self.residual(part, interactions, factor)?;
+        let (mut residual, mut load) = self.residual(part, system, factor)?;
         for iteration in 1..=self.newton.settings.max_iteration {
             part.info.nl_iteration = iteration;
-            self.newton.assembler.tangents(part, interactions, None)?;
+            self.newton.assembler.tangents(part, system, None)?;
             if self.settings.loads.is_empty() {
                 self.newton.assembler.scale_load_tangents(factor);
             }
             if let Relaxation { amount: Some(amount), taken: true } = relaxation {
-                self.newton.assembler.relax_multipliers(&part.dofs, amount);
+                self.newton.assembler.relax_multipliers(&system.dofs, amount);
             }
-            let (along, mut solved) = self.solve(part, &load, &mut relaxation)?;
+            let (along, mut solved) = self.solve(part, system, &load, &mut relaxation)?;
             let increment: Vec<f64> = if iteration == 1 {
                 let size = self.newton.assembler.dot(&along, &along).sqrt();
                 if size == 0.0 {
@@ -189,16 +189,16 @@ impl ArcLength {
                 predictor.clone()
             } else {
                 let back;
-                (back, solved) = self.solve(part, &residual, &mut relaxation)?;
+                (back, solved) = self.solve(part, system, &residual, &mut relaxation)?;
                 let assembler = &self.newton.assembler;
                 let more = -assembler.dot(&predictor, &back) / assembler.dot(&predictor, &along);
                 factor += more;
                 back.iter().zip(&along).map(|(b, d)| b + more * d).collect()
             };
             step.iter_mut().zip(&increment).for_each(|(sum, d)| *sum += d);
-            self.newton.move_by(part, &increment);
-            let change = update_interactions(part, interactions, iteration)?;
-            (residual, load) = self.residual(part, interactions, factor)?;
+            self.newton.move_by(part, system, &increment);
+            let change = update_interactions(part, &mut system.interactions, iteration)?;
+            (residual, load) = self.residual(part, system, factor)?;
             let assembler = &self.newton.assembler;
             let balanced = assembler.equations().balanced(&residual);
             if iteration == 1 {
@@ -208,15 +208,15 @@ impl ArcLength {
             if change.count() > 0 {
                 references.switched = Some(balanced.to_vec());
             }
-            let verdict = self.newton.judge(part, iteration, &balanced, &references, &increment);
+            let verdict = self.newton.judge(part, system, iteration, &balanced, &references, &increment);
             let record = IterationRecord::new(iteration, verdict.checks, &change, &solved);
             monitor.iteration(&record);
             records.push(record);
-            if self.newton.first_infinite(part, &residual).is_some() {
+            if self.newton.first_infinite(part, system, &residual).is_some() {
                 break;
             }
             if verdict.converged && change.count() == 0 {
-                self.newton.keep_reactions(part, &residual);
+                self.newton.keep_reactions(part, system, &residual);
                 self.pending = Some((factor, step, iteration));
                 return Ok((records, None));
             }
@@ -224,21 +224,26 @@ impl ArcLength {
         if let Some([_, radius]) = &mut self.radius {
             *radius *= 0.5;
         }
-        let failure = self.newton.explain(part, &records, &residual);
+        let failure = self.newton.explain(part, system, &records, &residual);
         Ok((records, Some(failure)))
     }
 }
 
 impl SolutionStrategy for ArcLength {
-    fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
-        let mut record = recorded(part, |part, interactions| self.iterate(part, interactions, monitor))?;
+    fn solve_step(
+        &mut self,
+        part: &mut ModelPart,
+        system: &mut System,
+        monitor: &mut dyn Monitor,
+    ) -> Result<StepRecord> {
+        let mut record = recorded(part, system, |part, system| self.iterate(part, system, monitor))?;
         if let Some((factor, ..)) = &self.pending {
             record.interactions.push(("load factor".to_owned(), *factor));
         }
         Ok(record)
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         if let Some((factor, step, iterations)) = self.pending.take() {
             (self.factor, self.last) = (factor, step);
             part.info.values.insert("LOAD_FACTOR", factor);
@@ -247,7 +252,7 @@ impl SolutionStrategy for ArcLength {
                 *radius = grown.clamp(self.settings.least * *first, self.settings.most * *first);
             }
         }
-        accept(part)
+        accept(part, system)
     }
 
     fn assembler(&self) -> &Assembler {

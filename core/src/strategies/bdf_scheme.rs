@@ -6,7 +6,7 @@
 //! 5 are not for motion without damping.
 
 use super::scheme::{Scheme, SchemeFactory, gather, predict_ballistic};
-use crate::assembly::Inertia;
+use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
@@ -52,7 +52,7 @@ impl Scheme for BdfScheme {
         part.nodes.history.set_levels(levels);
     }
 
-    fn predict(&mut self, part: &mut ModelPart) -> Result<()> {
+    fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
         let (time, dt) = (part.info.time, part.info.delta_time);
         let now = time - dt;
         // An attempt that failed left an end after the present time.
@@ -65,7 +65,7 @@ impl Scheme for BdfScheme {
         let times: Vec<f64> = std::iter::once(time).chain(self.ends.iter().rev().copied()).collect();
         self.weights = weights(&times);
         self.ends.push(time);
-        predict_ballistic(part);
+        predict_ballistic(part, dofs);
         Ok(())
     }
 
@@ -80,8 +80,8 @@ impl Scheme for BdfScheme {
         }
     }
 
-    fn inertia(&self, part: &ModelPart) -> Option<Inertia> {
-        let present = |variable| gather(part, |i| part.nodes.history.values(variable, 0)[i]);
+    fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
+        let present = |variable| gather(dofs, |i| part.nodes.history.values(variable, 0)[i]);
         Some(Inertia {
             mass_factor: self.weights[0].powi(2),
             damping_factor: self.weights[0],

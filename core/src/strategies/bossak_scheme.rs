@@ -4,7 +4,7 @@
 //! α_m in [−1/2, 0]. β = (1 − α_m)² β₀ and γ = 1/2 − α_m keep second order and damp high frequencies.
 
 use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
-use crate::assembly::Inertia;
+use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, VELOCITY};
@@ -47,8 +47,8 @@ impl Scheme for BossakScheme {
         part.nodes.history.add(&ACCELERATION);
     }
 
-    fn predict(&mut self, part: &mut ModelPart) -> Result<()> {
-        predict_ballistic(part);
+    fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
+        predict_ballistic(part, dofs);
         Ok(())
     }
 
@@ -56,7 +56,7 @@ impl Scheme for BossakScheme {
         update_newmark(part, self.beta, self.gamma);
     }
 
-    fn inertia(&self, part: &ModelPart) -> Option<Inertia> {
+    fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
         let dt = part.info.delta_time;
         let history = &part.nodes.history;
         let (a, a_old) = (history.values(&ACCELERATION, 0), history.values(&ACCELERATION, 1));
@@ -66,8 +66,8 @@ impl Scheme for BossakScheme {
             damping_factor: self.gamma / (self.beta * dt),
             alpha: self.rayleigh[0],
             beta: self.rayleigh[1],
-            acceleration: gather(part, |i| (1.0 - self.alpha_m) * a[i] + self.alpha_m * a_old[i]),
-            velocity: gather(part, |i| v[i]),
+            acceleration: gather(dofs, |i| (1.0 - self.alpha_m) * a[i] + self.alpha_m * a_old[i]),
+            velocity: gather(dofs, |i| v[i]),
             carried: Vec::new(),
         })
     }

@@ -12,10 +12,9 @@ use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::gather;
 use super::strategy::{SolutionStrategy, accept, recorded};
-use crate::assembly::{Assembler, Inertia, damped_by_properties, impose_constraints, strongest_damping};
+use crate::assembly::{Assembler, Inertia, System, damped_by_properties, impose_constraints, strongest_damping};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::entities::Interaction;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, FORCE_RESIDUAL, NODAL_MASS, VELOCITY};
 use crate::parameters::Settings;
@@ -90,17 +89,20 @@ impl ExplicitStrategy {
     ///
     /// # Errors
     /// Lagrange multipliers and other unknowns without mass; an entity that cannot be computed.
-    pub fn new(settings: ExplicitSettings, scheme: CentralDifferences, part: &mut ModelPart) -> Result<Self> {
-        let interactions = std::mem::take(&mut part.interactions);
-        let mut assembler = Assembler::new(part, &interactions, true);
-        part.interactions = interactions;
-        world().agree(only_displacements(part))?;
+    pub fn new(
+        settings: ExplicitSettings,
+        scheme: CentralDifferences,
+        part: &mut ModelPart,
+        system: &mut System,
+    ) -> Result<Self> {
+        let mut assembler = Assembler::new(part, system, true);
+        world().agree(only_displacements(system))?;
         scheme.prepare(part);
         part.nodes.history.add(&FORCE_RESIDUAL);
-        let mass = assembler.lumped_mass(part)?;
+        let mass = assembler.lumped_mass(part, system)?;
         let mut worst: Option<(usize, f64)> = None;
         let column = part.nodes.values.values_mut(&NODAL_MASS, 0);
-        for (dof, &m) in part.dofs.dofs().iter().zip(&mass) {
+        for (dof, &m) in system.dofs.dofs().iter().zip(&mass) {
             column[dof.node as usize] = m;
             if worst.is_none_or(|(_, smallest)| m < smallest) {
                 worst = Some((part.nodes.ids[dof.node as usize], m));
@@ -119,14 +121,11 @@ impl ExplicitStrategy {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn critical_step(&mut self, part: &mut ModelPart) -> Result<f64> {
-        let interactions = std::mem::take(&mut part.interactions);
-        let prepared = self.assembler.begin_step(part, &interactions);
-        let result = prepared.and_then(|()| self.assembler.tangents(part, &interactions, None));
-        part.interactions = interactions;
-        result?;
+    pub fn critical_step(&mut self, part: &mut ModelPart, system: &System) -> Result<f64> {
+        self.assembler.begin_step(part, system)?;
+        self.assembler.tangents(part, system, None)?;
         let rayleigh = strongest_damping(part, self.settings.rayleigh);
-        Ok(critical_step(&self.assembler, &part.dofs, &self.reduced_mass(), rayleigh))
+        Ok(critical_step(&self.assembler, &system.dofs, &self.reduced_mass(), rayleigh))
     }
 
     /// Mass of each equation; what slaves carry is lumped on their masters.
@@ -137,61 +136,55 @@ impl ExplicitStrategy {
         equations.reduce(&carried)
     }
 
-    fn advance(
-        &mut self,
-        part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
-    ) -> Result<(Vec<IterationRecord>, Option<String>)> {
+    fn advance(&mut self, part: &mut ModelPart, system: &mut System) -> Result<(Vec<IterationRecord>, Option<String>)> {
         part.info.nl_iteration = 0;
-        let targets = self.assembler.values(part);
-        self.step_back(part);
-        for interaction in interactions.iter_mut() {
+        let targets = self.assembler.values(part, system);
+        self.step_back(part, system);
+        for interaction in &mut system.interactions {
             interaction.begin_step(part)?;
         }
-        self.assembler.begin_step(part, interactions)?;
-        for interaction in interactions.iter_mut() {
+        self.assembler.begin_step(part, system)?;
+        for interaction in &mut system.interactions {
             interaction.after_prediction(part)?;
             interaction.after_update(part, 1)?;
         }
-        self.assembler.begin_step(part, interactions)?;
-        let damping = self.damping(part);
-        let residual = self.assembler.residual(part, interactions, damping.as_ref())?;
+        self.assembler.begin_step(part, system)?;
+        let damping = self.damping(part, system);
+        let residual = self.assembler.residual(part, system, damping.as_ref())?;
         let equations = self.assembler.equations();
         let force = equations.reduce(&residual);
         let mass = self.reduced_mass();
         let acceleration = equations.expand(&force.iter().zip(&mass).map(|(f, m)| f / m).collect::<Vec<f64>>());
-        let start = self.assembler.values(part);
+        let start = self.assembler.values(part, system);
         let moved = (0..targets.len()).find(|&n| equations.is_fixed(n) && targets[n] != start[n]);
         let target = |n: usize| {
             let follow = self.settings.follow_prescribed;
             equations.is_fixed(n).then(|| if follow { targets[n] } else { start[n] })
         };
-        let dofs = std::mem::take(&mut part.dofs);
-        self.scheme.advance(&mut part.nodes.history, &dofs, &acceleration, part.info.delta_time, target);
-        part.dofs = dofs;
+        self.scheme.advance(&mut part.nodes.history, &system.dofs, &acceleration, part.info.delta_time, target);
         if !part.constraints.is_empty() {
             impose_constraints(&mut part.nodes, &part.constraints);
         }
-        self.write_residual(part, &residual);
+        self.write_residual(part, system, &residual);
         if self.settings.compute_reactions {
-            let unbalanced = self.unbalanced(part, &residual);
+            let unbalanced = self.unbalanced(part, system, &residual);
             let handed_on = self.settings.reactions_of_constraints.then(|| self.assembler.equations());
-            write_reactions(part, &unbalanced, handed_on);
+            write_reactions(part, &system.dofs, &unbalanced, handed_on);
         }
         if self.settings.move_mesh {
             part.move_mesh();
         }
         if !self.settings.follow_prescribed && !self.warned {
-            self.warn_of_motion(part, moved);
+            self.warn_of_motion(part, system, moved);
         }
-        let broken = self.assembler.values(part).iter().position(|v| !v.is_finite());
-        Ok((Vec::new(), world().first_to_say(broken.map(|number| self.explain(part, number)))))
+        let broken = self.assembler.values(part, system).iter().position(|v| !v.is_finite());
+        Ok((Vec::new(), world().first_to_say(broken.map(|number| self.explain(part, system, number)))))
     }
 
     /// Puts prescribed unknowns back to where they are now: forces are those of the step's start.
-    fn step_back(&self, part: &mut ModelPart) {
-        for dof in part.dofs.dofs() {
-            if part.dofs.is_fixed(dof.variable, dof.node)
+    fn step_back(&self, part: &mut ModelPart, system: &System) {
+        for dof in system.dofs.dofs() {
+            if part.nodes.is_fixed(dof.variable, dof.node)
                 && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
             {
                 let at = dof.node as usize * field.components + dof.variable.offset();
@@ -201,28 +194,28 @@ impl ExplicitStrategy {
     }
 
     /// Damping forces of the velocity stored with the last step.
-    fn damping(&self, part: &ModelPart) -> Option<Inertia> {
-        if self.settings.rayleigh == [0.0; 2] && !damped_by_properties(part) {
+    fn damping(&self, part: &ModelPart, system: &System) -> Option<Inertia> {
+        if self.settings.rayleigh == [0.0; 2] && !damped_by_properties(part, system) {
             return None;
         }
         Some(Inertia {
             alpha: self.settings.rayleigh[0],
             beta: self.settings.rayleigh[1],
-            acceleration: vec![0.0; part.dofs.len()],
-            velocity: gather(part, |i| part.nodes.history.values(&VELOCITY, 0)[i]),
+            acceleration: vec![0.0; system.dofs.len()],
+            velocity: gather(&system.dofs, |i| part.nodes.history.values(&VELOCITY, 0)[i]),
             ..Inertia::default()
         })
     }
 
     /// What supports and constraints must carry: the residual less the inertia.
-    fn unbalanced(&self, part: &ModelPart, residual: &[f64]) -> Vec<f64> {
-        let acceleration = gather(part, |i| part.nodes.history.values(&ACCELERATION, 0)[i]);
+    fn unbalanced(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Vec<f64> {
+        let acceleration = gather(&system.dofs, |i| part.nodes.history.values(&ACCELERATION, 0)[i]);
         residual.iter().zip(acceleration).zip(&self.mass).map(|((r, a), m)| r - m * a).collect()
     }
 
-    fn write_residual(&self, part: &mut ModelPart, residual: &[f64]) {
+    fn write_residual(&self, part: &mut ModelPart, system: &System, residual: &[f64]) {
         let column = part.nodes.history.values_mut(&FORCE_RESIDUAL, 0);
-        for (dof, r) in part.dofs.dofs().iter().zip(residual) {
+        for (dof, r) in system.dofs.dofs().iter().zip(residual) {
             if dof.variable.column == DISPLACEMENT.name() {
                 column[3 * dof.node as usize + dof.variable.offset()] = *r;
             }
@@ -230,8 +223,8 @@ impl ExplicitStrategy {
     }
 
     /// Warns, once, of a fixed unknown on any rank that is given another value; collective.
-    fn warn_of_motion(&mut self, part: &mut ModelPart, moved: Option<usize>) {
-        let moved = moved.map(|number| Meaning::of(&part.dofs, &part.nodes, number as u32).to_string());
+    fn warn_of_motion(&mut self, part: &mut ModelPart, system: &System, moved: Option<usize>) {
+        let moved = moved.map(|number| Meaning::of(&system.dofs, &part.nodes, number as u32).to_string());
         if let Some(moved) = world().first_to_say(moved) {
             let fact = format!("{moved} is fixed and given another value: it stays where it is");
             let remedy = "\"follow_prescribed_motion\" of the solver settings is false: true moves fixed unknowns";
@@ -240,21 +233,21 @@ impl ExplicitStrategy {
         }
     }
 
-    fn explain(&self, part: &ModelPart, number: usize) -> String {
-        let unknown = Meaning::of(&part.dofs, &part.nodes, number as u32);
+    fn explain(&self, part: &ModelPart, system: &System, number: usize) -> String {
+        let unknown = Meaning::of(&system.dofs, &part.nodes, number as u32);
         format!("{unknown} is no longer finite: the step is longer than the critical one")
     }
 }
 
 /// # Errors
 /// Unknowns that central differences cannot move.
-fn only_displacements(part: &ModelPart) -> Result<()> {
-    if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.multiplier) {
+fn only_displacements(system: &System) -> Result<()> {
+    if let Some(dof) = system.dofs.dofs().iter().find(|dof| dof.multiplier) {
         let fact = format!("explicit integration cannot carry the Lagrange multipliers {}", dof.variable.column);
         let remedy = "use contact by penalty, \"mortar_type\": \"PenaltyContactFrictionless\"";
         return Err(Diagnostic::error("explicit-multipliers", fact).remedy(remedy).into());
     }
-    if let Some(dof) = part.dofs.dofs().iter().find(|dof| dof.variable.column != DISPLACEMENT.name()) {
+    if let Some(dof) = system.dofs.dofs().iter().find(|dof| dof.variable.column != DISPLACEMENT.name()) {
         let fact = format!("explicit integration cannot carry {}, which has no mass", dof.variable.column);
         let remedy = "use elements of displacements only, e.g. SmallDisplacementBbarElement2D4N or 3D8N";
         return Err(Diagnostic::error("explicit-unknowns", fact).remedy(remedy).into());
@@ -263,13 +256,13 @@ fn only_displacements(part: &ModelPart) -> Result<()> {
 }
 
 impl SolutionStrategy for ExplicitStrategy {
-    fn step_length(&mut self, part: &mut ModelPart, asked: f64) -> Result<f64> {
+    fn step_length(&mut self, part: &mut ModelPart, system: &System, asked: f64) -> Result<f64> {
         let stale = match self.predicted {
             None => true,
             Some((_, steps)) => self.settings.prediction_level > 1 && steps >= self.settings.refresh,
         };
         if stale {
-            let critical = self.critical_step(part)?;
+            let critical = self.critical_step(part, system)?;
             part.info.values.insert(CRITICAL_STEP, critical);
             if self.settings.prediction_level == 0 && asked > critical {
                 let fact = format!("the step {asked:.3e} is longer than the critical one, {critical:.3e}");
@@ -304,12 +297,17 @@ impl SolutionStrategy for ExplicitStrategy {
         ANNOUNCED
     }
 
-    fn solve_step(&mut self, part: &mut ModelPart, _monitor: &mut dyn Monitor) -> Result<StepRecord> {
-        recorded(part, |part, interactions| self.advance(part, interactions))
+    fn solve_step(
+        &mut self,
+        part: &mut ModelPart,
+        system: &mut System,
+        _monitor: &mut dyn Monitor,
+    ) -> Result<StepRecord> {
+        recorded(part, system, |part, system| self.advance(part, system))
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        accept(part)
+    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+        accept(part, system)
     }
 
     fn assembler(&self) -> &Assembler {

@@ -6,7 +6,7 @@
 //! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
 
 use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
-use crate::assembly::Inertia;
+use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, VELOCITY};
@@ -49,8 +49,8 @@ impl Scheme for GeneralizedAlphaScheme {
         part.nodes.history.add(&ACCELERATION);
     }
 
-    fn predict(&mut self, part: &mut ModelPart) -> Result<()> {
-        predict_ballistic(part);
+    fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
+        predict_ballistic(part, dofs);
         Ok(())
     }
 
@@ -58,7 +58,7 @@ impl Scheme for GeneralizedAlphaScheme {
         update_newmark(part, self.beta, self.gamma);
     }
 
-    fn inertia(&self, part: &ModelPart) -> Option<Inertia> {
+    fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
         let dt = part.info.delta_time;
         let history = &part.nodes.history;
         let (a, a_old) = (history.values(&ACCELERATION, 0), history.values(&ACCELERATION, 1));
@@ -70,14 +70,14 @@ impl Scheme for GeneralizedAlphaScheme {
             damping_factor: self.gamma / (self.beta * dt),
             alpha: self.rayleigh[0],
             beta: self.rayleigh[1],
-            acceleration: gather(part, |i| scale * ((1.0 - m) * a[i] + m * a_old[i])),
-            velocity: gather(part, |i| v[i] + scale * f * v_old[i]),
+            acceleration: gather(dofs, |i| scale * ((1.0 - m) * a[i] + m * a_old[i])),
+            velocity: gather(dofs, |i| v[i] + scale * f * v_old[i]),
             carried: self.forces.iter().flatten().map(|force| scale * f * force).collect(),
         })
     }
 
-    fn past_inertia(&self, part: &ModelPart) -> Option<Inertia> {
-        let old = |variable| gather(part, |i| part.nodes.history.values(variable, 1)[i]);
+    fn past_inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
+        let old = |variable| gather(dofs, |i| part.nodes.history.values(variable, 1)[i]);
         let [alpha, beta] = self.rayleigh;
         self.forces.is_none().then(|| Inertia {
             alpha,

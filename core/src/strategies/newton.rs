@@ -20,10 +20,9 @@ use super::meaning::Meaning;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, accept, recorded};
-use crate::assembly::{Assembler, impose_constraints};
+use crate::assembly::{Assembler, System, impose_constraints};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
-use crate::entities::Interaction;
 use crate::model::ModelPart;
 use crate::register;
 use crate::registry::Build;
@@ -84,26 +83,31 @@ impl SolutionStrategy for NewtonRaphson {
         self.linear_seconds
     }
 
-    fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
+    fn solve_step(
+        &mut self,
+        part: &mut ModelPart,
+        system: &mut System,
+        monitor: &mut dyn Monitor,
+    ) -> Result<StepRecord> {
         self.singular = false;
         self.coarse = None;
-        let record = recorded(part, |part, interactions| self.iterate(part, interactions, monitor));
+        let record = recorded(part, system, |part, system| self.iterate(part, system, monitor));
         self.failed = !record.as_ref().is_ok_and(|record| record.converged);
         Ok(StepRecord { singular: self.singular, coarse: self.coarse.take(), ..record? })
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         if self.scheme.keeps_forces()
-            && let Some(inertia) = self.scheme.inertia(part)
+            && let Some(inertia) = self.scheme.inertia(part, &system.dofs)
         {
-            let forces = self.assembler.inertia_forces(part, &inertia)?;
+            let forces = self.assembler.inertia_forces(part, system, &inertia)?;
             self.scheme.keep(forces);
         }
-        self.assembler.extrapolate_rates(part);
-        if self.scheme.has_inertia() && !part.interactions.is_empty() {
-            self.measure_energy(part)?;
+        self.assembler.extrapolate_rates(part, system);
+        if self.scheme.has_inertia() && !system.interactions.is_empty() {
+            self.measure_energy(part, system)?;
         }
-        accept(part)
+        accept(part, system)
     }
 }
 
@@ -115,10 +119,9 @@ impl NewtonRaphson {
         criterion: Box<dyn ConvergenceCriterion>,
         solver: Box<dyn LinearSolver>,
         part: &mut ModelPart,
+        system: &mut System,
     ) -> Self {
-        let interactions = std::mem::take(&mut part.interactions);
-        let assembler = Assembler::new(part, &interactions, scheme.lumped_mass());
-        part.interactions = interactions;
+        let assembler = Assembler::new(part, system, scheme.lumped_mass());
         Self {
             settings,
             scheme,
@@ -149,8 +152,8 @@ impl NewtonRaphson {
     }
 
     /// Notes the energy of the present state where it is the largest so far.
-    fn measure_energy(&mut self, part: &mut ModelPart) -> Result<()> {
-        let most = part.info.value_or(ENERGY_OF_MOTION, 0.0).max(self.assembler.energy(part)?);
+    fn measure_energy(&mut self, part: &mut ModelPart, system: &System) -> Result<()> {
+        let most = part.info.value_or(ENERGY_OF_MOTION, 0.0).max(self.assembler.energy(part, system)?);
         part.info.values.insert(ENERGY_OF_MOTION, most);
         Ok(())
     }
@@ -159,7 +162,7 @@ impl NewtonRaphson {
     ///
     /// # Errors
     /// A singular matrix or a solver that fails, naming nodes.
-    pub(super) fn solve(&mut self, part: &mut ModelPart, rhs: &[f64]) -> Result<Solved, Failed> {
+    pub(super) fn solve(&mut self, part: &mut ModelPart, system: &System, rhs: &[f64]) -> Result<Solved, Failed> {
         if !world().any(rhs.iter().any(|v| *v != 0.0)) {
             let engine = "none: nothing out of balance".to_owned();
             let increment = vec![0.0; rhs.len()];
@@ -167,7 +170,7 @@ impl NewtonRaphson {
         }
         let (solver, gathered) = (self.solver.as_mut(), &mut self.gathered);
         let (increment, report) =
-            linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &part.dofs, &part.nodes)?;
+            linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &system.dofs, &part.nodes)?;
         let phases = [report.seconds_symbolic, report.seconds_numeric, report.seconds_solve];
         self.linear_seconds.iter_mut().zip(phases).for_each(|(sum, seconds)| *sum += seconds);
         let SolveReport { engine, relative_residual, iterations, mut fallback, .. } = report;
@@ -178,7 +181,7 @@ impl NewtonRaphson {
                 let unknowns = self.assembler.equations().unknowns();
                 let meaning = |equation: usize| match self.assembler.numbering() {
                     Some(_) => self.gathered.meaning(equation),
-                    None => unknowns.get(equation).map(|&number| Meaning::of(&part.dofs, &part.nodes, number)),
+                    None => unknowns.get(equation).map(|&number| Meaning::of(&system.dofs, &part.nodes, number)),
                 };
                 part.messages.push(condensing::warning(refused, &meaning, self.solver_place.as_ref()));
             }
@@ -190,6 +193,7 @@ impl NewtonRaphson {
     pub(super) fn judge(
         &self,
         part: &ModelPart,
+        system: &System,
         iteration: usize,
         balanced: &[f64],
         references: &References,
@@ -198,30 +202,30 @@ impl NewtonRaphson {
         self.criterion.judge(&Measures {
             iteration,
             nodes: &part.nodes,
-            dofs: &part.dofs,
+            dofs: &system.dofs,
             equations: self.assembler.equations(),
             distribution: self.assembler.distribution(),
             residual: balanced,
             references: &references.start,
             switched: references.switched.as_deref(),
             increment,
-            values: &self.assembler.values(part),
-            round_off: &self.assembler.round_off(part),
+            values: &self.assembler.values(part, system),
+            round_off: &self.assembler.round_off(part, system),
         })
     }
 
     /// The first unknown that is no number any more, or whose residual is not; collective.
-    pub(super) fn first_infinite(&self, part: &ModelPart, residual: &[f64]) -> Option<String> {
-        let values = self.assembler.values(part);
+    pub(super) fn first_infinite(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Option<String> {
+        let values = self.assembler.values(part, system);
         let broken = (0..values.len() as u32)
             .find(|&n| !(residual[n as usize].is_finite() && values[n as usize].is_finite()))
-            .map(|n| format!("{} or its residual is no longer finite", Meaning::of(&part.dofs, &part.nodes, n)));
+            .map(|n| format!("{} or its residual is no longer finite", Meaning::of(&system.dofs, &part.nodes, n)));
         world().first_to_say(broken)
     }
 
     /// Adds an increment to the unknowns; rates and positions follow.
-    pub(super) fn move_by(&self, part: &mut ModelPart, increment: &[f64]) {
-        part.dofs.scatter_add(increment, &mut part.nodes);
+    pub(super) fn move_by(&self, part: &mut ModelPart, system: &System, increment: &[f64]) {
+        system.dofs.scatter_add(increment, &mut part.nodes);
         if !part.constraints.is_empty() {
             impose_constraints(&mut part.nodes, &part.constraints);
         }
@@ -236,24 +240,24 @@ impl NewtonRaphson {
         &mut self,
         search: &LineSearch,
         part: &mut ModelPart,
-        interactions: &[Box<dyn Interaction>],
+        system: &System,
         residual: &[f64],
         increment: &mut [f64],
     ) -> Result<()> {
-        let begin = self.assembler.values(part);
+        let begin = self.assembler.values(part, system);
         let before = self.assembler.dot(increment, residual);
         let go = |newton: &mut Self, part: &mut ModelPart, factor: f64| {
-            let now = newton.assembler.values(part);
+            let now = newton.assembler.values(part, system);
             let way = begin.iter().zip(&now).zip(increment.iter());
             let way: Vec<f64> = way.map(|((begin, now), d)| begin + factor * d - now).collect();
-            newton.move_by(part, &way);
+            newton.move_by(part, system, &way);
         };
         let mut last = 0.0;
         let factor = search.search(before, |factor| {
             go(self, part, factor);
             last = factor;
-            let inertia = self.scheme.inertia(part);
-            match self.assembler.residual(part, interactions, inertia.as_ref()) {
+            let inertia = self.scheme.inertia(part, &system.dofs);
+            match self.assembler.residual(part, system, inertia.as_ref()) {
                 Ok(residual) => Ok(Some(self.assembler.dot(increment, &residual)).filter(|w| w.is_finite())),
                 Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => Ok(None),
                 Err(error) => Err(error),
@@ -279,16 +283,16 @@ impl NewtonRaphson {
 
     /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by power and inverse power iteration; on several
     /// ranks, rank 0 knows it. Collective.
-    fn condition_number(&mut self, part: &ModelPart, monitor: &mut dyn Monitor) -> Option<f64> {
-        let mut system = self.assembler.system();
+    fn condition_number(&mut self, part: &ModelPart, system: &System, monitor: &mut dyn Monitor) -> Option<f64> {
+        let mut matrices = self.assembler.system();
         if self.assembler.numbering().is_some() {
-            self.gathered.update(&self.assembler, None, &part.dofs, &part.nodes);
-            system = self.gathered.system(&system).0;
+            self.gathered.update(&self.assembler, None, &system.dofs, &part.nodes);
+            matrices = self.gathered.system(&matrices).0;
         }
         if !world().is_root() {
             return None;
         }
-        match zelus_linear_algebra::condition_number(&system) {
+        match zelus_linear_algebra::condition_number(&matrices) {
             Ok(spectrum) => Some(spectrum.condition_number()),
             Err(error) => {
                 monitor.note(&format!("condition number: {error}"));
@@ -298,22 +302,28 @@ impl NewtonRaphson {
     }
 
     /// The largest entry of what is out of balance and its unknown, in words; collective.
-    pub(super) fn largest_residual(&self, part: &ModelPart, balanced: &[f64]) -> Option<String> {
+    pub(super) fn largest_residual(&self, part: &ModelPart, system: &System, balanced: &[f64]) -> Option<String> {
         let size = |n: u32| balanced[n as usize].abs();
         let unknowns = self.assembler.equations().unknowns().iter().copied();
         let worst = unknowns.max_by(|&a, &b| size(a).total_cmp(&size(b)));
         let largest = world().gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
         let said = worst.filter(|&n| size(n) >= largest).map(|n| {
             let value = balanced[n as usize];
-            format!("; largest residual {value:.3e} at {}", Meaning::of(&part.dofs, &part.nodes, n))
+            format!("; largest residual {value:.3e} at {}", Meaning::of(&system.dofs, &part.nodes, n))
         });
         world().first_to_say(said)
     }
 
-    pub(super) fn explain(&self, part: &ModelPart, records: &[IterationRecord], residual: &[f64]) -> String {
+    pub(super) fn explain(
+        &self,
+        part: &ModelPart,
+        system: &System,
+        records: &[IterationRecord],
+        residual: &[f64],
+    ) -> String {
         let equations = self.assembler.equations();
         let residual = equations.balanced(residual);
-        let worst = self.largest_residual(part, &residual);
+        let worst = self.largest_residual(part, system, &residual);
         let last = records.last();
         let cycling = last.filter(|r| r.active_set_changes + r.stick_slip_changes > 0).map(|r| {
             let nodes: Vec<String> = r.changed_nodes.iter().map(ToString::to_string).collect();

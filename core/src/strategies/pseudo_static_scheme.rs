@@ -5,7 +5,7 @@
 //! ACCELERATION is the change of VELOCITY over the step and enters no equation.
 
 use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather};
-use crate::assembly::Inertia;
+use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
@@ -40,10 +40,10 @@ impl Scheme for PseudoStaticScheme {
     }
 
     /// Free displacements go on with the velocity of the last step.
-    fn predict(&mut self, part: &mut ModelPart) -> Result<()> {
+    fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
         let dt = part.info.delta_time;
-        for dof in part.dofs.dofs() {
-            if dof.variable.column == DISPLACEMENT.name() && !part.dofs.is_fixed(dof.variable, dof.node) {
+        for dof in dofs.dofs() {
+            if dof.variable.column == DISPLACEMENT.name() && !part.nodes.is_fixed(dof.variable, dof.node) {
                 let at = 3 * dof.node as usize + dof.variable.offset();
                 let old = |variable| part.nodes.history.values(variable, 1)[at];
                 let guess = old(&DISPLACEMENT) + dt * old(&VELOCITY);
@@ -64,15 +64,15 @@ impl Scheme for PseudoStaticScheme {
         history.values_mut(&ACCELERATION, 0).copy_from_slice(&acceleration);
     }
 
-    fn inertia(&self, part: &ModelPart) -> Option<Inertia> {
+    fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
         let [alpha, beta] = self.rayleigh;
         let velocity = part.nodes.history.values(&VELOCITY, 0);
         Some(Inertia {
             damping_factor: 2.0 / part.info.delta_time,
             alpha,
             beta,
-            acceleration: gather(part, |_| 0.0),
-            velocity: gather(part, |i| velocity[i]),
+            acceleration: gather(dofs, |_| 0.0),
+            velocity: gather(dofs, |i| velocity[i]),
             ..Inertia::default()
         })
     }

@@ -1,6 +1,6 @@
 //! Time schemes: what inertia adds to the system, and how rates follow displacements.
 
-use crate::assembly::Inertia;
+use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
@@ -32,7 +32,7 @@ pub trait Scheme: Send {
     ///
     /// # Errors
     /// A step the scheme cannot take.
-    fn predict(&mut self, _part: &mut ModelPart) -> Result<()> {
+    fn predict(&mut self, _part: &mut ModelPart, _dofs: &DofTable) -> Result<()> {
         Ok(())
     }
 
@@ -40,14 +40,14 @@ pub trait Scheme: Send {
     fn update(&self, _part: &mut ModelPart) {}
 
     /// What inertia and damping add in the present state; `None` when the problem is static.
-    fn inertia(&self, _part: &ModelPart) -> Option<Inertia> {
+    fn inertia(&self, _part: &ModelPart, _dofs: &DofTable) -> Option<Inertia> {
         None
     }
 
     /// Step start: what inertia and damping were at the end of the last step, when the scheme has still to be told.
     ///
     /// [`Scheme::keep`] is then called with the forces that come of it.
-    fn past_inertia(&self, _part: &ModelPart) -> Option<Inertia> {
+    fn past_inertia(&self, _part: &ModelPart, _dofs: &DofTable) -> Option<Inertia> {
         None
     }
 
@@ -66,18 +66,18 @@ pub trait Scheme: Send {
 }
 
 /// One number an unknown: `value` at the place of its component in a vector column, 0 for all but displacements.
-pub(super) fn gather(part: &ModelPart, value: impl Fn(usize) -> f64) -> Vec<f64> {
+pub(super) fn gather(dofs: &DofTable, value: impl Fn(usize) -> f64) -> Vec<f64> {
     let displacement = |dof: &crate::assembly::Dof| dof.variable.column == DISPLACEMENT.name();
-    let dofs = part.dofs.dofs().iter();
-    dofs.map(|dof| if displacement(dof) { value(3 * dof.node as usize + dof.variable.offset()) } else { 0.0 }).collect()
+    let all = dofs.dofs().iter();
+    all.map(|dof| if displacement(dof) { value(3 * dof.node as usize + dof.variable.offset()) } else { 0.0 }).collect()
 }
 
 /// Moves free displacements to u + Δt v + Δt²/2 a of the last step.
-pub(super) fn predict_ballistic(part: &mut ModelPart) {
+pub(super) fn predict_ballistic(part: &mut ModelPart, dofs: &DofTable) {
     let dt = part.info.delta_time;
-    for dof in part.dofs.dofs() {
+    for dof in dofs.dofs() {
         let at = 3 * dof.node as usize + dof.variable.offset();
-        if dof.variable.column == DISPLACEMENT.name() && !part.dofs.is_fixed(dof.variable, dof.node) {
+        if dof.variable.column == DISPLACEMENT.name() && !part.nodes.is_fixed(dof.variable, dof.node) {
             let old = |variable| part.nodes.history.values(variable, 1)[at];
             let guess = old(&DISPLACEMENT) + dt * old(&VELOCITY) + 0.5 * dt * dt * old(&ACCELERATION);
             part.nodes.history.values_mut(&DISPLACEMENT, 0)[at] = guess;

@@ -1,7 +1,7 @@
 //! What the stage asks of the solution of a step, whether it iterates or not.
 
 use super::records::{IterationRecord, Monitor, StepRecord};
-use crate::assembly::Assembler;
+use crate::assembly::{Assembler, System};
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, SetChange};
@@ -13,7 +13,7 @@ pub trait SolutionStrategy: Send {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    fn step_length(&mut self, _part: &mut ModelPart, asked: f64) -> Result<f64> {
+    fn step_length(&mut self, _part: &mut ModelPart, _system: &System, asked: f64) -> Result<f64> {
         Ok(asked)
     }
 
@@ -37,13 +37,18 @@ pub trait SolutionStrategy: Send {
     /// # Errors
     /// A singular system, a failed solver or search. An entity that cannot be computed (e.g. inverted), and with interactions
     /// a singular system, make the step not converged instead.
-    fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord>;
+    fn solve_step(
+        &mut self,
+        part: &mut ModelPart,
+        system: &mut System,
+        monitor: &mut dyn Monitor,
+    ) -> Result<StepRecord>;
 
     /// The step is accepted: history advances, once.
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()>;
+    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()>;
 
     /// The system of the last step.
     fn assembler(&self) -> &Assembler;
@@ -58,15 +63,10 @@ pub trait SolutionStrategy: Send {
 ///
 /// # Errors
 /// An entity that cannot be computed.
-pub(super) fn accept(part: &mut ModelPart) -> Result<()> {
-    let mut blocks = std::mem::take(&mut part.element_blocks);
-    let result = blocks.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
-    part.element_blocks = blocks;
+pub(super) fn accept(part: &mut ModelPart, system: &mut System) -> Result<()> {
+    let result = system.elements.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
     world().agree(result.map_err(Error::from))?;
-    let mut interactions = std::mem::take(&mut part.interactions);
-    let result = interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part));
-    part.interactions = interactions;
-    result
+    system.interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part))
 }
 
 /// Lets interactions follow an update of the unknowns; what changed in all of them.
@@ -85,17 +85,16 @@ pub(super) fn update_interactions(
     Ok(change)
 }
 
-/// Runs `solve` on a part without its interactions and puts down what came of it: iterations and the reason of a failure.
+/// Runs `solve` and puts down what came of it: iterations and the reason of a failure.
 ///
 /// # Errors
 /// As `solve`, but an entity that cannot be computed becomes the reason of a failure.
-pub(super) fn recorded<R>(part: &mut ModelPart, solve: R) -> Result<StepRecord>
+pub(super) fn recorded<R>(part: &mut ModelPart, system: &mut System, solve: R) -> Result<StepRecord>
 where
-    R: FnOnce(&mut ModelPart, &mut [Box<dyn Interaction>]) -> Result<(Vec<IterationRecord>, Option<String>)>,
+    R: FnOnce(&mut ModelPart, &mut System) -> Result<(Vec<IterationRecord>, Option<String>)>,
 {
-    let mut interactions = std::mem::take(&mut part.interactions);
-    let result = solve(part, &mut interactions);
-    let numbers = interactions.iter().flat_map(|i| i.summary(part));
+    let result = solve(part, system);
+    let numbers = system.interactions.iter().flat_map(|i| i.summary(part));
     let mut record = StepRecord {
         step: part.info.step,
         time: part.info.time,
@@ -103,7 +102,6 @@ where
         interactions: numbers.map(|(name, value)| (name.to_owned(), value)).collect(),
         ..StepRecord::default()
     };
-    part.interactions = interactions;
     match result {
         Ok((iterations, failure)) => {
             record.iterations = iterations;

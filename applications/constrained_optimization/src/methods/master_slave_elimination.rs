@@ -4,16 +4,16 @@
 //! force is only the constraint's own as long as no two that act share a position, and no position can be eliminated
 //! twice: the price of having no further unknowns.
 
+use zelus_core::assembly::System;
 use zelus_core::communication::world;
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{EntityBlock, Interaction, LocalSystems, MasterSlaveConstraint, SetChange, StepView, Want};
-use zelus_core::model::{Model, ModelPart, ScalarVariable};
+use zelus_core::entities::{EntityBlock, Interaction, LocalSystems, SetChange, StepView, Want};
+use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart, ScalarVariable};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::Build;
 
-use crate::constraints::Constraint;
-use crate::constraints::INTERACTION;
+use crate::constraints::{Constraint, IMPOSED, INTERACTION};
 use crate::variables::{CONSTRAINT_MULTIPLIER, CONSTRAINT_VIOLATION, POSITION};
 
 /// A constraint and the position that it eliminates.
@@ -26,23 +26,26 @@ struct Elimination {
 }
 
 /// The constraints of a part, imposed by elimination while they act.
+#[derive(Default)]
 struct EliminationInteraction {
     conditions: Vec<u32>,
     eliminations: Vec<Elimination>,
     version: u64,
+    /// Blocks over the elements, asked for their forces.
+    springs: System,
 }
 
 /// −f′ at a node: what the elements exert on its position; collective.
-fn force(part: &ModelPart, view: &StepView<'_>, node: u32) -> Result<f64> {
-    let own = world().agree(own_force(part, view, node))?;
+fn force(springs: &System, part: &ModelPart, node: u32) -> Result<f64> {
+    let own = world().agree(own_force(springs, &part.view(), node))?;
     Ok(if part.share.is_some() { world().total(own) } else { own })
 }
 
 /// What the elements of this rank exert.
-fn own_force(part: &ModelPart, view: &StepView<'_>, node: u32) -> Result<f64> {
+fn own_force(springs: &System, view: &StepView<'_>, node: u32) -> Result<f64> {
     let mut sum = 0.0;
     let mut local = LocalSystems::default();
-    for block in &part.element_blocks {
+    for block in &springs.elements {
         for at in (0..block.len()).filter(|&at| block.nodes(at).contains(&node)) {
             local.reset(1, block.unknowns().len(), Want::Residual);
             block.local_systems(view, at..at + 1, Want::Residual, &mut local)?;
@@ -60,6 +63,7 @@ impl Interaction for EliminationInteraction {
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
         part.nodes.history.add(&CONSTRAINT_MULTIPLIER);
+        self.springs.make_blocks(part)?;
         for &at in &self.conditions {
             let constraint = Constraint::new(part, at as usize)?;
             let largest = constraint.terms.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
@@ -96,7 +100,7 @@ impl Interaction for EliminationInteraction {
             let node = constraint.node as usize;
             let (gap, round_off) = constraint.gap(&part.nodes);
             let was_active = part.constraints[*at].active;
-            let multiplier = if was_active { force(part, &part.view(), slave.0)? / slave.1 } else { 0.0 };
+            let multiplier = if was_active { force(&self.springs, part, slave.0)? / slave.1 } else { 0.0 };
             let is_active = if was_active { multiplier <= 0.0 } else { gap < -round_off };
             match (was_active, is_active) {
                 (false, true) => change.activated.push(part.nodes.ids[node]),
@@ -150,10 +154,14 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
 }
 
 impl Process for EliminationProcess {
-    fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let root = model.root_mut(&self.path)?;
-        let conditions = Constraint::among(root, &self.path)?;
-        root.interactions.push(Box::new(EliminationInteraction { conditions, eliminations: Vec::new(), version: 0 }));
+    fn interaction(&mut self, model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
+        let conditions = Constraint::imposed(model.root_mut(&self.path)?, &self.path)?;
+        let interaction = EliminationInteraction { conditions, ..EliminationInteraction::default() };
+        Ok(Some((self.path.clone(), Box::new(interaction))))
+    }
+
+    fn finalize(&mut self, model: &mut Model) -> Result<()> {
+        model.root_mut(&self.path)?.info.marks.remove(IMPOSED);
         Ok(())
     }
 }

@@ -16,12 +16,13 @@ pub use penalty::Penalty;
 pub use uzawa::Uzawa;
 
 use zelus_core::diagnostics::Result;
+use zelus_core::entities::Interaction;
 use zelus_core::model::Model;
 use zelus_core::parameters::Settings;
 use zelus_core::processes::{Process, ProcessRequest};
 
 use crate::constraint_interaction::ConstraintInteraction;
-use crate::constraints::Constraint;
+use crate::constraints::{Constraint, IMPOSED};
 use crate::method::Method;
 
 /// The process of a method: puts its interaction into the model part.
@@ -61,11 +62,14 @@ fn positive(settings: &Settings, key: &str) -> Result<()> {
 }
 
 impl<M: Method> Process for MethodProcess<M> {
-    fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let Some(method) = self.method.take() else { return Ok(()) };
-        let root = model.root_mut(&self.path)?;
-        let conditions = Constraint::among(root, &self.path)?;
-        root.interactions.push(Box::new(ConstraintInteraction::new(method, conditions)));
+    fn interaction(&mut self, model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
+        let Some(method) = self.method.take() else { return Ok(None) };
+        let conditions = Constraint::imposed(model.root_mut(&self.path)?, &self.path)?;
+        Ok(Some((self.path.clone(), Box::new(ConstraintInteraction::new(method, conditions)))))
+    }
+
+    fn finalize(&mut self, model: &mut Model) -> Result<()> {
+        model.root_mut(&self.path)?.info.marks.remove(IMPOSED);
         Ok(())
     }
 }

@@ -83,7 +83,7 @@ fn load(part: &ModelPart, interfaces: &[Interface], revolution: Option<f64>) -> 
     }
     let masses = part.nodes.values.values(&NODAL_MASS, 0);
     let dimension = part.info.domain_size as u8;
-    let moves = |at: &usize| (0..dimension).any(|c| !part.dofs.is_fixed(DISPLACEMENT.component(c), *at as u32));
+    let moves = |at: &usize| (0..dimension).any(|c| !part.nodes.is_fixed(DISPLACEMENT.component(c), *at as u32));
     let nodes = (0..areas.len()).filter(|&at| areas[at] > 0.0 && masses[at] > 0.0).filter(moves);
     nodes.fold([0.0, 0.0], |[load, area], at| [f64::max(load, areas[at] / masses[at]), f64::max(area, areas[at])])
 }

@@ -9,9 +9,11 @@ use std::collections::BTreeMap;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, MasterSlaveConstraint, SetChange};
+use zelus_core::entities::{EntityBlock, Interaction, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT, ISOLATED, MASTER, SLAVE, SLIP};
-use zelus_core::model::{ModelPart, ScalarVariable, variables::DISPLACEMENT, variables::NORMAL, variables::REACTION};
+use zelus_core::model::{
+    MasterSlaveConstraint, ModelPart, ScalarVariable, variables::DISPLACEMENT, variables::NORMAL, variables::REACTION,
+};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::Entry;
 use zelus_core::registry::{self, Kind};
@@ -280,7 +282,7 @@ impl MpcInteraction {
             return;
         }
         let dimension = part.info.domain_size as u8;
-        let deforms = |node: u32| (0..dimension).any(|c| !part.dofs.is_fixed(DISPLACEMENT.component(c), node));
+        let deforms = |node: u32| (0..dimension).any(|c| !part.nodes.is_fixed(DISPLACEMENT.component(c), node));
         let mixed = self.nodes.values().filter(|relation| relation.is_mixed()).count();
         if mixed > 0 && self.nodes.values().flat_map(|n| &n.weights).any(|&(node, _)| deforms(node)) {
             self.warned = true;

@@ -13,8 +13,7 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::entities::MasterSlaveConstraint;
-use zelus_core::model::{ModelPart, variables::DISPLACEMENT, variables::NORMAL};
+use zelus_core::model::{MasterSlaveConstraint, ModelPart, variables::DISPLACEMENT, variables::NORMAL};
 use zelus_core::vector3::{dot, normalised, sub};
 
 use crate::interface::{Interface, Roles};
@@ -138,7 +137,7 @@ impl PairRelation {
 
 /// Whether supports leave a component of a node free along which a constraint can hold it.
 pub(super) fn can_follow(part: &ModelPart, node: u32, normal: [f64; 3]) -> bool {
-    let free = |c: &usize| !part.dofs.is_fixed(DISPLACEMENT.component(*c as u8), node);
+    let free = |c: &usize| !part.nodes.is_fixed(DISPLACEMENT.component(*c as u8), node);
     (0..part.info.domain_size).filter(free).any(|c| normal[c].abs() > HOLD)
 }
 
@@ -223,7 +222,7 @@ impl NodeRelation {
         out: &mut Vec<MasterSlaveConstraint>,
     ) {
         let dimension = part.info.domain_size;
-        let is_free = |c: usize| !part.dofs.is_fixed(DISPLACEMENT.component(c as u8), node);
+        let is_free = |c: usize| !part.nodes.is_fixed(DISPLACEMENT.component(c as u8), node);
         let mut push = |component: usize, masters, forces, constant| {
             let slave = (node, DISPLACEMENT.component(component as u8));
             out.push(MasterSlaveConstraint { id: *next_id, slave, masters, forces, constant, active: true });
@@ -294,9 +293,7 @@ mod tests {
         part.info.domain_size = 3;
         part.nodes = Nodes::new(vec![1, 2, 3], vec![[0.0; 3]; 3]);
         part.nodes.history.add(&DISPLACEMENT);
-        let unknowns = [0, 1, 2].map(|c| (DISPLACEMENT.component(c), false, vec![0, 1, 2]));
-        part.dofs.number(&part.nodes, &unknowns);
-        fixed.iter().for_each(|&c| part.dofs.set_fixed(DISPLACEMENT.component(c), &[0], true, 3));
+        fixed.iter().for_each(|&c| part.nodes.set_fixed(DISPLACEMENT.component(c), &[0], true));
         let mut out = Vec::new();
         relation().constraints(&part, 0, Hold::Normal { push }, &mut 1, &mut out);
         let constraint = out.pop().expect("a constraint");

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, MasterSlaveConstraint, SetChange};
+use zelus_core::entities::{EntityBlock, Interaction, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT};
-use zelus_core::model::{ModelPart, ScalarVariable, variables::DISPLACEMENT};
+use zelus_core::model::{MasterSlaveConstraint, ModelPart, ScalarVariable, variables::DISPLACEMENT};
 use zelus_core::parameters::Interval;
 use zelus_core::registry::{self, Kind};
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::entities::NodeUnknown;
 use zelus_core::model::ModelPart;
+use zelus_core::model::NodeUnknown;
 use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::vector3::norm;
 
@@ -37,7 +37,7 @@ fn is_fixed(part: &ModelPart, constraints: &Constraints<'_>, unknown: NodeUnknow
         Some(masters) if depth <= constraints.len() => {
             masters.iter().all(|&(master, _)| is_fixed(part, constraints, master, depth + 1))
         }
-        _ => part.dofs.is_fixed(variable, node),
+        _ => part.nodes.is_fixed(variable, node),
     }
 }
 

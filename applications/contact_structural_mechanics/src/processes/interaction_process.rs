@@ -1,12 +1,11 @@
-//! What the processes of contact and ties end in: at the start of the stage the interaction joins its model part.
+//! What the processes of contact and ties end in: an interaction for the system of the stage.
 
 use zelus_core::Result;
-use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::Interaction;
 use zelus_core::model::Model;
 use zelus_core::processes::Process;
 
-/// Puts an interaction into a root model part, and does nothing else.
+/// Gives an interaction to the stage, and does nothing else.
 pub(super) struct InteractionProcess {
     root: String,
     interaction: Option<Box<dyn Interaction>>,
@@ -20,9 +19,7 @@ impl InteractionProcess {
 }
 
 impl Process for InteractionProcess {
-    fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let interaction = self.interaction.take().ok_or_else(|| Diagnostic::error("contact", "initialised twice"))?;
-        model.root_mut(&self.root)?.interactions.push(interaction);
-        Ok(())
+    fn interaction(&mut self, _model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
+        Ok(self.interaction.take().map(|interaction| (self.root.clone(), interaction)))
     }
 }

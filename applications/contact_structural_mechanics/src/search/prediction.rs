@@ -1,7 +1,7 @@
 //! Where nodes are looked for when a search is dynamic.
 
 use zelus_core::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
-use zelus_core::model::{ModelPart, Variable};
+use zelus_core::model::{ModelPart, Nodes, Variable};
 
 /// Moves the nodes of a dynamic search to x + Δt/4 (v + v₁) + Δt²/8 a₁, with v₁ and a₁ of the step before; fixed components
 /// stay. Gives the positions they had, `None` when nothing is predicted.
@@ -21,8 +21,9 @@ pub fn predicted_positions(part: &mut ModelPart, dynamic: bool) -> Option<Vec<[f
     add(&VELOCITY, 1, 0.25 * time_step);
     add(&ACCELERATION, 1, 0.125 * time_step * time_step);
     let still = part.nodes.current.clone();
-    let free = |node: usize, c: usize| !part.dofs.is_fixed(DISPLACEMENT.component(c as u8), node as u32);
-    for (node, (position, shift)) in part.nodes.current.iter_mut().zip(shift).enumerate() {
+    let Nodes { current, fixities, .. } = &mut part.nodes;
+    let free = |node: usize, c: usize| !fixities.holds(DISPLACEMENT.component(c as u8), node as u32);
+    for (node, (position, shift)) in current.iter_mut().zip(shift).enumerate() {
         (0..3).filter(|&c| free(node, c)).for_each(|c| position[c] += shift[c]);
     }
     Some(still)

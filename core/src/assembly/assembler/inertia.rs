@@ -1,7 +1,7 @@
 //! What moves: mass and damping matrices on the pattern of the bulk, and the forces they take up.
 
 use super::{Assembler, is_variable};
-use crate::assembly::Dof;
+use crate::assembly::{Dof, System};
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
@@ -36,28 +36,33 @@ impl Assembler {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn inertia_forces(&mut self, part: &ModelPart, inertia: &Inertia) -> Result<Vec<f64>> {
-        let own = self.own_inertia_forces(part, inertia);
+    pub fn inertia_forces(&mut self, part: &ModelPart, system: &System, inertia: &Inertia) -> Result<Vec<f64>> {
+        let own = self.own_inertia_forces(part, system, inertia);
         let mut out = world().agree(own)?;
         self.add_up(&mut out);
         Ok(out)
     }
 
-    pub(super) fn own_inertia_forces(&mut self, part: &ModelPart, inertia: &Inertia) -> Result<Vec<f64>> {
-        self.ensure_constant(part)?;
-        let mut out = vec![0.0; part.dofs.len()];
-        let single = !damped_by_properties(part);
+    pub(super) fn own_inertia_forces(
+        &mut self,
+        part: &ModelPart,
+        system: &System,
+        inertia: &Inertia,
+    ) -> Result<Vec<f64>> {
+        self.ensure_constant(part, system)?;
+        let mut out = vec![0.0; system.dofs.len()];
+        let single = !damped_by_properties(part, system);
         let alpha = if single { inertia.alpha } else { 0.0 };
         let minus: Vec<f64> =
             inertia.acceleration.iter().zip(&inertia.velocity).map(|(a, v)| -(a + alpha * v)).collect();
-        self.mass(part)?;
+        self.mass(part, system)?;
         self.mul_subtract(self.mass.as_ref().expect("just made"), &minus, &mut out);
         let minus = |factor: f64| inertia.velocity.iter().map(|v| -factor * v).collect::<Vec<f64>>();
         if !single {
-            let damping = self.damping(part, [inertia.alpha, inertia.beta])?;
+            let damping = self.damping(part, system, [inertia.alpha, inertia.beta])?;
             self.mul_subtract(&damping, &minus(1.0), &mut out);
         } else if inertia.beta != 0.0 {
-            self.mul_subtract(&self.stiffness(part)?, &minus(inertia.beta), &mut out);
+            self.mul_subtract(&self.stiffness(part, system)?, &minus(inertia.beta), &mut out);
         }
         let is_own = |number: usize| self.distribution.as_ref().is_none_or(|d| d.is_own(number));
         let carried = out.iter_mut().zip(&inertia.carried).enumerate();
@@ -66,7 +71,7 @@ impl Assembler {
     }
 
     /// The damping matrix on the bulk pattern, where properties have factors of their own or elements are dampers.
-    pub(super) fn damping(&mut self, part: &ModelPart, rayleigh: [f64; 2]) -> Result<Vec<f64>> {
+    pub(super) fn damping(&mut self, part: &ModelPart, system: &System, rayleigh: [f64; 2]) -> Result<Vec<f64>> {
         if let Some((_, values)) = self.damping.as_ref().filter(|(key, _)| *key == rayleigh) {
             return Ok(values.clone());
         }
@@ -75,8 +80,8 @@ impl Assembler {
         let initial = StepView { nodes: &nodes, ..view };
         let mut values = vec![0.0; self.pattern.zero.entries()];
         let mut lasting = true;
-        let numbered = part.element_blocks.iter().zip(&self.element_numbers);
-        for (block, numbers) in numbered.chain(part.condition_blocks.iter().zip(&self.condition_numbers)) {
+        let numbered = system.elements.iter().zip(&self.element_numbers);
+        for (block, numbers) in numbered.chain(system.conditions.iter().zip(&self.condition_numbers)) {
             let element = block.entry().kind == Kind::Element;
             let [alpha, beta] = if element { rayleigh_of(part, block.as_ref(), rayleigh) } else { [0.0, rayleigh[1]] };
             if alpha != 0.0 {
@@ -117,12 +122,12 @@ impl Assembler {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn mass(&mut self, part: &ModelPart) -> Result<&[f64]> {
+    pub fn mass(&mut self, part: &ModelPart, system: &System) -> Result<&[f64]> {
         if self.mass.is_none() {
             let nodes = undeformed(part);
             let view = StepView { nodes: &nodes, ..part.view() };
             let mut values = vec![0.0; self.pattern.zero.entries()];
-            for (block, numbers) in part.element_blocks.iter().zip(&self.element_numbers) {
+            for (block, numbers) in system.elements.iter().zip(&self.element_numbers) {
                 let lumped = self.lumped;
                 let compute = |range, out: &mut LocalSystems| block.mass(&view, range, lumped, out).map(|_| ());
                 self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
@@ -137,20 +142,21 @@ impl Assembler {
     ///
     /// # Errors
     /// As [`Assembler::mass`].
-    pub fn lumped_mass(&mut self, part: &ModelPart) -> Result<Vec<f64>> {
-        let own = self.mass(part).map(<[f64]>::to_vec);
+    pub fn lumped_mass(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+        let own = self.mass(part, system).map(<[f64]>::to_vec);
         let values = world().agree(own)?;
-        let mut out = vec![0.0; part.dofs.len()];
-        self.mul_subtract(&values, &vec![-1.0; part.dofs.len()], &mut out);
+        let mut out = vec![0.0; system.dofs.len()];
+        self.mul_subtract(&values, &vec![-1.0; system.dofs.len()], &mut out);
         self.add_up(&mut out);
         Ok(out)
     }
 
-    pub(super) fn stiffness(&self, part: &ModelPart) -> Result<Vec<f64>> {
+    pub(super) fn stiffness(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut values = self.constant.clone().expect("assembled before the first residual");
         let is_element = |block: &dyn EntityBlock| block.entry().kind == Kind::Element;
         self.add_blocks(
             part,
+            system,
             |block| is_variable(block) && (is_element(block) || block.tangent() == Tangent::Symmetric),
             &mut values,
         )?;
@@ -167,16 +173,16 @@ fn undeformed(part: &ModelPart) -> Nodes {
 
 /// Whether the properties of an element give Rayleigh's factors, which then go before those of the solver, or some elements
 /// are dampers.
-pub fn damped_by_properties(part: &ModelPart) -> bool {
+pub fn damped_by_properties(part: &ModelPart, system: &System) -> bool {
     let names = ["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"];
     part.properties.values().any(|p| names.iter().any(|name| p.number(name).is_some()))
-        || part.element_blocks.iter().any(|block| block.has_damping())
+        || system.elements.iter().any(|block| block.has_damping())
 }
 
 /// Which unknowns have no velocity for damping to act on, all but displacements; empty when elements have none of them.
-pub(super) fn without_rates(part: &ModelPart) -> Vec<bool> {
+pub(super) fn without_rates(system: &System) -> Vec<bool> {
     let rateless = |dof: &Dof| dof.variable.column != DISPLACEMENT.name();
-    let dofs = part.dofs.dofs();
+    let dofs = system.dofs.dofs();
     if dofs.iter().any(|dof| !dof.multiplier && rateless(dof)) {
         dofs.iter().map(rateless).collect()
     } else {

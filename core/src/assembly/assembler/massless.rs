@@ -1,9 +1,9 @@
 //! Nodes without mass: the system takes them on, and velocities and accelerations follow.
 
 use super::{Assembler, bulk_pattern};
-use crate::assembly::Dof;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::assembly::redistribution::diagonal;
+use crate::assembly::{Dof, System};
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{MasslessNodes, Want};
@@ -21,21 +21,21 @@ impl Assembler {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn redistribute(&mut self, part: &mut ModelPart, nodes: &MasslessNodes) -> Result<()> {
+    pub fn redistribute(&mut self, part: &mut ModelPart, system: &System, nodes: &MasslessNodes) -> Result<()> {
         if self.redistribution.choose(part, nodes) {
-            self.pattern = bulk_pattern(part, &self.redistribution.groups(part));
+            self.pattern = bulk_pattern(part, system, &self.redistribution.groups(part));
             (self.bulk, self.constant, self.damping) = (None, None, None);
             (self.mass, self.tangent_key) = (None, None);
             self.stamps.bulk_graph += 1;
         }
         let equations = &self.equations;
-        if self.redistribution.choose_unknowns(&part.dofs, |number| equations.is_free(number)) {
+        if self.redistribution.choose_unknowns(&system.dofs, |number| equations.is_free(number)) {
             (self.mass, self.tangent_key) = (None, None);
         }
         if !self.redistribution.is_empty() {
             for variable in [&VELOCITY, &ACCELERATION] {
                 for level in 1..part.nodes.history.levels() {
-                    self.project(part, variable, level)?;
+                    self.project(part, system, variable, level)?;
                 }
             }
         }
@@ -46,16 +46,16 @@ impl Assembler {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn energy(&mut self, part: &ModelPart) -> Result<f64> {
-        let own = self.own_energy(part);
+    pub fn energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
+        let own = self.own_energy(part, system);
         Ok(world().total(world().agree(own)?))
     }
 
-    fn own_energy(&mut self, part: &ModelPart) -> Result<f64> {
-        let (u, v) = (self.values(part), rates(part, &VELOCITY, 0));
-        self.mass(part)?;
+    fn own_energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
+        let (u, v) = (self.values(part, system), rates(part, system, &VELOCITY, 0));
+        self.mass(part, system)?;
         let mut forces = vec![0.0; u.len()];
-        for (block, numbers) in part.element_blocks.iter().zip(&self.element_numbers) {
+        for (block, numbers) in system.elements.iter().zip(&self.element_numbers) {
             add_residual(block.as_ref(), numbers, &part.view(), Want::Residual, &mut forces)?;
         }
         let mut momentum = vec![0.0; u.len()];
@@ -65,14 +65,14 @@ impl Assembler {
     }
 
     /// Makes present velocities and accelerations of massless unknowns those of the nodes below.
-    pub fn extrapolate_rates(&self, part: &mut ModelPart) {
+    pub fn extrapolate_rates(&self, part: &mut ModelPart, system: &System) {
         if self.redistribution.is_empty() {
             return;
         }
         for variable in [&VELOCITY, &ACCELERATION] {
-            let mut values = rates(part, variable, 0);
+            let mut values = rates(part, system, variable, 0);
             self.redistribution.extrapolate(&mut values);
-            write(part, variable, 0, &values);
+            write(part, system, variable, 0, &values);
         }
     }
 
@@ -82,9 +82,15 @@ impl Assembler {
     }
 
     /// The nearest motion that the masses can have: P w with M_r (w − v) = Pᵀ M (v − P v), by conjugate gradients.
-    fn project(&mut self, part: &mut ModelPart, variable: &Variable<[f64; 3]>, level: usize) -> Result<()> {
-        let mut values = rates(part, variable, level);
-        self.mass(part)?;
+    fn project(
+        &mut self,
+        part: &mut ModelPart,
+        system: &System,
+        variable: &Variable<[f64; 3]>,
+        level: usize,
+    ) -> Result<()> {
+        let mut values = rates(part, system, variable, level);
+        self.mass(part, system)?;
         let mut residual = self.redistribution.excess(&values);
         if !world().any(residual.iter().any(|r| *r != 0.0)) {
             return Ok(());
@@ -125,23 +131,23 @@ impl Assembler {
             error = next;
         }
         self.redistribution.extrapolate(&mut values);
-        write(part, variable, level, &values);
+        write(part, system, variable, level, &values);
         Ok(())
     }
 }
 
 /// A rate of displacements, a number an unknown, 0 for all others.
-fn rates(part: &ModelPart, variable: &Variable<[f64; 3]>, level: usize) -> Vec<f64> {
+fn rates(part: &ModelPart, system: &System, variable: &Variable<[f64; 3]>, level: usize) -> Vec<f64> {
     let column = part.nodes.history.values(variable, level);
     let displacement = |dof: &Dof| dof.variable.column == DISPLACEMENT.name();
-    let dofs = part.dofs.dofs().iter();
+    let dofs = system.dofs.dofs().iter();
     dofs.map(|dof| if displacement(dof) { column[3 * dof.node as usize + dof.variable.offset()] } else { 0.0 })
         .collect()
 }
 
-fn write(part: &mut ModelPart, variable: &Variable<[f64; 3]>, level: usize, values: &[f64]) {
+fn write(part: &mut ModelPart, system: &System, variable: &Variable<[f64; 3]>, level: usize, values: &[f64]) {
     let column = part.nodes.history.values_mut(variable, level);
-    for (dof, value) in part.dofs.dofs().iter().zip(values) {
+    for (dof, value) in system.dofs.dofs().iter().zip(values) {
         if dof.variable.column == DISPLACEMENT.name() {
             column[3 * dof.node as usize + dof.variable.offset()] = *value;
         }

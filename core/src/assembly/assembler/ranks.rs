@@ -3,8 +3,7 @@
 use super::Assembler;
 use crate::assembly::{Distribution, Numbering};
 use crate::communication::world;
-use crate::model::{Named, ScalarVariable, named};
-use crate::partition::Halo;
+use crate::model::{Halo, Named, ScalarVariable, named};
 
 /// An unknown, whether it is a multiplier, and the nodes that carry it.
 pub(super) type Carriers = (ScalarVariable, bool, Vec<u32>);

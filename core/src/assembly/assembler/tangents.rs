@@ -5,11 +5,10 @@ use std::time::Instant;
 use zelus_linear_algebra::Csr;
 
 use super::{Assembler, blocks_of, load_blocks};
-use crate::assembly::DofTable;
 use crate::assembly::assembler::inertia::{Inertia, damped_by_properties, without_rates};
+use crate::assembly::{DofTable, System};
 use crate::communication::world;
 use crate::diagnostics::Result;
-use crate::entities::Interaction;
 use crate::model::ModelPart;
 
 impl Assembler {
@@ -17,18 +16,13 @@ impl Assembler {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn tangents(
-        &mut self,
-        part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        inertia: Option<&Inertia>,
-    ) -> Result<()> {
-        let own = self.own_tangents(part, interactions, inertia);
+    pub fn tangents(&mut self, part: &ModelPart, system: &System, inertia: Option<&Inertia>) -> Result<()> {
+        let own = self.own_tangents(part, system, inertia);
         world().agree(own)?;
         let start = Instant::now();
         // Damped unknowns without rates may be on other ranks only.
         self.bulk_general = world().any(self.bulk_general);
-        let acting = interactions.iter().filter(|i| !i.blocks().is_empty());
+        let acting = system.interactions.iter().filter(|i| !i.blocks().is_empty());
         let diagonal = acting.map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
         let mut in_use = self.coupling.lonely_rows_in_use();
         world().any_of(&mut in_use);
@@ -41,23 +35,18 @@ impl Assembler {
         Ok(())
     }
 
-    fn own_tangents(
-        &mut self,
-        part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        inertia: Option<&Inertia>,
-    ) -> Result<()> {
-        self.ensure_constant(part)?;
+    fn own_tangents(&mut self, part: &ModelPart, system: &System, inertia: Option<&Inertia>) -> Result<()> {
+        self.ensure_constant(part, system)?;
         self.stamps.tangents += 1;
         let start = Instant::now();
         let view = part.view();
         let key = inertia.map_or([0.0; 4], |i| [i.mass_factor, i.damping_factor, i.alpha, i.beta]);
-        let single = !damped_by_properties(part);
+        let single = !damped_by_properties(part, system);
         let stale =
             self.traits.variable_bulk || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
         if stale {
             let is_constant = inertia.is_none() && !self.traits.variable_bulk;
-            let mut values = if is_constant { Vec::new() } else { self.stiffness(part)? };
+            let mut values = if is_constant { Vec::new() } else { self.stiffness(part, system)? };
             // Damping acts on rates only, which takes the symmetry from unknowns without them.
             let mut damped = false;
             if inertia.is_some() {
@@ -67,17 +56,17 @@ impl Assembler {
                 } else {
                     [mass_factor, 1.0]
                 };
-                let still = without_rates(part);
+                let still = without_rates(system);
                 let moves = |column: &u32| !still.get(*column as usize).copied().unwrap_or(false);
                 damped = !still.is_empty() && (!single || stiffness_factor != 1.0);
-                self.mass(part)?;
+                self.mass(part, system)?;
                 let mass = self.mass.as_ref().expect("just made");
                 for ((value, m), column) in values.iter_mut().zip(mass).zip(&self.pattern.zero.columns) {
                     let factor = if moves(column) { stiffness_factor } else { 1.0 };
                     *value = factor * *value + mass_factor * m;
                 }
                 if !single {
-                    let damping = self.damping(part, [alpha, beta])?;
+                    let damping = self.damping(part, system, [alpha, beta])?;
                     let moving = values.iter_mut().zip(damping).zip(&self.pattern.zero.columns);
                     moving.filter(|(_, column)| moves(column)).for_each(|((value, c), _)| *value += damping_factor * c);
                 }
@@ -88,10 +77,10 @@ impl Assembler {
             self.reduced_graph = self.stamps.bulk_graph;
             self.tangent_key = Some(key);
         }
-        self.loads.assemble(&load_blocks(part), &view)?;
+        self.loads.assemble(&load_blocks(system), &view)?;
         self.seconds.bulk += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        self.coupling.assemble(&blocks_of(interactions), &view)?;
+        self.coupling.assemble(&blocks_of(&system.interactions), &view)?;
         self.seconds.coupling += start.elapsed().as_secs_f64();
         Ok(())
     }

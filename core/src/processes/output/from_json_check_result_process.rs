@@ -9,6 +9,7 @@ use super::gauss;
 use super::json_output_process::{fields, node_key, passes};
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::{Model, ModelPart, SubPart, Table};
@@ -100,7 +101,7 @@ impl FromJsonCheck {
     }
 
     /// What differs on any rank; collective.
-    fn compare(&self, part: &ModelPart, selection: &SubPart) -> Differences {
+    fn compare(&self, part: &ModelPart, system: &System, selection: &SubPart) -> Differences {
         let mut found = Differences::default();
         let time = part.info.time;
         let fields = fields(part, self.history);
@@ -115,7 +116,7 @@ impl FromJsonCheck {
             }
         }
         for quantity in &self.gauss {
-            gauss::each(part, Kind::Element, &selection.elements, quantity, |row, gauss| {
+            gauss::each(part, system, Kind::Element, &selection.elements, quantity, |row, gauss| {
                 let element = selection.elements[row];
                 if !passes(&part.elements.flags, self.flag, element) {
                     return;
@@ -158,12 +159,12 @@ impl Process for FromJsonCheck {
         self.part.find(model).map(|_| ())
     }
 
-    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+    fn end_step(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         if !self.counter.acts(&part.info) {
             return Ok(());
         }
-        let found = self.compare(part, selection);
+        let found = self.compare(part, system, selection);
         let time = part.info.time;
         if !found.wrong.is_empty() {
             return Err(Error::System(format!("{}: {}", self.place, self.tell(&found.wrong, time))));

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::quantity::GaussQuantity;
+use crate::assembly::System;
 use crate::communication::world;
 use crate::entities::{EntityBlock, Gauss, StepView};
 use crate::geometry::Shape;
@@ -26,18 +27,18 @@ struct Seen<'a> {
 /// that knows the quantity, blocks and entities in their order.
 fn visit(
     part: &ModelPart,
+    system: &System,
     kind: Kind,
     selected: &[u32],
     quantity: &GaussQuantity,
     mut visit: impl FnMut(usize, &Seen<'_>, &Gauss),
 ) {
     let view = part.view();
-    let blocks = if kind == Kind::Element { &part.element_blocks } else { &part.condition_blocks };
     let mut position = vec![OUT; selected.iter().max().map_or(0, |&last| last as usize + 1)];
     for (at, &item) in selected.iter().enumerate() {
         position[item as usize] = at as u32;
     }
-    for block in blocks {
+    for block in system.blocks(kind) {
         let known = block.gauss_variables();
         let names = [Some(quantity.name.as_str()), quantity.vector.as_deref()];
         let Some(name) = names.into_iter().flatten().find(|name| known.contains(name)) else { continue };
@@ -68,9 +69,15 @@ fn values_of(block: &dyn EntityBlock, view: &StepView<'_>, name: &str, at: usize
 }
 
 /// One value an entity: the plain mean of its Gauss points; zero where the quantity is not known. Collective.
-pub(super) fn means(part: &ModelPart, kind: Kind, selected: &[u32], quantity: &GaussQuantity) -> Column {
+pub(super) fn means(
+    part: &ModelPart,
+    system: &System,
+    kind: Kind,
+    selected: &[u32],
+    quantity: &GaussQuantity,
+) -> Column {
     let mut found: Vec<(usize, Vec<f64>)> = Vec::new();
-    visit(part, kind, selected, quantity, |row, _, gauss| {
+    visit(part, system, kind, selected, quantity, |row, _, gauss| {
         let mut mean = vec![0.0; gauss.components];
         for values in gauss.values.chunks_exact(gauss.components) {
             mean.iter_mut().zip(values).for_each(|(mean, value)| *mean += value);
@@ -99,6 +106,7 @@ pub(super) enum Share {
 /// Collective.
 pub(super) fn at_nodes(
     part: &ModelPart,
+    system: &System,
     kind: Kind,
     selected: &[u32],
     nodes: &[u32],
@@ -108,7 +116,7 @@ pub(super) fn at_nodes(
     let mut components = 0;
     let mut sums: Vec<f64> = Vec::new();
     let mut weights = vec![0.0; part.nodes.len()];
-    visit(part, kind, selected, quantity, |_, seen, gauss| {
+    visit(part, system, kind, selected, quantity, |_, seen, gauss| {
         if !seen.is_active {
             return;
         }
@@ -159,13 +167,14 @@ fn widen(values: &[f64], from: usize, to: usize, rows: usize) -> Vec<f64> {
 /// ranks the first gets those of all; collective.
 pub(super) fn as_they_are(
     part: &ModelPart,
+    system: &System,
     kind: Kind,
     selected: &[u32],
     ids: &[usize],
     quantity: &GaussQuantity,
 ) -> Vec<GaussResult> {
     let mut out: Vec<GaussResult> = Vec::new();
-    visit(part, kind, selected, quantity, |row, seen, gauss| {
+    visit(part, system, kind, selected, quantity, |row, seen, gauss| {
         let Some(shape) = seen.shape else { return };
         let count = gauss.weights.len();
         let (components, values) = gid_order(&quantity.name, gauss);
@@ -259,12 +268,13 @@ fn local_points(shape: Shape, gauss: &Gauss) -> Vec<[f64; 3]> {
 /// The values of every Gauss point of every selected entity of this rank that knows the quantity: position and values.
 pub(super) fn each(
     part: &ModelPart,
+    system: &System,
     kind: Kind,
     selected: &[u32],
     quantity: &GaussQuantity,
     mut use_values: impl FnMut(usize, &Gauss),
 ) {
-    visit(part, kind, selected, quantity, |row, _, gauss| use_values(row, gauss));
+    visit(part, system, kind, selected, quantity, |row, _, gauss| use_values(row, gauss));
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::gauss;
 use super::picture::{CellChoice, Mesh};
 use super::place::{PartPath, append, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
+use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
@@ -136,7 +137,12 @@ impl GidOutput {
     }
 
     /// What is shown; of several ranks the first has it. Collective.
-    fn results(&self, part: &ModelPart, selection: &SubPart) -> (Vec<usize>, Vec<Column>, Vec<GaussResult>) {
+    fn results(
+        &self,
+        part: &ModelPart,
+        system: &System,
+        selection: &SubPart,
+    ) -> (Vec<usize>, Vec<Column>, Vec<GaussResult>) {
         let own = selection.nodes.iter().copied().filter(|&node| part.owns_node(node as usize));
         let nodes = &own.collect::<Vec<u32>>();
         let mut columns: Vec<Column> = Vec::new();
@@ -144,7 +150,7 @@ impl GidOutput {
         columns.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, nodes)));
         columns.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, nodes)));
         let gauss = self.gauss.iter().flat_map(|quantity| {
-            gauss::as_they_are(part, Kind::Element, &selection.elements, &part.elements.ids, quantity)
+            gauss::as_they_are(part, system, Kind::Element, &selection.elements, &part.elements.ids, quantity)
         });
         let gauss = if self.elements { gauss.collect() } else { Vec::new() };
         let ids: Vec<usize> = nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect();
@@ -192,10 +198,10 @@ impl Process for GidOutput {
         self.body && self.part.find(model).is_ok_and(|(part, _)| self.control.wants(&part.info))
     }
 
-    fn print_output(&mut self, model: &mut Model) -> Result<()> {
+    fn print_output(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         let label = self.label(part);
-        let (ids, columns, gauss) = self.results(part, selection);
+        let (ids, columns, gauss) = self.results(part, system, selection);
         let path = self.path(label, "res");
         if !self.single {
             self.write_mesh(part, selection, label)?;

@@ -3,6 +3,7 @@
 use super::gauss::{self, Share};
 use super::place::PartPath;
 use super::quantity::GaussQuantity;
+use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::io::results::{Column, Values};
 use crate::model::{Model, ModelPart, named};
@@ -49,10 +50,11 @@ impl Process for Extrapolation {
         self.part.find(model).map(|_| ())
     }
 
-    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+    fn end_step(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         let nodes = selection.nodes.clone();
-        let of = |quantity| gauss::at_nodes(part, Kind::Element, &selection.elements, &nodes, quantity, self.share);
+        let of =
+            |quantity| gauss::at_nodes(part, system, Kind::Element, &selection.elements, &nodes, quantity, self.share);
         let columns: Vec<Column> = self.quantities.iter().map(of).collect();
         let part = model.root_mut(&self.part.path)?;
         columns.iter().for_each(|column| self.store(part, &nodes, column));

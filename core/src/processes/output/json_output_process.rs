@@ -9,6 +9,7 @@ use super::control::TimeCounter;
 use super::gauss;
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::Gauss;
@@ -127,7 +128,7 @@ impl JsonOutput {
     }
 
     /// Takes the values of this moment; collective.
-    fn sample(&mut self, part: &ModelPart, selection: &SubPart) {
+    fn sample(&mut self, part: &ModelPart, system: &System, selection: &SubPart) {
         self.keys(part, selection);
         self.times.push(part.info.time);
         let fields = fields(part, self.history);
@@ -157,7 +158,7 @@ impl JsonOutput {
         }
         for (at, quantity) in self.gauss.iter().enumerate() {
             let mut own = Vec::new();
-            gauss::each(part, Kind::Element, &self.followed, quantity, |row, gauss| {
+            gauss::each(part, system, Kind::Element, &self.followed, quantity, |row, gauss| {
                 let element = self.followed[row];
                 if passes(&part.elements.flags, self.flag, element) {
                     let id = part.elements.ids[element as usize];
@@ -326,10 +327,10 @@ impl Process for JsonOutput {
         self.write(model)
     }
 
-    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+    fn end_step(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         if self.counter.acts(&part.info) {
-            self.sample(part, selection);
+            self.sample(part, system, selection);
             if self.last_write.is_none_or(|last| last.elapsed() > REWRITE) {
                 self.write(model)?;
             }

@@ -3,6 +3,7 @@
 use super::gauss::{self, Share};
 use super::place::one_of;
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Report, Result};
 use crate::io::results::{Column, Dataset};
@@ -132,26 +133,34 @@ impl Picture {
     }
 
     /// The picture of one part now, of several ranks the piece of each; collective.
-    pub(super) fn draw(&self, part: &ModelPart, selection: &SubPart) -> Mesh {
+    pub(super) fn draw(&self, part: &ModelPart, system: &System, selection: &SubPart) -> Mesh {
         let mut mesh = Mesh::new(part, selection, self.choice, self.deformed);
-        mesh.data.point_data = self.point_data(part, selection, &mesh);
-        mesh.data.cell_data = self.cell_data(part, &mesh);
+        mesh.data.point_data = self.point_data(part, system, selection, &mesh);
+        mesh.data.cell_data = self.cell_data(part, system, &mesh);
         mesh
     }
 
-    fn point_data(&self, part: &ModelPart, selection: &SubPart, mesh: &Mesh) -> Vec<Column> {
+    fn point_data(&self, part: &ModelPart, system: &System, selection: &SubPart, mesh: &Mesh) -> Vec<Column> {
         let mut out: Vec<Column> = Vec::new();
         out.extend(self.history.iter().map(|q| q.gather(&part.nodes.history, &mesh.nodes)));
         out.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, &mesh.nodes)));
         for quantity in &self.extrapolated {
-            out.push(gauss::at_nodes(part, Kind::Element, &selection.elements, &mesh.nodes, quantity, Share::Volume));
+            out.push(gauss::at_nodes(
+                part,
+                system,
+                Kind::Element,
+                &selection.elements,
+                &mesh.nodes,
+                quantity,
+                Share::Volume,
+            ));
         }
         out.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, &mesh.nodes)));
         out.extend(self.ids.then(|| Column::ids("KRATOS_NODE_ID", &mesh.data.point_ids)));
         out
     }
 
-    fn cell_data(&self, part: &ModelPart, mesh: &Mesh) -> Vec<Column> {
+    fn cell_data(&self, part: &ModelPart, system: &System, mesh: &Mesh) -> Vec<Column> {
         let table = mesh.table(part);
         let (quantities, flags, id) = match mesh.kind {
             Kind::Element => (&self.element_values, &self.element_flags, "KRATOS_ELEMENT_ID"),
@@ -159,7 +168,7 @@ impl Picture {
         };
         let mut out: Vec<Column> = quantities.iter().map(|q| q.gather(&table.data, &mesh.cells)).collect();
         out.extend(flags.iter().map(|flag| flag_column(&table.flags, flag, &mesh.cells)));
-        out.extend(self.gauss.iter().map(|quantity| gauss::means(part, mesh.kind, &mesh.cells, quantity)));
+        out.extend(self.gauss.iter().map(|quantity| gauss::means(part, system, mesh.kind, &mesh.cells, quantity)));
         if self.ids {
             out.push(Column::ids("PROPERTIES_ID", &mesh.data.cells.properties));
             out.push(Column::ids(id, &mesh.data.cells.ids));

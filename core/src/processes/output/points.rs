@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::json_output_process::fields;
 use super::place::{PartPath, one_of};
 use super::quantity::Quantity;
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::{mapping, shape_functions};
@@ -200,7 +201,7 @@ impl Process for PointsOutput {
             .try_for_each(|point| replace_file(&point.file, |out| writeln!(out, "{}", self.head(part, point))))
     }
 
-    fn end_step(&mut self, model: &mut Model) -> Result<()> {
+    fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
         let (part, _) = self.part.find(model)?;
         if !self.interval.contains(part.info.time) {
             return Ok(());

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use crate::assembly::System;
 use crate::diagnostics::{Error, Report, Result};
 use crate::entities::{EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use crate::geometry::Shape;
@@ -78,7 +79,6 @@ fn model() -> Model {
     part.conditions.push(5, line, 0, &[0, 1]);
     part.elements.finish();
     part.conditions.finish();
-    part.element_blocks.push(Box::new(Fake { entry: quad, nodes: connectivity.to_vec() }));
     for node in 0..6 {
         let id = part.nodes.ids[node] as f64;
         part.nodes.history.values_mut(&DISPLACEMENT, 0)[3 * node..][..2].copy_from_slice(&[id, 10.0 * id]);
@@ -95,6 +95,13 @@ fn model() -> Model {
     model
 }
 
+/// The block over the elements of [`model`].
+fn system() -> System {
+    let entry = registry::find(Kind::Element, "OutputTestElement2D4N").unwrap();
+    let fake = Fake { entry, nodes: vec![[0, 1, 4, 3], [1, 2, 5, 4]] };
+    System { elements: vec![Box::new(fake)], ..System::default() }
+}
+
 fn make(name: &str, parameters: &str, model: &mut Model, folder: &Path) -> (Result<Box<dyn Process>>, Report) {
     let entry = registry::find(Kind::Process, name).unwrap();
     let Build::Process(factory) = entry.build else { panic!() };
@@ -107,6 +114,7 @@ fn make(name: &str, parameters: &str, model: &mut Model, folder: &Path) -> (Resu
 
 /// Runs steps of length `dt`, with DISPLACEMENT multiplied by the step.
 fn run(process: &mut dyn Process, model: &mut Model, steps: usize, dt: f64) -> Result<()> {
+    let system = system();
     process.initialize(model)?;
     process.before_loop(model)?;
     model.root_mut("Structure")?.info = Default::default();
@@ -119,9 +127,9 @@ fn run(process: &mut dyn Process, model: &mut Model, steps: usize, dt: f64) -> R
         part.clone_time_step(time);
         let now = part.nodes.history.values_mut(&DISPLACEMENT, 0);
         now.iter_mut().zip(&first).for_each(|(now, first)| *now = first * step as f64);
-        process.end_step(model)?;
+        process.end_step(model, &system)?;
         if process.is_output_step(model) {
-            process.print_output(model)?;
+            process.print_output(model, &system)?;
         }
     }
     process.finalize(model)

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::control::{OutputControl, Unit};
 use super::picture::{Mesh, Picture};
 use super::place::{PartPath, one_of};
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::io::on_one_rank;
@@ -70,8 +71,8 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
 }
 
 impl VtkOutput {
-    fn write(&mut self, part: &ModelPart, selection: &SubPart, path: &str) -> Result<()> {
-        let mesh = self.picture.draw(part, selection);
+    fn write(&mut self, part: &ModelPart, system: &System, selection: &SubPart, path: &str) -> Result<()> {
+        let mesh = self.picture.draw(part, system, selection);
         let label = match self.control.unit {
             Unit::Step => part.info.step.to_string(),
             Unit::Time => format!("{:.*}", self.decimals, part.info.time),
@@ -141,15 +142,15 @@ impl Process for VtkOutput {
         self.part.find(model).is_ok_and(|(part, _)| self.control.wants(&part.info))
     }
 
-    fn print_output(&mut self, model: &mut Model) -> Result<()> {
+    fn print_output(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let path = self.part.path.clone();
         let (part, selection) = self.part.find(model)?;
-        self.write(part, selection, &path)?;
+        self.write(part, system, selection, &path)?;
         if self.sub_parts {
             for (name, child) in &selection.children {
                 let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
                 if world().any(is_here) {
-                    self.write(part, child, &format!("{path}.{name}"))?;
+                    self.write(part, system, child, &format!("{path}.{name}"))?;
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! The iterations of one step: solve, move, let the interactions decide, judge.
 
 use super::{ENERGY_OF_MOTION, NewtonRaphson, References};
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, Outer, SetChange};
@@ -70,57 +71,57 @@ impl NewtonRaphson {
     pub(super) fn iterate(
         &mut self,
         part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
+        system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<IterationRecord>, Option<String>)> {
-        let mut step = self.begin_step(part, interactions)?;
+        let mut step = self.begin_step(part, system)?;
         let mut iteration = 0;
         while iteration < step.last || (iteration < step.most && contracts(&step.records, step.most - iteration)) {
             iteration += 1;
-            match self.iteration(iteration, &mut step, part, interactions, monitor)? {
+            match self.iteration(iteration, &mut step, part, system, monitor)? {
                 Turn::On => {}
                 Turn::Failed(why) => return Ok((step.records, Some(why))),
                 Turn::Converged => {
-                    self.keep_reactions(part, &step.residual);
+                    self.keep_reactions(part, system, &step.residual);
                     return Ok((step.records, None));
                 }
             }
         }
-        let failure = self.explain(part, &step.records, &step.residual);
+        let failure = self.explain(part, system, &step.records, &step.residual);
         let failure = step.widened.iter().fold(failure, |failure, why| format!("{failure}; {why}"));
-        self.keep_reactions(part, &step.residual);
+        self.keep_reactions(part, system, &step.residual);
         Ok((step.records, Some(failure)))
     }
 
-    fn begin_step(&mut self, part: &mut ModelPart, interactions: &mut [Box<dyn Interaction>]) -> Result<Step> {
+    fn begin_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<Step> {
         part.info.nl_iteration = 0;
-        for interaction in interactions.iter_mut() {
+        for interaction in &mut system.interactions {
             interaction.begin_step(part)?;
         }
-        self.assembler.begin_step(part, interactions)?;
+        self.assembler.begin_step(part, system)?;
         if self.scheme.has_inertia() {
-            self.redistribute_mass(part, interactions)?;
+            self.redistribute_mass(part, system)?;
             if !part.info.values.contains_key(ENERGY_OF_MOTION) {
-                self.measure_energy(part)?;
+                self.measure_energy(part, system)?;
             }
         }
-        if let Some(past) = self.scheme.past_inertia(part) {
-            let forces = self.assembler.inertia_forces(part, &past)?;
+        if let Some(past) = self.scheme.past_inertia(part, &system.dofs) {
+            let forces = self.assembler.inertia_forces(part, system, &past)?;
             self.scheme.keep(forces);
         }
-        let begin = self.assembler.values(part);
-        let led = self.led_nodes(part, interactions);
-        let prescribed = self.start(part, led.as_deref())?;
-        for interaction in interactions.iter_mut() {
+        let begin = self.assembler.values(part, system);
+        let led = self.led_nodes(part, system);
+        let prescribed = self.start(part, system, led.as_deref())?;
+        for interaction in &mut system.interactions {
             interaction.after_prediction(part)?;
         }
-        let mut residual = self.residual(part, interactions);
+        let mut residual = self.residual(part, system);
         if residual.is_err() && self.scheme.has_inertia() {
-            self.stay(part);
-            for interaction in interactions.iter_mut() {
+            self.stay(part, system);
+            for interaction in &mut system.interactions {
                 interaction.after_prediction(part)?;
             }
-            residual = self.residual(part, interactions);
+            residual = self.residual(part, system);
         }
         Ok(Step {
             led,
@@ -129,7 +130,7 @@ impl NewtonRaphson {
             residual: residual?,
             references: References::default(),
             records: Vec::new(),
-            relaxation: interactions.iter().find_map(|interaction| interaction.relaxation()),
+            relaxation: system.interactions.iter().find_map(|interaction| interaction.relaxation()),
             relaxed: None,
             widened: None,
             last: self.allowed().0,
@@ -142,38 +143,39 @@ impl NewtonRaphson {
         iteration: usize,
         step: &mut Step,
         part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
+        system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<Turn> {
         if !self.settings.linear {
             part.info.nl_iteration = iteration;
         }
-        let solved = match self.solve_tangent(iteration, step, part, interactions) {
+        let solved = match self.solve_tangent(iteration, step, part, system) {
             Ok(solved) => solved,
-            Err(failed) => return self.give_up(failed, iteration, &step.residual, part, interactions),
+            Err(failed) => return self.give_up(failed, iteration, &step.residual, part, system),
         };
         if let Some(why) = &solved.fallback {
             monitor.note(&format!("linear solver: {why}"));
         }
-        let condition = if part.info.is(super::CONDITION_NUMBER) { self.condition_number(part, monitor) } else { None };
-        let increment = self.take(&solved, step, part, interactions)?;
+        let condition =
+            if part.info.is(super::CONDITION_NUMBER) { self.condition_number(part, system, monitor) } else { None };
+        let increment = self.take(&solved, step, part, system)?;
         // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
         // serves for what the interactions take from it and nothing else.
         let afresh =
-            step.led.is_some() && iteration == 1 && self.overshoots(part, interactions, &step.references.start[0])?;
-        let change = self.let_decide(iteration, afresh, step, part, interactions)?;
+            step.led.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
+        let change = self.let_decide(iteration, afresh, step, part, system)?;
         let balanced = self.assembler.equations().balanced(&step.residual);
         if iteration == 1 {
-            self.refer_to_first(part, &balanced, &mut step.references);
+            self.refer_to_first(system, &balanced, &mut step.references);
         }
         if change.count() > 0 {
             step.references.switched = Some(balanced.to_vec());
         }
-        if !interactions.is_empty() {
+        if !system.interactions.is_empty() {
             let balance = self.assembler.equations().reduce(&step.residual);
-            interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
+            system.interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
         }
-        let verdict = self.judge(part, iteration, &self.with_pending(step), &step.references, &increment);
+        let verdict = self.judge(part, system, iteration, &self.with_pending(step), &step.references, &increment);
         agree(iteration, &change, verdict.converged)?;
         let record = IterationRecord {
             condition_number: condition,
@@ -181,25 +183,25 @@ impl NewtonRaphson {
         };
         monitor.iteration(&record);
         step.records.push(record);
-        if let Some(what) = self.first_infinite(part, &step.residual) {
+        if let Some(what) = self.first_infinite(part, system, &step.residual) {
             return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
         if afresh {
-            step.prescribed = self.begin_again(part, interactions, &step.begin)?;
-            step.residual = self.residual(part, interactions)?;
+            step.prescribed = self.begin_again(part, system, &step.begin)?;
+            step.residual = self.residual(part, system)?;
             return Ok(Turn::On);
         }
         if verdict.converged
             && change.count() == 0
-            && !interactions.is_empty()
-            && let Some(why) = self.lost_body(part, &step.begin)
+            && !system.interactions.is_empty()
+            && let Some(why) = self.lost_body(part, system, &step.begin)
         {
             return Ok(Turn::Failed(why));
         }
         match (self.settings.linear, verdict.converged && change.count() == 0) {
             (true, _) => Ok(Turn::Converged),
             (false, false) => Ok(Turn::On),
-            (false, true) => self.look_beyond(iteration, step, part, interactions, monitor),
+            (false, true) => self.look_beyond(iteration, step, part, system, monitor),
         }
     }
 
@@ -209,20 +211,20 @@ impl NewtonRaphson {
         iteration: usize,
         step: &mut Step,
         part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
+        system: &mut System,
     ) -> Result<Solved, Failed> {
-        let constraints = constraints_version(interactions);
-        let mut solved = self.solve_once(iteration, step, part, interactions);
-        while matches!(solved, Err(Failed::Singular(_))) && reach_out(interactions, part) {
-            if constraints != constraints_version(interactions) {
-                self.assembler.begin_step(part, interactions)?;
-                step.prescribed = self.followed(part, &step.prescribed);
+        let constraints = constraints_version(&system.interactions);
+        let mut solved = self.solve_once(iteration, step, part, system);
+        while matches!(solved, Err(Failed::Singular(_))) && reach_out(&mut system.interactions, part) {
+            if constraints != constraints_version(&system.interactions) {
+                self.assembler.begin_step(part, system)?;
+                step.prescribed = self.followed(part, system, &step.prescribed);
             }
-            step.residual = self.residual(part, interactions)?;
+            step.residual = self.residual(part, system)?;
             if iteration == 1 {
                 step.references.start.clear();
             }
-            solved = self.solve_once(iteration, step, part, interactions);
+            solved = self.solve_once(iteration, step, part, system);
         }
         let (Err(Failed::Singular(why) | Failed::Inaccurate(why)), None, Some(amount)) =
             (&solved, step.relaxed, step.relaxation)
@@ -231,9 +233,9 @@ impl NewtonRaphson {
         };
         part.messages.extend(self.warn_of_redundancy(why));
         step.relaxed = Some(amount);
-        self.assembler.relax_multipliers(&part.dofs, amount);
+        self.assembler.relax_multipliers(&system.dofs, amount);
         let rhs = self.assembler.equations().reduce(&step.residual);
-        self.solve(part, &rhs)
+        self.solve(part, system, &rhs)
     }
 
     fn solve_once(
@@ -241,25 +243,25 @@ impl NewtonRaphson {
         iteration: usize,
         step: &mut Step,
         part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
+        system: &mut System,
     ) -> Result<Solved, Failed> {
-        let inertia = self.scheme.inertia(part);
-        self.assembler.tangents(part, interactions, inertia.as_ref())?;
+        let inertia = self.scheme.inertia(part, &system.dofs);
+        self.assembler.tangents(part, system, inertia.as_ref())?;
         if let Some(amount) = step.relaxed {
-            self.assembler.relax_multipliers(&part.dofs, amount);
+            self.assembler.relax_multipliers(&system.dofs, amount);
         }
         if has_motion(&step.prescribed) {
             self.assembler.subtract_product(&step.prescribed, &mut step.residual);
         }
         if iteration == 1 {
-            self.refer_to_start(part, &step.residual, &mut step.references)?;
+            self.refer_to_start(part, system, &step.residual, &mut step.references)?;
         }
         let rhs = self.assembler.equations().reduce(&step.residual);
         if iteration == 1 {
-            interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
+            system.interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
         }
         self.solver.aim(step.needed());
-        self.solve(part, &rhs)
+        self.solve(part, system, &rhs)
     }
 
     /// What a solve without a result means for the step.
@@ -272,17 +274,17 @@ impl NewtonRaphson {
         iteration: usize,
         residual: &[f64],
         part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
+        system: &System,
     ) -> Result<Turn> {
         match failed {
             // Interactions may have let a body go that a shorter step holds.
-            Failed::Singular(why) if !interactions.is_empty() => {
+            Failed::Singular(why) if !system.interactions.is_empty() => {
                 self.singular = true;
                 Ok(Turn::Failed(why))
             }
-            Failed::Inaccurate(why) if !interactions.is_empty() => {
+            Failed::Inaccurate(why) if !system.interactions.is_empty() => {
                 self.singular = true;
-                let worst = self.largest_residual(part, &self.assembler.equations().balanced(residual));
+                let worst = self.largest_residual(part, system, &self.assembler.equations().balanced(residual));
                 Ok(Turn::Failed(why + &worst.unwrap_or_default()))
             }
             // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
@@ -298,13 +300,7 @@ impl NewtonRaphson {
     }
 
     /// Moves by what was solved for and what is prescribed; gives the increment of all unknowns.
-    fn take(
-        &mut self,
-        solved: &Solved,
-        step: &mut Step,
-        part: &mut ModelPart,
-        interactions: &[Box<dyn Interaction>],
-    ) -> Result<Vec<f64>> {
+    fn take(&mut self, solved: &Solved, step: &mut Step, part: &mut ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut increment = self.assembler.equations().expand(&solved.increment);
         let is_still = !has_motion(&step.prescribed);
         let searched = self.settings.line_search.filter(|_| is_still);
@@ -314,8 +310,8 @@ impl NewtonRaphson {
             increment.iter_mut().for_each(|d| *d *= HALF);
         }
         match searched {
-            Some(search) => self.search(&search, part, interactions, &step.residual, &mut increment)?,
-            None => self.move_by(part, &increment),
+            Some(search) => self.search(&search, part, system, &step.residual, &mut increment)?,
+            None => self.move_by(part, system, &increment),
         }
         Ok(increment)
     }
@@ -328,26 +324,26 @@ impl NewtonRaphson {
         afresh: bool,
         step: &mut Step,
         part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
+        system: &mut System,
     ) -> Result<SetChange> {
-        if interactions.iter().any(|interaction| interaction.needs_reactions()) {
-            let residual = self.residual(part, interactions)?;
-            write_reactions(part, &residual, None);
+        if system.interactions.iter().any(|interaction| interaction.needs_reactions()) {
+            let residual = self.residual(part, system)?;
+            write_reactions(part, &system.dofs, &residual, None);
         }
-        let (constraints, graph) = (constraints_version(interactions), graph_version(interactions));
+        let (constraints, graph) = (constraints_version(&system.interactions), graph_version(&system.interactions));
         let change = if afresh {
-            interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
+            system.interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
             SetChange::default()
         } else {
-            update_interactions(part, interactions, iteration)?
+            update_interactions(part, &mut system.interactions, iteration)?
         };
-        if constraints != constraints_version(interactions) {
-            self.assembler.begin_step(part, interactions)?;
-            step.prescribed = self.constraint_increment(part);
-        } else if graph != graph_version(interactions) {
-            self.assembler.begin_step(part, interactions)?;
+        if constraints != constraints_version(&system.interactions) {
+            self.assembler.begin_step(part, system)?;
+            step.prescribed = self.constraint_increment(part, system);
+        } else if graph != graph_version(&system.interactions) {
+            self.assembler.begin_step(part, system)?;
         }
-        step.residual = self.residual(part, interactions)?;
+        step.residual = self.residual(part, system)?;
         Ok(change)
     }
 
@@ -366,11 +362,11 @@ impl NewtonRaphson {
         iteration: usize,
         step: &mut Step,
         part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
+        system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<Turn> {
         let mut accepted = true;
-        for interaction in interactions.iter_mut() {
+        for interaction in &mut system.interactions {
             match interaction.after_convergence(part)? {
                 Outer::Done => {}
                 Outer::Again => accepted = false,
@@ -386,10 +382,10 @@ impl NewtonRaphson {
         if accepted {
             return Ok(Turn::Converged);
         }
-        self.assembler.begin_step(part, interactions)?;
+        self.assembler.begin_step(part, system)?;
         let (last, most) = self.allowed();
         (step.last, step.most) = (iteration + last, iteration + most);
-        step.residual = self.residual(part, interactions)?;
+        step.residual = self.residual(part, system)?;
         Ok(Turn::On)
     }
 
@@ -399,16 +395,16 @@ impl NewtonRaphson {
         (last, if self.settings.continue_if_converging && !self.settings.linear { 2 * last } else { last })
     }
 
-    fn residual(&mut self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Result<Vec<f64>> {
-        let inertia = self.scheme.inertia(part);
-        self.assembler.residual(part, interactions, inertia.as_ref())
+    fn residual(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+        let inertia = self.scheme.inertia(part, &system.dofs);
+        self.assembler.residual(part, system, inertia.as_ref())
     }
 
     /// Writes REACTION, if the settings ask for it.
-    pub(in crate::strategies) fn keep_reactions(&self, part: &mut ModelPart, residual: &[f64]) {
+    pub(in crate::strategies) fn keep_reactions(&self, part: &mut ModelPart, system: &System, residual: &[f64]) {
         if self.settings.compute_reactions {
             let handed_on = self.settings.reactions_of_constraints.then(|| self.assembler.equations());
-            write_reactions(part, residual, handed_on);
+            write_reactions(part, &system.dofs, residual, handed_on);
         }
     }
 }

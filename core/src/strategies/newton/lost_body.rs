@@ -1,7 +1,7 @@
 //! States that balance nothing: a body that nothing holds has gone out of all proportion to the model.
 
 use super::NewtonRaphson;
-use crate::assembly::{is_displacement, reach};
+use crate::assembly::{System, is_displacement, reach};
 use crate::communication::world;
 use crate::model::{ModelPart, SubPart};
 
@@ -10,13 +10,13 @@ impl NewtonRaphson {
     /// beyond [`reach`] and its part. Collective.
     ///
     /// Where a tangent is singular but for round-off, it lets a body go as far as round-off resists.
-    pub(super) fn lost_body(&self, part: &ModelPart, begin: &[f64]) -> Option<String> {
+    pub(super) fn lost_body(&self, part: &ModelPart, system: &System, begin: &[f64]) -> Option<String> {
         if !self.scheme.is_static() {
             return None;
         }
-        let reach = reach(&part.nodes, &part.dofs, self.assembler.equations());
-        let now = self.assembler.values(part);
-        let gone = part.dofs.dofs().iter().enumerate().filter(|(_, dof)| is_displacement(dof));
+        let reach = reach(&part.nodes, &system.dofs, self.assembler.equations());
+        let now = self.assembler.values(part, system);
+        let gone = system.dofs.dofs().iter().enumerate().filter(|(_, dof)| is_displacement(dof));
         let gone = gone.map(|(n, dof)| ((now[n] - begin[n]).abs(), dof.node)).filter(|(motion, _)| *motion > reach);
         let farthest = gone.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let said = farthest.map(|(motion, node)| {

@@ -1,6 +1,7 @@
 //! What the residuals of a step are measured by: those at its start, as far as forces of its size explain them.
 
 use super::NewtonRaphson;
+use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
@@ -25,27 +26,33 @@ impl NewtonRaphson {
     ///
     /// # Errors
     /// A load that cannot be computed.
-    pub(super) fn refer_to_start(&self, part: &ModelPart, residual: &[f64], to: &mut References) -> Result<()> {
-        let loads = self.assembler.loads(part)?;
-        to.forces = self.size_of_forces(part, residual).hypot(self.size_of_forces(part, &loads));
+    pub(super) fn refer_to_start(
+        &self,
+        part: &ModelPart,
+        system: &System,
+        residual: &[f64],
+        to: &mut References,
+    ) -> Result<()> {
+        let loads = self.assembler.loads(part, system)?;
+        to.forces = self.size_of_forces(system, residual).hypot(self.size_of_forces(system, &loads));
         to.start.push(self.assembler.equations().balanced(residual).into_owned());
         Ok(())
     }
 
     /// Takes the residual after the first solve: where no force at the start explains it, a share of it. Collective.
-    pub(super) fn refer_to_first(&self, part: &ModelPart, balanced: &[f64], to: &mut References) {
+    pub(super) fn refer_to_first(&self, system: &System, balanced: &[f64], to: &mut References) {
         let mut taken = balanced.to_vec();
-        let (size, largest) = (self.size_of_forces(part, balanced), LARGEST * to.forces);
+        let (size, largest) = (self.size_of_forces(system, balanced), LARGEST * to.forces);
         if largest > 0.0 && size > largest {
-            let forces = part.dofs.dofs().iter().zip(&mut taken).filter(|(dof, _)| !dof.multiplier);
+            let forces = system.dofs.dofs().iter().zip(&mut taken).filter(|(dof, _)| !dof.multiplier);
             forces.for_each(|(_, force)| *force *= largest / size);
         }
         to.start.push(taken);
     }
 
     /// Euclidean norm over all unknowns but multipliers; collective.
-    pub(super) fn size_of_forces(&self, part: &ModelPart, of: &[f64]) -> f64 {
-        let own = part.dofs.dofs().iter().enumerate().filter(|(n, dof)| !dof.multiplier && self.assembler.counts(*n));
+    pub(super) fn size_of_forces(&self, system: &System, of: &[f64]) -> f64 {
+        let own = system.dofs.dofs().iter().enumerate().filter(|(n, dof)| !dof.multiplier && self.assembler.counts(*n));
         world().total(own.map(|(n, _)| of[n] * of[n]).sum()).sqrt()
     }
 }

@@ -1,34 +1,30 @@
 //! How a step of Newton's iteration begins: where prescribed values are, and what the first iterate is for.
 
 use super::NewtonRaphson;
-use crate::assembly::impose_constraints;
+use crate::assembly::{System, impose_constraints};
 use crate::communication::world;
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, Interaction, MasslessNodes, MasterSlaveConstraint};
-use crate::model::ModelPart;
+use crate::entities::{EntityBlock, MasslessNodes};
+use crate::model::{MasterSlaveConstraint, ModelPart};
 
 impl NewtonRaphson {
     /// Takes the mass off the nodes that interactions name.
     ///
     /// Not where elements yield: without mass a node follows in balance, and at the limit of its material there is none.
-    pub(super) fn redistribute_mass(
-        &mut self,
-        part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
-    ) -> Result<()> {
+    pub(super) fn redistribute_mass(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         let mut nodes = MasslessNodes::default();
-        for interaction in interactions.iter_mut() {
+        for interaction in &mut system.interactions {
             let own = interaction.massless_nodes(part);
             nodes.surface.extend(own.surface);
             nodes.near.extend(own.near);
         }
-        let yielding = if nodes.surface.is_empty() { Vec::new() } else { yielding(part) };
+        let yielding = if nodes.surface.is_empty() { Vec::new() } else { yielding(system) };
         for list in [&mut nodes.surface, &mut nodes.near] {
             list.sort_unstable();
             list.dedup();
             list.retain(|node| yielding.binary_search(node).is_err());
         }
-        self.assembler.redistribute(part, &nodes)?;
+        self.assembler.redistribute(part, system, &nodes)?;
         if let Some(forces) = self.scheme.kept() {
             self.assembler.hand_on(forces);
         }
@@ -39,13 +35,18 @@ impl NewtonRaphson {
     /// left at their old values: the first solve takes them on through the tangent.
     ///
     /// With `led` nodes they stay at their new values instead, ahead of the mesh, which follows at those nodes only.
-    pub(in crate::strategies) fn start(&mut self, part: &mut ModelPart, led: Option<&[u32]>) -> Result<Vec<f64>> {
-        let targets = self.assembler.values(part);
+    pub(in crate::strategies) fn start(
+        &mut self,
+        part: &mut ModelPart,
+        system: &System,
+        led: Option<&[u32]>,
+    ) -> Result<Vec<f64>> {
+        let targets = self.assembler.values(part, system);
         if let Some(led) = led {
             led.iter().for_each(|&node| part.nodes.follow(node as usize));
             return Ok(vec![0.0; targets.len()]);
         }
-        for (number, dof) in part.dofs.dofs().iter().enumerate() {
+        for (number, dof) in system.dofs.dofs().iter().enumerate() {
             if self.assembler.equations().is_fixed(number)
                 && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
                 && field.levels.len() > 1
@@ -54,10 +55,10 @@ impl NewtonRaphson {
                 field.levels[0][at] = field.levels[1][at];
             }
         }
-        self.scheme.predict(part)?;
-        let start = self.assembler.values(part);
+        self.scheme.predict(part, &system.dofs)?;
+        let start = self.assembler.values(part, system);
         let increment: Vec<f64> = targets.iter().zip(&start).map(|(target, value)| target - value).collect();
-        let increment = self.followed(part, &increment);
+        let increment = self.followed(part, system, &increment);
         self.scheme.update(part);
         if self.settings.move_mesh {
             part.move_mesh();
@@ -66,11 +67,11 @@ impl NewtonRaphson {
     }
 
     /// Moves free unknowns back to where the step began: the prediction led to no state that can be computed.
-    pub(super) fn stay(&self, part: &mut ModelPart) {
-        let (now, old) = (self.assembler.values(part), part.dofs.gather(&part.nodes, 1));
+    pub(super) fn stay(&self, part: &mut ModelPart, system: &System) {
+        let (now, old) = (self.assembler.values(part, system), system.dofs.gather(&part.nodes, 1));
         let equations = self.assembler.equations();
         let back: Vec<f64> = (0..now.len()).map(|n| if equations.is_free(n) { old[n] - now[n] } else { 0.0 }).collect();
-        part.dofs.scatter_add(&back, &mut part.nodes);
+        system.dofs.scatter_add(&back, &mut part.nodes);
         self.scheme.update(part);
         if self.settings.move_mesh {
             part.move_mesh();
@@ -81,88 +82,79 @@ impl NewtonRaphson {
     /// answer; `None` where the step begins as others do.
     ///
     /// Not so after a failed attempt, since elements may turn inside out that way.
-    pub(super) fn led_nodes(&self, part: &ModelPart, interactions: &[Box<dyn Interaction>]) -> Option<Vec<u32>> {
+    pub(super) fn led_nodes(&self, part: &ModelPart, system: &System) -> Option<Vec<u32>> {
         let free = !self.failed
             && self.settings.move_mesh
-            && !part.constraints.iter().any(|c| c.active && !self.is_multiplier(part, c));
+            && !part.constraints.iter().any(|c| c.active && !self.is_multiplier(system, c));
         if !free || !self.scheme.is_static() {
             return None;
         }
-        interactions.iter().find_map(|interaction| interaction.led_nodes())
+        system.interactions.iter().find_map(|interaction| interaction.led_nodes())
     }
 
-    fn is_multiplier(&self, part: &ModelPart, constraint: &MasterSlaveConstraint) -> bool {
+    fn is_multiplier(&self, system: &System, constraint: &MasterSlaveConstraint) -> bool {
         let (node, variable) = constraint.slave;
-        part.dofs.number_of(variable, node).is_some_and(|number| part.dofs.dofs()[number as usize].multiplier)
+        system.dofs.number_of(variable, node).is_some_and(|number| system.dofs.dofs()[number as usize].multiplier)
     }
 
     /// Whether forces are farther out of balance after the first iteration than before it, in a step that prescribes motion.
-    pub(super) fn overshoots(
-        &mut self,
-        part: &ModelPart,
-        interactions: &[Box<dyn Interaction>],
-        before: &[f64],
-    ) -> Result<bool> {
-        let (now, old) = (self.assembler.values(part), part.dofs.gather(&part.nodes, 1));
+    pub(super) fn overshoots(&mut self, part: &ModelPart, system: &System, before: &[f64]) -> Result<bool> {
+        let (now, old) = (self.assembler.values(part, system), system.dofs.gather(&part.nodes, 1));
         let moves = (0..now.len()).any(|n| self.assembler.equations().is_fixed(n) && now[n] != old[n]);
         if !world().any(moves) || self.settings.linear {
             return Ok(false);
         }
-        let after = self.assembler.residual(part, interactions, None)?;
+        let after = self.assembler.residual(part, system, None)?;
         let after = self.assembler.equations().balanced(&after);
-        Ok(self.size_of_forces(part, &after) > self.size_of_forces(part, before))
+        Ok(self.size_of_forces(system, &after) > self.size_of_forces(system, before))
     }
 
     /// Goes back to the step's start, `begin` but for prescribed unknowns, and gives the increments of those.
-    pub(super) fn begin_again(
-        &mut self,
-        part: &mut ModelPart,
-        interactions: &mut [Box<dyn Interaction>],
-        begin: &[f64],
-    ) -> Result<Vec<f64>> {
-        let now = self.assembler.values(part);
+    pub(super) fn begin_again(&mut self, part: &mut ModelPart, system: &mut System, begin: &[f64]) -> Result<Vec<f64>> {
+        let now = self.assembler.values(part, system);
         let fixed = |n: usize| self.assembler.equations().is_fixed(n);
         let back: Vec<f64> = (0..now.len()).map(|n| if fixed(n) { 0.0 } else { begin[n] - now[n] }).collect();
-        part.dofs.scatter_add(&back, &mut part.nodes);
-        let prescribed = self.start(part, None)?;
-        for interaction in interactions.iter_mut() {
+        system.dofs.scatter_add(&back, &mut part.nodes);
+        let prescribed = self.start(part, system, None)?;
+        for interaction in &mut system.interactions {
             interaction.after_prediction(part)?;
         }
         Ok(prescribed)
     }
 
     /// The increments of prescribed unknowns, and those of constrained ones that follow.
-    pub(super) fn followed(&self, part: &mut ModelPart, prescribed: &[f64]) -> Vec<f64> {
+    pub(super) fn followed(&self, part: &mut ModelPart, system: &System, prescribed: &[f64]) -> Vec<f64> {
         let fixed = |(n, d): (usize, &f64)| if self.assembler.equations().is_fixed(n) { *d } else { 0.0 };
         let mut increment: Vec<f64> = prescribed.iter().enumerate().map(fixed).collect();
         if part.constraints.iter().any(|c| c.active) {
-            part.dofs.scatter_add(&increment, &mut part.nodes);
-            let lack = self.constraint_increment(part);
+            system.dofs.scatter_add(&increment, &mut part.nodes);
+            let lack = self.constraint_increment(part, system);
             let back: Vec<f64> = increment.iter().map(|d| -d).collect();
-            part.dofs.scatter_add(&back, &mut part.nodes);
+            system.dofs.scatter_add(&back, &mut part.nodes);
             increment.iter_mut().zip(lack).for_each(|(sum, d)| *sum += d);
         }
         increment
     }
 
     /// What constrained unknowns lack to obey their constraints at the present values of the others.
-    pub(super) fn constraint_increment(&self, part: &mut ModelPart) -> Vec<f64> {
-        let before = self.assembler.values(part);
+    pub(super) fn constraint_increment(&self, part: &mut ModelPart, system: &System) -> Vec<f64> {
+        let before = self.assembler.values(part, system);
         impose_constraints(&mut part.nodes, &part.constraints);
-        let lack: Vec<f64> = self.assembler.values(part).iter().zip(&before).map(|(after, b)| after - b).collect();
+        let lack: Vec<f64> =
+            self.assembler.values(part, system).iter().zip(&before).map(|(after, b)| after - b).collect();
         let back: Vec<f64> = lack.iter().map(|d| -d).collect();
-        part.dofs.scatter_add(&back, &mut part.nodes);
+        system.dofs.scatter_add(&back, &mut part.nodes);
         lack
     }
 }
 
 /// Nodes of elements that remember what they went through, ascending.
-fn yielding(part: &ModelPart) -> Vec<u32> {
+fn yielding(system: &System) -> Vec<u32> {
     let of_block = |block: &dyn EntityBlock| {
         let own = (0..block.len()).filter(|&at| block.remembers(at));
         own.flat_map(|at| block.nodes(at).to_vec()).collect::<Vec<u32>>()
     };
-    let mut nodes: Vec<u32> = part.element_blocks.iter().flat_map(|block| of_block(block.as_ref())).collect();
+    let mut nodes: Vec<u32> = system.elements.iter().flat_map(|block| of_block(block.as_ref())).collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes

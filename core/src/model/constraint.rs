@@ -1,6 +1,6 @@
 //! Linear relations between unknowns, removed from the system by elimination (eqs. D.12a–e).
 
-use crate::model::ScalarVariable;
+use super::variable::ScalarVariable;
 
 /// An unknown of a node.
 pub type NodeUnknown = (u32, ScalarVariable);

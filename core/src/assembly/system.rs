@@ -1,0 +1,71 @@
+//! What computes on a model part for one solver.
+
+use std::collections::BTreeMap;
+
+use super::dof_table::DofTable;
+use crate::diagnostics::{Report, Result};
+use crate::entities::{BlockRequest, EntityBlock, Interaction};
+use crate::model::{EntityTable, ModelPart};
+use crate::registry::{Build, Entry, Kind};
+
+/// Unknowns of a model part, the blocks over its entities, and what acts between bodies.
+#[derive(Default)]
+pub struct System {
+    /// Unknowns and their numbers.
+    pub dofs: DofTable,
+    /// Kernels over the elements of this rank.
+    pub elements: Vec<Box<dyn EntityBlock>>,
+    /// Kernels over the conditions of this rank.
+    pub conditions: Vec<Box<dyn EntityBlock>>,
+    /// What acts between bodies, e.g. contact.
+    pub interactions: Vec<Box<dyn Interaction>>,
+}
+
+impl System {
+    /// Makes the blocks from the tables of a part: one for each kind and properties, with the entities of this rank. Elements
+    /// take over what those of an earlier stage remember.
+    ///
+    /// # Errors
+    /// Every block that cannot be made and every entity that cannot be computed with.
+    pub fn make_blocks(&mut self, part: &ModelPart) -> Result<()> {
+        let mut report = Report::new();
+        let mut both = [Vec::new(), Vec::new()];
+        let tables = [(Kind::Element, &part.elements), (Kind::Condition, &part.conditions)];
+        for (blocks, (kind, table)) in both.iter_mut().zip(tables) {
+            let is_own = |at: usize| part.evaluates(kind, at);
+            for (entry, members) in groups(table, is_own) {
+                let Build::Block(factory) = entry.build else { continue };
+                let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
+                if let Some(block) = report.absorb(factory(&request)) {
+                    blocks.push(block);
+                }
+            }
+        }
+        for blocks in &mut both {
+            for block in blocks.iter_mut() {
+                report.absorb(block.initialize(&part.view()));
+            }
+        }
+        report.finish()?;
+        let [mut elements, conditions] = both;
+        // A part that has made no step yet is another than the one before of that name.
+        for earlier in self.elements.iter().filter(|_| part.info.step > 0) {
+            elements.iter_mut().for_each(|block| block.inherit(earlier.as_ref()));
+        }
+        (self.elements, self.conditions) = (elements, conditions);
+        Ok(())
+    }
+
+    /// The blocks over elements (or conditions).
+    pub fn blocks(&self, kind: Kind) -> &[Box<dyn EntityBlock>] {
+        if kind == Kind::Element { &self.elements } else { &self.conditions }
+    }
+}
+
+fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static Entry, Vec<u32>)> {
+    let mut groups: BTreeMap<(&'static str, usize), Vec<u32>> = BTreeMap::new();
+    for at in (0..table.len()).filter(|&at| is_own(at)) {
+        groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);
+    }
+    groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()
+}

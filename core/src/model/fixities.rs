@@ -1,0 +1,31 @@
+//! Which unknowns of nodes are prescribed.
+
+use std::collections::BTreeMap;
+
+use super::variable::ScalarVariable;
+
+/// Marks of nodes by variable, whether a system solves for it or not.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Fixities {
+    columns: BTreeMap<ScalarVariable, Vec<bool>>,
+}
+
+impl Fixities {
+    /// Fixes or frees a variable at some of `count` nodes.
+    pub fn set(&mut self, variable: ScalarVariable, nodes: &[u32], fixed: bool, count: usize) {
+        let column = self.columns.entry(variable).or_insert_with(|| vec![false; count]);
+        column.resize(count, false);
+        nodes.iter().for_each(|&node| column[node as usize] = fixed);
+    }
+
+    /// Whether a variable is fixed at a node.
+    pub fn holds(&self, variable: ScalarVariable, node: u32) -> bool {
+        self.columns.get(&variable).is_some_and(|column| column[node as usize])
+    }
+
+    /// Those of the chosen nodes.
+    pub fn pick(&self, nodes: &[u32]) -> Self {
+        let pick = |column: &Vec<bool>| nodes.iter().map(|&at| column[at as usize]).collect();
+        Self { columns: self.columns.iter().map(|(variable, column)| (*variable, pick(column))).collect() }
+    }
+}

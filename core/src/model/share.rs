@@ -1,0 +1,45 @@
+//! What this process has of a mesh that several ranks share.
+
+use super::halo::Halo;
+use crate::communication::world;
+
+/// Numbers of the whole mesh.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct MeshSizes {
+    /// Nodes.
+    pub nodes: usize,
+    /// Elements.
+    pub elements: usize,
+    /// Conditions.
+    pub conditions: usize,
+}
+
+/// What this rank has of the mesh; indices count what it has, in the order of the whole mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Share {
+    /// Number of ranks.
+    pub ranks: usize,
+    /// Rank that evaluates each element.
+    pub elements: Vec<u32>,
+    /// Rank that evaluates each condition.
+    pub conditions: Vec<u32>,
+    /// Rank that owns each node with its unknowns.
+    pub owners: Vec<u32>,
+    /// Rank that evaluates the pairs of facets whose last slave node this is: its owner, or who has fewer of them.
+    pub pairs: Vec<u32>,
+    /// Place of each node in the whole mesh.
+    pub places: Vec<u32>,
+    /// Whether every rank has the node and all elements at it.
+    pub common: Vec<bool>,
+    /// Nodes that several ranks have.
+    pub halo: Halo,
+    /// What all ranks have together.
+    pub whole: MeshSizes,
+}
+
+impl Share {
+    /// Whether this rank owns a node with its unknowns.
+    pub fn owns(&self, node: usize) -> bool {
+        self.owners[node] as usize == world().rank()
+    }
+}
