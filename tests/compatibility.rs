@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use std::path::Path;
 use support::{read_json, root, said, scratch_copy, zelus};
 use zelus::contact_structural_mechanics::compatibility::{Use, refusal};
-use zelus::contact_structural_mechanics::pairs::{Family, Friction};
-use zelus_core::registry::{Build, Kind, entries};
+use zelus::contact_structural_mechanics::pairs::{Family, FamilyEntry, Friction};
+use zelus_core::registry::all;
 
 const DECK: &str = "ProjectParameters.json";
 const VARIATIONS: [&str; 4] = [
@@ -19,12 +19,7 @@ const VARIATIONS: [&str; 4] = [
 ];
 
 fn families() -> Vec<(&'static str, &'static Family)> {
-    let family = |build: &Build| match build {
-        Build::Factory(factory) => factory.downcast_ref::<Family>(),
-        _ => None,
-    };
-    let conditions = entries().into_iter().filter(|entry| entry.kind == Kind::Condition);
-    conditions.filter_map(|entry| family(&entry.build).map(|family| (entry.name, family))).collect()
+    all::<FamilyEntry>().into_iter().map(|entry| (entry.name, &entry.build)).collect()
 }
 
 /// The process of a family and the contact type that names it there.

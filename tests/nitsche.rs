@@ -22,11 +22,12 @@ use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Pair, PairKey, PairRequest, Previous, condition_name, find_family, group_by_surroundings,
 };
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
+use zelus_core::entities::require_kind;
 use zelus_core::entities::{LocalSystems, Want};
 use zelus_core::geometry::Shape;
+use zelus_core::model::Role;
 use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue};
-use zelus_core::registry::{Kind, require};
 use zelus_core::vector3::{add, cross, norm, sub};
 
 /// Element, law, and the local nodes of its face, which lies in the plane of the last axis at its lower end.
@@ -62,7 +63,7 @@ impl Contact {
         friction: f64,
         turn: impl Fn(Vec3) -> Vec3,
     ) -> Self {
-        let entry = require(Kind::Element, element).expect("an element");
+        let entry = require_kind(Role::Element, element).expect("an element");
         let (cell, space) = (entry.cell.expect("a cell").cell(), entry.space);
         let mut random = Random(3);
         let mut shaken = |x: Vec3| add(x, random.vector(0.05, space));
@@ -154,7 +155,8 @@ impl Contact {
         let behind = |_: &Pair| bodies.nodes([0, 0]).to_vec();
         let groups = group_by_surroundings(Some(&patches), behind, face.len(), vec![pair], &own);
         let (around, (pairs, nodes)) = groups.into_iter().next().expect("one pair");
-        let entry = require(Kind::Condition, &condition_name(family.condition, slave, master)).expect("a condition");
+        let entry =
+            require_kind(Role::Condition, &condition_name(family.condition, slave, master)).expect("a condition");
         let request = PairRequest { entry, pairs, nodes, around, bodies, patches: patches.clone(), parameters };
         let block = (family.block)(slave, master, request).expect("a block");
         Self { part, block, interface, patches }
@@ -201,7 +203,7 @@ impl Contact {
 /// Every kind on every facet with every variant: pressed in, its tractions not those of contact.
 fn walk(mut visit: impl FnMut(&str, &dyn Fn(&dyn Fn(Vec3) -> Vec3) -> Contact, &[Vec3], &[Vec3])) {
     for kind in KINDS {
-        let space = require(Kind::Element, kind.0).expect("an element").space;
+        let space = require_kind(Role::Element, kind.0).expect("an element").space;
         for masters in if space == 2 { vec![2] } else { vec![3, 4] } {
             for variant in VARIANTS {
                 for friction in [0.0, 0.15, 10.0] {

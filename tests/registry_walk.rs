@@ -12,10 +12,13 @@ mod ties;
 
 use specimen::{Loads, Random, Specimen, Vec3, cell, difference, is_axisymmetric, is_linear, size};
 use zelus as _;
+use zelus::structural_mechanics::laws::LawEntry;
 use zelus_core::entities::Tangent;
+use zelus_core::entities::block_kinds;
 use zelus_core::geometry::Shape;
 use zelus_core::model::variables::DISPLACEMENT;
-use zelus_core::registry::{Build, Entry, Kind, entries, names};
+use zelus_core::model::{EntityKind, Role};
+use zelus_core::registry::names;
 
 /// Kinds whose tangent is the derivative only where there is no strain yet, as in the reference program.
 /// (element, law, why)
@@ -27,21 +30,20 @@ const TANGENT_AT_REST: &[(&str, &str, &str)] = &[
 /// Every registered kind of body or boundary with a block, and a law that fits it; conditions have none.
 ///
 /// Kinds without a space, as springs on a number, have no motions to check.
-fn kinds() -> Vec<(&'static Entry, Shape, Option<&'static str>)> {
+fn kinds() -> Vec<(&'static EntityKind, Shape, Option<&'static str>)> {
     let mut out = Vec::new();
-    for entry in entries() {
-        let Build::Block(_) = entry.build else { continue };
+    for entry in block_kinds() {
         if entry.space == 0 {
             continue;
         }
         let shape = entry.cell.unwrap_or_else(|| panic!("{} has no cell", entry.name));
-        if entry.kind == Kind::Condition {
+        if entry.role == Role::Condition {
             out.push((entry, shape, None));
             continue;
         }
         let x = cell(shape, entry.space, 0.0, &mut Random(1));
         let fits = |law: &&str| Specimen::new(entry, Some(law), &x, &order(shape), Loads::Scalars).is_ok();
-        let laws: Vec<&str> = names(Kind::ConstitutiveLaw).filter(fits).collect();
+        let laws: Vec<&str> = names::<LawEntry>().into_iter().filter(fits).collect();
         let why = || Specimen::new(entry, None, &x, &order(shape), Loads::Scalars).err();
         assert!(!laws.is_empty(), "no registered law fits {}: {:?}", entry.name, why());
         out.extend(laws.into_iter().map(|law| (entry, shape, Some(law))));
@@ -53,7 +55,7 @@ fn order(shape: Shape) -> Vec<u32> {
     (0..shape.nodes() as u32).collect()
 }
 
-fn label(entry: &Entry, law: Option<&str>) -> String {
+fn label(entry: &EntityKind, law: Option<&str>) -> String {
     format!("{} {} ({}:{})", entry.name, law.unwrap_or_default(), entry.file, entry.line)
 }
 
@@ -99,7 +101,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(entry: &Entry) -> Self {
+    fn new(entry: &EntityKind) -> Self {
         let angle: f64 = if is_axisymmetric(entry) { 0.0 } else { 0.7 };
         let tilt: f64 = if entry.space == 3 { 0.4 } else { 0.0 };
         let ((s, c), (t, k)) = (angle.sin_cos(), tilt.sin_cos());
@@ -137,7 +139,7 @@ fn displacements(specimen: &Specimen, of_node: impl Fn(usize) -> Vec3) -> Option
 #[test]
 fn rigid_motions_strain_no_element() {
     let mut random = Random(12);
-    for (entry, shape, law) in kinds().into_iter().filter(|(entry, ..)| entry.kind == Kind::Element) {
+    for (entry, shape, law) in kinds().into_iter().filter(|(entry, ..)| entry.role == Role::Element) {
         let x = cell(shape, entry.space, 0.05, &mut random);
         let mut specimen = Specimen::new(entry, law, &x, &order(shape), Loads::Scalars).unwrap();
         let motion = Motion::new(entry);
@@ -154,7 +156,7 @@ fn rigid_motions_strain_no_element() {
 #[test]
 fn loads_that_follow_a_surface_turn_with_it() {
     let mut random = Random(13);
-    for (entry, shape, law) in kinds().into_iter().filter(|(entry, ..)| entry.kind == Kind::Condition) {
+    for (entry, shape, law) in kinds().into_iter().filter(|(entry, ..)| entry.role == Role::Condition) {
         let x = cell(shape, entry.space, 0.05, &mut random);
         let mut specimen = Specimen::new(entry, law, &x, &order(shape), Loads::Scalars).unwrap();
         // springs to the ground resist rigid motions, loads on the initial geometry do not follow them

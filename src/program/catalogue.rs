@@ -2,6 +2,8 @@
 
 use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
+use zelus_core::entities::find_kind;
+use zelus_core::model::Role;
 use zelus_core::model::{VariableKind, variables};
 use zelus_core::registry::{self, Entry, Kind};
 
@@ -9,17 +11,15 @@ use super::say::say;
 
 /// Prints the names of one kind, or of all.
 pub(super) fn list(kind: Option<&str>) -> Result<()> {
-    let kinds: Vec<Kind> = match kind {
-        None => Kind::ALL.to_vec(),
+    let kinds: Vec<&Kind> = match kind {
+        None => registry::kinds(),
         Some("variable" | "variables") => Vec::new(),
-        Some(word) => vec![find_kind(word)?],
+        Some(word) => vec![kind_called(word)?],
     };
     for kind in kinds {
-        let entries: Vec<&Entry> = registry::entries().into_iter().filter(|e| e.kind == kind).collect();
-        if entries.is_empty() {
-            continue;
-        }
-        say(&format!("{} ({})", kind.word(), entries.len()));
+        let mut entries = (kind.entries)();
+        entries.sort_by_key(|entry| entry.name);
+        say(&format!("{} ({})", kind.word, entries.len()));
         for entry in entries {
             let aliases =
                 if entry.aliases.is_empty() { String::new() } else { format!(" (also {})", entry.aliases.join(", ")) };
@@ -35,10 +35,10 @@ pub(super) fn list(kind: Option<&str>) -> Result<()> {
     Ok(())
 }
 
-fn find_kind(word: &str) -> Result<Kind> {
+fn kind_called(word: &str) -> Result<&'static Kind> {
     let wanted = word.trim_end_matches('s');
-    Kind::ALL.into_iter().find(|kind| kind.word() == wanted || kind.word() == word).ok_or_else(|| {
-        let words = || Kind::ALL.iter().map(|kind| kind.word()).chain(["variable"]);
+    registry::kinds().into_iter().find(|kind| kind.word == wanted || kind.word == word).ok_or_else(|| {
+        let words = || registry::kinds().into_iter().map(|kind| kind.word).chain(["variable"]);
         let remedy =
             did_you_mean(word, words()).unwrap_or_else(|| format!("kinds: {}", words().collect::<Vec<_>>().join(", ")));
         Diagnostic::error("unknown-kind", format!("there is no kind {word:?}")).remedy(remedy).into()
@@ -47,15 +47,19 @@ fn find_kind(word: &str) -> Result<Kind> {
 
 /// Prints everything the registry knows of a name.
 pub(super) fn describe(name: &str) -> Result<()> {
-    let found: Vec<&Entry> = Kind::ALL.into_iter().filter_map(|kind| registry::find(kind, name)).collect();
-    for entry in &found {
-        say(&format!("{} {}", entry.kind.word(), entry.name));
+    let found: Vec<(&str, &Entry)> =
+        registry::entries().into_iter().filter(|(_, entry)| entry.is_called(name)).collect();
+    for (kind, entry) in &found {
+        say(&format!("{kind} {}", entry.name));
         say(&format!("  {}", entry.about));
         if !entry.aliases.is_empty() {
             say(&format!("  also called {}", entry.aliases.join(", ")));
         }
-        if let Some(cell) = entry.cell {
-            say(&format!("  {} nodes, shape {cell:?}, in {} dimensions", entry.nodes(), entry.space));
+        let shape = [Role::Element, Role::Condition].into_iter().find(|role| role.word() == *kind);
+        if let Some(of) = shape.and_then(|role| find_kind(role, name))
+            && let Some(cell) = of.cell
+        {
+            say(&format!("  {} nodes, shape {cell:?}, in {} dimensions", of.nodes(), of.space));
         }
         if !entry.source.is_empty() {
             say(&format!("  source: {}", entry.source));
@@ -77,7 +81,8 @@ pub(super) fn describe(name: &str) -> Result<()> {
     if !found.is_empty() || variable.is_some() {
         return Ok(());
     }
-    let names: Vec<&str> = Kind::ALL.into_iter().flat_map(registry::names).chain(variables().keys().copied()).collect();
+    let registered = registry::kinds().into_iter().flat_map(Kind::names);
+    let names: Vec<&str> = registered.chain(variables().keys().copied()).collect();
     let remedy = did_you_mean(name, names).unwrap_or_else(|| "`zelus list` shows every name".to_owned());
     Err(Diagnostic::error("unknown-name", format!("nothing is registered as {name:?}")).remedy(remedy).into())
 }

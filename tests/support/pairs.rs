@@ -8,17 +8,17 @@ use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
-    ContactBlock, Family, Multiplier, Pair, PairKey, PairRequest, Previous, condition_name,
+    ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Previous, condition_name,
 };
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
-use zelus_core::entities::{EntityBlock, LocalSystems, Want};
+use zelus_core::entities::{EntityBlock, LocalSystems, Want, block_kinds, find_kind};
 use zelus_core::geometry::Shape;
 use zelus_core::model::flags::{ACTIVE, SLIP};
 use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
-use zelus_core::model::{ModelPart, Nodes};
-use zelus_core::registry::{Build, Kind, entries, find};
+use zelus_core::model::{ModelPart, Nodes, Role};
+use zelus_core::registry::all;
 use zelus_core::vector3::{add, cross, dot, normalised, scale, sub};
 
 use super::specimen::{Random, Vec3, difference, size};
@@ -151,7 +151,7 @@ impl Setting {
     fn build(&self, family: &Family) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
         let (slave, master) = (Self::shape(self.slave.len()), Self::shape(self.master.len()));
         let name = condition_name(family.condition, slave, master);
-        let entry = find(Kind::Condition, &name);
+        let entry = find_kind(Role::Condition, &name);
         let masters = self.master.len();
         let current: Vec<Vec3> = self.master.iter().chain(&self.slave).copied().collect();
         let count = current.len();
@@ -208,7 +208,7 @@ impl Setting {
             habit: Habit::default(),
         };
         let request = PairRequest {
-            entry: entry.unwrap_or(entries()[0]),
+            entry: entry.unwrap_or(block_kinds()[0]),
             pairs: vec![pair],
             nodes: (0..count as u32).collect(),
             around: 0,
@@ -262,12 +262,8 @@ pub fn system(part: &ModelPart, block: &dyn EntityBlock, want: Want) -> LocalSys
 }
 
 fn families() -> Vec<(&'static str, &'static Family)> {
-    let of = |build: &'static Build| match build {
-        Build::Factory(factory) => factory.downcast_ref::<Family>(),
-        _ => None,
-    };
     // Those that take tractions from elements are walked with elements, in tests/nitsche.rs.
-    let found = entries().into_iter().filter_map(|e| Some((e.name, of(&e.build)?)));
+    let found = all::<FamilyEntry>().into_iter().map(|entry| (entry.name, &entry.build));
     let found: Vec<_> = found.filter(|(_, family)| !matches!(family.multiplier, Multiplier::Body)).collect();
     assert!(!found.is_empty(), "no contact family is registered");
     let by_node = |&(name, family): &(&'static str, &'static Family)| Some((name, family.by_node?.implicit));

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Tangent, Want};
+use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Tangent, Want, block_factory};
 use zelus_core::geometry::Shape;
 use zelus_core::model::variables::DISPLACEMENT;
-use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, ScalarVariable, VariableKind, variables};
-use zelus_core::registry::{Build, Entry, Kind};
+use zelus_core::model::{
+    EntityKind, ModelPart, Nodes, Properties, PropertyValue, Role, ScalarVariable, VariableKind, variables,
+};
 
 pub type Vec3 = [f64; 3];
 
@@ -70,7 +71,7 @@ pub enum Loads {
 pub struct Specimen {
     pub part: ModelPart,
     pub block: Box<dyn EntityBlock>,
-    entry: &'static Entry,
+    entry: &'static EntityKind,
 }
 
 impl Specimen {
@@ -78,7 +79,7 @@ impl Specimen {
     ///
     /// Properties that the kind asks for and that are not among the usual ones get the value 1.
     pub fn new(
-        entry: &'static Entry,
+        entry: &'static EntityKind,
         law: Option<&str>,
         x: &[Vec3],
         nodes: &[u32],
@@ -103,7 +104,7 @@ impl Specimen {
     }
 
     fn with_properties(
-        entry: &'static Entry,
+        entry: &'static EntityKind,
         law: Option<&str>,
         x: &[Vec3],
         nodes: &[u32],
@@ -121,12 +122,12 @@ impl Specimen {
         let numbers = values.iter().map(|(name, value)| (name.clone(), PropertyValue::Number(*value)));
         properties.values.extend(numbers);
         part.properties.insert(1, properties);
-        let table = if entry.kind == Kind::Element { &mut part.elements } else { &mut part.conditions };
+        let table = if entry.role == Role::Element { &mut part.elements } else { &mut part.conditions };
         table.push(1, entry, 1, nodes);
         table.finish();
         load(&mut part, entry, loads);
-        let Build::Block(make) = entry.build else { unreachable!("only kinds with a block are walked") };
-        let table = if entry.kind == Kind::Element { &part.elements } else { &part.conditions };
+        let make = block_factory(entry).expect("only kinds with a block are walked");
+        let table = if entry.role == Role::Element { &part.elements } else { &part.conditions };
         let request = BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part };
         let mut block = make(&request).map_err(|problem| problem.to_string())?;
         block.initialize(&part.view()).map_err(|problem| problem.to_string())?;
@@ -202,20 +203,20 @@ impl Specimen {
 }
 
 /// Whether strains are those of linear theory, by the name that says so.
-pub fn is_linear(entry: &Entry) -> bool {
+pub fn is_linear(entry: &EntityKind) -> bool {
     ["SmallDisplacement", "TrussLinear", "LinearTruss"].iter().any(|word| entry.name.contains(word))
 }
 
 /// Whether the plane turns about the y axis.
-pub fn is_axisymmetric(entry: &Entry) -> bool {
+pub fn is_axisymmetric(entry: &EntityKind) -> bool {
     entry.name.contains("Axisym")
 }
 
 /// Gives the entity and its nodes a value of every variable of the wanted sort.
-fn load(part: &mut ModelPart, entry: &Entry, loads: Loads) {
+fn load(part: &mut ModelPart, entry: &EntityKind, loads: Loads) {
     let wanted = if loads == Loads::Scalars { VariableKind::Scalar } else { VariableKind::Vector3 };
     let mut random = Random(5);
-    let data = if entry.kind == Kind::Element { &mut part.elements.data } else { &mut part.conditions.data };
+    let data = if entry.role == Role::Element { &mut part.elements.data } else { &mut part.conditions.data };
     // constants that resist rotations are refused
     let taken = |name: &str| name == DISPLACEMENT.name() || name.contains("ROTATIONAL") || name == "NODAL_INERTIA";
     for variable in variables().values().filter(|v| v.kind == wanted && !taken(v.name)) {

@@ -1,13 +1,14 @@
 //! The walk over families of ties: their block for every two shapes, with operators as a pair might have them.
 
 use zelus::contact_structural_mechanics::pairs::{
-    FacetOperators, FacetPair, Multiplier, PairKey, TyingFamily, TyingRequest, condition_name, tying_block,
+    FacetOperators, FacetPair, Multiplier, PairKey, TyingFamily, TyingFamilyEntry, TyingRequest, condition_name,
+    tying_block,
 };
-use zelus_core::entities::{EntityBlock, Want};
+use zelus_core::entities::{EntityBlock, Want, block_kinds, find_kind};
 use zelus_core::geometry::Shape;
 use zelus_core::model::variables::DISPLACEMENT;
-use zelus_core::model::{ModelPart, Nodes};
-use zelus_core::registry::{Build, Entry, Kind, entries, find};
+use zelus_core::model::{ModelPart, Nodes, Role};
+use zelus_core::registry::all;
 
 use super::pairs::{FACETS, set, system};
 use super::specimen::{Random, difference, size};
@@ -38,14 +39,13 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
     for &(name, components) in family.variables {
         part.nodes.history.add_named(name, components);
     }
-    let entry: Option<&'static Entry> =
-        find(Kind::Condition, &condition_name("MeshTyingMortarCondition", slave, master));
+    let entry = find_kind(Role::Condition, &condition_name("MeshTyingMortarCondition", slave, master));
     let pair = FacetPair {
         key: PairKey { interface: 0, slave: 0, master: 0 },
         operators: operators(slave.nodes(), master.nodes(), &mut Random(3)),
     };
     let request = TyingRequest {
-        entry: entry.unwrap_or(entries()[0]),
+        entry: entry.unwrap_or(block_kinds()[0]),
         pairs: vec![pair],
         nodes: (0..count as u32).collect(),
         tied,
@@ -59,10 +59,7 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
 
 #[test]
 fn ties_are_linear_symmetric_and_carry_rigid_shifts() {
-    let families = entries().into_iter().filter_map(|entry| match entry.build {
-        Build::Factory(factory) => Some((entry.name, factory.downcast_ref::<TyingFamily>()?)),
-        _ => None,
-    });
+    let families = all::<TyingFamilyEntry>().into_iter().map(|entry| (entry.name, &entry.build));
     let mut walked = 0;
     for (name, family) in families {
         for (slave, master) in FACETS.into_iter().flat_map(|s| FACETS.map(|m| (s, m))) {

@@ -1,9 +1,9 @@
 //! Constraints of one method as a block: residual −∂ℓ and tangent ∂²ℓ over positions and multipliers.
 
 use std::ops::Range;
+use zelus_core::model::EntityKind;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::registry::Entry;
 use zelus_core::scalar::Dual;
 
 use crate::constraints::Constraint;
@@ -12,7 +12,7 @@ use crate::variables::POSITION;
 
 /// Constraints of one kind of condition under one method.
 pub struct ConstraintBlock<M: Method> {
-    entry: &'static Entry,
+    entry: &'static EntityKind,
     constraints: Vec<Constraint>,
     /// Positions, then the node of the constraint: `terms + 1` a constraint.
     nodes: Vec<u32>,
@@ -24,7 +24,7 @@ pub struct ConstraintBlock<M: Method> {
 
 impl<M: Method> ConstraintBlock<M> {
     /// The block of `constraints`, which have the same number of terms.
-    pub(crate) fn new(entry: &'static Entry, constraints: Vec<Constraint>, method: std::sync::Arc<M>) -> Self {
+    pub(crate) fn new(entry: &'static EntityKind, constraints: Vec<Constraint>, method: std::sync::Arc<M>) -> Self {
         let terms = constraints.first().map_or(0, |constraint| constraint.terms.len()) as u8;
         let position = |node| LocalUnknown { node, variable: POSITION.scalar() };
         let multiplier = |m: usize| LocalUnknown { node: terms, variable: MULTIPLIERS[m].scalar() };
@@ -46,7 +46,7 @@ impl<M: Method> ConstraintBlock<M> {
 }
 
 impl<M: Method> EntityBlock for ConstraintBlock<M> {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.entry
     }
 

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use zelus_core::entities::find_kind;
+use zelus_core::model::Role;
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{EntityBlock, Interaction, SetChange};
 use zelus_core::model::{ModelPart, ScalarVariable};
-use zelus_core::registry::{self, Kind};
 
 use crate::constraint_block::ConstraintBlock;
 use crate::constraints::{Constraint, INTERACTION};
@@ -69,7 +70,7 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
         self.blocks = groups
             .into_iter()
             .map(|(kind, constraints)| {
-                let entry = registry::find(Kind::Condition, kind).expect("the name of a registered kind");
+                let entry = find_kind(Role::Condition, kind).expect("the name of a registered kind");
                 ConstraintBlock::new(entry, constraints, Arc::clone(&self.method))
             })
             .collect();

@@ -4,11 +4,12 @@
 //! the X coordinate of that node. The conditions add nothing to the functional by themselves: a method does.
 
 use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::entities::Build;
+use zelus_core::entities::ConditionEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{ModelPart, Nodes, PropertyValue};
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use crate::variables::POSITION;
 
@@ -137,19 +138,19 @@ impl<const NODES: usize> Kernel<NODES, 1> for Stated {
     }
 }
 
-register! { Condition WALL,
+register! { ConditionEntry WALL,
     about: "wall at the X coordinate of the last node: the position of the first node is not below it",
     source: "x ≥ w; eqs. D.13, D.21",
     cell: Shape::of(1, 2),
     build: Build::Block(KernelBlock::<Stated, 2, 1>::boxed),
 }
-register! { Condition LINEAR[0],
+register! { ConditionEntry LINEAR[0],
     about: "linear constraint of one position: CONSTRAINT_COEFFICIENTS·x + CONSTRAINT_CONSTANT ≤ 0",
     source: "eq. D.17",
     cell: Shape::of(1, 2),
     build: Build::Block(KernelBlock::<Stated, 2, 1>::boxed),
 }
-register! { Condition LINEAR[1],
+register! { ConditionEntry LINEAR[1],
     about: "linear constraint of two positions: CONSTRAINT_COEFFICIENTS·x + CONSTRAINT_CONSTANT ≤ 0",
     source: "eq. D.26",
     cell: Shape::of(1, 3),

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
@@ -11,7 +12,6 @@ use zelus_core::io::replace_file;
 use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 /// A column of the table.
 #[derive(Debug, Clone, Deserialize)]
@@ -162,8 +162,8 @@ impl Interaction for Watch {
     fn restore(&mut self) {}
 }
 
-register! { Process "iterate_output_process",
+register! { ProcessEntry "iterate_output_process",
     about: "writes chosen values and the residual norm of every Newton iterate to a JSON file",
     defaults: include_str!("../../../configs/processes/iterate_output_process.json"),
-    build: Build::Process(build),
+    build: build,
 }

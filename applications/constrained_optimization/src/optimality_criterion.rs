@@ -1,10 +1,8 @@
 //! Converged when the residual is small and every constraint is obeyed: a method that stalls elsewhere is not accepted.
 
 use zelus_core::register;
-use zelus_core::registry::Build;
-use zelus_core::strategies::{
-    Check, ConvergenceCriterion, CriterionFactory, Measures, ResidualCriterion, Verdict, both,
-};
+use zelus_core::strategies::CriterionEntry;
+use zelus_core::strategies::{Check, ConvergenceCriterion, Measures, ResidualCriterion, Verdict, both};
 
 use crate::variables::CONSTRAINT_VIOLATION;
 
@@ -27,11 +25,11 @@ impl ConvergenceCriterion for Feasibility {
     }
 }
 
-register! { ConvergenceCriterion "optimality_criterion",
+register! { CriterionEntry "optimality_criterion",
     about: "residual_criterion, and no constraint violated by more than feasibility_tolerance",
     source: "g ≥ 0, λ ≤ 0 (eqs. D.3a, D.5d)",
-    build: Build::Factory(&((|request| {
+    build: |request| {
         let tolerance = request.settings.get_f64("feasibility_tolerance")?;
         Ok(both(Box::new(ResidualCriterion::from_settings(request)?), Box::new(Feasibility { tolerance })))
-    }) as CriterionFactory)),
+    },
 }

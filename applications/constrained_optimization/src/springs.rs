@@ -3,10 +3,11 @@
 //! Residual −f′ = −k (x − x₀)ᵖ⁻¹, tangent f″ = (p − 1) k (x − x₀)ᵖ⁻².
 
 use zelus_core::diagnostics::Result;
+use zelus_core::entities::Build;
+use zelus_core::entities::ElementEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use crate::variables::POSITION;
 
@@ -56,13 +57,13 @@ impl<const POWER: i32> Kernel<1, 1> for Spring<POWER> {
     }
 }
 
-register! { Element "LinearSpringElement1N",
+register! { ElementEntry "LinearSpringElement1N",
     about: "spring on one unknown with energy k/2 (x − x₀)²",
     source: "eqs. D.13, D.26",
     cell: Shape::of(0, 1),
     build: Build::Block(KernelBlock::<Spring<2>, 1, 1>::boxed),
 }
-register! { Element "QuarticSpringElement1N",
+register! { ElementEntry "QuarticSpringElement1N",
     about: "spring on one unknown with energy k/4 (x − x₀)⁴",
     source: "eq. D.16",
     cell: Shape::of(0, 1),

@@ -5,9 +5,9 @@
 
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Nodes, Variable};
-use zelus_core::register;
-use zelus_core::registry::{self, Build, Kind};
+use zelus_core::registry;
 use zelus_core::scalar::Real;
+use zelus_core::{register, registered_kind};
 
 use crate::variables::{FRICTION_COEFFICIENT, TRESCA_FRICTION_THRESHOLD};
 
@@ -36,7 +36,14 @@ impl Bound {
     }
 }
 
-/// A law, registered by the name of `frictional_law` as a friction law with `Build::Factory(&FrictionLaw {…})`.
+registered_kind! {
+    /// A friction law, by the name of `frictional_law`.
+    pub struct FrictionLawEntry("friction_law", "unknown-name") {
+        build: FrictionLaw;
+    }
+}
+
+/// A law of friction.
 pub struct FrictionLaw {
     /// The number that the law needs at a node, read from properties or nodes under this name.
     pub variable: &'static Variable<f64>,
@@ -66,13 +73,13 @@ impl PartialEq for FrictionLaw {
 }
 
 /// The law that acts without a name.
-pub static COULOMB: FrictionLaw = FrictionLaw {
+pub const COULOMB: FrictionLaw = FrictionLaw {
     variable: &FRICTION_COEFFICIENT,
     bound: |coefficient| Bound { coefficient, threshold: 0.0 },
     by_coefficients: true,
 };
 
-static TRESCA: FrictionLaw = FrictionLaw {
+const TRESCA: FrictionLaw = FrictionLaw {
     variable: &TRESCA_FRICTION_THRESHOLD,
     bound: |threshold| Bound { coefficient: 0.0, threshold },
     by_coefficients: false,
@@ -83,26 +90,24 @@ static TRESCA: FrictionLaw = FrictionLaw {
 /// # Errors
 /// A name that no law has.
 pub fn find_friction_law(name: &str) -> Result<&'static FrictionLaw, Diagnostic> {
-    let entry = registry::require(Kind::FrictionLaw, name)?;
-    let Build::Factory(factory) = entry.build else { unreachable!("friction laws register a factory") };
-    Ok(factory.downcast_ref::<FrictionLaw>().expect("friction laws register a FrictionLaw"))
+    registry::require::<FrictionLawEntry>(name).map(|entry| &entry.build)
 }
 
 /// Whether no registered law has a number at a node.
 pub fn smooth_nodes(nodes: &Nodes) -> impl Fn(usize) -> bool + '_ {
-    let laws: Vec<_> = registry::names(Kind::FrictionLaw).filter_map(|name| find_friction_law(name).ok()).collect();
-    move |at| laws.iter().all(|law| law.bound_at(nodes, at).is_smooth())
+    let laws = registry::all::<FrictionLawEntry>();
+    move |at| laws.iter().all(|law| law.build.bound_at(nodes, at).is_smooth())
 }
 
-register! { FrictionLaw "Coulomb",
+register! { FrictionLawEntry "Coulomb",
     about: "limit of the tangential traction: FRICTION_COEFFICIENT times the pressure",
     source: "eq. 4.1",
-    build: Build::Factory(&COULOMB),
+    build: COULOMB,
 }
-register! { FrictionLaw "Tresca",
+register! { FrictionLawEntry "Tresca",
     about: "limit of the tangential traction: TRESCA_FRICTION_THRESHOLD, whatever the pressure",
     source: "eq. 4.1",
-    build: Build::Factory(&TRESCA),
+    build: TRESCA,
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! A model part with one entity of one kind, and what tests ask of it.
 
-use zelus_core::entities::{BlockRequest, EntityBlock, Gauss, LocalSystems, Want};
+use zelus_core::entities::{BlockRequest, EntityBlock, Gauss, LocalSystems, Want, block_factory, find_kind};
 use zelus_core::geometry::Shape;
+use zelus_core::model::Role;
 use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Variable};
-use zelus_core::registry::{Build, Kind, find};
 
 pub(crate) type Vec3 = [f64; 3];
 
@@ -74,8 +74,8 @@ pub(crate) struct Single {
 }
 
 impl Single {
-    pub(crate) fn new(kind: Kind, name: &str, law: Option<&str>, values: &[(&str, f64)], x: &[Vec3]) -> Self {
-        let entry = find(kind, name).unwrap_or_else(|| panic!("{name} is not registered"));
+    pub(crate) fn new(role: Role, name: &str, law: Option<&str>, values: &[(&str, f64)], x: &[Vec3]) -> Self {
+        let entry = find_kind(role, name).unwrap_or_else(|| panic!("{name} is not registered"));
         let mut part = ModelPart::new("test");
         part.nodes = Nodes::new((1..=x.len()).collect(), x.to_vec());
         part.nodes.history.add(&DISPLACEMENT);
@@ -86,11 +86,11 @@ impl Single {
         }
         part.properties.insert(1, properties);
         let nodes: Vec<u32> = (0..x.len() as u32).collect();
-        let table = if kind == Kind::Element { &mut part.elements } else { &mut part.conditions };
+        let table = if role == Role::Element { &mut part.elements } else { &mut part.conditions };
         table.push(1, entry, 1, &nodes);
         table.finish();
-        let Build::Block(make) = entry.build else { panic!("{name} is no block") };
-        let table = if kind == Kind::Element { &part.elements } else { &part.conditions };
+        let make = block_factory(entry).unwrap_or_else(|| panic!("{name} is no block"));
+        let table = if role == Role::Element { &part.elements } else { &part.conditions };
         let request = BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part };
         let mut block = make(&request).unwrap();
         block.initialize(&part.view()).unwrap();

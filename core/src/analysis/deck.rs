@@ -8,8 +8,8 @@ use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
 use crate::io;
 use crate::model::{Model, ModelPart};
 use crate::parameters::{Document, Node, Settings, Value};
-use crate::processes::{Process, ProcessRequest};
-use crate::registry::{self, Build, Kind};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
+use crate::registry;
 
 /// The parsed deck and its folder.
 pub(super) fn open(path: &Path) -> Result<(Node, PathBuf)> {
@@ -247,15 +247,16 @@ fn make_process(item: &Node, folder: &Path, model: &mut Model, problems: &mut Re
         })?,
     };
     let name = module.str()?.rsplit('.').next().unwrap_or_default();
-    let entry = registry::require(Kind::Process, name).map_err(|d| d.at(module.place()))?;
-    let Build::Process(factory) = entry.build else { unreachable!("processes register a factory") };
+    let entry = registry::require::<ProcessEntry>(name).map_err(|d| d.at(module.place()))?;
     let empty = Node::new(Value::Object(Default::default()), &item.place());
     let parameters = item.get("Parameters").unwrap_or(&empty);
     let place = parameters.place();
-    factory(&mut ProcessRequest { entry, parameters, model, folder, report: problems }).map_err(|error| match error {
-        Error::Input(list) => {
-            Error::Input(list.into_iter().map(|d| if d.place.is_none() { d.at(place.clone()) } else { d }).collect())
+    (entry.build)(&mut ProcessRequest { entry, parameters, model, folder, report: problems }).map_err(|error| {
+        match error {
+            Error::Input(list) => Error::Input(
+                list.into_iter().map(|d| if d.place.is_none() { d.at(place.clone()) } else { d }).collect(),
+            ),
+            other => other,
         }
-        other => other,
     })
 }

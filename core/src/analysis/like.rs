@@ -6,10 +6,10 @@
 use std::collections::BTreeSet;
 
 use super::older_decks::for_each_process;
-use super::solver::solver_entry;
+use super::solver::{SolverExtensionEntry, solver_entry};
 use crate::diagnostics::{Diagnostic, Report, Result, did_you_mean};
 use crate::parameters::{Defaults, Node, Object, Value};
-use crate::registry::{self, Entry, Kind};
+use crate::registry::{self, Entry};
 
 /// The program whose defaults hold for a stage: `asked` of the caller, else what its `problem_data` says; `None` for our own.
 ///
@@ -23,7 +23,7 @@ pub(super) fn program(deck: &Node, asked: Option<&str>) -> Result<Option<&'stati
         (None, None) => return Ok(None),
     };
     let known: BTreeSet<&'static str> =
-        registry::entries().into_iter().flat_map(|entry| entry.like).map(|(program, _)| *program).collect();
+        registry::entries().into_iter().flat_map(|(_, entry)| entry.like).map(|(program, _)| *program).collect();
     if let Some(found) = known.get(name) {
         return Ok(Some(found));
     }
@@ -46,7 +46,7 @@ pub(super) fn lay_defaults(deck: &mut Node, program: &str, report: &mut Report) 
             lay(solver, entry, program, &mut added)?;
         }
         if let Value::Object(members) = &mut solver.value {
-            for entry in registry::entries().into_iter().filter(|entry| entry.kind == Kind::SolverExtension) {
+            for entry in registry::all::<SolverExtensionEntry>() {
                 if let Some(settings) = members.get_mut(entry.name) {
                     lay(settings, entry, program, &mut added)?;
                 }

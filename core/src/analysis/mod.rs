@@ -8,7 +8,6 @@
 mod cutting;
 mod deck;
 mod like;
-mod linear_solvers;
 mod mesh;
 mod older_decks;
 mod orchestrator;
@@ -23,5 +22,5 @@ pub use cutting::Cutting;
 pub use mesh::{DeckMesh, read_deck_mesh};
 pub use orchestrator::{RunOptions, check, run};
 pub use report::{RunReport, Sizes};
-pub use solver::{ARC_LENGTH, EXPLICIT, ExtensionDefinition, NodalVariable, SolverDefinition};
+pub use solver::{EXPLICIT, ExtensionDefinition, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry};
 pub use time_stepping::TimeStepping;

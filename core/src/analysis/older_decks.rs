@@ -3,7 +3,8 @@
 use crate::diagnostics::{Diagnostic, Place, Report};
 use crate::model::Model;
 use crate::parameters::{Node, Object, Value};
-use crate::registry::{self, Entry, Kind};
+use crate::processes::ProcessEntry;
+use crate::registry::{self, Entry};
 
 /// Lists of processes that stood at the top level.
 const LISTS: [&str; 8] = [
@@ -117,9 +118,9 @@ pub(super) fn for_each_process(deck: &mut Node, mut change: impl FnMut(Option<&E
             for item in items {
                 let Value::Object(process) = &mut item.value else { continue };
                 let module = process.get("python_module").or_else(|| process.get("name")).and_then(Node::as_str);
-                let entry = module.and_then(|path| registry::find(Kind::Process, path.rsplit('.').next()?));
+                let entry = module.and_then(|path| registry::find::<ProcessEntry>(path.rsplit('.').next()?));
                 if let Some(parameters) = process.get_mut("Parameters").filter(|node| node.as_object().is_some()) {
-                    change(entry, parameters);
+                    change(entry.map(|entry| &**entry), parameters);
                 }
             }
         }

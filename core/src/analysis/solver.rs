@@ -1,19 +1,24 @@
 //! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
 
 use super::cutting::Cutting;
-use super::linear_solvers::{self, EngineRequest};
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Report, Result};
-use crate::model::ModelPart;
+use crate::entities::find_kind;
 use crate::model::variables::ACCELERATION;
+use crate::model::{EntityKind, ModelPart, Role};
 use crate::parameters::{Defaults, Node, Settings, Value};
-use crate::registry::{self, Build, Entry, Kind};
+use crate::registered_kind;
+use crate::registry::{self, Registered};
 use crate::strategies::{
-    ArcLength, ArcLengthSettings, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionFactory,
-    CriterionRequest, ExplicitSchemeFactory, ExplicitSettings, ExplicitStrategy, LineSearch, NewtonRaphson,
-    NewtonSettings, Scheme, SchemeFactory, SchemeRequest, SolutionStrategy, multipliers,
+    Builder, BuilderEntry, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionEntry,
+    CriterionRequest, ExplicitSettings, ExplicitStrategy, LinearSolverRequest, NewtonSettings, Scheme, SchemeEntry,
+    SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, linear_tolerance,
+    make_linear_solver, multipliers,
 };
+
+/// Objects of the settings that name strategy and builder.
+const STRATEGY: &str = "solving_strategy_settings";
+const BUILDER: &str = "builder_and_solver_settings";
 
 /// A variable with history on the nodes: name and number of components.
 pub type NodalVariable = (&'static str, usize);
@@ -21,10 +26,21 @@ pub type NodalVariable = (&'static str, usize);
 /// Mark of the step data: steps are explicit.
 pub const EXPLICIT: &str = "EXPLICIT";
 
-/// Mark of the step data: the load factor is an unknown.
-pub const ARC_LENGTH: &str = "ARC_LENGTH";
+registered_kind! {
+    /// A `solver_type` that decks name.
+    pub struct SolverEntry("solver", "unknown-solver") {
+        build: SolverDefinition;
+    }
+}
 
-/// What an application registers for a `solver_type`, as `Build::Factory(&SolverDefinition {…})`.
+registered_kind! {
+    /// A nested settings object of the solver that an application understands.
+    pub struct SolverExtensionEntry("solver_extension", "unknown-name") {
+        build: ExtensionDefinition;
+    }
+}
+
+/// What an application registers for a `solver_type`.
 pub struct SolverDefinition {
     /// Registered solver that these settings, as the user wrote them, ask for instead; `None` for this one.
     pub variant: fn(&Node) -> Option<&'static str>,
@@ -38,7 +54,7 @@ pub struct SolverDefinition {
     pub adapt: fn(Defaults) -> Defaults,
 }
 
-/// What an application registers for a nested object of `solver_settings`, as `Build::Factory(&ExtensionDefinition {…})`.
+/// What an application registers for a nested object of `solver_settings`.
 pub struct ExtensionDefinition {
     /// Further variables with history, for these settings of the nested object.
     ///
@@ -86,14 +102,12 @@ impl SolverSettings {
     /// Everything that does not fit, gathered.
     pub fn new(user: &Node, report: &mut Report) -> Result<Self> {
         let entry = solver_entry(user)?;
-        let definition = definition_of(entry);
+        let definition = &entry.build;
         let mut own = user.clone();
         let mut extensions = Vec::new();
         let mut lenient = false;
         if let Value::Object(members) = &mut own.value {
-            let known: Vec<&'static Entry> =
-                registry::entries().into_iter().filter(|e| e.kind == Kind::SolverExtension).collect();
-            for extension in known {
+            for extension in registry::all::<SolverExtensionEntry>() {
                 if let Some(member) = members.remove(extension.name) {
                     extensions.push((extension, member));
                     lenient = true;
@@ -114,8 +128,7 @@ impl SolverSettings {
         for (extension, mut member) in extensions {
             let defaults = Defaults::parse(extension.name, extension.defaults)?;
             let Some(checked) = Settings::validate(&member.node, &defaults, &mut problems) else { continue };
-            let Build::Factory(factory) = extension.build else { unreachable!("extensions register a factory") };
-            let factory = factory.downcast_ref::<ExtensionDefinition>().expect("an ExtensionDefinition");
+            let factory = &extension.build;
             if let Some(more) = problems.absorb((factory.variables)(&checked)) {
                 variables.extend(more);
             }
@@ -155,8 +168,12 @@ impl SolverSettings {
         let levels = self.settings.get_usize("buffer_size")?.max(2);
         part.nodes.history.set_levels(levels);
         part.info.marks.insert(EXPLICIT, self.definition.explicit);
-        let follows_path = self.way_of_solution().is_ok_and(|(way, _)| way == "arc_length");
-        part.info.marks.insert(ARC_LENGTH, follows_path);
+        // Names that are not registered are reported where the strategy is made.
+        let named = self.named::<StrategyEntry>(STRATEGY).ok();
+        for strategy in registry::all::<StrategyEntry>() {
+            let is_it = named.is_some_and(|named| named.name == strategy.name);
+            strategy.marks.iter().for_each(|mark| *part.info.marks.entry(mark).or_default() |= is_it);
+        }
         for &(name, components) in &self.variables {
             part.nodes.history.add_named(name, components);
         }
@@ -204,18 +221,17 @@ impl SolverSettings {
     /// A name that is not registered, or a scheme of the other time integration method.
     pub fn scheme(&self) -> Result<TimeScheme> {
         let name = (self.definition.scheme)(&self.settings)?;
-        let entry = registry::require(Kind::Scheme, &name).map_err(|d| d.at(self.settings.key_place("scheme_type")))?;
-        let Build::Factory(factory) = entry.build else { unreachable!("schemes register a factory") };
+        let entry =
+            registry::require::<SchemeEntry>(&name).map_err(|d| d.at(self.settings.key_place("scheme_type")))?;
         let request = SchemeRequest { settings: &self.settings };
-        let explicit = factory.downcast_ref::<ExplicitSchemeFactory>();
-        if explicit.is_some() != self.definition.explicit {
+        if matches!(entry.build, SchemeFactory::Explicit(_)) != self.definition.explicit {
             let fact = format!("\"scheme_type\" {name:?} does not fit the \"time_integration_method\"");
             let remedy = "\"central_differences\" is explicit, all others are implicit";
             return Err(self.settings.error("scheme_type", "scheme-method", fact).remedy(remedy).into());
         }
-        Ok(match explicit {
-            Some(make) => TimeScheme::Explicit(make(&request)?),
-            None => TimeScheme::Implicit(factory.downcast_ref::<SchemeFactory>().expect("a SchemeFactory")(&request)?),
+        Ok(match entry.build {
+            SchemeFactory::Explicit(make) => TimeScheme::Explicit(make(&request)?),
+            SchemeFactory::Implicit(make) => TimeScheme::Implicit(make(&request)?),
         })
     }
 
@@ -227,17 +243,15 @@ impl SolverSettings {
         let place = self.settings.key_place("convergence_criterion");
         let given = self.settings.get_str("convergence_criterion")?;
         let mut name = given.to_lowercase();
-        if registry::find(Kind::ConvergenceCriterion, given).is_some() {
+        if registry::find::<CriterionEntry>(given).is_some() {
             given.clone_into(&mut name);
-        } else if registry::find(Kind::ConvergenceCriterion, &name).is_some() {
+        } else if registry::find::<CriterionEntry>(&name).is_some() {
             let fact = format!("the convergence criterion {given:?} is now {name:?}");
             let warning = Diagnostic::warning("old-deck", fact).at(place.clone());
             report.push(warning.remedy(format!("write \"{name}\"")));
         }
-        let entry = registry::require(Kind::ConvergenceCriterion, &name).map_err(|d| d.at(place))?;
-        let Build::Factory(factory) = entry.build else { unreachable!("criteria register a factory") };
-        let make = factory.downcast_ref::<CriterionFactory>().expect("a CriterionFactory");
-        make(&mut CriterionRequest { settings: &self.settings, user: &self.user, report })
+        let entry = registry::require::<CriterionEntry>(&name).map_err(|d| d.at(place))?;
+        (entry.build)(&mut CriterionRequest { settings: &self.settings, user: &self.user, report })
     }
 
     /// The strategy over a part whose blocks and interactions are ready, and a sentence on its linear solver.
@@ -274,70 +288,52 @@ impl SolverSettings {
         }
         let linear = analysis == "linear";
         let residual = if linear { 0.0 } else { self.settings.get_f64("residual_relative_tolerance")? };
-        let (solver, says) = linear_solvers::make(&EngineRequest {
+        let (solver, mut says) = make_linear_solver(&LinearSolverRequest {
             settings: &named,
             multipliers: multipliers(&part.info),
-            tolerance: linear_solvers::tolerance(residual),
+            tolerance: linear_tolerance(residual),
         })?;
-        let (way, advanced) = self.way_of_solution()?;
-        let searched = way == "line_search" && !linear;
-        let settings = NewtonSettings {
+        let strategy = self.named::<StrategyEntry>(STRATEGY)?;
+        let builder = self.named::<BuilderEntry>(BUILDER)?;
+        let (solver, replaceable) = match builder.build {
+            Builder::Direct => (solver, true),
+            Builder::Around(make) => (make(&self.settings, solver)?, false),
+        };
+        let iteration = NewtonSettings {
             max_iteration,
             continue_if_converging: self.settings.get_bool("continue_if_converging")?,
             linear,
             compute_reactions: self.settings.get_bool("compute_reactions")?,
             reactions_of_constraints: self.settings.get_bool("reactions_of_constraints")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
-            line_search: if searched { Some(LineSearch::new(&advanced)?) } else { None },
+            line_search: None,
         };
-        let arc = if way == "arc_length" && !linear { Some(ArcLengthSettings::new(&advanced)?) } else { None };
-        if arc.is_some() && (self.definition.scheme)(&self.settings)? != "static" {
-            let fact = "\"arc_length\" follows states of equilibrium, the solver is dynamic";
-            let place = "solving_strategy_settings.type";
-            return Err(self
-                .settings
-                .error(place, "arc-length", fact)
-                .remedy("use \"solver_type\": \"Static\"")
-                .into());
-        }
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
-        let mut newton = NewtonRaphson::new(settings, scheme, criterion, solver, part, system);
-        newton.solver_named_at(named.key_place("solver_type"));
-        #[cfg(feature = "petsc")]
-        let mut says = says;
-        #[cfg(feature = "petsc")]
-        let has_multipliers = system.dofs.dofs().iter().any(|dof| dof.multiplier);
-        #[cfg(feature = "petsc")]
-        if part.share.is_some()
-            && let Some((petsc, by_petsc)) =
-                linear_solvers::petsc(&named, unknowns_of_all(part, system), has_multipliers)?
-        {
-            newton.solve_by_petsc(petsc, multipliers(&part.info));
-            says = by_petsc;
-        }
-        Ok(match arc {
-            Some(arc) => (Box::new(ArcLength::new(arc, newton)), says),
-            None => (Box::new(newton), says),
-        })
+        let empty = Node::from_json(&serde_json::json!({}), &self.settings.place())?;
+        let made = (strategy.build)(StrategyRequest {
+            settings: &self.settings,
+            advanced: self.settings.node().get_path(&format!("{STRATEGY}.advanced_settings")).unwrap_or(&empty),
+            iteration,
+            scheme_name: &(self.definition.scheme)(&self.settings)?,
+            scheme,
+            criterion,
+            solver,
+            part,
+            system,
+            replaceable,
+            says: &mut says,
+        })?;
+        Ok((made, says))
     }
 
-    /// The registered strategy with its settings; checks the name of the builder too.
-    fn way_of_solution(&self) -> Result<(String, Node)> {
-        let mut found = Vec::new();
-        for (kind, key, usual) in [
-            (Kind::Strategy, "solving_strategy_settings", "newton_raphson"),
-            (Kind::BuilderAndSolver, "builder_and_solver_settings", "block"),
-        ] {
-            let path = format!("{key}.type");
-            let name = self.settings.node().get_path(&path).map_or(Ok(usual), Node::str)?;
-            let name = if name.is_empty() { usual } else { name };
-            let entry = registry::require(kind, name).map_err(|d| d.at(self.settings.key_place(&path)))?;
-            let empty = Node::from_json(&serde_json::json!({}), &self.settings.place())?;
-            let advanced = self.settings.node().get_path(&format!("{key}.advanced_settings")).cloned();
-            found.push((entry.name.to_owned(), advanced.unwrap_or(empty)));
-        }
-        Ok(found.swap_remove(0))
+    /// What the `type` of an object of the settings names; without one, `newton_raphson` or `block`.
+    fn named<R: Registered>(&self, key: &str) -> Result<&'static R> {
+        let path = format!("{key}.type");
+        let name = self.settings.node().get_path(&path).map_or(Ok(""), Node::str)?;
+        let usual = if key == STRATEGY { "newton_raphson" } else { "block" };
+        let name = if name.is_empty() { usual } else { name };
+        Ok(registry::require::<R>(name).map_err(|d| d.at(self.settings.key_place(&path)))?)
     }
 }
 
@@ -345,33 +341,21 @@ impl SolverSettings {
 ///
 /// # Errors
 /// No `solver_type`, or one that is not registered.
-pub(super) fn solver_entry(user: &Node) -> Result<&'static Entry> {
+pub(super) fn solver_entry(user: &Node) -> Result<&'static SolverEntry> {
     let solver_type = user.require("solver_type")?;
-    let entry = registry::require(Kind::Solver, solver_type.str()?).map_err(|d| d.at(solver_type.place()))?;
-    match (definition_of(entry).variant)(user) {
-        Some(name) => Ok(registry::require(Kind::Solver, name)?),
+    let entry = registry::require::<SolverEntry>(solver_type.str()?).map_err(|d| d.at(solver_type.place()))?;
+    match (entry.build.variant)(user) {
+        Some(name) => Ok(registry::require(name)?),
         None => Ok(entry),
     }
-}
-
-fn definition_of(entry: &'static Entry) -> &'static SolverDefinition {
-    let Build::Factory(definition) = entry.build else { unreachable!("solvers register a factory") };
-    definition.downcast_ref::<SolverDefinition>().expect("solvers register a SolverDefinition")
 }
 
 /// Whether the solver that a deck names moves bodies against inertia, by iteration.
 pub(super) fn has_inertia(deck: &Node) -> bool {
     let Some(settings) = deck.get("solver_settings") else { return false };
     solver_entry(settings).is_ok_and(|entry| {
-        let definition = definition_of(entry);
-        !definition.explicit && definition.variables.iter().any(|(name, _)| *name == ACCELERATION.name())
+        !entry.build.explicit && entry.build.variables.iter().any(|(name, _)| *name == ACCELERATION.name())
     })
-}
-
-/// Unknowns of all ranks; collective.
-pub(super) fn unknowns_of_all(part: &ModelPart, system: &System) -> usize {
-    let own = system.dofs.dofs().iter().filter(|dof| part.owns_node(dof.node as usize)).count();
-    if part.share.is_some() { world().total(own as f64) as usize } else { own }
 }
 
 /// Replaces points and bars of space by those of the plane in a plane problem, where they are the same.
@@ -383,9 +367,9 @@ pub fn flatten_bars(part: &mut ModelPart, domain_size: usize, report: &mut Repor
         for at in 0..table.len() {
             let entry = table.kinds[at];
             let dim = entry.cell.map_or(3, |cell| cell.cell().dim);
-            let is_same = entry.space == 3 && (dim == 0 || dim == 1 && entry.kind == Kind::Element);
+            let is_same = entry.space == 3 && (dim == 0 || dim == 1 && entry.role == Role::Element);
             let Some(flat) = is_same.then(|| entry.name.replacen("3D", "2D", 1)) else { continue };
-            let Some(flat) = registry::find(entry.kind, &flat) else { continue };
+            let Some(flat) = find_kind(entry.role, &flat) else { continue };
             table.kinds[at] = flat;
             let fact = format!("{} in a plane problem is taken as {}", entry.name, flat.name);
             report.push(Diagnostic::warning("wrong-dimension", fact).remedy(format!("write {}", flat.name)));
@@ -400,7 +384,7 @@ pub fn flatten_bars(part: &mut ModelPart, domain_size: usize, report: &mut Repor
 pub fn check_dimensions(part: &ModelPart, domain_size: usize) -> Result<()> {
     let mut report = Report::new();
     for table in [&part.elements, &part.conditions] {
-        let mut last: Option<&Entry> = None;
+        let mut last: Option<&EntityKind> = None;
         for (at, entry) in table.kinds.iter().enumerate() {
             if last == Some(entry) {
                 continue;

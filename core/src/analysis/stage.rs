@@ -11,7 +11,7 @@ use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
 use super::sharing::{distribute, read_the_same};
-use super::solver::{SolverSettings, check_dimensions, unknowns_of_all};
+use super::solver::{SolverSettings, check_dimensions};
 use super::time_stepping::TimeStepping;
 use crate::assembly::System;
 use crate::communication::world;
@@ -21,6 +21,7 @@ use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
 use crate::processes::Process;
+use crate::strategies::unknowns_of_all;
 use crate::strategies::{Monitor, SolutionStrategy, StepRecord};
 
 /// The systems of earlier stages by their root parts: what elements remember goes on with them.

@@ -13,8 +13,6 @@ use zelus_linear_algebra::{Csr, Layout};
 use super::dof_table::DofTable;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{MasterSlaveConstraint, Nodes};
-use crate::register;
-use crate::registry::Build;
 
 /// Rows that one task copies.
 const ROWS: usize = 1024;
@@ -325,16 +323,6 @@ pub fn impose_constraints(nodes: &mut Nodes, constraints: &[MasterSlaveConstrain
             break;
         }
     }
-}
-
-register! { BuilderAndSolver "block",
-    aliases: &["block_lagrange"],
-    about: "fixities and constraints are eliminated; every builder gives the same answer",
-    build: Build::NameOnly,
-}
-register! { BuilderAndSolver "elimination",
-    about: "fixities and constraints are eliminated; every builder gives the same answer",
-    build: Build::NameOnly,
 }
 
 #[cfg(test)]

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use super::dof_table::DofTable;
 use crate::diagnostics::{Report, Result};
-use crate::entities::{BlockRequest, EntityBlock, Interaction};
-use crate::model::{EntityTable, ModelPart};
-use crate::registry::{Build, Entry, Kind};
+use crate::entities::{BlockRequest, EntityBlock, Interaction, block_factory};
+use crate::model::{EntityKind, EntityTable, ModelPart, Role};
 
 /// Unknowns of a model part, the blocks over its entities, and what acts between bodies.
 #[derive(Default)]
@@ -30,13 +29,13 @@ impl System {
     pub fn make_blocks(&mut self, part: &ModelPart) -> Result<()> {
         let mut report = Report::new();
         let mut both = [Vec::new(), Vec::new()];
-        let tables = [(Kind::Element, &part.elements), (Kind::Condition, &part.conditions)];
-        for (blocks, (kind, table)) in both.iter_mut().zip(tables) {
-            let is_own = |at: usize| part.evaluates(kind, at);
+        let tables = [(Role::Element, &part.elements), (Role::Condition, &part.conditions)];
+        for (blocks, (role, table)) in both.iter_mut().zip(tables) {
+            let is_own = |at: usize| part.evaluates(role, at);
             for (entry, members) in groups(table, is_own) {
-                let Build::Block(factory) = entry.build else { continue };
+                let Some(make) = block_factory(entry) else { continue };
                 let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
-                if let Some(block) = report.absorb(factory(&request)) {
+                if let Some(block) = report.absorb(make(&request)) {
                     blocks.push(block);
                 }
             }
@@ -57,12 +56,12 @@ impl System {
     }
 
     /// The blocks over elements (or conditions).
-    pub fn blocks(&self, kind: Kind) -> &[Box<dyn EntityBlock>] {
-        if kind == Kind::Element { &self.elements } else { &self.conditions }
+    pub fn blocks(&self, role: Role) -> &[Box<dyn EntityBlock>] {
+        if role == Role::Element { &self.elements } else { &self.conditions }
     }
 }
 
-fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static Entry, Vec<u32>)> {
+fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static EntityKind, Vec<u32>)> {
     let mut groups: BTreeMap<(&'static str, usize), Vec<u32>> = BTreeMap::new();
     for at in (0..table.len()).filter(|&at| is_own(at)) {
         groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);

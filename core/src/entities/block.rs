@@ -6,8 +6,7 @@ use std::ops::Range;
 use super::face_point::FacePoint;
 use super::view::StepView;
 use crate::diagnostics::{Diagnostic, Error, Result};
-use crate::model::{EntityTable, ModelPart, Nodes, ScalarVariable};
-use crate::registry::Entry;
+use crate::model::{EntityKind, EntityTable, ModelPart, Nodes, ScalarVariable};
 
 /// A row of a local system: which unknown of which local node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,7 +110,7 @@ pub struct Gauss {
 /// What a block is made from.
 pub struct BlockRequest<'a> {
     /// The registered kind.
-    pub entry: &'static Entry,
+    pub entry: &'static EntityKind,
     /// Indices of the entities in their table, ascending.
     pub members: Vec<u32>,
     /// The table, elements or conditions.
@@ -128,7 +127,7 @@ pub struct BlockRequest<'a> {
 /// external minus internal forces and the tangent minus its derivative.
 pub trait EntityBlock: Send + Sync {
     /// The registered kind.
-    fn entry(&self) -> &'static Entry;
+    fn entry(&self) -> &'static EntityKind;
 
     /// Indices of the entities in the model part's table, in the order of the block; empty for pairs made by a search.
     fn members(&self) -> &[u32];

@@ -1,5 +1,7 @@
 //! The mathematics of one entity, and the block that runs it over many.
 
+use crate::model::EntityKind;
+use crate::model::Role;
 use std::any::Any;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -11,7 +13,6 @@ use super::face_point::FacePoint;
 use super::view::StepView;
 use crate::diagnostics::Result;
 use crate::model::Properties;
-use crate::registry::{Entry, Kind};
 
 /// What a kernel is told of its entity, beside the step's fields.
 #[derive(Clone, Copy)]
@@ -167,7 +168,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
 
 /// A block made of a kernel, a connectivity and a state for each entity.
 pub struct KernelBlock<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> {
-    entry: &'static Entry,
+    entry: &'static EntityKind,
     kernel: K,
     members: Vec<u32>,
     ids: Vec<usize>,
@@ -221,7 +222,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
 }
 
 impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock for KernelBlock<K, NODES, SIZE> {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.entry
     }
 
@@ -242,7 +243,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
     }
 
     fn is_active(&self, at: usize, view: &StepView<'_>) -> bool {
-        let table = if self.entry.kind == Kind::Element { view.elements } else { view.conditions };
+        let table = if self.entry.role == Role::Element { view.elements } else { view.conditions };
         table.flags.is_active(self.members[at] as usize)
     }
 

@@ -7,10 +7,14 @@ mod block;
 mod face_point;
 mod interaction;
 mod kernel;
+mod registered;
 mod view;
 
 pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
 pub use face_point::FacePoint;
 pub use interaction::{Interaction, MasslessNodes, Outer, SetChange};
 pub use kernel::{Gather, Kernel, KernelBlock};
+pub use registered::{
+    BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, kind_names, require_kind,
+};
 pub use view::{NORMALS_OF_FIRST_ITERATION, StepView};

@@ -1,5 +1,6 @@
 //! From a mesh document to a model part: ids become indices, names become registered kinds and variables.
 
+use crate::model::Role;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -8,22 +9,22 @@ use rustc_hash::FxHashMap;
 use super::mdpa::{self, DataBlock, DataColumn, DataEntry, DataValue, EntityBlock, EntityNames, Line, MdpaDocument};
 use super::variables::{kind_of, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
+use crate::entities::{find_kind, kind_names, require_kind};
 use crate::geometry::Shape;
 use crate::model::flags::{FLAGS, flag};
 use crate::model::{
     EntityTable, Fields, Flags, MasterSlaveConstraint, ModelPart, Named, Nodes, Properties, PropertyValue,
     ScalarVariable, SubPart, Table, VariableKind, named,
 };
-use crate::registry::{self, Kind};
 
 /// Reads an mdpa file into `part`; gives the warnings. Columns the part already has are kept and made longer.
 ///
 /// # Errors
 /// As [`mdpa::read`] and [`import`].
 pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
-    let known: Vec<&str> = registry::names(Kind::Element).chain(registry::names(Kind::Condition)).collect();
+    let known = [kind_names(Role::Element), kind_names(Role::Condition)].concat();
     let nodes_of = |name: &str| {
-        let entry = registry::find(Kind::Element, name).or_else(|| registry::find(Kind::Condition, name));
+        let entry = find_kind(Role::Element, name).or_else(|| find_kind(Role::Condition, name));
         entry.map(|entry| entry.nodes()).or_else(|| geometry(name).map(|(cell, _)| cell.nodes()))
     };
     let names = EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| FLAGS.contains(&name) };
@@ -134,14 +135,14 @@ impl Import<'_> {
 
     fn elements_and_conditions(&mut self, part: &mut ModelPart) {
         let ModelPart { nodes, elements, conditions, .. } = part;
-        for (kind, blocks, table) in [
-            (Kind::Element, &self.document.elements, elements),
-            (Kind::Condition, &self.document.conditions, conditions),
+        for (role, blocks, table) in [
+            (Role::Element, &self.document.elements, elements),
+            (Role::Condition, &self.document.conditions, conditions),
         ] {
             let mut rows: Vec<(u32, &EntityBlock, usize)> = Vec::new();
             let mut entries = Vec::new();
             for block in blocks {
-                match registry::require(kind, &block.name) {
+                match require_kind(role, &block.name) {
                     Ok(entry) => entries.push((block.name.as_str(), entry)),
                     Err(problem) => self.push(block.line, problem),
                 }

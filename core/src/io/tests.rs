@@ -1,5 +1,9 @@
 //! Meshes and materials into a model part.
 
+use crate::entities::Build;
+use crate::entities::ConditionEntry;
+use crate::entities::ElementEntry;
+use crate::registered_kind;
 use std::path::Path;
 
 use super::*;
@@ -17,9 +21,16 @@ register_variable! {
     kind IO_TEST_MATRIX: Matrix = "Numbers in rows.";
 }
 
-register! { Element "IoTestElement2D3N", about: "a triangle of the tests", cell: Some(crate::geometry::Shape::Tri3), space: 2 }
-register! { Condition "IoTestCondition2D2N", about: "a line of the tests", cell: Some(crate::geometry::Shape::Line2), space: 2 }
-register! { ConstitutiveLaw "IoTestLaw", about: "a law" }
+register! { ElementEntry "IoTestElement2D3N", about: "a triangle of the tests", cell: Some(crate::geometry::Shape::Tri3), space: 2, build: Build::Pairs }
+register! { ConditionEntry "IoTestCondition2D2N", about: "a line of the tests", cell: Some(crate::geometry::Shape::Line2), space: 2, build: Build::Pairs }
+registered_kind! {
+    /// The laws of an application.
+    #[expect(dead_code, reason = "the reader asks for names only")]
+    pub struct LawEntry("constitutive_law", "unknown-law") {
+        build: ();
+    }
+}
+register! { LawEntry "IoTestLaw", about: "a law", build: () }
 
 const MESH: &str = "Begin ModelPartData\n IO_TEST_COUNT 2\nEnd ModelPartData\n\
     Begin Properties 0\nEnd Properties\nBegin Properties 4\n IO_TEST_MODULUS 5.0D0\n IO_TEST_MARK 1\n\

@@ -2,7 +2,10 @@
 
 use crate::diagnostics::{Diagnostic, did_you_mean};
 use crate::model::{Named, VariableKind, named, variables};
-use crate::registry::{self, Kind};
+use crate::registry;
+
+/// The kind of laws, which applications declare.
+const LAW: &str = "constitutive_law";
 
 /// What the variable (or component) called `name` holds; `None` when there is none.
 pub(super) fn kind_of(name: &str) -> Option<VariableKind> {
@@ -34,7 +37,7 @@ pub(crate) fn without_effect(name: &str) -> Option<Diagnostic> {
 /// The registered name of a constitutive law that may be spelt with its application before a dot.
 pub(super) fn law_name(name: &str) -> Result<String, Diagnostic> {
     let last = last_of_path(name);
-    registry::require(Kind::ConstitutiveLaw, last).map(|entry| entry.name.to_owned())
+    registry::require_of(LAW, last).map(|entry| entry.name.to_owned())
 }
 
 /// The name of the law that a factory of Kratos, `…Factory`, makes of a yield surface and a plastic potential.

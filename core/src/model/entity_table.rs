@@ -2,9 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
+use super::entity_kind::EntityKind;
 use super::fields::Fields;
 use super::flags::Flags;
-use crate::registry::Entry;
 
 /// Elements or conditions in flat arrays; an index counts them in the order they were added.
 #[derive(Debug, Default, Clone)]
@@ -12,7 +12,7 @@ pub struct EntityTable {
     /// Ids; ascending for what the mesh file gives, later ones follow.
     pub ids: Vec<usize>,
     /// Registered kind of each.
-    pub kinds: Vec<&'static Entry>,
+    pub kinds: Vec<&'static EntityKind>,
     /// Properties id of each.
     pub properties: Vec<usize>,
     /// Columns without history (Kratos: entity data).
@@ -29,7 +29,7 @@ impl EntityTable {
     ///
     /// # Panics
     /// When the id is taken: the reader checks.
-    pub fn push(&mut self, id: usize, kind: &'static Entry, properties: usize, nodes: &[u32]) -> u32 {
+    pub fn push(&mut self, id: usize, kind: &'static EntityKind, properties: usize, nodes: &[u32]) -> u32 {
         let at = self.ids.len() as u32;
         assert!(self.index.insert(id, at).is_none(), "entity id {id} is taken");
         if self.starts.is_empty() {

@@ -5,6 +5,7 @@
 //! run in the order in which the reference program loops over ids.
 
 mod constraint;
+mod entity_kind;
 mod entity_table;
 mod fields;
 mod fixities;
@@ -24,6 +25,7 @@ pub mod variables;
 use std::collections::BTreeMap;
 
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
+pub use entity_kind::{EntityKind, Role};
 pub use entity_table::EntityTable;
 pub use fields::{Field, Fields};
 pub use fixities::Fixities;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::constraint::MasterSlaveConstraint;
+use super::entity_kind::Role;
 use super::entity_table::EntityTable;
 use super::geometries::Geometries;
 use super::nodes::Nodes;
@@ -13,7 +14,6 @@ use super::sub_part::SubPart;
 use super::table::Table;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
-use crate::registry::Kind;
 
 /// A root model part; sub parts select from it by index.
 #[derive(Default)]
@@ -129,9 +129,9 @@ impl ModelPart {
     }
 
     /// Whether this rank evaluates an entity of the elements or conditions.
-    pub fn evaluates(&self, kind: Kind, at: usize) -> bool {
+    pub fn evaluates(&self, role: Role, at: usize) -> bool {
         self.share.as_ref().is_none_or(|share| {
-            let owners = if kind == Kind::Element { &share.elements } else { &share.conditions };
+            let owners = if role == Role::Element { &share.elements } else { &share.conditions };
             owners[at] as usize == world().rank()
         })
     }

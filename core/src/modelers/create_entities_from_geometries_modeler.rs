@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
-use super::modeler::{Modeler, ModelerFactory};
+use super::modeler::{Modeler, ModelerEntry};
 use crate::diagnostics::{Diagnostic, Error, Place, Report, Result};
-use crate::model::{EntityTable, Model, ModelPart};
+use crate::entities::{find_kind, kind_names, require_kind};
+use crate::model::{EntityKind, EntityTable, Model, ModelPart, Role};
 use crate::parameters::{Node, Settings};
 use crate::register;
-use crate::registry::{self, Build, Entry, Kind};
 
 /// One row of a list: what is made of which part's geometries.
 struct Wanted {
-    kind: Kind,
+    role: Role,
     part: String,
     /// Candidates; the one on the cell and space of a geometry is made of it.
-    entries: Vec<&'static Entry>,
+    entries: Vec<&'static EntityKind>,
     name: String,
     place: Place,
 }
@@ -25,14 +25,14 @@ struct CreateEntities {
 
 fn build(settings: &Settings, _folder: &Path) -> Result<Box<dyn Modeler>> {
     let mut all = Vec::new();
-    for (list, key, kind) in
-        [("elements_list", "element_name", Kind::Element), ("conditions_list", "condition_name", Kind::Condition)]
+    for (list, key, role) in
+        [("elements_list", "element_name", Role::Element), ("conditions_list", "condition_name", Role::Condition)]
     {
         for item in settings.items(list)? {
             let part = item.require("model_part_name")?.str()?.to_owned();
             let name = item.require(key)?;
-            let entries = candidates(kind, name)?;
-            all.push(Wanted { kind, part, entries, name: name.str()?.to_owned(), place: name.place() });
+            let entries = candidates(role, name)?;
+            all.push(Wanted { role, part, entries, name: name.str()?.to_owned(), place: name.place() });
         }
     }
     Ok(Box::new(CreateEntities { all }))
@@ -42,11 +42,10 @@ fn build(settings: &Settings, _folder: &Path) -> Result<Box<dyn Modeler>> {
 ///
 /// # Errors
 /// Names that are not registered.
-fn candidates(kind: Kind, node: &Node) -> Result<Vec<&'static Entry>> {
+fn candidates(role: Role, node: &Node) -> Result<Vec<&'static EntityKind>> {
     let name = node.str()?;
     let Some((stem, rest)) = name.split_once('#') else {
-        let found =
-            name.split(';').map(|one| registry::require(kind, one).map_err(|d| Error::from(d.at(node.place()))));
+        let found = name.split(';').map(|one| require_kind(role, one).map_err(|d| Error::from(d.at(node.place()))));
         return found.collect();
     };
     let rest = rest.strip_prefix('D').unwrap_or(rest);
@@ -61,10 +60,11 @@ fn candidates(kind: Kind, node: &Node) -> Result<Vec<&'static Entry>> {
             }
         })
     };
-    let found: Vec<_> = registry::names(kind).filter(fits).filter_map(|known| registry::find(kind, known)).collect();
+    let found: Vec<_> =
+        kind_names(role).into_iter().filter(|known| fits(known)).filter_map(|known| find_kind(role, known)).collect();
     if found.is_empty() {
-        let fact = format!("no {} has a name of the form {name:?}", kind.word());
-        let remedy = format!("`zelus list {}` shows the names; #D stands for 2D or 3D, #N for the nodes", kind.word());
+        let fact = format!("no {} has a name of the form {name:?}", role.word());
+        let remedy = format!("`zelus list {}` shows the names; #D stands for 2D or 3D, #N for the nodes", role.word());
         return Err(Diagnostic::error("unknown-name", fact).at(node.place()).remedy(remedy).into());
     }
     Ok(found)
@@ -74,14 +74,14 @@ impl Wanted {
     fn make(&self, model: &mut Model, report: &mut Report) -> Result<()> {
         let root = model.root_mut(&self.part).map_err(|error| error.at(&self.place))?;
         let selected = root.part(&self.part).map_err(|error| error.at(&self.place))?.clone();
-        let present = if self.kind == Kind::Element { &selected.elements } else { &selected.conditions };
+        let present = if self.role == Role::Element { &selected.elements } else { &selected.conditions };
         if !present.is_empty() {
-            let fact = format!("{:?} has {} {}s already", self.part, present.len(), self.kind.word());
+            let fact = format!("{:?} has {} {}s already", self.part, present.len(), self.role.word());
             let remedy = "leave them out of the mesh file, or this part out of the list: nothing is replaced";
             return Err(Diagnostic::error("not-empty", fact).at(self.place.clone()).remedy(remedy).into());
         }
         let ModelPart { geometries, elements, conditions, .. } = &mut *root;
-        let table: &mut EntityTable = if self.kind == Kind::Element { elements } else { conditions };
+        let table: &mut EntityTable = if self.role == Role::Element { elements } else { conditions };
         let (mut id, mut made) = (table.max_id(), Vec::new());
         for &geometry in &selected.geometries {
             let cell = geometries.cells[geometry as usize];
@@ -101,7 +101,7 @@ impl Wanted {
             report.push(Diagnostic::warning("other-geometry", fact).at(self.place.clone()));
         }
         root.along(&self.part, |part| {
-            let list = if self.kind == Kind::Element { &mut part.elements } else { &mut part.conditions };
+            let list = if self.role == Role::Element { &mut part.elements } else { &mut part.conditions };
             list.extend(&made);
             list.sort_unstable();
         });
@@ -115,12 +115,12 @@ impl Modeler for CreateEntities {
     }
 }
 
-register! { Modeler "CreateEntitiesFromGeometriesModeler",
+register! { ModelerEntry "CreateEntitiesFromGeometriesModeler",
     aliases: &["create_entities_from_geometries_modeler"],
     about: "makes elements and conditions on the geometries of model parts",
     defaults: include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../configs/modelers/CreateEntitiesFromGeometriesModeler.json"
     )),
-    build: Build::Factory(&(build as ModelerFactory)),
+    build: build,
 }

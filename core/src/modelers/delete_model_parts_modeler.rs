@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use super::modeler::{Modeler, ModelerFactory};
+use super::modeler::{Modeler, ModelerEntry};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::model::Model;
 use crate::parameters::Settings;
 use crate::register;
-use crate::registry::Build;
 
 struct DeleteModelParts {
     names: Vec<String>,
@@ -39,9 +38,9 @@ impl Modeler for DeleteModelParts {
     }
 }
 
-register! { Modeler "DeleteModelPartsModeler",
+register! { ModelerEntry "DeleteModelPartsModeler",
     aliases: &["delete_model_parts_modeler"],
     about: "removes model parts with everything in them",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/modelers/DeleteModelPartsModeler.json")),
-    build: Build::Factory(&(build as ModelerFactory)),
+    build: build,
 }

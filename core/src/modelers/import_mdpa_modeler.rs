@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::modeler::{Modeler, ModelerFactory};
+use super::modeler::{Modeler, ModelerEntry};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::io::read_mesh_of;
 use crate::model::{Model, ModelPart};
 use crate::parameters::Settings;
 use crate::register;
-use crate::registry::Build;
 
 struct ImportMdpa {
     part: String,
@@ -40,9 +39,9 @@ impl Modeler for ImportMdpa {
     }
 }
 
-register! { Modeler "ImportMDPAModeler",
+register! { ModelerEntry "ImportMDPAModeler",
     aliases: &["import_mdpa_modeler"],
     about: "reads an mdpa file into a new model part",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/modelers/ImportMDPAModeler.json")),
-    build: Build::Factory(&(build as ModelerFactory)),
+    build: build,
 }

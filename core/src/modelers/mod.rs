@@ -5,4 +5,4 @@ mod delete_model_parts_modeler;
 mod import_mdpa_modeler;
 mod modeler;
 
-pub use modeler::{Modeler, ModelerFactory, run_modelers};
+pub use modeler::{Modeler, ModelerEntry, ModelerFactory, run_modelers};

@@ -5,7 +5,8 @@ use std::path::Path;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::model::Model;
 use crate::parameters::{Defaults, Node, Settings, Value};
-use crate::registry::{self, Build, Kind};
+use crate::registered_kind;
+use crate::registry;
 
 /// Prepares the model before a stage; all of a list take one phase after the other.
 pub trait Modeler {
@@ -28,6 +29,13 @@ pub trait Modeler {
 
 /// Makes a modeler from its settings, which are complete; paths are relative to the folder of the deck.
 pub type ModelerFactory = fn(&Settings, &Path) -> Result<Box<dyn Modeler>>;
+
+registered_kind! {
+    /// A modeler that decks name.
+    pub struct ModelerEntry("modeler", "unknown-name") {
+        build: ModelerFactory;
+    }
+}
 
 /// Runs the modelers of a deck.
 ///
@@ -57,12 +65,10 @@ fn make(item: &Node, folder: &Path, report: &mut Report) -> Result<Box<dyn Model
         Diagnostic::error("missing-key", "a modeler without \"name\"").at(item.place()).remedy(remedy)
     })?;
     let name = named.str()?.rsplit('.').next().unwrap_or_default();
-    let entry = registry::require(Kind::Modeler, name).map_err(|problem| problem.at(named.place()))?;
-    let Build::Factory(factory) = entry.build else { unreachable!("modelers register a factory") };
-    let factory = factory.downcast_ref::<ModelerFactory>().expect("modelers register a ModelerFactory");
+    let entry = registry::require::<ModelerEntry>(name).map_err(|problem| problem.at(named.place()))?;
     let empty = Node::new(Value::Object(Default::default()), &item.place());
     let parameters = item.get("parameters").or_else(|| item.get("Parameters")).unwrap_or(&empty);
     let (settings, warnings) = Settings::check(parameters, &Defaults::parse(entry.name, entry.defaults)?)?;
     warnings.into_iter().for_each(|warning| report.push(warning));
-    factory(&settings, folder)
+    (entry.build)(&settings, folder)
 }

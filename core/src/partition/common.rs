@@ -2,14 +2,15 @@
 
 use super::faces::{faces, outer_and_shared};
 use super::interfaces::Surface;
-use crate::model::ModelPart;
+use crate::model::{EntityKind, ModelPart};
 use crate::parameters::{Node, Value};
-use crate::registry::{self, Entry, Kind};
+use crate::processes::ProcessEntry;
+use crate::registry;
 
 /// Marks the nodes of surfaces that may touch, of constraints, and of parts that processes of the deck need whole
-/// ([`Entry::common`]); all nodes of a mesh of points and lines.
+/// ([`ProcessEntry::common`]); all nodes of a mesh of points and lines.
 pub fn common_nodes(part: &ModelPart, surfaces: &[Surface], deck: &Node) -> Vec<bool> {
-    let has_area = |kind: &&Entry| kind.cell.is_some_and(|cell| cell.cell().dim > 1);
+    let has_area = |kind: &&EntityKind| kind.cell.is_some_and(|cell| cell.cell().dim > 1);
     let mut common = vec![!part.elements.kinds.iter().any(has_area); part.nodes.len()];
     let all = 0..part.nodes.len() as u32;
     let mut mark = |node: u32| common[node as usize] = true;
@@ -21,7 +22,7 @@ pub fn common_nodes(part: &ModelPart, surfaces: &[Surface], deck: &Node) -> Vec<
         let masters = constraint.masters.iter().map(|((node, _), _)| *node);
         masters.chain([constraint.slave.0]).for_each(&mut mark);
     }
-    let mut needed = |entry: &'static Entry, parameters: Option<&Node>| {
+    let mut needed = |entry: &'static ProcessEntry, parameters: Option<&Node>| {
         for key in entry.common {
             match parameters.and_then(|parameters| parameters.get(key)) {
                 Some(value) => whole(value, part, &mut mark),
@@ -50,12 +51,12 @@ fn whole(value: &Node, part: &ModelPart, mark: &mut impl FnMut(u32)) {
 }
 
 /// Calls `see` with the entry and the parameters of every process listed below `node`.
-pub(super) fn each_process(node: &Node, see: &mut impl FnMut(&'static Entry, Option<&Node>)) {
+pub(super) fn each_process(node: &Node, see: &mut impl FnMut(&'static ProcessEntry, Option<&Node>)) {
     match &node.value {
         Value::Array(items) => items.iter().for_each(|item| each_process(item, see)),
         Value::Object(members) => {
             let name = members.get("python_module").or(members.get("name")).and_then(Node::as_str);
-            match name.and_then(|name| registry::find(Kind::Process, name.rsplit('.').next().unwrap_or(name))) {
+            match name.and_then(|name| registry::find(name.rsplit('.').next().unwrap_or(name))) {
                 Some(entry) => see(entry, members.get("Parameters")),
                 None => members.iter().for_each(|member| each_process(&member.node, see)),
             }

@@ -1,3 +1,5 @@
+use crate::model::EntityKind;
+use crate::model::Role;
 use std::collections::HashMap;
 
 use super::share::Kept;
@@ -5,12 +7,18 @@ use super::{Counts, Partition, Repeats, Surface, Traffic, common_nodes, partitio
 use crate::geometry::Shape;
 use crate::model::{ModelPart, Nodes, SubPart};
 use crate::parameters::Document;
-use crate::registry::{Entry, Kind};
+use crate::registry::Entry;
 
-static HEXAHEDRON: Entry =
-    Entry { cell: Some(Shape::Hex8), space: 3, ..Entry::new(Kind::Element, "TestHexahedron", file!(), line!()) };
-static QUADRILATERAL: Entry =
-    Entry { cell: Some(Shape::Quad4), space: 3, ..Entry::new(Kind::Condition, "TestQuadrilateral", file!(), line!()) };
+static HEXAHEDRON: EntityKind = EntityKind {
+    cell: Some(Shape::Hex8),
+    space: 3,
+    ..EntityKind::new(Role::Element, Entry::new("TestHexahedron", file!(), line!()))
+};
+static QUADRILATERAL: EntityKind = EntityKind {
+    cell: Some(Shape::Quad4),
+    space: 3,
+    ..EntityKind::new(Role::Condition, Entry::new("TestQuadrilateral", file!(), line!()))
+};
 
 /// Two cubes of `n`³ cells on each other, their meshes apart; part `Contact` holds both touching sides.
 pub(super) fn two_blocks(n: usize) -> ModelPart {

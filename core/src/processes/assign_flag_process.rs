@@ -7,8 +7,8 @@ use super::process::{Process, ProcessRequest};
 use super::target::Target;
 use crate::diagnostics::Result;
 use crate::model::{Model, flags};
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 struct AssignFlag {
     target: Target,
@@ -61,9 +61,9 @@ impl Process for AssignFlag {
     }
 }
 
-register! { Process "assign_flag_process",
+register! { ProcessEntry "assign_flag_process",
     aliases: &["AssignFlagProcess"],
     about: "sets or unsets a flag of nodes, conditions or elements of a part",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_flag_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

@@ -4,6 +4,7 @@
 //! with tabs between: in the first line a word, then an id or (x,y,z) for each site; below, a time and a value for each.
 //! Values are linear between times. Nearness is that of the initial positions, of entities that of their centres.
 
+use crate::processes::ProcessEntry;
 use std::path::Path;
 
 use super::assign_to_entities::{Container, centre};
@@ -14,7 +15,6 @@ use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::model::{Fields, Model, ModelPart, ScalarVariable, SubPart, Table};
 use crate::parameters::{Document, Node, Settings};
 use crate::register;
-use crate::registry::Build;
 use crate::vector3::{norm, sub};
 
 /// Where a site is.
@@ -212,11 +212,11 @@ impl Process for AssignScalarInput {
 
 macro_rules! register_inputs {
     ($($name:literal, $alias:literal, $of:literal, $containers:expr;)+) => {
-        $(register! { Process $name,
+        $(register! { ProcessEntry $name,
             aliases: &[$alias],
             about: concat!("gives ", $of, " of a part the time series of the nearest site of a file"),
             defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/", $name, ".json")),
-            build: Build::Process(|request| build(request, $containers)),
+            build: |request| build(request, $containers),
         })+
     };
 }

@@ -7,8 +7,8 @@ use super::scalar_value::ScalarValue;
 use super::target::{Target, scalar_variable};
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = &request.settings_with(|defaults| defaults.require(&["model_part_name", "variable_name"]))?;
@@ -30,9 +30,9 @@ pub(super) fn optional_value(settings: &Settings) -> Result<ScalarValue> {
     }
 }
 
-register! { Process "assign_scalar_variable_process",
+register! { ProcessEntry "assign_scalar_variable_process",
     aliases: &["AssignScalarVariableProcess"],
     about: "prescribes a scalar variable or a component on the nodes of a part",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

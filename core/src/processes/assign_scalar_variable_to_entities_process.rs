@@ -9,8 +9,8 @@ use super::scalar_value::ScalarValue;
 use super::target::{Target, scalar_variable};
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 fn build(
     request: &mut ProcessRequest<'_>,
@@ -32,30 +32,30 @@ fn build(
     Ok(Box::new(assign))
 }
 
-register! { Process "assign_scalar_variable_to_entities_process",
+register! { ProcessEntry "assign_scalar_variable_to_entities_process",
     aliases: &["AssignScalarVariableToEntitiesProcess"],
     about: "gives the listed kinds of entities of a part a scalar value",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_entities_process.json")),
-    build: Build::Process(|request| build(request, Container::list)),
+    build: |request| build(request, Container::list),
 }
 
-register! { Process "assign_scalar_variable_to_conditions_process",
+register! { ProcessEntry "assign_scalar_variable_to_conditions_process",
     aliases: &["AssignScalarVariableToConditionsProcess"],
     about: "gives the conditions of a part a scalar value, e.g. a pressure",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_conditions_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Conditions]))),
+    build: |request| build(request, |_| Ok(vec![Container::Conditions])),
 }
 
-register! { Process "assign_scalar_variable_to_elements_process",
+register! { ProcessEntry "assign_scalar_variable_to_elements_process",
     aliases: &["AssignScalarVariableToElementsProcess"],
     about: "gives the elements of a part a scalar value",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_elements_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Elements]))),
+    build: |request| build(request, |_| Ok(vec![Container::Elements])),
 }
 
-register! { Process "assign_scalar_variable_to_nodes_process",
+register! { ProcessEntry "assign_scalar_variable_to_nodes_process",
     aliases: &["AssignScalarVariableToNodesProcess"],
     about: "gives the nodes of a part a scalar value without history",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_scalar_variable_to_nodes_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Nodes]))),
+    build: |request| build(request, |_| Ok(vec![Container::Nodes])),
 }

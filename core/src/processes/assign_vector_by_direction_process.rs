@@ -8,8 +8,8 @@ use super::local_axes::LocalAxes;
 use super::process::{Process, ProcessRequest};
 use super::target::{Target, vector_variable};
 use crate::diagnostics::Result;
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 /// Shorter directions count as zero.
 const SMALLEST: f64 = 1e-12;
@@ -27,9 +27,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     Ok(Box::new(AssignToNodes::new(target, components, LocalAxes::from_settings(settings)?)))
 }
 
-register! { Process "assign_vector_by_direction_process",
+register! { ProcessEntry "assign_vector_by_direction_process",
     aliases: &["AssignVectorByDirectionProcess"],
     about: "prescribes a vector variable by modulus and direction on the nodes of a part",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

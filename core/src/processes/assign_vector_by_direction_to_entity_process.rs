@@ -7,8 +7,8 @@ use super::process::{Process, ProcessRequest};
 use super::target::{Target, vector_variable};
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 /// Shorter directions count as zero.
 const SMALLEST: f64 = 1e-6;
@@ -29,30 +29,30 @@ fn build(
     Ok(Box::new(AssignToEntities { target, containers, components, axes }))
 }
 
-register! { Process "assign_vector_by_direction_to_entity_process",
+register! { ProcessEntry "assign_vector_by_direction_to_entity_process",
     aliases: &["AssignVectorByDirectionToEntityProcess"],
     about: "gives the listed kinds of entities of a part a vector value by modulus and direction",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_to_entity_process.json")),
-    build: Build::Process(|request| build(request, Container::list)),
+    build: |request| build(request, Container::list),
 }
 
-register! { Process "assign_vector_by_direction_to_condition_process",
+register! { ProcessEntry "assign_vector_by_direction_to_condition_process",
     aliases: &["AssignVectorByDirectionToConditionProcess"],
     about: "gives the conditions of a part a vector value by modulus and direction",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_to_condition_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Conditions]))),
+    build: |request| build(request, |_| Ok(vec![Container::Conditions])),
 }
 
-register! { Process "assign_vector_by_direction_to_node_process",
+register! { ProcessEntry "assign_vector_by_direction_to_node_process",
     aliases: &["AssignVectorByDirectionToNodeProcess"],
     about: "gives the nodes of a part a vector value without history by modulus and direction",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_to_node_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Nodes]))),
+    build: |request| build(request, |_| Ok(vec![Container::Nodes])),
 }
 
-register! { Process "assign_vector_by_direction_to_element_process",
+register! { ProcessEntry "assign_vector_by_direction_to_element_process",
     aliases: &["AssignVectorByDirectionToElementProcess"],
     about: "gives the elements of a part a vector value by modulus and direction",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_by_direction_to_element_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Elements]))),
+    build: |request| build(request, |_| Ok(vec![Container::Elements])),
 }

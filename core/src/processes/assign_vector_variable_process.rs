@@ -7,8 +7,8 @@ use super::scalar_value::ScalarValue;
 use super::target::{Target, vector_variable};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::parameters::Settings;
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings =
@@ -56,9 +56,9 @@ pub(super) fn constrained(settings: &Settings) -> Result<[bool; 3]> {
     three.ok_or_else(|| wrong().into())
 }
 
-register! { Process "assign_vector_variable_process",
+register! { ProcessEntry "assign_vector_variable_process",
     aliases: &["AssignVectorVariableProcess"],
     about: "prescribes components of a vector variable on the nodes of a part",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

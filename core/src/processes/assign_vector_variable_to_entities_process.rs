@@ -7,8 +7,8 @@ use super::process::{Process, ProcessRequest};
 use super::target::{Target, vector_variable};
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 fn build(
     request: &mut ProcessRequest<'_>,
@@ -23,30 +23,30 @@ fn build(
     Ok(Box::new(AssignToEntities { target: Target::new(settings, request.model)?, containers, components, axes }))
 }
 
-register! { Process "assign_vector_variable_to_entities_process",
+register! { ProcessEntry "assign_vector_variable_to_entities_process",
     aliases: &["AssignVectorVariableToEntitiesProcess"],
     about: "gives the listed kinds of entities of a part a vector value",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_entities_process.json")),
-    build: Build::Process(|request| build(request, Container::list)),
+    build: |request| build(request, Container::list),
 }
 
-register! { Process "assign_vector_variable_to_conditions_process",
+register! { ProcessEntry "assign_vector_variable_to_conditions_process",
     aliases: &["AssignVectorVariableToConditionProcess", "AssignVectorVariableToConditionsProcess"],
     about: "gives the conditions of a part a vector value, e.g. a line load",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_conditions_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Conditions]))),
+    build: |request| build(request, |_| Ok(vec![Container::Conditions])),
 }
 
-register! { Process "assign_vector_variable_to_nodes_process",
+register! { ProcessEntry "assign_vector_variable_to_nodes_process",
     aliases: &["AssignVectorVariableToNodesProcess"],
     about: "gives the nodes of a part a vector value without history",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_nodes_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Nodes]))),
+    build: |request| build(request, |_| Ok(vec![Container::Nodes])),
 }
 
-register! { Process "assign_vector_variable_to_elements_process",
+register! { ProcessEntry "assign_vector_variable_to_elements_process",
     aliases: &["AssignVectorVariableToElementsProcess"],
     about: "gives the elements of a part a vector value",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/assign_vector_variable_to_elements_process.json")),
-    build: Build::Process(|request| build(request, |_| Ok(vec![Container::Elements]))),
+    build: |request| build(request, |_| Ok(vec![Container::Elements])),
 }

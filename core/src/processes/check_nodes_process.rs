@@ -12,8 +12,8 @@ use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::{Model, ScalarVariable};
 use crate::parameters::{Settings, SpaceTime};
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 /// Differences told in full; more are counted.
 const TOLD: usize = 5;
@@ -106,16 +106,16 @@ impl Process for CheckNodes {
     }
 }
 
-register! { Process "check_scalar_to_nodes_process",
+register! { ProcessEntry "check_scalar_to_nodes_process",
     aliases: &["CheckScalarToNodesProcess"],
     about: "compares a scalar variable or a component of nodes with a function; a difference ends the run",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/check_scalar_to_nodes_process.json")),
-    build: Build::Process(build_scalar),
+    build: build_scalar,
 }
 
-register! { Process "check_vector_components_to_nodes_process",
+register! { ProcessEntry "check_vector_components_to_nodes_process",
     aliases: &["CheckVectorComponentsToNodesProcess"],
     about: "compares components of a vector variable of nodes with functions; a difference ends the run",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/check_vector_components_to_nodes_process.json")),
-    build: Build::Process(build_vector),
+    build: build_vector,
 }

@@ -7,9 +7,8 @@ use std::collections::BTreeMap;
 
 use super::assign_to_entities::centre;
 use crate::diagnostics::Diagnostic;
-use crate::entities::{BlockRequest, LocalSystems, Want};
-use crate::model::{ModelPart, ScalarVariable};
-use crate::registry::{Build, Entry};
+use crate::entities::{BlockFactory, BlockRequest, LocalSystems, Want, block_factory};
+use crate::model::{EntityKind, ModelPart, ScalarVariable};
 use crate::vector3::{dot, sub};
 
 /// How many faces a positive number presses on, and how many it pulls.
@@ -30,7 +29,7 @@ pub(super) fn pulling(
     if variable.component.is_some() || sign == 0.0 || part.share.is_some() {
         return None;
     }
-    let mut by_kind: BTreeMap<&str, (&'static Entry, Vec<u32>)> = BTreeMap::new();
+    let mut by_kind: BTreeMap<&str, (&'static EntityKind, Vec<u32>)> = BTreeMap::new();
     for &at in conditions {
         let entry = part.conditions.kinds[at as usize];
         if entry.nodes() > 1 && part.properties.contains_key(&part.conditions.properties[at as usize]) {
@@ -70,11 +69,11 @@ pub(super) fn pulling(
 /// Force of each condition for the number one less that for zero; `None` where its kind makes none.
 fn unit_forces(
     part: &mut ModelPart,
-    entry: &'static Entry,
+    entry: &'static EntityKind,
     members: &[u32],
     variable: ScalarVariable,
 ) -> Option<Vec<(u32, [f64; 3])>> {
-    let Build::Block(make) = entry.build else { return None };
+    let make = block_factory(entry)?;
     part.conditions.data.add_named(variable.column, 1);
     let before = part.conditions.data.get(variable.column)?.levels[0].clone();
     let mut forces = Vec::new();
@@ -90,8 +89,8 @@ fn unit_forces(
 
 fn forces_of(
     part: &ModelPart,
-    entry: &'static Entry,
-    make: fn(&BlockRequest<'_>) -> crate::Result<Box<dyn crate::entities::EntityBlock>>,
+    entry: &'static EntityKind,
+    make: BlockFactory,
     members: &[u32],
 ) -> Option<Vec<[f64; 3]>> {
     let (table, nodes) = (&part.conditions, &part.nodes);

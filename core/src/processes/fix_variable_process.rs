@@ -7,8 +7,8 @@ use super::target::{Target, scalar_variable, vector_variable};
 use crate::diagnostics::Result;
 use crate::model::ScalarVariable;
 use crate::parameters::Settings;
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 fn settings(request: &mut ProcessRequest<'_>) -> Result<Settings> {
     request.settings_with(|defaults| defaults.require(&["model_part_name", "variable_name"]))
@@ -33,16 +33,16 @@ fn build_vector(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     fix(Target::new(&settings, request.model)?, wanted)
 }
 
-register! { Process "fix_scalar_variable_process",
+register! { ProcessEntry "fix_scalar_variable_process",
     aliases: &["FixScalarVariableProcess"],
     about: "fixes a scalar variable or a component on the nodes of a part at its present value",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/fix_scalar_variable_process.json")),
-    build: Build::Process(build_scalar),
+    build: build_scalar,
 }
 
-register! { Process "fix_vector_variable_process",
+register! { ProcessEntry "fix_vector_variable_process",
     aliases: &["FixVectorVariableProcess"],
     about: "fixes components of a vector variable on the nodes of a part at their present values",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/fix_vector_variable_process.json")),
-    build: Build::Process(build_vector),
+    build: build_vector,
 }

@@ -2,6 +2,7 @@
 //!
 //! One constraint a node and component; the constraints hold in steps whose TIME is in the interval.
 
+use crate::processes::ProcessEntry;
 use std::ops::Range;
 
 use super::process::{Process, ProcessRequest};
@@ -10,7 +11,6 @@ use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::model::{MasterSlaveConstraint, Model, Named, ScalarVariable, SubPart, VariableKind, named};
 use crate::parameters::{Interval, Settings};
 use crate::register;
-use crate::registry::Build;
 
 struct ImposeRigidMovement {
     root: String,
@@ -140,11 +140,11 @@ impl Process for ImposeRigidMovement {
     }
 }
 
-register! { Process "impose_rigid_movement_process",
+register! { ProcessEntry "impose_rigid_movement_process",
     aliases: &["ImposeRigidMovementProcess"],
     about: "ties the nodes of a part to one of them by linear constraints",
     source: "eqs. D.12a–e",
     common: &["model_part_name", "master_node_id"],
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/impose_rigid_movement_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

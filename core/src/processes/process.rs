@@ -7,6 +7,7 @@ use crate::diagnostics::{Report, Result};
 use crate::entities::Interaction;
 use crate::model::Model;
 use crate::parameters::{Defaults, Node, Settings};
+use crate::registered_kind;
 use crate::registry::Entry;
 
 /// Something done at fixed points of the stage loop, in the order in which the deck lists it.
@@ -136,3 +137,12 @@ impl ProcessRequest<'_> {
 
 /// Makes a process.
 pub type ProcessFactory = fn(&mut ProcessRequest<'_>) -> Result<Box<dyn Process>>;
+
+registered_kind! {
+    /// A process that decks name.
+    pub struct ProcessEntry("process", "unknown-process") {
+        build: ProcessFactory;
+        /// Keys whose parts, or nodes by id, every rank must have whole where several share a mesh.
+        common: &'static [&'static str] = &[],
+    }
+}

@@ -2,8 +2,8 @@
 
 use super::process::{Process, ProcessRequest};
 use crate::diagnostics::{Diagnostic, Result};
+use crate::processes::ProcessEntry;
 use crate::register;
-use crate::registry::Build;
 
 struct Sprism;
 
@@ -20,9 +20,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     Ok(Box::new(Sprism))
 }
 
-register! { Process "sprism_process",
+register! { ProcessEntry "sprism_process",
     aliases: &["SPRISMProcess"],
     about: "accepted without effect: prepares solid-shell prisms",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/sprism_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

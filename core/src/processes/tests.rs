@@ -2,18 +2,23 @@ use super::*;
 use crate::assembly::System;
 use crate::diagnostics::{Report, Result};
 use crate::geometry::Shape;
+use crate::model::EntityKind;
+use crate::model::Role;
 use crate::model::{Model, ModelPart, Nodes, ScalarVariable, SubPart, named};
 use crate::parameters::{Defaults, Document, Settings};
 use crate::register_variable;
-use crate::registry::{self, Build, Entry, Kind};
+use crate::registry::{self, Entry};
 
 register_variable! {
     kind TEST_PRESSURE: Scalar = "Load of the tests.";
     kind TEST_LOAD: Vector3 = "Load of the tests.";
 }
 
-static LINE: Entry =
-    Entry { cell: Some(Shape::Line2), space: 2, ..Entry::new(Kind::Condition, "TestLine2D2N", file!(), line!()) };
+static LINE: EntityKind = EntityKind {
+    cell: Some(Shape::Line2),
+    space: 2,
+    ..EntityKind::new(Role::Condition, Entry::new("TestLine2D2N", file!(), line!()))
+};
 
 /// Three nodes on the x axis at 0, 1, 3; two line conditions between them; part "Edge" with the last two nodes.
 fn model() -> Model {
@@ -50,10 +55,9 @@ fn scalar(name: &str) -> ScalarVariable {
 
 fn make(module: &str, parameters: &str, model: &mut Model) -> Result<Box<dyn Process>> {
     let parameters = Document::from_str(parameters, "deck.json").unwrap().root;
-    let entry = registry::find(Kind::Process, module).unwrap();
-    let Build::Process(build) = entry.build else { panic!("{module}") };
+    let entry = registry::find::<ProcessEntry>(module).unwrap();
     let folder = std::path::Path::new("");
-    build(&mut ProcessRequest { entry, parameters: &parameters, model, folder, report: &mut Report::new() })
+    (entry.build)(&mut ProcessRequest { entry, parameters: &parameters, model, folder, report: &mut Report::new() })
 }
 
 fn refused(module: &str, parameters: &str) -> String {
@@ -331,7 +335,7 @@ fn mistakes_are_named_with_their_place() {
 
 #[test]
 fn every_setting_of_every_registered_object_is_documented() {
-    for entry in registry::entries().into_iter().filter(|e| !e.defaults.is_empty()) {
+    for (_, entry) in registry::entries().into_iter().filter(|(_, e)| !e.defaults.is_empty()) {
         let defaults = Defaults::parse(entry.name, entry.defaults).unwrap();
         assert!(!defaults.description().is_empty(), "{entry:?} has no description above its brace");
         for key in defaults.entries() {
@@ -354,8 +358,8 @@ fn the_decks_of_the_reference_program_fit() {
         let lists = document.root.get("processes").and_then(|p| p.as_object());
         for item in lists.into_iter().flat_map(|l| l.iter()).flat_map(|list| list.node.array().unwrap()) {
             let module = item.get("python_module").unwrap().str().unwrap();
-            let ours = |e: &&registry::Entry| e.file.contains("core/src/processes") && !e.file.contains("/output/");
-            let Some(entry) = registry::find(Kind::Process, module).filter(ours) else {
+            let ours = |e: &&ProcessEntry| e.file.contains("core/src/processes") && !e.file.contains("/output/");
+            let Some(entry) = registry::find::<ProcessEntry>(module).filter(ours) else {
                 continue;
             };
             let defaults = Defaults::parse(entry.name, entry.defaults).unwrap();

@@ -7,14 +7,16 @@
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::strategy::{SolutionStrategy, accept, recorded, update_interactions};
+use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded, update_interactions};
 use crate::assembly::{Assembler, System};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::register;
-use crate::registry::Build;
+
+/// Mark of the step data: the load factor is an unknown.
+pub const ARC_LENGTH: &str = "ARC_LENGTH";
 
 const DEFAULTS: &str = include_str!("../../../configs/strategies/arc_length.json");
 
@@ -264,9 +266,21 @@ impl SolutionStrategy for ArcLength {
     }
 }
 
-register! { Strategy "arc_length",
+register! { StrategyEntry "arc_length",
     about: "follows the path of equilibrium by its length, through points where the load falls",
     source: "Riks 1979; Ramm 1981",
     defaults: DEFAULTS,
-    build: Build::NameOnly,
+    build: |request| {
+        if request.iteration.linear {
+            return Ok(Box::new(request.newton()?));
+        }
+        let settings = ArcLengthSettings::new(request.advanced)?;
+        if request.scheme_name != "static" {
+            let fact = "\"arc_length\" follows states of equilibrium, the solver is dynamic";
+            let problem = request.settings.error("solving_strategy_settings.type", "arc-length", fact);
+            return Err(problem.remedy("use \"solver_type\": \"Static\"").into());
+        }
+        Ok(Box::new(ArcLength::new(settings, request.newton()?)))
+    },
+    marks: &[ARC_LENGTH],
 }

@@ -11,7 +11,7 @@ use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
 use crate::register;
-use crate::registry::Build;
+use crate::strategies::SchemeEntry;
 
 /// Order, damping, and the times the present weights refer to.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,10 +96,10 @@ impl Scheme for BdfScheme {
 
 macro_rules! register_bdf {
     ($name:literal, $aliases:expr, $order:literal, $about:literal) => {
-        register! { Scheme $name,
+        register! { SchemeEntry $name,
             aliases: $aliases,
             about: $about,
-            build: Build::Factory(&((|request| Ok(Box::new(BdfScheme::new($order, request.rayleigh()?)))) as SchemeFactory)),
+            build: SchemeFactory::Implicit(|request| Ok(Box::new(BdfScheme::new($order, request.rayleigh()?)))),
         }
     };
 }

@@ -3,13 +3,12 @@
 //! M ((1 − α_m) a_{n+1} + α_m a_n) + C v_{n+1} + f_int(u_{n+1}) = f_ext, with Newmark's relations between u, v and a;
 //! α_m in [−1/2, 0]. β = (1 − α_m)² β₀ and γ = 1/2 − α_m keep second order and damp high frequencies.
 
-use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
+use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, VELOCITY};
 use crate::register;
-use crate::registry::Build;
 
 /// Parameters of the scheme and of Rayleigh's damping.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,15 +72,15 @@ impl Scheme for BossakScheme {
     }
 }
 
-register! { Scheme "bossak",
+register! { SchemeEntry "bossak",
     about: "Bossak's implicit scheme: second order, damps high frequencies by damp_factor_m",
     source: "Wood, Bossak, Zienkiewicz 1981",
-    build: Build::Factory(&((|request| {
+    build: SchemeFactory::Implicit(|request| {
         BossakScheme::from_settings(request, request.settings.get_f64("damp_factor_m")?)
-    }) as SchemeFactory)),
+    }),
 }
-register! { Scheme "newmark",
+register! { SchemeEntry "newmark",
     about: "Newmark's implicit scheme: Bossak's without damping of the mass",
     source: "Newmark 1959",
-    build: Build::Factory(&((|request| BossakScheme::from_settings(request, 0.0)) as SchemeFactory)),
+    build: SchemeFactory::Implicit(|request| BossakScheme::from_settings(request, 0.0)),
 }

@@ -4,16 +4,11 @@
 //! u_{n+1} = u_n + Δt_{n+1} v_{n+½}. In the first step v_n is the initial velocity. VELOCITY and ACCELERATION are those of
 //! t_n, one step behind DISPLACEMENT. Stable while Δt < 2/ω of the highest frequency ω.
 
-use super::scheme::SchemeRequest;
+use super::scheme::{SchemeEntry, SchemeFactory};
 use crate::assembly::DofTable;
-use crate::diagnostics::Result;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, MIDDLE_VELOCITY, VELOCITY};
 use crate::model::{Fields, ModelPart};
 use crate::register;
-use crate::registry::Build;
-
-/// Makes the update of an explicit scheme; registered as `Build::Factory(&(make as ExplicitSchemeFactory))`.
-pub type ExplicitSchemeFactory = fn(&SchemeRequest<'_>) -> Result<CentralDifferences>;
 
 /// The update of central differences, and the half step it carries over.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -81,7 +76,7 @@ impl CentralDifferences {
     }
 }
 
-register! { Scheme "central_differences",
+register! { SchemeEntry "central_differences",
     about: "explicit central differences with a lumped mass, for \"time_integration_method\": \"explicit\"",
-    build: Build::Factory(&((|_| Ok(CentralDifferences::default())) as ExplicitSchemeFactory)),
+    build: SchemeFactory::Explicit(|_| Ok(CentralDifferences::default())),
 }

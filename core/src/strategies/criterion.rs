@@ -5,6 +5,7 @@ use crate::communication::world;
 use crate::diagnostics::{Report, Result};
 use crate::model::Nodes;
 use crate::parameters::{Node, Settings};
+use crate::registered_kind;
 
 /// A block of unknowns that is measured by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,8 +136,15 @@ pub struct CriterionRequest<'a> {
     pub report: &'a mut Report,
 }
 
-/// Makes a criterion; registered as `Build::Factory(&(make as CriterionFactory))`.
+/// Makes a criterion.
 pub type CriterionFactory = fn(&mut CriterionRequest<'_>) -> Result<Box<dyn ConvergenceCriterion>>;
+
+registered_kind! {
+    /// A convergence criterion that decks name.
+    pub struct CriterionEntry("convergence_criterion", "unknown-criterion") {
+        build: CriterionFactory;
+    }
+}
 
 struct Pair {
     first: Box<dyn ConvergenceCriterion>,

@@ -1,11 +1,9 @@
 //! Converged when the increment of the iteration is small.
 
-use super::criterion::{
-    Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, is_last_digit,
-};
+use super::criterion::{Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_last_digit};
 use crate::diagnostics::Result;
 use crate::register;
-use crate::registry::Build;
+use crate::strategies::CriterionEntry;
 
 /// ‖Δu‖ ≤ relative · ‖u‖, or ‖Δu‖ / √n ≤ absolute, over all unknowns that are solved for.
 #[derive(Debug, Clone, Copy)]
@@ -47,8 +45,8 @@ impl ConvergenceCriterion for DisplacementCriterion {
     }
 }
 
-register! { ConvergenceCriterion "displacement_criterion",
+register! { CriterionEntry "displacement_criterion",
     about: "increment of the iteration small, relative to the displacements or absolutely",
     source: "‖Δu‖/‖u‖ ≤ displacement_relative_tolerance or ‖Δu‖/√n ≤ displacement_absolute_tolerance",
-    build: Build::Factory(&((|request| Ok(Box::new(DisplacementCriterion::from_settings(request)?))) as CriterionFactory)),
+    build: |request| Ok(Box::new(DisplacementCriterion::from_settings(request)?)),
 }

@@ -5,13 +5,12 @@
 //! Newmark's relations hold with γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4. The code divides by 1 − α_f, so that the
 //! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
 
-use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
+use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, VELOCITY};
 use crate::register;
-use crate::registry::Build;
 
 /// Parameters of the scheme and the forces of the last accepted step.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,9 +100,9 @@ impl Scheme for GeneralizedAlphaScheme {
     }
 }
 
-register! { Scheme "generalized_alpha",
+register! { SchemeEntry "generalized_alpha",
     aliases: &["generalized-alpha", "generalised_alpha"],
     about: "generalised-α: second order, damps high frequencies by rho_inf, keeps low ones",
     source: "Chung, Hulbert 1993",
-    build: Build::Factory(&(GeneralizedAlphaScheme::from_settings as SchemeFactory)),
+    build: SchemeFactory::Implicit(GeneralizedAlphaScheme::from_settings),
 }

@@ -3,10 +3,10 @@
 //! The work w(s) = Δ · b(u + s Δ) of the increment on the residual vanishes where the energy is stationary along it. The
 //! search looks for an s with |w(s)| ≤ tolerance · |w(0)| by secants, inside a bracket once w has changed its sign.
 
+use super::strategy::StrategyEntry;
 use crate::diagnostics::Result;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::register;
-use crate::registry::Build;
 
 const DEFAULTS: &str = include_str!("../../../configs/strategies/line_search.json");
 
@@ -92,10 +92,16 @@ impl LineSearch {
     }
 }
 
-register! { Strategy "line_search",
+register! { StrategyEntry "line_search",
     about: "Newton's iteration that takes the part of each increment where its work on the residual is small",
     defaults: DEFAULTS,
-    build: Build::NameOnly,
+    build: |mut request| {
+        // One linear solve takes its increment whole.
+        if !request.iteration.linear {
+            request.iteration.line_search = Some(LineSearch::new(request.advanced)?);
+        }
+        Ok(Box::new(request.newton()?))
+    },
 }
 
 #[cfg(test)]

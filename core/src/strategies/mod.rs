@@ -7,6 +7,7 @@
 mod arc_length;
 mod bdf_scheme;
 mod bossak_scheme;
+mod builder;
 mod central_differences;
 mod condensing;
 mod contraction;
@@ -18,6 +19,7 @@ mod gathered;
 mod generalized_alpha_scheme;
 mod line_search;
 mod linear_solve;
+mod linear_solvers;
 mod meaning;
 mod newton;
 #[cfg(feature = "petsc")]
@@ -31,23 +33,26 @@ mod residual_criterion;
 mod scheme;
 mod strategy;
 
-pub use arc_length::{ArcLength, ArcLengthSettings};
+pub use arc_length::{ARC_LENGTH, ArcLength, ArcLengthSettings};
 pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
-pub use central_differences::{CentralDifferences, ExplicitSchemeFactory};
+pub use builder::{Builder, BuilderEntry};
+pub use central_differences::CentralDifferences;
 pub(crate) use condensing::multipliers;
 pub use condensing::{CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE};
 pub use criterion::{
-    Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
-    is_last_digit, is_round_off,
+    Block, Check, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Verdict, both,
+    either, is_last_digit, is_round_off,
 };
 pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{CRITICAL_STEP, ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
+pub use linear_solvers::{LinearSolverEntry, LinearSolverFactory, LinearSolverRequest};
+pub(crate) use linear_solvers::{make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all};
 pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
 pub use residual_criterion::ResidualCriterion;
-pub use scheme::{Scheme, SchemeFactory, SchemeRequest, StaticScheme};
-pub use strategy::SolutionStrategy;
+pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
+pub use strategy::{SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest};

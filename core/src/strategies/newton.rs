@@ -19,13 +19,12 @@ use super::linear_solve::{self, Failed, Solved};
 use super::meaning::Meaning;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
-use super::strategy::{SolutionStrategy, accept, recorded};
+use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded};
 use crate::assembly::{Assembler, System, impose_constraints};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::ModelPart;
 use crate::register;
-use crate::registry::Build;
 
 /// Mark of the step data: the condition number of every system is computed.
 pub const CONDITION_NUMBER: &str = "CONDN_CONVERGENCE_CRITERION";
@@ -338,7 +337,7 @@ impl NewtonRaphson {
     }
 }
 
-register! { Strategy "newton_raphson",
+register! { StrategyEntry "newton_raphson",
     about: "Newton's iteration with whole increments",
-    build: Build::NameOnly,
+    build: |request| Ok(Box::new(request.newton()?)),
 }

@@ -4,13 +4,12 @@
 //! second order where the first velocity is in balance. Without damping every step is a state of equilibrium.
 //! ACCELERATION is the change of VELOCITY over the step and enters no equation.
 
-use super::scheme::{Scheme, SchemeFactory, SchemeRequest, gather};
+use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, gather};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
 use crate::register;
-use crate::registry::Build;
 
 /// Rayleigh's factors of mass (1/time) and stiffness (time).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,8 +77,8 @@ impl Scheme for PseudoStaticScheme {
     }
 }
 
-register! { Scheme "pseudo_static",
+register! { SchemeEntry "pseudo_static",
     about: "no inertia: Rayleigh's damping alone slows the motion, trapezoidal rule",
     source: "C v + f_int(u) = f_ext",
-    build: Build::Factory(&(PseudoStaticScheme::from_settings as SchemeFactory)),
+    build: SchemeFactory::Implicit(PseudoStaticScheme::from_settings),
 }

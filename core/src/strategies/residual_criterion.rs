@@ -1,13 +1,12 @@
 //! Converged when the out-of-balance force is small.
 
 use super::criterion::{
-    Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
-    is_round_off,
+    Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, both, either, is_round_off,
 };
 use super::displacement_criterion::DisplacementCriterion;
 use crate::diagnostics::Result;
 use crate::register;
-use crate::registry::Build;
+use crate::strategies::CriterionEntry;
 
 /// ‖r‖ ≤ relative · ‖r‖_reference, or ‖r‖ / n ≤ absolute, over all unknowns that are solved for.
 ///
@@ -53,26 +52,26 @@ impl ConvergenceCriterion for ResidualCriterion {
     }
 }
 
-register! { ConvergenceCriterion "residual_criterion",
+register! { CriterionEntry "residual_criterion",
     about: "out-of-balance force small, relative to that at the start of the step or absolutely",
     source: "‖r‖/‖r₀‖ ≤ residual_relative_tolerance or ‖r‖/n ≤ residual_absolute_tolerance",
-    build: Build::Factory(&((|request| Ok(Box::new(ResidualCriterion::from_settings(request)?))) as CriterionFactory)),
+    build: |request| Ok(Box::new(ResidualCriterion::from_settings(request)?)),
 }
-register! { ConvergenceCriterion "and_criterion",
+register! { CriterionEntry "and_criterion",
     about: "both residual_criterion and displacement_criterion",
-    build: Build::Factory(&((|request| {
+    build: |request| {
         Ok(both(
             Box::new(ResidualCriterion::from_settings(request)?),
             Box::new(DisplacementCriterion::from_settings(request)?),
         ))
-    }) as CriterionFactory)),
+    },
 }
-register! { ConvergenceCriterion "or_criterion",
+register! { CriterionEntry "or_criterion",
     about: "residual_criterion or displacement_criterion",
-    build: Build::Factory(&((|request| {
+    build: |request| {
         Ok(either(
             Box::new(ResidualCriterion::from_settings(request)?),
             Box::new(DisplacementCriterion::from_settings(request)?),
         ))
-    }) as CriterionFactory)),
+    },
 }

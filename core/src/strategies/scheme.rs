@@ -1,12 +1,12 @@
 //! Time schemes: what inertia adds to the system, and how rates follow displacements.
 
+use super::central_differences::CentralDifferences;
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
 use crate::parameters::Settings;
-use crate::register;
-use crate::registry::Build;
+use crate::{register, registered_kind};
 
 /// Integration in time of the equations of motion.
 pub trait Scheme: Send {
@@ -129,10 +129,23 @@ impl SchemeRequest<'_> {
     }
 }
 
-/// Makes a scheme; registered as `Build::Factory(&(make as SchemeFactory))`.
-pub type SchemeFactory = fn(&SchemeRequest<'_>) -> Result<Box<dyn Scheme>>;
+/// Makes a scheme of one of the two methods.
+#[derive(Clone, Copy)]
+pub enum SchemeFactory {
+    /// Solved for by iteration.
+    Implicit(fn(&SchemeRequest<'_>) -> Result<Box<dyn Scheme>>),
+    /// From forces to motion directly.
+    Explicit(fn(&SchemeRequest<'_>) -> Result<CentralDifferences>),
+}
 
-register! { Scheme "static",
+registered_kind! {
+    /// A time scheme that decks name.
+    pub struct SchemeEntry("scheme", "unknown-name") {
+        build: SchemeFactory;
+    }
+}
+
+register! { SchemeEntry "static",
     about: "no inertia: time only orders the loads",
-    build: Build::Factory(&((|_| Ok(Box::new(StaticScheme))) as SchemeFactory)),
+    build: SchemeFactory::Implicit(|_| Ok(Box::new(StaticScheme))),
 }

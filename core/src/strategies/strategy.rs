@@ -1,11 +1,22 @@
 //! What the stage asks of the solution of a step, whether it iterates or not.
 
+use zelus_linear_algebra::LinearSolver;
+
+#[cfg(feature = "petsc")]
+use super::condensing::multipliers;
+use super::criterion::ConvergenceCriterion;
+#[cfg(feature = "petsc")]
+use super::linear_solvers;
+use super::newton::{NewtonRaphson, NewtonSettings};
 use super::records::{IterationRecord, Monitor, StepRecord};
+use super::scheme::Scheme;
 use crate::assembly::{Assembler, System};
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, SetChange};
 use crate::model::ModelPart;
+use crate::parameters::{Node, Settings};
+use crate::registered_kind;
 
 /// Solves the steps of one model part, one after another.
 pub trait SolutionStrategy: Send {
@@ -56,6 +67,67 @@ pub trait SolutionStrategy: Send {
     /// Seconds spent in linear solves: symbolic, numeric, solution.
     fn linear_seconds(&self) -> [f64; 3] {
         [0.0; 3]
+    }
+}
+
+/// What a strategy is made from: what the deck names beside it, ready.
+pub struct StrategyRequest<'a> {
+    /// The solver settings, defaults filled in.
+    pub settings: &'a Settings,
+    /// The `advanced_settings` of the strategy, as the user wrote them.
+    pub advanced: &'a Node,
+    /// How a step is iterated.
+    pub iteration: NewtonSettings,
+    /// Registered name of the time scheme.
+    pub scheme_name: &'a str,
+    /// The time scheme.
+    pub scheme: Box<dyn Scheme>,
+    /// Judges each iteration.
+    pub criterion: Box<dyn ConvergenceCriterion>,
+    /// Solves the linear systems.
+    pub solver: Box<dyn LinearSolver>,
+    /// The part.
+    pub part: &'a mut ModelPart,
+    /// The system over it, whose blocks and interactions are ready.
+    pub system: &'a mut System,
+    /// Whether engines over all ranks may take the solver's place.
+    pub replaceable: bool,
+    /// Says which engine solves the linear systems.
+    pub says: &'a mut String,
+}
+
+impl StrategyRequest<'_> {
+    /// Newton's iteration of all of these, which other strategies may be made of.
+    ///
+    /// # Errors
+    /// An engine of PETSc that does not exist.
+    pub fn newton(self) -> Result<NewtonRaphson> {
+        let named = self.settings.sub("linear_solver_settings")?;
+        let mut newton =
+            NewtonRaphson::new(self.iteration, self.scheme, self.criterion, self.solver, self.part, self.system);
+        newton.solver_named_at(named.key_place("solver_type"));
+        #[cfg(feature = "petsc")]
+        if self.part.share.is_some() && self.replaceable {
+            let unknowns = linear_solvers::unknowns_of_all(self.part, self.system);
+            let has_multipliers = self.system.dofs.dofs().iter().any(|dof| dof.multiplier);
+            if let Some((petsc, by_petsc)) = linear_solvers::petsc(&named, unknowns, has_multipliers)? {
+                newton.solve_by_petsc(petsc, multipliers(&self.part.info));
+                *self.says = by_petsc;
+            }
+        }
+        Ok(newton)
+    }
+}
+
+/// Makes a strategy.
+pub type StrategyFactory = fn(StrategyRequest<'_>) -> Result<Box<dyn SolutionStrategy>>;
+
+registered_kind! {
+    /// A strategy that decks name.
+    pub struct StrategyEntry("strategy", "unknown-name") {
+        build: StrategyFactory;
+        /// Marks of the step data that say of it what interactions must know.
+        marks: &'static [&'static str] = &[],
     }
 }
 

@@ -4,10 +4,11 @@
 //! c = FOUNDATION_STIFFNESS > 0 is a force per area and displacement, for a body of unit thickness.
 
 use zelus_core::Result;
+use zelus_core::entities::Build;
+use zelus_core::entities::ConditionEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::model::variables::DISPLACEMENT;
-use zelus_core::registry::Build;
 use zelus_core::vector3::{norm, sub};
 use zelus_core::{register, register_variable};
 
@@ -78,7 +79,7 @@ impl Kernel<NODES, SIZE> for ElasticFoundation {
     }
 }
 
-register! { Condition "ElasticFoundationCondition2D2N",
+register! { ConditionEntry "ElasticFoundationCondition2D2N",
     about: "springs along a line: traction FOUNDATION_STIFFNESS times displacement, against it",
     source: "Winkler's foundation, f_i = −∫ N_i c u dξ",
     cell: Some(Shape::Line2),

@@ -4,11 +4,10 @@
 
 use zelus_core::Result;
 use zelus_core::analysis::ExtensionDefinition;
+use zelus_core::analysis::SolverExtensionEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
-use zelus_core::strategies::{
-    Block, Check, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict,
-};
+use zelus_core::strategies::CriterionEntry;
+use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict};
 
 /// Defaults of the object `"energy_settings"` that a deck may write among its solver settings.
 const DEFAULTS: &str = r#"// Settings of energy_criterion.
@@ -47,18 +46,18 @@ impl ConvergenceCriterion for EnergyCriterion {
     }
 }
 
-register! { ConvergenceCriterion "energy_criterion",
+register! { CriterionEntry "energy_criterion",
     about: "work of the residual along the increment small, relative to that of the load",
     source: "|r·Δu| / |r₀·u| ≤ energy_settings.relative_tolerance",
-    build: Build::Factory(&(make as CriterionFactory)),
+    build: make,
 }
-register! { SolverExtension "energy_settings",
+register! { SolverExtensionEntry "energy_settings",
     about: "settings of energy_criterion",
     defaults: DEFAULTS,
-    build: Build::Factory(&ExtensionDefinition {
+    build: ExtensionDefinition {
         variables: |_| Ok(Vec::new()),
         marks: |_| Ok(Vec::new()),
         cutting: |_| Ok(None),
         values: |_| Ok(Vec::new()),
-    }),
+    },
 }

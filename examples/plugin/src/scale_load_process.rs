@@ -5,9 +5,9 @@
 use zelus_core::diagnostics::Place;
 use zelus_core::model::{Model, Named, VariableKind, named};
 use zelus_core::parameters::SpaceTime;
+use zelus_core::processes::ProcessEntry;
 use zelus_core::processes::{Process, ProcessRequest, ScalarValue, Target};
 use zelus_core::register;
-use zelus_core::registry::Build;
 use zelus_core::{Result, diagnostics::Diagnostic};
 
 /// Defaults, with what each key means; `zelus describe scale_load_process` prints them.
@@ -64,8 +64,8 @@ impl Process for ScaleLoad {
     }
 }
 
-register! { Process "scale_load_process",
+register! { ProcessEntry "scale_load_process",
     about: "multiplies a load of conditions by a factor",
     defaults: DEFAULTS,
-    build: Build::Process(build),
+    build: build,
 }

@@ -187,6 +187,11 @@ impl LinearSolver for KrylovSolver {
         self.method.name()
     }
 
+    fn says(&self) -> String {
+        let condenses = matches!(self.settings.multipliers, Multipliers::Condense(_));
+        format!("{}{}", self.name(), if condenses { ", multipliers are condensed" } else { "" })
+    }
+
     fn not_condensed(&self) -> Option<NotCondensable> {
         self.refused
     }

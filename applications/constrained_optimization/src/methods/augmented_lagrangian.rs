@@ -3,8 +3,8 @@
 //! The set follows from λ̄, so no strategy has to be chosen. Adapted (AALM), ε follows the gap by Algorithm 7.
 
 use serde::Deserialize;
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 use zelus_core::scalar::Real;
 
 use crate::method::{ConstraintState, Gradient, Method};
@@ -46,9 +46,9 @@ impl Method for AugmentedLagrangian {
     }
 }
 
-register! { Process "augmented_lagrangian_method_process",
+register! { ProcessEntry "augmented_lagrangian_method_process",
     about: "constraints by the augmented Lagrangian, on request with an adapted penalty (AALM)",
     source: "eqs. D.8, D.9, 4.9; Algorithm 7",
     defaults: include_str!("../../../../configs/processes/augmented_lagrangian_method_process.json"),
-    build: Build::Process(super::process::<AugmentedLagrangian>),
+    build: super::process::<AugmentedLagrangian>,
 }

@@ -4,8 +4,8 @@
 //! diagonal, which is what the method is for; the matrix stays indefinite, as that of any saddle point.
 
 use serde::Deserialize;
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 use zelus_core::scalar::Real;
 
 use super::lagrange_multiplier::InitialActiveSet;
@@ -40,9 +40,9 @@ impl Method for DoubleLagrangeMultiplier {
     }
 }
 
-register! { Process "double_lagrange_multiplier_method_process",
+register! { ProcessEntry "double_lagrange_multiplier_method_process",
     about: "constraints by two Lagrange multipliers each, so that no diagonal entry is zero",
     source: "the \"Lagrange doubles\" of Castem 2000",
     defaults: include_str!("../../../../configs/processes/double_lagrange_multiplier_method_process.json"),
-    build: Build::Process(super::process::<DoubleLagrangeMultiplier>),
+    build: super::process::<DoubleLagrangeMultiplier>,
 }

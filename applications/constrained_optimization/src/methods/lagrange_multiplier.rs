@@ -1,8 +1,8 @@
 //! Lagrange multiplier: ℓ = λ g while the constraint acts (eq. D.5b), nothing otherwise (eq. D.5d).
 
 use serde::Deserialize;
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 use zelus_core::scalar::Real;
 
 use crate::active_set::ActiveSetStrategy;
@@ -63,9 +63,9 @@ impl Method for LagrangeMultiplier {
     }
 }
 
-register! { Process "lagrange_multiplier_method_process",
+register! { ProcessEntry "lagrange_multiplier_method_process",
     about: "constraints by Lagrange multipliers with active-set strategy 1, 2 or 3",
     source: "eqs. D.5, D.6",
     defaults: include_str!("../../../../configs/processes/lagrange_multiplier_method_process.json"),
-    build: Build::Process(super::process::<LagrangeMultiplier>),
+    build: super::process::<LagrangeMultiplier>,
 }

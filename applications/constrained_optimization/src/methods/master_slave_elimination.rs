@@ -9,9 +9,9 @@ use zelus_core::communication::world;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{EntityBlock, Interaction, LocalSystems, SetChange, StepView, Want};
 use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart, ScalarVariable};
+use zelus_core::processes::ProcessEntry;
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use crate::constraints::{Constraint, IMPOSED, INTERACTION};
 use crate::variables::{CONSTRAINT_MULTIPLIER, CONSTRAINT_VIOLATION, POSITION};
@@ -166,9 +166,9 @@ impl Process for EliminationProcess {
     }
 }
 
-register! { Process "master_slave_elimination_process",
+register! { ProcessEntry "master_slave_elimination_process",
     about: "constraints by elimination of a position each, while they are violated or press",
     source: "eqs. D.12a–e",
     defaults: include_str!("../../../../configs/processes/master_slave_elimination_process.json"),
-    build: Build::Process(build),
+    build: build,
 }

@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 use zelus_contact_structural_mechanics::penalty_adaptation::adapted_penalty;
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 use zelus_core::scalar::Real;
 
 use crate::method::{ConstraintState, Gradient, Method};
@@ -41,9 +41,9 @@ impl Method for Penalty {
     }
 }
 
-register! { Process "penalty_method_process",
+register! { ProcessEntry "penalty_method_process",
     about: "constraints by the penalty method, on request with an adapted penalty (APM)",
     source: "eqs. D.1, D.4",
     defaults: include_str!("../../../../configs/processes/penalty_method_process.json"),
-    build: Build::Process(super::process::<Penalty>),
+    build: super::process::<Penalty>,
 }

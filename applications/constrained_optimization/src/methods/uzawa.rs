@@ -4,8 +4,8 @@
 //! k its error falls by k/(k + ε) an iterate.
 
 use serde::Deserialize;
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 use zelus_core::scalar::Real;
 
 use crate::method::{ConstraintState, Gradient, Method};
@@ -46,9 +46,9 @@ impl Method for Uzawa {
     }
 }
 
-register! { Process "uzawa_method_process",
+register! { ProcessEntry "uzawa_method_process",
     about: "constraints by the augmented Lagrangian with Uzawa's update of the multipliers",
     source: "eqs. D.10a–c",
     defaults: include_str!("../../../../configs/processes/uzawa_method_process.json"),
-    build: Build::Process(super::process::<Uzawa>),
+    build: super::process::<Uzawa>,
 }

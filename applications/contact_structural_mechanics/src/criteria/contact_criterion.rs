@@ -2,10 +2,8 @@
 
 use zelus_core::Result;
 use zelus_core::register;
-use zelus_core::registry::Build;
-use zelus_core::strategies::{
-    Block, ConvergenceCriterion, CriterionFactory, CriterionRequest, Measures, Verdict, both, either,
-};
+use zelus_core::strategies::CriterionEntry;
+use zelus_core::strategies::{Block, ConvergenceCriterion, CriterionRequest, Measures, Verdict, both, either};
 
 use super::frictional_criterion::FrictionalCriterion;
 use super::measure::{Form, Tolerance, check};
@@ -56,27 +54,27 @@ fn single(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Re
     Ok(Box::new(ContactCriterion::from_settings(request, primary, multiplier)?))
 }
 
-register! { ConvergenceCriterion "contact_residual_criterion",
+register! { CriterionEntry "contact_residual_criterion",
     about: "residuals of displacements and of multipliers small",
-    build: Build::Factory(&((|request| single(request, Form::Residual, Form::Residual)) as CriterionFactory)),
+    build: |request| single(request, Form::Residual, Form::Residual),
 }
-register! { ConvergenceCriterion "contact_displacement_criterion",
+register! { CriterionEntry "contact_displacement_criterion",
     about: "increments of displacements and of multipliers small",
-    build: Build::Factory(&((|request| single(request, Form::Increment, Form::Increment)) as CriterionFactory)),
+    build: |request| single(request, Form::Increment, Form::Increment),
 }
-register! { ConvergenceCriterion "contact_mixed_criterion",
+register! { CriterionEntry "contact_mixed_criterion",
     about: "residual of displacements and increment of multipliers small",
-    build: Build::Factory(&((|request| single(request, Form::Residual, Form::Increment)) as CriterionFactory)),
+    build: |request| single(request, Form::Residual, Form::Increment),
 }
-register! { ConvergenceCriterion "contact_and_criterion",
+register! { CriterionEntry "contact_and_criterion",
     about: "both contact_residual_criterion and contact_displacement_criterion",
-    build: Build::Factory(&((|request| {
+    build: |request| {
         Ok(both(single(request, Form::Residual, Form::Residual)?, single(request, Form::Increment, Form::Increment)?))
-    }) as CriterionFactory)),
+    },
 }
-register! { ConvergenceCriterion "contact_or_criterion",
+register! { CriterionEntry "contact_or_criterion",
     about: "contact_residual_criterion or contact_displacement_criterion",
-    build: Build::Factory(&((|request| {
+    build: |request| {
         Ok(either(single(request, Form::Residual, Form::Residual)?, single(request, Form::Increment, Form::Increment)?))
-    }) as CriterionFactory)),
+    },
 }

@@ -1,7 +1,7 @@
 //! Coulomb friction by the augmented Lagrangian with a multiplier a direction.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
 use crate::formulations::{AlmFrictional, Kinematics, SlaveNode, SlipHistory};
@@ -77,10 +77,10 @@ pub(super) const fn family(friction: Friction) -> Family {
     }
 }
 
-register! { Condition "ALMContactFrictional",
+register! { FamilyEntry "ALMContactFrictional",
     about: "Coulomb friction, augmented Lagrangian, one multiplier a slave node and direction",
     source: "eq. 4.9, D.11, D.13",
-    build: Build::Factory(&family(Friction::Coulomb)),
+    build: family(Friction::Coulomb),
 }
 register_shapes!(
     "ALMFrictionalMortarContactCondition",

@@ -1,13 +1,13 @@
 //! Coulomb friction by the augmented Lagrangian where every node in contact slides.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::alm_frictional::family;
 use crate::pairs::Friction;
 
-register! { Condition "ALMContactFrictionalPureSlip",
+register! { FamilyEntry "ALMContactFrictionalPureSlip",
     about: "ALMContactFrictional without sticking: every node in contact slides",
     source: "eq. 4.9, D.11, D.13",
-    build: Build::Factory(&family(Friction::PureSlip)),
+    build: family(Friction::PureSlip),
 }

@@ -1,7 +1,7 @@
 //! Frictionless contact by the augmented Lagrangian with a scalar multiplier.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
 use crate::formulations::AlmFrictionless;
@@ -22,10 +22,10 @@ impl PairFormulation for AlmFrictionless {
     fn history<const NS: usize, const NM: usize>(_: &Pair, _: &PairGeometry<f64, NS, NM>) {}
 }
 
-register! { Condition "ALMContactFrictionless",
+register! { FamilyEntry "ALMContactFrictionless",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node along its normal",
     source: "eq. 4.9, D.11",
-    build: Build::Factory(&Family {
+    build: Family {
         condition: "ALMFrictionlessMortarContactCondition",
         multiplier: Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE),
         variables: &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1), ("WEIGHTED_SCALAR_RESIDUAL", 1)],
@@ -36,7 +36,7 @@ register! { Condition "ALMContactFrictionless",
         updated: false,
         by_node: None,
         block: shapes::block::<AlmFrictionless>,
-    }),
+    },
 }
 register_shapes!(
     "ALMFrictionlessMortarContactCondition",

@@ -1,7 +1,7 @@
 //! Frictionless contact by the augmented Lagrangian with a multiplier a direction.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
 use crate::formulations::AlmFrictionlessComponents;
@@ -22,10 +22,10 @@ impl PairFormulation for AlmFrictionlessComponents {
     fn history<const NS: usize, const NM: usize>(_: &Pair, _: &PairGeometry<f64, NS, NM>) {}
 }
 
-register! { Condition "ALMContactFrictionlessComponents",
+register! { FamilyEntry "ALMContactFrictionlessComponents",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node and direction",
     source: "eq. 4.9, D.11 by components",
-    build: Build::Factory(&Family {
+    build: Family {
         condition: "ALMFrictionlessComponentsMortarContactCondition",
         multiplier: Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER),
         variables: &[("NORMAL", 3), ("VECTOR_LAGRANGE_MULTIPLIER", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_VECTOR_RESIDUAL", 3)],
@@ -36,7 +36,7 @@ register! { Condition "ALMContactFrictionlessComponents",
         updated: false,
         by_node: None,
         block: shapes::block::<AlmFrictionlessComponents>,
-    }),
+    },
 }
 register_shapes!(
     "ALMFrictionlessComponentsMortarContactCondition",

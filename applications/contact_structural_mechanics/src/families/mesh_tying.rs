@@ -1,24 +1,24 @@
 //! Tying of meshes that do not match, by multipliers.
 
+use crate::pairs::TyingFamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::register_shapes;
 use crate::pairs::{Multiplier, TyingFamily};
 use crate::variables::{SCALAR_LAGRANGE_MULTIPLIER, VECTOR_LAGRANGE_MULTIPLIER};
 
-register! { Condition "ScalarMeshTying",
+register! { TyingFamilyEntry "ScalarMeshTying",
     about: "ties one number a node of two meshes by a multiplier",
-    build: Build::Factory(&TyingFamily {
+    build: TyingFamily {
         multiplier: Multiplier::Scalar(&SCALAR_LAGRANGE_MULTIPLIER),
         variables: &[("NORMAL", 3), ("SCALAR_LAGRANGE_MULTIPLIER", 1), ("WEIGHTED_SCALAR_RESIDUAL", 1)],
-    }),
+    },
 }
-register! { Condition "ComponentsMeshTying",
+register! { TyingFamilyEntry "ComponentsMeshTying",
     about: "ties the components of a vector of two meshes by multipliers",
-    build: Build::Factory(&TyingFamily {
+    build: TyingFamily {
         multiplier: Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER),
         variables: &[("NORMAL", 3), ("VECTOR_LAGRANGE_MULTIPLIER", 3), ("WEIGHTED_VECTOR_RESIDUAL", 3)],
-    }),
+    },
 }
 register_shapes!("MeshTyingMortarCondition", "pair of the families ScalarMeshTying and ComponentsMeshTying");

@@ -1,7 +1,7 @@
 //! Frictionless contact by Nitsche's method.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{nitsche_block, register_shapes};
 use crate::formulations::{Kinematics, LastState, Nitsche};
@@ -31,10 +31,10 @@ impl PairFormulation for Nitsche {
     }
 }
 
-register! { Condition "NitscheContactFrictionless",
+register! { FamilyEntry "NitscheContactFrictionless",
     about: "frictionless contact by Nitsche's method: tractions of the slave's elements, no multipliers",
     source: "Chouly, Hild and Renard (2015)",
-    build: Build::Factory(&Family {
+    build: Family {
         condition: "NitscheFrictionlessMortarContactCondition",
         multiplier: Multiplier::Body,
         variables: &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
@@ -45,7 +45,7 @@ register! { Condition "NitscheContactFrictionless",
         by_node: None,
         weighted_gaps: false,
         block: |slave, master, request| nitsche_block(slave, master, request, false),
-    }),
+    },
 }
 register_shapes!(
     "NitscheFrictionlessMortarContactCondition",

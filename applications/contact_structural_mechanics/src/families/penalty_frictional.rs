@@ -1,7 +1,7 @@
 //! Coulomb friction by the penalty method.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
 use crate::formulations::{AlmFrictional, Kinematics, LastState, PenaltyByNode, PenaltyFrictional, SlaveNode};
@@ -106,10 +106,10 @@ static IMPLICIT: Family = Family {
 /// By node, in explicit steps.
 static EXPLICIT: Family = Family { block: shapes::block::<PenaltyByNode>, ..BY_PAIR };
 
-register! { Condition "PenaltyContactFrictional",
+register! { FamilyEntry "PenaltyContactFrictional",
     about: "Coulomb friction, penalty method",
     source: "eq. D.3",
-    build: Build::Factory(&Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR }),
+    build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }
 register_shapes!(
     "PenaltyFrictionalMortarContactCondition",

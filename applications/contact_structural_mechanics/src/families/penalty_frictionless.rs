@@ -1,8 +1,8 @@
 //! Frictionless contact by the penalty method.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::analysis::NodalVariable;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
 use crate::formulations::{AlmFrictionless, PenaltyByNode, PenaltyFrictionless};
@@ -52,10 +52,10 @@ static IMPLICIT: Family = Family {
 /// By node, in explicit steps.
 static EXPLICIT: Family = Family { block: shapes::block::<PenaltyByNode>, ..BY_PAIR };
 
-register! { Condition "PenaltyContactFrictionless",
+register! { FamilyEntry "PenaltyContactFrictionless",
     about: "frictionless contact, penalty method",
     source: "eq. D.3",
-    build: Build::Factory(&Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR }),
+    build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }
 register_shapes!(
     "PenaltyFrictionlessMortarContactCondition",

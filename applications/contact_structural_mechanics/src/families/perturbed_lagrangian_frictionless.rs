@@ -1,17 +1,17 @@
 //! Frictionless contact, perturbed Lagrangian, one multiplier a slave node along its normal.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
 use crate::formulations::AlmFrictionless;
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
-register! { Condition "PerturbedLagrangianContactFrictionless",
+register! { FamilyEntry "PerturbedLagrangianContactFrictionless",
     about: "frictionless contact, perturbed Lagrangian, one multiplier a slave node along its normal",
     source: "Simo, Wriggers and Taylor (1985)",
-    build: Build::Factory(&Family {
+    build: Family {
         condition: "PerturbedLagrangianFrictionlessMortarContactCondition",
         multiplier: Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE),
         variables: &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],
@@ -22,7 +22,7 @@ register! { Condition "PerturbedLagrangianContactFrictionless",
         updated: false,
         by_node: None,
         block: shapes::block::<AlmFrictionless>,
-    }),
+    },
 }
 register_shapes!(
     "PerturbedLagrangianFrictionlessMortarContactCondition",

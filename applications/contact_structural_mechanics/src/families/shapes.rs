@@ -51,11 +51,12 @@ macro_rules! register_shapes {
         $crate::families::shapes::register_shapes!(@ concat!($stem, "3D4N3N"), Quad4, 3, $about);
     };
     (@ $name:expr, $shape:ident, $space:literal, $about:literal) => {
-        zelus_core::register! { Condition $name,
+        const _: () = { use zelus_core::entities::ConditionEntry; zelus_core::register! { ConditionEntry $name,
             about: $about,
             cell: Some(zelus_core::geometry::Shape::$shape),
             space: $space,
-        }
+            build: zelus_core::entities::Build::Pairs,
+        } };
     };
 }
 pub(super) use register_shapes;

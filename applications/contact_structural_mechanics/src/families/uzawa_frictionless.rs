@@ -1,17 +1,17 @@
 //! Frictionless contact by Uzawa's iteration: a perturbed Lagrangian whose penetration an outer loop takes away.
 
+use crate::pairs::FamilyEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::shapes::{self, register_shapes};
 use crate::formulations::AlmFrictionless;
 use crate::pairs::{Family, Friction, Multiplier};
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
-register! { Condition "UzawaContactFrictionless",
+register! { FamilyEntry "UzawaContactFrictionless",
     about: "frictionless contact, perturbed Lagrangian whose penetration an outer loop of multiplier updates takes away",
     source: "eq. D.10",
-    build: Build::Factory(&Family {
+    build: Family {
         condition: "UzawaFrictionlessMortarContactCondition",
         multiplier: Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE),
         variables: &[
@@ -27,7 +27,7 @@ register! { Condition "UzawaContactFrictionless",
         updated: true,
         by_node: None,
         block: shapes::block::<AlmFrictionless>,
-    }),
+    },
 }
 register_shapes!(
     "UzawaFrictionlessMortarContactCondition",

@@ -6,6 +6,9 @@
 //! against the slip ([`slider_forces`](super::slider_forces)).
 
 use std::collections::BTreeMap;
+use zelus_core::entities::require_kind;
+use zelus_core::model::EntityKind;
+use zelus_core::model::Role;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -15,8 +18,6 @@ use zelus_core::model::{
     MasterSlaveConstraint, ModelPart, ScalarVariable, variables::DISPLACEMENT, variables::NORMAL, variables::REACTION,
 };
 use zelus_core::parameters::Interval;
-use zelus_core::registry::Entry;
-use zelus_core::registry::{self, Kind};
 use zelus_core::vector3::{dot, norm, scale, sub};
 
 use super::activation;
@@ -99,7 +100,7 @@ pub struct MpcInteraction {
     /// Where the nodes of the interfaces were when relations were made.
     places: Vec<[f64; 3]>,
     sliders: Vec<SliderForces>,
-    entry: Option<&'static Entry>,
+    entry: Option<&'static EntityKind>,
     directions: BTreeMap<u32, [f64; 3]>,
     graph: u64,
     slip_rule: SlipRule,
@@ -511,7 +512,7 @@ impl Interaction for MpcInteraction {
             self.slip_rule = friction::prepare(part, &self.interfaces, &self.settings.friction, friction);
             let facet = &self.interfaces[0].facets[0];
             let name = condition_name("MPCMortarContactCondition", facet.shape, facet.shape);
-            self.entry = Some(registry::require(Kind::Condition, &name)?);
+            self.entry = Some(require_kind(Role::Condition, &name)?);
         }
         nodal_normals(part, &self.interfaces);
         Ok(())

@@ -1,14 +1,14 @@
 //! Forces on interface nodes as a block: friction of contact by constraints.
 
+use zelus_core::model::EntityKind;
 use std::ops::Range;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::model::variables::DISPLACEMENT;
-use zelus_core::registry::Entry;
 
 /// One force a node, constant during an iteration.
 pub(super) struct NodalForces {
-    entry: &'static Entry,
+    entry: &'static EntityKind,
     nodes: Vec<u32>,
     unknowns: Vec<LocalUnknown>,
     /// Force on each node of the model part.
@@ -17,14 +17,14 @@ pub(super) struct NodalForces {
 
 impl NodalForces {
     /// No force yet on `nodes` of a part with `count` nodes.
-    pub(super) fn new(entry: &'static Entry, nodes: Vec<u32>, count: usize, dimension: usize) -> Self {
+    pub(super) fn new(entry: &'static EntityKind, nodes: Vec<u32>, count: usize, dimension: usize) -> Self {
         let unknowns = (0..dimension as u8).map(|c| LocalUnknown { node: 0, variable: DISPLACEMENT.component(c) });
         Self { entry, nodes, unknowns: unknowns.collect(), forces: vec![[0.0; 3]; count] }
     }
 }
 
 impl EntityBlock for NodalForces {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.entry
     }
 

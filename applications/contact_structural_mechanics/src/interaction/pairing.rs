@@ -3,13 +3,14 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use zelus_core::entities::require_kind;
+use zelus_core::model::Role;
 
 use zelus_core::Result;
 use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
-use zelus_core::registry::{self, Kind};
 use zelus_core::vector3::dot;
 
 use super::contact_settings::ContactSettings;
@@ -248,7 +249,7 @@ impl Pairing {
         let mut blocks = Vec::new();
         for ((slave, master), (pairs, nodes)) in groups {
             let name = condition_name(&stem, slave, master);
-            let entry = registry::require(Kind::Condition, &name)?;
+            let entry = require_kind(Role::Condition, &name)?;
             let patches = (parameters.normal_variation == NormalVariation::Exact).then_some(&*self.patches);
             let behind = |pair: &Pair| self.bodies.nodes([pair.key.interface, pair.key.slave]).to_vec();
             for (around, (pairs, nodes)) in group_by_surroundings(patches, behind, slave.nodes(), pairs, &nodes) {

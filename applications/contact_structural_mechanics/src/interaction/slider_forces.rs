@@ -7,10 +7,10 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use zelus_core::model::EntityKind;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::model::variables::DISPLACEMENT;
-use zelus_core::registry::Entry;
 use zelus_core::vector3::{norm, scale};
 
 /// A sliding node with its masters.
@@ -49,7 +49,7 @@ impl Slider {
 
 /// All sliders with the same number of masters.
 pub(super) struct SliderForces {
-    entry: &'static Entry,
+    entry: &'static EntityKind,
     /// Masters, then the slave, of each slider.
     nodes: Vec<u32>,
     width: usize,
@@ -60,7 +60,7 @@ pub(super) struct SliderForces {
 
 impl SliderForces {
     /// Blocks of `sliders`, by their number of masters.
-    pub(super) fn blocks(entry: &'static Entry, sliders: Vec<Slider>, dimension: usize) -> Vec<Self> {
+    pub(super) fn blocks(entry: &'static EntityKind, sliders: Vec<Slider>, dimension: usize) -> Vec<Self> {
         let mut by_width: BTreeMap<usize, Vec<Slider>> = BTreeMap::new();
         sliders.into_iter().for_each(|slider| by_width.entry(slider.masters.len() + 1).or_default().push(slider));
         by_width
@@ -86,7 +86,7 @@ impl SliderForces {
 }
 
 impl EntityBlock for SliderForces {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.entry
     }
 
@@ -144,7 +144,8 @@ impl EntityBlock for SliderForces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zelus_core::registry::{Kind, require};
+    use zelus_core::entities::require_kind;
+    use zelus_core::model::Role;
     use zelus_core::vector3::{add, dot, sub};
 
     const MASTERS: [(u32, f64); 2] = [(4, 0.7), (5, 0.3)];
@@ -159,7 +160,7 @@ mod tests {
     }
 
     fn system(u: &[[f64; 3]; 3]) -> LocalSystems {
-        let entry = require(Kind::Condition, "MPCMortarContactCondition3D3N").expect("a registered name");
+        let entry = require_kind(Role::Condition, "MPCMortarContactCondition3D3N").expect("a registered name");
         let block = &SliderForces::blocks(entry, vec![slider(u)], 3)[0];
         assert_eq!((block.nodes(0), block.unknowns().len()), (&[4, 5, 9][..], 9));
         let mut out = LocalSystems::default();

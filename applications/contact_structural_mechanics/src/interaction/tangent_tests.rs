@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use zelus_core::entities::require_kind;
+use zelus_core::model::Role;
 
 use zelus_core::entities::{LocalSystems, LocalUnknown, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::flags::{ACTIVE, SLIP};
 use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::model::{ModelPart, Nodes};
-use zelus_core::registry::{Kind, require};
 use zelus_core::vector3::add;
 
 use super::sliding::write_tangents;
@@ -145,7 +146,7 @@ impl Contact {
         for ((slave, master), (pairs, nodes)) in
             group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
         {
-            let entry = require(Kind::Condition, &condition_name(family.condition, slave, master)).unwrap();
+            let entry = require_kind(Role::Condition, &condition_name(family.condition, slave, master)).unwrap();
             for (around, (pairs, nodes)) in
                 group_by_surroundings(Some(&self.patches), |_| Vec::new(), slave.nodes(), pairs, &nodes)
             {

@@ -1,6 +1,8 @@
 //! Meshes that do not match, tied by multipliers: D and M of a pair are those of the moment it is made.
 
 use std::collections::{BTreeMap, BTreeSet};
+use zelus_core::entities::require_kind;
+use zelus_core::model::Role;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -8,7 +10,6 @@ use zelus_core::entities::{EntityBlock, Interaction, SetChange};
 use zelus_core::model::flags::{ACTIVE, CONTACT};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, ScalarVariable, variables::DISPLACEMENT};
 use zelus_core::parameters::Interval;
-use zelus_core::registry::{self, Kind};
 
 use super::holding::Holding;
 use crate::interface::{
@@ -106,7 +107,7 @@ impl TyingInteraction {
         for ((slave, master), (pairs, nodes)) in groups {
             let name = condition_name("MeshTyingMortarCondition", slave, master);
             let request = TyingRequest {
-                entry: registry::require(Kind::Condition, &name)?,
+                entry: require_kind(Role::Condition, &name)?,
                 pairs,
                 nodes,
                 tied: self.settings.tied.clone(),

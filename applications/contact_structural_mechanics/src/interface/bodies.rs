@@ -3,10 +3,10 @@
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{BlockRequest, EntityBlock, EntityError, FacePoint, StepView, Tangent};
+use zelus_core::entities::{BlockRequest, EntityBlock, EntityError, FacePoint, StepView, Tangent, block_factory};
 use zelus_core::geometry::mapping::domain_size;
+use zelus_core::model::EntityKind;
 use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
-use zelus_core::registry::Build;
 use zelus_core::vector3::{dot, sub};
 
 use super::facets::{Facet, Interface, Roles};
@@ -63,7 +63,7 @@ impl Bodies {
         let mut places = FxHashMap::default();
         for members in elements.chunk_by(|a, b| kind(part, *a).name == kind(part, *b).name) {
             let entry = kind(part, members[0]);
-            let Build::Block(make) = entry.build else {
+            let Some(make) = block_factory(entry) else {
                 return Err(lack(part, members[0], "it has no stresses").into());
             };
             let members = members.to_vec();
@@ -242,7 +242,7 @@ impl Face {
     }
 }
 
-fn kind(part: &ModelPart, element: u32) -> &'static zelus_core::registry::Entry {
+fn kind(part: &ModelPart, element: u32) -> &'static EntityKind {
     part.elements.kinds[element as usize]
 }
 

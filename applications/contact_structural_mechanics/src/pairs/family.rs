@@ -1,12 +1,15 @@
 //! Families of contact conditions: what a `mortar_type` brings along.
 
 use std::sync::Arc;
+use zelus_core::model::EntityKind;
 
+use zelus_core::Result;
 use zelus_core::analysis::NodalVariable;
+use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{ScalarVariable, Variable};
-use zelus_core::registry::{self, Build, Entry, Kind};
-use zelus_core::{Result, diagnostics::Diagnostic};
+use zelus_core::registered_kind;
+use zelus_core::registry;
 
 use super::contact_block::ContactBlock;
 use super::pair::Pair;
@@ -56,7 +59,7 @@ pub enum Friction {
 /// What a block of pairs is made from.
 pub struct PairRequest {
     /// The registered condition of this shape.
-    pub entry: &'static Entry,
+    pub entry: &'static EntityKind,
     /// The pairs.
     pub pairs: Vec<Pair>,
     /// Node indices of each pair: those around it, master nodes, slave nodes.
@@ -80,7 +83,21 @@ pub struct ByNode {
     pub explicit: &'static Family,
 }
 
-/// A family, registered under its `mortar_type` as a condition with `Build::Factory(&Family {…})`.
+registered_kind! {
+    /// A family of contact, by its `mortar_type`.
+    pub struct FamilyEntry("contact_family", "mortar-type") {
+        build: Family;
+    }
+}
+
+registered_kind! {
+    /// A family of ties, by its `mortar_type`.
+    pub struct TyingFamilyEntry("tying_family", "mortar-type") {
+        build: TyingFamily;
+    }
+}
+
+/// A family of contact.
 pub struct Family {
     /// Beginning of the names of its conditions, up to the shape, e.g. `ALMFrictionlessMortarContactCondition`.
     pub condition: &'static str,
@@ -111,7 +128,7 @@ impl Family {
     }
 }
 
-/// A family of ties, registered under its `mortar_type` as a condition with `Build::Factory(&TyingFamily {…})`.
+/// A family of ties.
 pub struct TyingFamily {
     /// Its multipliers.
     pub multiplier: Multiplier,
@@ -119,19 +136,8 @@ pub struct TyingFamily {
     pub variables: &'static [NodalVariable],
 }
 
-fn find<F: 'static>(mortar_type: &str) -> Option<&'static F> {
-    let entry = registry::find(Kind::Condition, mortar_type)?;
-    let Build::Factory(factory) = entry.build else { return None };
-    factory.downcast_ref::<F>()
-}
-
-fn unknown(mortar_type: &str, belongs: impl Fn(&(dyn std::any::Any + Send + Sync)) -> bool) -> Diagnostic {
-    let families: Vec<&str> = registry::entries()
-        .into_iter()
-        .filter(|e| matches!(e.build, Build::Factory(f) if belongs(f)))
-        .map(|e| e.name)
-        .collect();
-    let hint = zelus_core::diagnostics::did_you_mean(mortar_type, families.iter().copied());
+fn unknown(mortar_type: &str, families: &[&str]) -> Diagnostic {
+    let hint = did_you_mean(mortar_type, families.iter().copied());
     Diagnostic::error("mortar-type", format!("there is no contact family {mortar_type:?}"))
         .remedy(hint.unwrap_or_else(|| format!("families: {}", families.join(", "))))
 }
@@ -141,7 +147,8 @@ fn unknown(mortar_type: &str, belongs: impl Fn(&(dyn std::any::Any + Send + Sync
 /// # Errors
 /// A name that no family has.
 pub fn find_family(mortar_type: &str) -> Result<&'static Family, Diagnostic> {
-    find(mortar_type).ok_or_else(|| unknown(mortar_type, |f| f.is::<Family>()))
+    let found = registry::find::<FamilyEntry>(mortar_type).map(|entry| &entry.build);
+    found.ok_or_else(|| unknown(mortar_type, &registry::names::<FamilyEntry>()))
 }
 
 /// The family of ties of a `mortar_type`.
@@ -149,7 +156,8 @@ pub fn find_family(mortar_type: &str) -> Result<&'static Family, Diagnostic> {
 /// # Errors
 /// A name that no such family has.
 pub fn find_tying_family(mortar_type: &str) -> Result<&'static TyingFamily, Diagnostic> {
-    find(mortar_type).ok_or_else(|| unknown(mortar_type, |f| f.is::<TyingFamily>()))
+    let found = registry::find::<TyingFamilyEntry>(mortar_type).map(|entry| &entry.build);
+    found.ok_or_else(|| unknown(mortar_type, &registry::names::<TyingFamilyEntry>()))
 }
 
 /// The nodal variables that a `mortar_type` of either sort brings along.
@@ -157,8 +165,9 @@ pub fn find_tying_family(mortar_type: &str) -> Result<&'static TyingFamily, Diag
 /// # Errors
 /// A name that no family has.
 pub fn variables_of(mortar_type: &str) -> Result<&'static [NodalVariable], Diagnostic> {
-    let contact = find::<Family>(mortar_type).map(|family| family.variables);
-    contact
-        .or_else(|| find::<TyingFamily>(mortar_type).map(|family| family.variables))
-        .ok_or_else(|| unknown(mortar_type, |f| f.is::<Family>() || f.is::<TyingFamily>()))
+    if let Ok(family) = find_tying_family(mortar_type) {
+        return Ok(family.variables);
+    }
+    let known = || [registry::names::<FamilyEntry>(), registry::names::<TyingFamilyEntry>()].concat();
+    find_family(mortar_type).map(|family| family.variables).map_err(|_| unknown(mortar_type, &known()))
 }

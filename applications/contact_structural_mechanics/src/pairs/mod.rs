@@ -12,7 +12,8 @@ mod tying_block;
 pub use contact_block::{ContactBlock, Own};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
 pub use family::{
-    ByNode, Family, Friction, Multiplier, PairRequest, TyingFamily, find_family, find_tying_family, variables_of,
+    ByNode, Family, FamilyEntry, Friction, Multiplier, PairRequest, TyingFamily, TyingFamilyEntry, find_family,
+    find_tying_family, variables_of,
 };
 pub use grouping::{Groups, condition_name, group_by_shapes, group_by_surroundings};
 pub use nitsche_block::NitscheBlock;

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 use std::sync::Arc;
+use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::registry::Entry;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, dot};
 
@@ -162,7 +162,7 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
 impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> EntityBlock
     for NitscheBlock<NS, NM, NU, NN, NV>
 {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.pairs.entry()
     }
 

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 use std::sync::Arc;
+use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT, variables::NORMAL};
-use zelus_core::registry::Entry;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{add, cross, normalised, scale, sub};
 
@@ -62,7 +62,7 @@ pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
 ///
 /// Their rows are those of the formulation; nodes around a pair follow as columns, for they turn its normals.
 pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize, const NN: usize> {
-    entry: &'static Entry,
+    entry: &'static EntityKind,
     pairs: Vec<Pair>,
     nodes: Vec<u32>,
     around: usize,
@@ -321,7 +321,7 @@ fn facet_normal<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
 impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> EntityBlock
     for PairBlock<F, NS, NM, NU, NN>
 {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.entry
     }
 

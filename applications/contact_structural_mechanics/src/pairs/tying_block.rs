@@ -1,11 +1,11 @@
 //! A block of tied pairs of one pair of shapes.
 
 use std::ops::Range;
+use zelus_core::model::EntityKind;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::ScalarVariable;
-use zelus_core::registry::Entry;
 
 use super::facet_operators::FacetPair;
 use crate::formulations::MeshTying;
@@ -14,7 +14,7 @@ use crate::mortar::Operators;
 /// What a block of ties is made from.
 pub struct TyingRequest {
     /// The registered condition of this shape.
-    pub entry: &'static Entry,
+    pub entry: &'static EntityKind,
     /// The pairs.
     pub pairs: Vec<FacetPair>,
     /// Node indices of each pair: master nodes, then slave nodes.
@@ -76,7 +76,7 @@ impl<const NS: usize, const NM: usize, const C: usize> TyingBlock<NS, NM, C> {
 }
 
 impl<const NS: usize, const NM: usize, const C: usize> EntityBlock for TyingBlock<NS, NM, C> {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.request.entry
     }
 

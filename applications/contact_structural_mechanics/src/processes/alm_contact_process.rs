@@ -1,15 +1,16 @@
 //! Contact by the augmented Lagrangian: reads the settings and puts the interaction into the model part.
 
 use std::collections::BTreeMap;
+use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::Result;
-use zelus_core::analysis::{ARC_LENGTH, EXPLICIT};
+use zelus_core::analysis::EXPLICIT;
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
-use zelus_core::registry::Build;
+use zelus_core::strategies::ARC_LENGTH;
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
@@ -342,11 +343,11 @@ fn check_variables(part: &ModelPart, family: &Family, settings: &Settings) -> Re
 
 const AUGMENTED: Stem = Stem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 };
 
-register! { Process "alm_contact_process",
+register! { ProcessEntry "alm_contact_process",
     aliases: &["ALMContactProcess"],
     about: "contact by the augmented Lagrangian method on mortar pairs",
     source: "eqs. 4.9, 4.11, D.11",
     defaults: include_str!("../../../../configs/processes/alm_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/alm_contact_process.json"))],
-    build: Build::Process(|request| of_families(request, &AUGMENTED)),
+    build: |request| of_families(request, &AUGMENTED),
 }

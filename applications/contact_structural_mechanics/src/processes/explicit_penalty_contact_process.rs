@@ -1,18 +1,18 @@
 //! Contact by the penalty method in explicit steps, which stiffen the penalty with the gap.
 
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::alm_contact_process::{Stem, of_families};
 
 /// The families of the penalty method; a penalty as stiff as elements leaves explicit steps their length.
 const EXPLICIT: Stem = Stem { name: "PenaltyContact", penalty_factor: 1.0, least_penalty: 1e13 };
 
-register! { Process "explicit_penalty_contact_process",
+register! { ProcessEntry "explicit_penalty_contact_process",
     aliases: &["ExplicitPenaltyContactProcess"],
     about: "contact by the penalty method on mortar pairs, in explicit steps",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/explicit_penalty_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_penalty_contact_process.json"))],
-    build: Build::Process(|request| of_families(request, &EXPLICIT)),
+    build: |request| of_families(request, &EXPLICIT),
 }

@@ -1,6 +1,7 @@
 //! Ties meshes that do not match: reads the settings and puts the interaction into the model part.
 
 use std::collections::BTreeMap;
+use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::Result;
@@ -8,7 +9,6 @@ use zelus_core::model::{Named, ScalarVariable, VariableKind, named};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
@@ -100,10 +100,10 @@ fn tied(settings: &Settings, dimension: usize) -> Result<(&'static str, Vec<Scal
     }
 }
 
-register! { Process "mesh_tying_process",
+register! { ProcessEntry "mesh_tying_process",
     aliases: &["MeshTyingProcess"],
     about: "ties meshes that do not match by multipliers on mortar pairs",
     defaults: include_str!("../../../../configs/processes/mesh_tying_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mesh_tying_process.json"))],
-    build: Build::Process(build),
+    build: build,
 }

@@ -1,6 +1,7 @@
 //! Contact and ties by constraints: reads the settings and puts the interaction into the model part.
 
 use std::collections::BTreeMap;
+use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::Result;
@@ -8,7 +9,6 @@ use zelus_core::diagnostics::did_you_mean;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
@@ -99,11 +99,11 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     Ok(InteractionProcess::boxed(whole.model_part_name, interaction))
 }
 
-register! { Process "mpc_contact_process",
+register! { ProcessEntry "mpc_contact_process",
     aliases: &["MPCContactProcess"],
     about: "contact and ties by linear constraints that active nodes obey",
     source: "eqs. D.12a–e",
     defaults: include_str!("../../../../configs/processes/mpc_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mpc_contact_process.json"))],
-    build: Build::Process(build),
+    build: build,
 }

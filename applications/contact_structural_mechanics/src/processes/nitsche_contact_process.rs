@@ -1,16 +1,16 @@
 //! Contact by Nitsche's method: the stresses of the slave body in the place of multipliers.
 
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::alm_contact_process::{Stem, of_families};
 
 const NITSCHE: Stem = Stem { name: "NitscheContact", penalty_factor: 1.0, least_penalty: 1.0 };
 
-register! { Process "nitsche_contact_process",
+register! { ProcessEntry "nitsche_contact_process",
     aliases: &["NitscheContactProcess"],
     about: "contact by Nitsche's method on mortar segments",
     source: "Chouly, Hild and Renard (2015)",
     defaults: include_str!("../../../../configs/processes/nitsche_contact_process.json"),
-    build: Build::Process(|request| of_families(request, &NITSCHE)),
+    build: |request| of_families(request, &NITSCHE),
 }

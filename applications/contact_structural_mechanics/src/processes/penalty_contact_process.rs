@@ -1,18 +1,18 @@
 //! Contact by the penalty method: that of the augmented Lagrangian with a stiffer spring and without multipliers.
 
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::alm_contact_process::{Stem, of_families};
 
 /// A spring stiff enough to hold surfaces apart alone.
 const PENALTY: Stem = Stem { name: "PenaltyContact", penalty_factor: 1e4, least_penalty: 1e16 };
 
-register! { Process "penalty_contact_process",
+register! { ProcessEntry "penalty_contact_process",
     aliases: &["PenaltyContactProcess"],
     about: "contact by the penalty method on mortar pairs",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/penalty_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/penalty_contact_process.json"))],
-    build: Build::Process(|request| of_families(request, &PENALTY)),
+    build: |request| of_families(request, &PENALTY),
 }

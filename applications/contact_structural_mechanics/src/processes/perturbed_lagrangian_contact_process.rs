@@ -1,17 +1,17 @@
 //! Contact by the perturbed Lagrangian: the penalty method's answer with multipliers as unknowns.
 
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::alm_contact_process::{Stem, of_families};
 
 const FAMILIES: Stem = Stem { name: "PerturbedLagrangianContact", penalty_factor: 1e4, least_penalty: 1.0 };
 
-register! { Process "perturbed_lagrangian_contact_process",
+register! { ProcessEntry "perturbed_lagrangian_contact_process",
     aliases: &["PerturbedLagrangianContactProcess"],
     about: "contact by the perturbed Lagrangian on mortar pairs",
     source: "eq. 4.11; Simo, Wriggers and Taylor (1985)",
     defaults: include_str!("../../../../configs/processes/perturbed_lagrangian_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/perturbed_lagrangian_contact_process.json"))],
-    build: Build::Process(|request| of_families(request, &FAMILIES)),
+    build: |request| of_families(request, &FAMILIES),
 }

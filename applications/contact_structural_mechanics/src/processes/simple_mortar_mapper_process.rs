@@ -1,6 +1,7 @@
 //! Maps a nodal variable from one surface to another that lies on it, by mortar: v_j = c Σ (M v)_j / Σ D_jj.
 
 use std::collections::BTreeMap;
+use zelus_core::processes::ProcessEntry;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -8,7 +9,6 @@ use zelus_core::model::{Field, Model, ModelPart, Named, named, variables::NORMAL
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::interface_settings::{check_positive, segmentation};
 use crate::interface::{Interface, interfaces, nodal_normals};
@@ -191,9 +191,9 @@ impl Process for Mapper {
     }
 }
 
-register! { Process "simple_mortar_mapper_process",
+register! { ProcessEntry "simple_mortar_mapper_process",
     aliases: &["SimpleMortarMapperProcess", "basic_mapping_process", "BasicMappingProcess"],
     about: "maps a nodal variable between two surfaces that face each other, by dual mortar",
     defaults: include_str!("../../../../configs/processes/simple_mortar_mapper_process.json"),
-    build: Build::Process(build),
+    build: build,
 }

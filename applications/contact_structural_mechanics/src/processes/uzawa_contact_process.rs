@@ -1,17 +1,17 @@
 //! Contact by Uzawa's iteration, with the settings of the augmented Lagrangian.
 
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::alm_contact_process::{Stem, of_families};
 
 const FAMILIES: Stem = Stem { name: "UzawaContact", penalty_factor: 1e1, least_penalty: 1.0 };
 
-register! { Process "uzawa_contact_process",
+register! { ProcessEntry "uzawa_contact_process",
     aliases: &["UzawaContactProcess"],
     about: "contact by Uzawa's iteration: multipliers of surfaces that give way until an outer loop has taken that away",
     source: "eqs. 4.11, D.10",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/uzawa_contact_process.json"))],
-    build: Build::Process(|request| of_families(request, &FAMILIES)),
+    build: |request| of_families(request, &FAMILIES),
 }

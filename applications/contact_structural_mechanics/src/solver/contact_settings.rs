@@ -1,8 +1,8 @@
 //! `contact_settings` of the solver: the family decides which variables the nodes carry.
 
+use zelus_core::analysis::SolverExtensionEntry;
 use zelus_core::analysis::{Cutting, ExtensionDefinition};
 use zelus_core::register;
-use zelus_core::registry::Build;
 use zelus_core::strategies::{
     CONDENSE_MULTIPLIERS, CONDITION_NUMBER, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,
 };
@@ -26,11 +26,11 @@ pub const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
 /// The deck asks for an active set that changes only between complete Newton loops.
 pub const SIMPLIFIED_SEMI_SMOOTH_NEWTON: &str = "SIMPLIFIED_SEMI_SMOOTH_NEWTON";
 
-register! { SolverExtension "contact_settings",
+register! { SolverExtensionEntry "contact_settings",
     about: "what the solver needs to know of contact",
     defaults: include_str!("../../../../configs/solvers/contact_settings.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/contact_settings.json"))],
-    build: Build::Factory(&ExtensionDefinition {
+    build: ExtensionDefinition {
         variables: |settings| {
             let mortar_type = settings.get_str("mortar_type")?;
             if mortar_type.is_empty() {
@@ -114,5 +114,5 @@ register! { SolverExtension "contact_settings",
             }
             Ok(values)
         },
-    }),
+    },
 }

@@ -1,17 +1,17 @@
 //! `mpc_contact_settings` of the solver: contact by constraints needs no unknowns of its own.
 
 use zelus_core::analysis::ExtensionDefinition;
+use zelus_core::analysis::SolverExtensionEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 /// Mark of the step data: relations are made anew in every iteration.
 pub(crate) const UPDATE_EACH_ITERATION: &str = "UPDATE_EACH_NL_ITERATION";
 
-register! { SolverExtension "mpc_contact_settings",
+register! { SolverExtensionEntry "mpc_contact_settings",
     about: "what the solver needs to know of contact by constraints",
     defaults: include_str!("../../../../configs/solvers/mpc_contact_settings.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mpc_contact_settings.json"))],
-    build: Build::Factory(&ExtensionDefinition {
+    build: ExtensionDefinition {
         variables: |settings| {
             let mut variables = vec![("NORMAL", 3), ("WEIGHTED_GAP", 1)];
             if settings.get_str("contact_type")?.starts_with("Frictional") {
@@ -25,5 +25,5 @@ register! { SolverExtension "mpc_contact_settings",
         },
         cutting: |_| Ok(None),
         values: |_| Ok(Vec::new()),
-    }),
+    },
 }

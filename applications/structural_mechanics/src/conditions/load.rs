@@ -141,14 +141,14 @@ pub(super) fn interpolate<const NODES: usize>(n: &[f64; NODES], values: &[[f64; 
 /// Registers a condition for shapes: name, local dimension, texts; then suffix, kernel, nodes and unknowns of each.
 macro_rules! register_conditions {
     ($name:literal, $dim:literal, $about:literal, $source:literal; $($suffix:literal: $kernel:ty, $nodes:literal, $size:literal);+) => {
-        $(zelus_core::register! { Condition concat!($name, $suffix),
+        $(const _: () = { use zelus_core::entities::ConditionEntry; zelus_core::register! { ConditionEntry concat!($name, $suffix),
             about: $about,
             source: $source,
             cell: zelus_core::geometry::Shape::of($dim, $nodes),
             space: ($suffix.as_bytes()[0] - b'0') as usize,
-            build: zelus_core::registry::Build::Block(
+            build: zelus_core::entities::Build::Block(
                 zelus_core::entities::KernelBlock::<$kernel, $nodes, $size>::boxed),
-        })+
+        } };)+
     };
 }
 

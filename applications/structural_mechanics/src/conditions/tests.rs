@@ -1,12 +1,13 @@
+use zelus_core::entities::find_kind;
 use zelus_core::geometry::{Shape, mapping};
+use zelus_core::model::Role;
 use zelus_core::model::Variable;
-use zelus_core::registry::Kind;
 
 use crate::test_model::{Random, Single, Vec3, near, reference_cell, size, weighted};
 use crate::variables::*;
 
 fn condition(name: &str, x: &[Vec3]) -> Single {
-    Single::new(Kind::Condition, name, None, &[("THICKNESS", 0.5)], x)
+    Single::new(Role::Condition, name, None, &[("THICKNESS", 0.5)], x)
 }
 
 fn set(single: &mut Single, variable: &Variable<f64>, value: f64) {
@@ -131,7 +132,7 @@ const REFERENCE: &[(&str, f64)] = &[
 #[test]
 fn forces_agree_with_the_reference_program() {
     for (name, expected) in REFERENCE {
-        let entry = zelus_core::registry::find(Kind::Condition, name).unwrap();
+        let entry = find_kind(Role::Condition, name).unwrap();
         let shape = entry.cell.unwrap();
         let (x, u) = reference_cell(shape, entry.space);
         let mut single = condition(name, &x);

@@ -1,69 +1,75 @@
 //! Elements, conditions, laws, schemes and solvers of the reference program that are known and not there, and what to
 //! use instead.
 
+use crate::laws::LawEntry;
+use zelus_core::analysis::SolverEntry;
+use zelus_core::entities::ConditionEntry;
+use zelus_core::entities::ElementEntry;
+use zelus_core::processes::ProcessEntry;
 use zelus_core::register_absent;
+use zelus_core::strategies::SchemeEntry;
 
-register_absent! { Element ["Shell", "IsotropicShell", "Sprism", "SolidShell", "CSDSG3", "MITC"] =>
+register_absent! { ElementEntry ["Shell", "IsotropicShell", "Sprism", "SolidShell", "CSDSG3", "MITC"] =>
 "shells are not there: mesh the thickness with SmallDisplacementElement or TotalLagrangianElement 3D8N, 3D20N or 3D27N" }
 
-register_absent! { Element ["CrBeam", "CrLinearBeam", "LinearTimoshenko", "Timoshenko", "NonLinearTimoshenko", "FiberBeamColumn"] =>
+register_absent! { ElementEntry ["CrBeam", "CrLinearBeam", "LinearTimoshenko", "Timoshenko", "NonLinearTimoshenko", "FiberBeamColumn"] =>
 "beams are not there, nodes have no rotations: mesh the beam with solids, e.g. SmallDisplacementElement3D20N" }
 
-register_absent! { Element ["Membrane", "PreStressMembrane", "PrestressMembrane"] =>
+register_absent! { ElementEntry ["Membrane", "PreStressMembrane", "PrestressMembrane"] =>
 "membranes are not there: use thin solids, or in the plane SmallDisplacementElement with a law of plane stress" }
 
-register_absent! { Element ["Cable", "SlidingCable", "RingElement"] =>
+register_absent! { ElementEntry ["Cable", "SlidingCable", "RingElement"] =>
 "cables are not there: TrussElement3D2N carries tension and compression" }
 
-register_absent! { Element ["Bushing"] => "use SpringDamperElement3D2N for its displacements" }
+register_absent! { ElementEntry ["Bushing"] => "use SpringDamperElement3D2N for its displacements" }
 
-register_absent! { Element ["SmallDisplacementMixedStrain", "SmallDisplacementMixedVolumetricStrainOss"] =>
+register_absent! { ElementEntry ["SmallDisplacementMixedStrain", "SmallDisplacementMixedVolumetricStrainOss"] =>
 "against volumetric locking use SmallDisplacementMixedVolumetricStrainElement, or SmallDisplacementBbarElement2D4N or 3D8N" }
 
-register_absent! { Element ["TotalLagrangianQ1P0"] =>
+register_absent! { ElementEntry ["TotalLagrangianQ1P0"] =>
 "in the plane use TotalLagrangianMixedVolumetricStrainElement2D3N: no planar law leaves the volume to the element" }
 
-register_absent! { ConstitutiveLaw ["SmallStrainKinematicPlasticity", "FiniteStrainKinematicPlasticity", "PlasticityIsotropicKinematic"] =>
+register_absent! { LawEntry ["SmallStrainKinematicPlasticity", "FiniteStrainKinematicPlasticity", "PlasticityIsotropicKinematic"] =>
 "kinematic hardening is not there: isotropic hardening is, SmallStrainJ2Plasticity3DLaw" }
 
-register_absent! { ConstitutiveLaw ["SmallStrainIsotropicPlasticity", "FiniteStrainIsotropicPlasticity"] =>
+register_absent! { LawEntry ["SmallStrainIsotropicPlasticity", "FiniteStrainIsotropicPlasticity"] =>
 "of yield surfaces and potentials only VonMisesVonMises is there, in space and plane strain" }
 
-register_absent! { ConstitutiveLaw ["SmallStrainIsotropicPlasticityPlaneStress", "FiniteStrainIsotropicPlasticityPlaneStress", "SmallStrainJ2PlasticityPlaneStress", "J2PlasticityPlaneStress"] =>
+register_absent! { LawEntry ["SmallStrainIsotropicPlasticityPlaneStress", "FiniteStrainIsotropicPlasticityPlaneStress", "SmallStrainJ2PlasticityPlaneStress", "J2PlasticityPlaneStress"] =>
 "plasticity in plane stress is not there: mesh the thickness with solids, e.g. SmallDisplacementElement3D8N with SmallStrainJ2Plasticity3DLaw" }
 
-register_absent! { ConstitutiveLaw ["SmallStrainIsotropicDamage", "SmallStrainDplusDminus", "DamageDPlusDMinus", "SmallStrainHighCycleFatigue", "AssociativePlasticDamage", "SmallStrainPlasticDamage"] =>
+register_absent! { LawEntry ["SmallStrainIsotropicDamage", "SmallStrainDplusDminus", "DamageDPlusDMinus", "SmallStrainHighCycleFatigue", "AssociativePlasticDamage", "SmallStrainPlasticDamage"] =>
 "damage and fatigue are not there: elastic laws and von Mises plasticity are" }
 
-register_absent! { ConstitutiveLaw ["SerialParallelRuleOfMixtures", "TractionSeparationLaw"] =>
+register_absent! { LawEntry ["SerialParallelRuleOfMixtures", "TractionSeparationLaw"] =>
 "of mixtures those whose layers strain alike are there: ParallelRuleOfMixturesLaw3D or 2D with sub_properties" }
 
-register_absent! { Scheme ["relaxation"] =>
+register_absent! { SchemeEntry ["relaxation"] =>
 "dynamic relaxation is not there: use \"solver_type\": \"Static\" for the state at rest, or \"pseudo_static\" with damping for the way to it" }
 
-register_absent! { Scheme ["multi_stage"] =>
+register_absent! { SchemeEntry ["multi_stage"] =>
 "of explicit schemes \"central_differences\" is there: one evaluation of the forces a step" }
 
-register_absent! { Solver ["eigen_value", "harmonic_analysis", "prebuckling", "formfinding", "adjoint_static", "static_shifted_boundary"] =>
+register_absent! { SolverEntry ["eigen_value", "harmonic_analysis", "prebuckling", "formfinding", "adjoint_static", "static_shifted_boundary"] =>
 "of structural solvers \"Static\" and \"Dynamic\" are there" }
 
-register_absent! { Condition ["DisplacementControl"] =>
+register_absent! { ConditionEntry ["DisplacementControl"] =>
 "prescribe DISPLACEMENT, or follow the load by \"solving_strategy_settings\" of the type \"arc_length\"" }
 
-register_absent! { Condition ["PointMoment"] =>
+register_absent! { ConditionEntry ["PointMoment"] =>
 "nodes have no rotations: apply a pair of forces, PointLoadCondition" }
 
-register_absent! { Condition ["MovingLoad"] =>
+register_absent! { ConditionEntry ["MovingLoad"] =>
 "use LineLoadCondition with a load that is a function of x and t" }
 
-register_absent! { Process ["contact_remesh", "mmg_process", "metric_", "hessian_"] =>
+register_absent! { ProcessEntry ["contact_remesh", "mmg_process", "metric_", "hessian_"] =>
 "meshes are not changed during a run: refine the mesh file, or where contact is expected" }
 
-register_absent! { Process ["save_restart", "load_restart"] =>
+register_absent! { ProcessEntry ["save_restart", "load_restart"] =>
 "states are not saved: run stages one after another in one deck (\"orchestrator\" and \"stages\")" }
 
-register_absent! { Process ["set_moving_load"] =>
+register_absent! { ProcessEntry ["set_moving_load"] =>
 "use LineLoadCondition with a load that is a function of x and t" }
 
-register_absent! { Process ["set_initial_state", "set_automated_initial_variable"] =>
+register_absent! { ProcessEntry ["set_initial_state", "set_automated_initial_variable"] =>
 "initial strains and stresses are not there: prescribe displacements that make them" }

@@ -5,7 +5,7 @@ use zelus_core::entities::{BlockRequest, StepView};
 use zelus_core::geometry::{MAX_ORDER, Shape, ShapeTable};
 use zelus_core::model::Properties;
 
-use crate::laws::{ConstitutiveLaw, law_of};
+use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, law_of};
 use crate::variables::VOLUME_ACCELERATION;
 
 /// Law and constants of one set of properties for one shape.
@@ -27,7 +27,10 @@ pub(super) struct Material<const S: usize> {
 }
 
 impl<const S: usize> Material<S> {
-    fn new(properties: &Properties, shape: Shape, plane: bool, pressure: bool) -> Result<Self> {
+    fn new(properties: &Properties, shape: Shape, plane: bool, pressure: bool) -> Result<Self>
+    where
+        LawFactory: MakesLaw<S>,
+    {
         let order = properties.number("INTEGRATION_ORDER").unwrap_or(shape.cell().default_order as f64);
         if !(1.0..=MAX_ORDER as f64).contains(&order) || order.fract() != 0.0 {
             let fact = format!("INTEGRATION_ORDER of properties {} is {order}", properties.id);
@@ -75,7 +78,10 @@ impl<const S: usize> Material<S> {
     ///
     /// # Errors
     /// Every set of properties that an element cannot compute with.
-    pub(super) fn all(request: &BlockRequest<'_>, shape: Shape, plane: bool, pressure: bool) -> Result<Vec<Self>> {
+    pub(super) fn all(request: &BlockRequest<'_>, shape: Shape, plane: bool, pressure: bool) -> Result<Vec<Self>>
+    where
+        LawFactory: MakesLaw<S>,
+    {
         let mut ids: Vec<usize> = request.members.iter().map(|&m| request.table.properties[m as usize]).collect();
         ids.sort_unstable();
         ids.dedup();

@@ -15,7 +15,7 @@ use zelus_core::model::variables::DISPLACEMENT;
 use super::gradients::{nodal_vectors, physical_gradients};
 use super::material::Material;
 use super::results;
-use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
+use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, Matrix, StrainState, StressMeasure};
 use crate::tensor::IDENTITY;
 use crate::variables::{VOLUME_ACCELERATION, VOLUMETRIC_STRAIN};
 
@@ -138,6 +138,8 @@ impl<F: VolumetricForm, const NODES: usize, const DIM: usize, const S: usize> Mi
 
 impl<F: VolumetricForm, const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Kernel<NODES, SIZE>
     for MixedVolumetricStrain<F, NODES, DIM, S>
+where
+    LawFactory: MakesLaw<S>,
 {
     type State = Box<[f64]>;
 
@@ -280,18 +282,18 @@ impl<F: VolumetricForm, const NODES: usize, const DIM: usize, const S: usize, co
 macro_rules! register_mixed {
     ($name:literal, $form:ty, $strains:literal, $about:literal, $source:literal;
      $dim:literal: $($suffix:literal $nodes:literal),+) => {
-        $(zelus_core::register! { Element concat!($name, $suffix),
+        $(const _: () = { use zelus_core::entities::ElementEntry; zelus_core::register! { ElementEntry concat!($name, $suffix),
             about: $about,
             source: $source,
             cell: zelus_core::geometry::Shape::of($dim, $nodes),
             space: $dim,
             nodal: &[("VOLUMETRIC_STRAIN", 1)],
-            build: zelus_core::registry::Build::Block(zelus_core::entities::KernelBlock::<
+            build: zelus_core::entities::Build::Block(zelus_core::entities::KernelBlock::<
                 $crate::elements::MixedVolumetricStrain<$form, $nodes, $dim, $strains>,
                 $nodes,
                 { $nodes * ($dim + 1) },
             >::boxed),
-        })+
+        } };)+
     };
 }
 

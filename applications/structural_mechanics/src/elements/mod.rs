@@ -48,14 +48,14 @@ pub use updated_lagrangian::UpdatedLagrangian;
 macro_rules! register_solids {
     ($name:literal, $formulation:ty, $strains:literal, $about:literal, $source:literal;
      $dim:literal: $($suffix:literal $nodes:literal),+) => {
-        $(zelus_core::register! { Element concat!($name, $suffix),
+        $(const _: () = { use zelus_core::entities::ElementEntry; zelus_core::register! { ElementEntry concat!($name, $suffix),
             about: $about,
             source: $source,
             cell: zelus_core::geometry::Shape::of($dim, $nodes),
             space: $dim,
-            build: zelus_core::registry::Build::Block(zelus_core::entities::KernelBlock::<
+            build: zelus_core::entities::Build::Block(zelus_core::entities::KernelBlock::<
                 $crate::elements::Solid<$formulation, $nodes, $dim, $strains>, $nodes, { $nodes * $dim }>::boxed),
-        })+
+        } };)+
     };
 }
 

@@ -5,11 +5,12 @@
 //! the node. Constants of the properties go before those of the element.
 
 use zelus_core::diagnostics::Result;
+use zelus_core::entities::Build;
+use zelus_core::entities::ElementEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::gradients::nodal_vectors;
 use super::nodal_values::{refuse_rotations, scalar, vector};
@@ -104,7 +105,7 @@ impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
     }
 }
 
-register! { Element "NodalConcentratedElement2D1N",
+register! { ElementEntry "NodalConcentratedElement2D1N",
     aliases: &["NodalConcentratedDampedElement2D1N"],
     about: "Mass, spring to the ground and damper at a node of the plane: NODAL_MASS, NODAL_DISPLACEMENT_STIFFNESS, NODAL_DAMPING_RATIO",
     source: "m a + c v + k (u − u_0) = m g",
@@ -113,7 +114,7 @@ register! { Element "NodalConcentratedElement2D1N",
     build: Build::Block(KernelBlock::<NodalConcentrated, 1, 2>::boxed),
 }
 
-register! { Element "NodalConcentratedElement3D1N",
+register! { ElementEntry "NodalConcentratedElement3D1N",
     aliases: &["NodalConcentratedDampedElement3D1N"],
     about: "Mass, spring to the ground and damper at a node in space: NODAL_MASS, NODAL_DISPLACEMENT_STIFFNESS, NODAL_DAMPING_RATIO",
     source: "m a + c v + k (u − u_0) = m g",

@@ -11,9 +11,9 @@
 //! shape functions are linear in the triangle at half height, hence not quadratic), and the tangent of neo-Hooke under
 //! small strain (Kratos' is exact to first order only).
 
-use zelus_core::registry::Kind;
-
 use crate::test_model::{Single, reference_cell, size, weighted};
+use zelus_core::entities::find_kind;
+use zelus_core::model::Role;
 
 /// Left out of the comparison.
 const OTHER: f64 = f64::NAN;
@@ -65,10 +65,10 @@ fn double_weighted(matrix: &[f64], rows: usize) -> f64 {
 fn agrees_with_the_reference_program() {
     let mut wrong = Vec::new();
     for (name, law, expected) in REFERENCE {
-        let entry = zelus_core::registry::find(Kind::Element, name).unwrap();
+        let entry = find_kind(Role::Element, name).unwrap();
         let (x, u) = reference_cell(entry.cell.unwrap(), entry.space);
         let values = [("YOUNG_MODULUS", 100.0), ("POISSON_RATIO", 0.3), ("DENSITY", 2.0), ("THICKNESS", 0.5)];
-        let mut single = Single::new(Kind::Element, name, Some(law), &values, &x);
+        let mut single = Single::new(Role::Element, name, Some(law), &values, &x);
         single.displace(&u);
         let (k, rhs) = single.system();
         let (consistent, lumped) = (single.mass(false), single.mass(true));
@@ -113,10 +113,10 @@ const PERFECT: &[(&str, f64)] = &[("YIELD_STRESS", 1.0), ("HARDENING_CURVE", 3.0
 fn plasticity_agrees_with_the_reference_program() {
     let mut wrong = Vec::new();
     for (name, law, more, tolerance, expected) in PLASTIC {
-        let entry = zelus_core::registry::find(Kind::Element, name).unwrap();
+        let entry = find_kind(Role::Element, name).unwrap();
         let (x, u) = reference_cell(entry.cell.unwrap(), entry.space);
         let values = [&[("YOUNG_MODULUS", 100.0), ("POISSON_RATIO", 0.3), ("THICKNESS", 0.5)], *more].concat();
-        let mut single = Single::new(Kind::Element, name, Some(law), &values, &x);
+        let mut single = Single::new(Role::Element, name, Some(law), &values, &x);
         single.displace(&u);
         let (k, rhs) = single.system();
         let cauchy = single.gauss("CAUCHY_STRESS_VECTOR").values;

@@ -22,7 +22,7 @@ use super::gradients::{nodal_vectors, physical_gradients};
 use super::material::Material;
 use super::results;
 use super::stiffness::add_stiffness;
-use crate::laws::StrainState;
+use crate::laws::{LawFactory, MakesLaw, StrainState};
 use crate::tensor::{inverse, product, stress_vector, transposed};
 use crate::variables::VOLUME_ACCELERATION;
 
@@ -78,6 +78,8 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
 
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Kernel<NODES, SIZE>
     for Solid<F, NODES, DIM, S>
+where
+    LawFactory: MakesLaw<S>,
 {
     type State = Box<[f64]>;
 

@@ -4,11 +4,12 @@
 //! NODAL_DAMPING_RATIO (force per velocity) of the properties or of the element. Its springs on rotations are not there.
 
 use zelus_core::diagnostics::Result;
+use zelus_core::entities::Build;
+use zelus_core::entities::ElementEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::gradients::nodal_vectors;
 use super::nodal_values::{refuse_rotations, vector};
@@ -92,7 +93,7 @@ impl<const DIM: usize, const SIZE: usize> Kernel<2, SIZE> for SpringDamper<DIM> 
     }
 }
 
-register! { Element "SpringDamperElement2D2N",
+register! { ElementEntry "SpringDamperElement2D2N",
     aliases: &["SpringDamperElement2D"],
     about: "Springs and dampers between two nodes of the plane: NODAL_DISPLACEMENT_STIFFNESS, NODAL_DAMPING_RATIO",
     source: "f = k (u_2 − u_1) + c (v_2 − v_1)",
@@ -101,7 +102,7 @@ register! { Element "SpringDamperElement2D2N",
     build: Build::Block(KernelBlock::<SpringDamper<2>, 2, 4>::boxed),
 }
 
-register! { Element "SpringDamperElement3D2N",
+register! { ElementEntry "SpringDamperElement3D2N",
     aliases: &["SpringDamperElement3D"],
     about: "Springs and dampers between two nodes in space: NODAL_DISPLACEMENT_STIFFNESS, NODAL_DAMPING_RATIO",
     source: "f = k (u_2 − u_1) + c (v_2 − v_1)",

@@ -1,27 +1,27 @@
 //! Bars that carry force along their axis only.
 //!
 //! With l_0, l the initial and present length, A CROSS_AREA, S_0 TRUSS_PRESTRESS_PK2 and x_21 = x_2 − x_1:
-//! E_gl = (l² − l_0²)/2l_0², f = A l_0 S x_21/l_0², S = E E_gl + S_0 on the first node, the opposite on the second.
+//! E_gl = (l² − l_0²)/2l_0², f = A l_0 S x_21/l_0², S = S(E_gl) on the first node, the opposite on the second.
 //! The linear bar has ε = (u_2 − u_1)·t/l_0 along its initial direction t. Mass: A l_0 DENSITY, half a node when lumped.
-//! Plastic bars yield at |S| = YIELD_STRESS + HARDENING_MODULUS_1D α, α the accumulated plastic strain: from the trial
-//! stress E (ε − ε_p) + S_0 the return is Δα = (|S| − yield)/(E + H), the tangent E H/(E + H).
+//! S follows from the strain by the law of bars that the properties name.
 
 use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::entities::Build;
+use zelus_core::entities::ElementEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::register;
-use zelus_core::registry::Build;
+use zelus_core::registry::find;
 use zelus_core::vector3::{dot, norm, sub};
 
 use super::gradients::nodal_vectors;
+use crate::laws::{BarLaw, LawEntry, LawFactory, positive};
 use crate::variables::VOLUME_ACCELERATION;
 
 /// A bar in `DIM` dimensions; `LINEAR` for small displacements.
 pub struct Truss<const DIM: usize, const LINEAR: bool> {
-    young: f64,
-    /// Yield stress and hardening modulus; `None` for elastic bars.
-    plastic: Option<[f64; 2]>,
+    law: Box<dyn BarLaw>,
     area: f64,
     density: f64,
     prestress: f64,
@@ -47,19 +47,6 @@ impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
         let now = sub(entity.current[1], entity.current[0]);
         0.5 * (dot(now, now) / (length * length) - 1.0)
     }
-
-    /// Stress with its derivative, and what is remembered after a step that ends so: plastic strain and its sum.
-    fn response(&self, strain: f64, [plastic, sum]: [f64; 2]) -> (f64, f64, [f64; 2]) {
-        let trial = self.young * (strain - plastic) + self.prestress;
-        let Some([yield_stress, hardening]) = self.plastic else { return (trial, self.young, [plastic, sum]) };
-        let over = trial.abs() - (yield_stress + hardening * sum);
-        if over <= 0.0 {
-            return (trial, self.young, [plastic, sum]);
-        }
-        let both = self.young + hardening;
-        let (step, sign) = (over / both, trial.signum());
-        (trial - sign * self.young * step, self.young * hardening / both, [plastic + sign * step, sum + step])
-    }
 }
 
 impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> for Truss<DIM, LINEAR> {
@@ -79,32 +66,18 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
             let remedy = "define them in the mesh file or the materials file";
             return Err(Diagnostic::error("missing-properties", fact).remedy(remedy).into());
         };
-        let plastic = match properties.law.as_deref() {
-            Some("TrussConstitutiveLaw") => None,
-            Some("TrussPlasticityConstitutiveLaw") => {
-                Some([properties.require("YIELD_STRESS")?, properties.number("HARDENING_MODULUS_1D").unwrap_or(0.0)])
-            }
-            law => {
-                let fact = format!("the law of properties {id}, {}, does not fit trusses", law.unwrap_or("none"));
-                let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
-                return Err(problem.remedy("use TrussConstitutiveLaw or TrussPlasticityConstitutiveLaw").into());
-            }
+        let law = properties.law.as_deref();
+        let Some(LawFactory::Bar(make)) = law.and_then(find::<LawEntry>).map(|entry| entry.build) else {
+            let fact = format!("the law of properties {id}, {}, does not fit trusses", law.unwrap_or("none"));
+            let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
+            return Err(problem.remedy("use TrussConstitutiveLaw or TrussPlasticityConstitutiveLaw").into());
         };
+        let law = make(properties)?;
+        let area = properties.require("CROSS_AREA")?;
+        positive(properties, "CROSS_AREA", area)?;
         let number = |name: &str| properties.number(name).unwrap_or(0.0);
-        let (young, area) = (properties.require("YOUNG_MODULUS")?, properties.require("CROSS_AREA")?);
-        let [yield_stress, hardening] = plastic.unwrap_or([1.0, 0.0]);
-        let positive = [("YOUNG_MODULUS", young), ("CROSS_AREA", area), ("YIELD_STRESS", yield_stress)];
-        let known = positive.into_iter().chain([("HARDENING_MODULUS_1D + YOUNG_MODULUS", hardening + young)]);
-        for (name, value) in known {
-            if !(value > 0.0 && value.is_finite()) {
-                let fact = format!("{name} of properties {id} is {value}");
-                let problem = Diagnostic::error("material-out-of-range", fact).at(properties.place.clone());
-                return Err(problem.remedy("give a positive number").into());
-            }
-        }
         Ok(Self {
-            young,
-            plastic,
+            law,
             area,
             density: number("DENSITY"),
             prestress: number("TRUSS_PRESTRESS_PK2"),
@@ -119,7 +92,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
     }
 
     fn tangent(&self) -> Tangent {
-        if LINEAR && self.plastic.is_none() { Tangent::Constant } else { Tangent::Symmetric }
+        if LINEAR && self.law.is_linear() { Tangent::Constant } else { Tangent::Symmetric }
     }
 
     fn local_system(
@@ -140,13 +113,8 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
             rhs[DIM + a] += sixth * (of[0] + 2.0 * of[1]);
         }
         // a linear elastic bar has its external forces, the prestress among them, apart from those of the strain
-        let (stress, modulus) = match want {
-            Want::External => (self.prestress, self.young),
-            _ => {
-                let (stress, modulus, _) = self.response(Self::strain(entity, view), *state);
-                (stress, modulus)
-            }
-        };
+        let strain = if want == Want::External { 0.0 } else { Self::strain(entity, view) };
+        let (stress, modulus, _) = self.law.response(strain, self.prestress, *state);
         // derivative of the strain along x_2
         let along = match LINEAR {
             true => direction.map(|t| t / length),
@@ -179,7 +147,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
     }
 
     fn accept(&self, entity: &Gather<'_, 2>, state: &mut [f64; 2], view: &StepView<'_>) -> Result<(), String> {
-        *state = self.response(Self::strain(entity, view), *state).2;
+        *state = self.law.response(Self::strain(entity, view), self.prestress, *state).2;
         Ok(())
     }
 
@@ -206,22 +174,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
     }
 }
 
-/// The law of trusses: read by the element, which takes YOUNG_MODULUS from the same properties.
-struct Uniaxial;
-
-register! { ConstitutiveLaw "TrussConstitutiveLaw",
-    about: "Hooke's law along a bar, for trusses; needs YOUNG_MODULUS",
-    source: "S = E E_gl",
-    build: Build::Factory(&Uniaxial),
-}
-
-register! { ConstitutiveLaw "TrussPlasticityConstitutiveLaw",
-    about: "Yielding along a bar, with linear hardening, for trusses; needs YOUNG_MODULUS, YIELD_STRESS, HARDENING_MODULUS_1D",
-    source: "|S| ≤ YIELD_STRESS + H α",
-    build: Build::Factory(&Uniaxial),
-}
-
-register! { Element "TrussElement3D2N",
+register! { ElementEntry "TrussElement3D2N",
     aliases: &["TotalLagrangianTrussElement3D2N"],
     about: "Bar under finite displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
     source: "f = A S x_21/l_0, S = E (l² − l_0²)/2l_0² + S_0",
@@ -230,7 +183,7 @@ register! { Element "TrussElement3D2N",
     build: Build::Block(KernelBlock::<Truss<3, false>, 2, 6>::boxed),
 }
 
-register! { Element "TrussLinearElement3D2N",
+register! { ElementEntry "TrussLinearElement3D2N",
     aliases: &["LinearTrussElement3D2N"],
     about: "Bar under small displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
     source: "f = A (E (u_2 − u_1)·t/l_0 + S_0) t",
@@ -239,7 +192,7 @@ register! { Element "TrussLinearElement3D2N",
     build: Build::Block(KernelBlock::<Truss<3, true>, 2, 6>::boxed),
 }
 
-register! { Element "TotalLagrangianTrussElement2D2N",
+register! { ElementEntry "TotalLagrangianTrussElement2D2N",
     aliases: &["TrussElement2D2N"],
     about: "Bar of the plane under finite displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
     source: "f = A S x_21/l_0, S = E (l² − l_0²)/2l_0² + S_0",
@@ -248,7 +201,7 @@ register! { Element "TotalLagrangianTrussElement2D2N",
     build: Build::Block(KernelBlock::<Truss<2, false>, 2, 4>::boxed),
 }
 
-register! { Element "LinearTrussElement2D2N",
+register! { ElementEntry "LinearTrussElement2D2N",
     aliases: &["TrussLinearElement2D2N"],
     about: "Bar of the plane under small displacements: CROSS_AREA, TRUSS_PRESTRESS_PK2",
     source: "f = A (E (u_2 − u_1)·t/l_0 + S_0) t",

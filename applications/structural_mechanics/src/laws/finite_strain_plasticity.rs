@@ -11,13 +11,13 @@
 //!
 //! The point remembers G − 1 (xx yy zz xy yz xz) and α.
 
+use crate::laws::LawEntry;
 use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::j2::{J2, Return};
-use super::law::{ConstitutiveLaw, LawFactory, Matrix, PlaneStrainFactory, StrainState};
+use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
 use super::small_strain_plasticity::{answer, remember, remembered};
 use crate::tensor::{IDENTITY, Tensor, cholesky, congruent, eigen, pairs, product, strain_tensor, transposed};
 
@@ -162,20 +162,20 @@ fn add_dyad<const S: usize>(factor: f64, a: &[f64; S], b: &[f64; S], out: &mut M
     }
 }
 
-register! { ConstitutiveLaw "FiniteStrainIsotropicPlasticity3DVonMisesVonMises",
+register! { LawEntry "FiniteStrainIsotropicPlasticity3DVonMisesVonMises",
     about: "Von Mises plasticity under finite strain for solids (multiplicative, logarithmic strain); properties as SmallStrainJ2Plasticity3DLaw",
     source: "τ = K tr(ε) 1 + 2μ dev ε, ε = ½ ln b_e; Simo, Computer Methods in Applied Mechanics and Engineering 99 (1992) 61–112",
-    build: Build::Factory(&LawFactory::<6>(FiniteStrainPlasticity::boxed::<6>)),
+    build: LawFactory::Space(FiniteStrainPlasticity::boxed::<6>),
 }
 
-register! { ConstitutiveLaw "FiniteStrainIsotropicPlasticityPlaneStrainVonMisesVonMises",
+register! { LawEntry "FiniteStrainIsotropicPlasticityPlaneStrainVonMisesVonMises",
     about: "Von Mises plasticity under finite plane strain; properties as SmallStrainJ2Plasticity3DLaw",
     source: "τ = K tr(ε) 1 + 2μ dev ε, ε = ½ ln b_e, F_zz = 1",
-    build: Build::Factory(&PlaneStrainFactory::new(FiniteStrainPlasticity::boxed::<3>, FiniteStrainPlasticity::boxed::<4>)),
+    build: LawFactory::PlaneStrain { plane: FiniteStrainPlasticity::boxed::<3>, whole: FiniteStrainPlasticity::boxed::<4> },
 }
 
-register! { ConstitutiveLaw "FiniteStrainIsotropicPlasticityAxisymVonMisesVonMises",
+register! { LawEntry "FiniteStrainIsotropicPlasticityAxisymVonMisesVonMises",
     about: "Von Mises plasticity under finite strain with axial symmetry; properties as SmallStrainJ2Plasticity3DLaw",
     source: "τ = K tr(ε) 1 + 2μ dev ε, ε = ½ ln b_e on (rr, zz, tt, rz)",
-    build: Build::Factory(&LawFactory::<4>(FiniteStrainPlasticity::boxed::<4>)),
+    build: LawFactory::Axisymmetric(FiniteStrainPlasticity::boxed::<4>),
 }

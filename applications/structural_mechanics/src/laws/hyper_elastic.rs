@@ -5,13 +5,13 @@
 //! In the plane C_zz = 1. A small-displacement element gives C = 1 + 2ε and J = det(1 + ε), as in Kratos; the first term of
 //! D is then λ C⁻¹ ⊗ (1 + ε)⁻¹, which is not symmetric.
 
+use crate::laws::LawEntry;
 use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::elastic::Elasticity;
-use super::law::{ConstitutiveLaw, LawFactory, Matrix, PlaneStrainFactory, StrainState};
+use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
 use crate::tensor::{IDENTITY, Tensor, inverse, pairs, strain_tensor};
 
 /// Compressible neo-Hooke law.
@@ -65,20 +65,20 @@ fn neo_hooke<const S: usize>(properties: &Properties) -> Result<Box<dyn Constitu
     Ok(Box::new(HyperElastic { lambda: material.lambda(), mu: material.mu() }))
 }
 
-register! { ConstitutiveLaw "HyperElastic3DLaw",
+register! { LawEntry "HyperElastic3DLaw",
     about: "Compressible neo-Hooke material for solids; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "W = ½ λ ln²J − μ ln J + ½ μ (tr C − 3)",
-    build: Build::Factory(&LawFactory::<6>(neo_hooke::<6>)),
+    build: LawFactory::Space(neo_hooke::<6>),
 }
 
-register! { ConstitutiveLaw "HyperElasticPlaneStrain2DLaw",
+register! { LawEntry "HyperElasticPlaneStrain2DLaw",
     about: "Compressible neo-Hooke material in plane strain; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "W = ½ λ ln²J − μ ln J + ½ μ (tr C − 3) with C_zz = 1",
-    build: Build::Factory(&PlaneStrainFactory::new(neo_hooke::<3>, neo_hooke::<4>)),
+    build: LawFactory::PlaneStrain { plane: neo_hooke::<3>, whole: neo_hooke::<4> },
 }
 
-register! { ConstitutiveLaw "HyperElasticAxisym2DLaw",
+register! { LawEntry "HyperElasticAxisym2DLaw",
     about: "Compressible neo-Hooke material with axial symmetry; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "W = ½ λ ln²J − μ ln J + ½ μ (tr C − 3) on (rr, zz, tt, rz)",
-    build: Build::Factory(&LawFactory::<4>(neo_hooke::<4>)),
+    build: LawFactory::Axisymmetric(neo_hooke::<4>),
 }

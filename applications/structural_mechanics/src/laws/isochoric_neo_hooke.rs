@@ -5,10 +5,10 @@
 //! dS/dE = μ J^(−2/3) (2/9 tr C K ⊗ K − 2/3 (1 ⊗ K + K ⊗ 1) + tr C/3 𝕂) − p J (K ⊗ K − 𝕂), K = C⁻¹,
 //! 𝕂_ijkl = K_ik K_jl + K_il K_jk.
 
+use crate::laws::LawEntry;
 use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::elastic::Elasticity;
 use super::hyper_elastic::right_cauchy_green;
@@ -60,8 +60,8 @@ impl<const S: usize> ConstitutiveLaw<S> for IsochoricNeoHooke {
     }
 }
 
-register! { ConstitutiveLaw "HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D",
+register! { LawEntry "HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D",
     about: "Isochoric neo-Hooke material for TotalLagrangianQ1P0MixedElement, which adds the pressure; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "W = ½ μ (J^(−2/3) tr C − 3), p by the element",
-    build: Build::Factory(&LawFactory::<6>(IsochoricNeoHooke::boxed)),
+    build: LawFactory::Space(IsochoricNeoHooke::boxed),
 }

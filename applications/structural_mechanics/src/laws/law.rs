@@ -2,8 +2,10 @@
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::Properties;
-use zelus_core::registry::{Build, Kind, require};
+use zelus_core::registered_kind;
+use zelus_core::registry::require;
 
+use super::bar_law::MakeBarLaw;
 use crate::tensor::{Tensor, congruent, push_forward, stress_tensor, stress_vector};
 
 /// A Voigt matrix `m[row][column]`.
@@ -101,19 +103,61 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
 /// A function that makes a law with `S` Voigt components from the properties.
 pub type MakeLaw<const S: usize> = fn(&Properties) -> Result<Box<dyn ConstitutiveLaw<S>>>;
 
-/// Makes a law with `S` Voigt components; what a registration holds.
-pub struct LawFactory<const S: usize>(pub MakeLaw<S>);
-
-/// Makes a law of plane strain, with or without the strain across the plane; what a registration holds.
-pub struct PlaneStrainFactory {
-    plane: LawFactory<3>,
-    whole: LawFactory<4>,
+/// For which elements a law is, with what makes it.
+#[derive(Clone, Copy)]
+pub enum LawFactory {
+    /// For elements in space.
+    Space(MakeLaw<6>),
+    /// For planar elements whose stress across the plane is zero.
+    PlaneStress(MakeLaw<3>),
+    /// For planar elements whose strain across the plane is zero: on (xx, yy, xy), and on (xx, yy, zz, xy).
+    PlaneStrain {
+        /// Without the strain across the plane.
+        plane: MakeLaw<3>,
+        /// With it.
+        whole: MakeLaw<4>,
+    },
+    /// For elements of revolution, on (rr, zz, tt, rz).
+    Axisymmetric(MakeLaw<4>),
+    /// For bars.
+    Bar(MakeBarLaw),
 }
 
-impl PlaneStrainFactory {
-    /// The factory of a law on (xx, yy, xy), which on (xx, yy, zz, xy) is `whole`.
-    pub const fn new(plane: MakeLaw<3>, whole: MakeLaw<4>) -> Self {
-        Self { plane: LawFactory(plane), whole: LawFactory(whole) }
+registered_kind! {
+    /// A constitutive law that materials name.
+    pub struct LawEntry("constitutive_law", "unknown-law") {
+        build: LawFactory;
+    }
+}
+
+/// That laws are made for `S` Voigt components.
+pub trait MakesLaw<const S: usize> {
+    /// What makes the law for them, `plane` as in [`law_of`]; `None` where it is for other elements.
+    fn make(self, plane: bool) -> Option<MakeLaw<S>>;
+}
+
+impl MakesLaw<3> for LawFactory {
+    fn make(self, _plane: bool) -> Option<MakeLaw<3>> {
+        match self {
+            Self::PlaneStress(make) | Self::PlaneStrain { plane: make, .. } => Some(make),
+            _ => None,
+        }
+    }
+}
+
+impl MakesLaw<4> for LawFactory {
+    fn make(self, plane: bool) -> Option<MakeLaw<4>> {
+        match self {
+            Self::PlaneStrain { whole, .. } if plane => Some(whole),
+            Self::Axisymmetric(make) if !plane => Some(make),
+            _ => None,
+        }
+    }
+}
+
+impl MakesLaw<6> for LawFactory {
+    fn make(self, _plane: bool) -> Option<MakeLaw<6>> {
+        if let Self::Space(make) = self { Some(make) } else { None }
     }
 }
 
@@ -123,22 +167,18 @@ impl PlaneStrainFactory {
 ///
 /// # Errors
 /// No law, an unknown one, one of another dimension, or missing material constants.
-pub fn law_of<const S: usize>(properties: &Properties, plane: bool) -> Result<Box<dyn ConstitutiveLaw<S>>> {
+pub fn law_of<const S: usize>(properties: &Properties, plane: bool) -> Result<Box<dyn ConstitutiveLaw<S>>>
+where
+    LawFactory: MakesLaw<S>,
+{
     let place = properties.place.clone();
     let Some(name) = &properties.law else {
         let fact = format!("properties {} are used by solid elements but have no constitutive law", properties.id);
         let remedy = "give a \"constitutive_law\" in the materials file, or CONSTITUTIVE_LAW in the mesh file";
         return Err(Diagnostic::error("missing-law", fact).at(place).remedy(remedy).into());
     };
-    let entry = require(Kind::ConstitutiveLaw, name).map_err(|problem| problem.at(place.clone()))?;
-    let Build::Factory(factory) = &entry.build else { unreachable!("laws register a factory") };
-    let factory: &(dyn std::any::Any + Send + Sync) = match factory.downcast_ref::<PlaneStrainFactory>() {
-        Some(both) if S == 3 => &both.plane,
-        Some(both) if plane => &both.whole,
-        None if plane && S == 4 => &(),
-        _ => *factory,
-    };
-    if let Some(LawFactory(make)) = factory.downcast_ref::<LawFactory<S>>() {
+    let entry = require::<LawEntry>(name).map_err(|problem| problem.at(place.clone()))?;
+    if let Some(make) = MakesLaw::<S>::make(entry.build, plane) {
         return make(properties);
     }
     let (kind, wanted) = match S {

@@ -4,35 +4,35 @@
 //! stress (total Lagrangian) or, without push-forward, as Cauchy stress (updated Lagrangian), as in Kratos. Prefer
 //! Kirchhoff–Saint-Venant there.
 
+use crate::laws::LawEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 use super::hooke::Hooke;
-use super::law::{LawFactory, PlaneStrainFactory};
+use super::law::LawFactory;
 
 /// Linear elastic law with a constant matrix.
 pub type LinearElastic<const S: usize> = Hooke<S, false>;
 
-register! { ConstitutiveLaw "LinearElastic3DLaw",
+register! { LawEntry "LinearElastic3DLaw",
     about: "Hooke's law for solids; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "σ = λ tr(ε) 1 + 2μ ε",
-    build: Build::Factory(&LawFactory::<6>(LinearElastic::<6>::boxed)),
+    build: LawFactory::Space(LinearElastic::<6>::boxed),
 }
 
-register! { ConstitutiveLaw "LinearElasticPlaneStrain2DLaw",
+register! { LawEntry "LinearElasticPlaneStrain2DLaw",
     about: "Hooke's law in plane strain; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "σ = λ tr(ε) 1 + 2μ ε with ε_zz = 0",
-    build: Build::Factory(&PlaneStrainFactory::new(LinearElastic::<3>::boxed, LinearElastic::<4>::boxed)),
+    build: LawFactory::PlaneStrain { plane: LinearElastic::<3>::boxed, whole: LinearElastic::<4>::boxed },
 }
 
-register! { ConstitutiveLaw "LinearElasticPlaneStress2DLaw",
+register! { LawEntry "LinearElasticPlaneStress2DLaw",
     about: "Hooke's law in plane stress; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "σ = λ tr(ε) 1 + 2μ ε with σ_zz = 0",
-    build: Build::Factory(&LawFactory::<3>(LinearElastic::plane_stress)),
+    build: LawFactory::PlaneStress(LinearElastic::plane_stress),
 }
 
-register! { ConstitutiveLaw "LinearElasticAxisym2DLaw",
+register! { LawEntry "LinearElasticAxisym2DLaw",
     about: "Hooke's law with axial symmetry; needs YOUNG_MODULUS, POISSON_RATIO",
     source: "σ = λ tr(ε) 1 + 2μ ε on (rr, zz, tt, rz)",
-    build: Build::Factory(&LawFactory::<4>(LinearElastic::<4>::boxed)),
+    build: LawFactory::Axisymmetric(LinearElastic::<4>::boxed),
 }

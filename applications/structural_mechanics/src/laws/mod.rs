@@ -4,6 +4,7 @@
 //! hold one that fits. What a law remembers lies with the element, which passes it in and lets it advance once a step is
 //! accepted.
 
+mod bar_law;
 mod elastic;
 mod finite_strain_plasticity;
 mod hardening;
@@ -21,6 +22,8 @@ mod small_strain_plasticity;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bar_law::positive;
+pub use bar_law::{BarLaw, MakeBarLaw};
 pub use elastic::Elasticity;
 pub use finite_strain_plasticity::FiniteStrainPlasticity;
 pub use hardening::Hardening;
@@ -29,7 +32,7 @@ pub use hyper_elastic::HyperElastic;
 pub use isochoric_neo_hooke::IsochoricNeoHooke;
 pub use j2::J2;
 pub use kirchhoff_saint_venant::KirchhoffSaintVenant;
-pub use law::{ConstitutiveLaw, LawFactory, Matrix, PlaneStrainFactory, StrainState, StressMeasure, law_of};
+pub use law::{ConstitutiveLaw, LawEntry, LawFactory, MakeLaw, MakesLaw, Matrix, StrainState, StressMeasure, law_of};
 pub use linear_elastic::LinearElastic;
 pub use parallel_mixture::ParallelMixture;
 pub use small_strain_plasticity::SmallStrainPlasticity;

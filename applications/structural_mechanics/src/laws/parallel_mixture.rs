@@ -3,12 +3,12 @@
 //! Each layer is a law with properties of its own (`sub_properties` of the material), and remembers what it remembers. Laws
 //! here are isotropic, so that the directions of layers (LAYER_EULER_ANGLES) do not matter.
 
+use crate::laws::LawEntry;
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::Properties;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
-use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState, StressMeasure, law_of};
+use super::law::{ConstitutiveLaw, LawFactory, MakesLaw, Matrix, StrainState, StressMeasure, law_of};
 
 /// Key beside the name of the law: one share for each layer.
 const FACTORS: &str = "combination_factors";
@@ -19,7 +19,10 @@ pub struct ParallelMixture<const S: usize> {
 }
 
 impl<const S: usize> ParallelMixture<S> {
-    fn boxed(properties: &Properties) -> Result<Box<dyn ConstitutiveLaw<S>>> {
+    fn boxed(properties: &Properties) -> Result<Box<dyn ConstitutiveLaw<S>>>
+    where
+        LawFactory: MakesLaw<S>,
+    {
         let problem = |fact: String, remedy: &str| {
             Diagnostic::error("mixture", fact).at(properties.place.clone()).remedy(remedy.to_owned())
         };
@@ -139,14 +142,14 @@ impl<const S: usize> ConstitutiveLaw<S> for ParallelMixture<S> {
     }
 }
 
-register! { ConstitutiveLaw "ParallelRuleOfMixturesLaw3D",
+register! { LawEntry "ParallelRuleOfMixturesLaw3D",
     about: "Layers of a solid that strain alike: combination_factors beside the name, a law for each of sub_properties",
     source: "S = Σ f_i S_i(E) / Σ f_i",
-    build: Build::Factory(&LawFactory::<6>(ParallelMixture::<6>::boxed)),
+    build: LawFactory::Space(ParallelMixture::<6>::boxed),
 }
 
-register! { ConstitutiveLaw "ParallelRuleOfMixturesLaw2D",
+register! { LawEntry "ParallelRuleOfMixturesLaw2D",
     about: "Layers of a planar body that strain alike: combination_factors beside the name, a law for each of sub_properties",
     source: "S = Σ f_i S_i(E) / Σ f_i",
-    build: Build::Factory(&LawFactory::<3>(ParallelMixture::<3>::boxed)),
+    build: LawFactory::PlaneStress(ParallelMixture::<3>::boxed),
 }

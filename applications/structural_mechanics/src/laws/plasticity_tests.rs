@@ -29,7 +29,10 @@ fn properties(name: &str, values: &[(&str, f64)]) -> Properties {
     properties
 }
 
-fn law<const S: usize>(name: &str, values: &[(&str, f64)]) -> Box<dyn ConstitutiveLaw<S>> {
+fn law<const S: usize>(name: &str, values: &[(&str, f64)]) -> Box<dyn ConstitutiveLaw<S>>
+where
+    LawFactory: MakesLaw<S>,
+{
     law_of(&properties(name, values), S == 3).unwrap()
 }
 
@@ -50,7 +53,10 @@ fn advanced<const S: usize>(law: &dyn ConstitutiveLaw<S>, strain: [f64; S], hist
     next
 }
 
-fn check_tangent<const S: usize>(name: &str, values: &[(&str, f64)]) {
+fn check_tangent<const S: usize>(name: &str, values: &[(&str, f64)])
+where
+    LawFactory: MakesLaw<S>,
+{
     let law = law::<S>(name, values);
     let mut random = Random(31);
     for round in 0..20 {

@@ -7,7 +7,10 @@ use crate::test_model::{Random, near, size};
 const E: f64 = 200.0;
 const NU: f64 = 0.3;
 
-fn law<const S: usize>(name: &str) -> Box<dyn ConstitutiveLaw<S>> {
+fn law<const S: usize>(name: &str) -> Box<dyn ConstitutiveLaw<S>>
+where
+    LawFactory: MakesLaw<S>,
+{
     let mut properties = Properties::new(1);
     properties.law = Some(name.to_owned());
     for (name, value) in [("YOUNG_MODULUS", E), ("POISSON_RATIO", NU)] {
@@ -46,7 +49,10 @@ fn rotation(angle: f64) -> Tensor {
 }
 
 /// dS/dE by differences of a law whose J follows the strain, against its tangent; and S = dW/dE.
-fn check_derivatives<const S: usize>(name: &str) {
+fn check_derivatives<const S: usize>(name: &str)
+where
+    LawFactory: MakesLaw<S>,
+{
     let law = law::<S>(name);
     let mut random = Random(5);
     for _ in 0..5 {
@@ -79,7 +85,10 @@ fn check_derivatives<const S: usize>(name: &str) {
 }
 
 /// S does not see a rotation R F; Cauchy stress turns with it.
-fn check_objectivity<const S: usize>(name: &str) {
+fn check_objectivity<const S: usize>(name: &str)
+where
+    LawFactory: MakesLaw<S>,
+{
     let law = law::<S>(name);
     let mut random = Random(6);
     let f = gradient::<S>(&mut random, 0.2);

@@ -1,20 +1,20 @@
 //! The solver of problems with inertia.
 
+use zelus_core::analysis::SolverEntry;
 use zelus_core::analysis::{NodalVariable, SolverDefinition};
 use zelus_core::register;
-use zelus_core::registry::Build;
 
 pub(super) const VARIABLES: [NodalVariable; 10] = {
     let [a, b, c, d, e, f, g, h] = super::VARIABLES;
     [a, b, c, d, e, f, g, h, ("VELOCITY", 3), ("ACCELERATION", 3)]
 };
 
-register! { Solver "Dynamic",
+register! { SolverEntry "Dynamic",
     aliases: &["dynamic"],
     about: "motion with inertia, integrated in time by a scheme",
     defaults: include_str!("../../../../configs/solvers/dynamic.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/dynamic.json"))],
-    build: Build::Factory(&SolverDefinition {
+    build: SolverDefinition {
         variant: |user| {
             let method = user.get("time_integration_method").and_then(|method| method.str().ok());
             (method == Some("explicit")).then_some("ExplicitDynamic")
@@ -37,5 +37,5 @@ register! { Solver "Dynamic",
             settings.get_str("scheme_type").map(str::to_owned)
         },
         adapt: super::adapt,
-    }),
+    },
 }

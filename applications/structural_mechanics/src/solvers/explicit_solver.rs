@@ -1,18 +1,18 @@
 //! The solver of explicit dynamics: `solver_type` "Dynamic" with `time_integration_method` "explicit".
 
 use zelus_core::analysis::SolverDefinition;
+use zelus_core::analysis::SolverEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
-register! { Solver "ExplicitDynamic",
+register! { SolverEntry "ExplicitDynamic",
     about: "what \"Dynamic\" is with \"time_integration_method\": \"explicit\": short steps without iterations",
     defaults: include_str!("../../../../configs/solvers/explicit_dynamic.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_dynamic.json"))],
-    build: Build::Factory(&SolverDefinition {
+    build: SolverDefinition {
         variant: |_| None,
         variables: &super::dynamic_solver::VARIABLES,
         explicit: true,
         scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
         adapt: super::adapt,
-    }),
+    },
 }

@@ -1,19 +1,19 @@
 //! The solver of static problems.
 
 use zelus_core::analysis::SolverDefinition;
+use zelus_core::analysis::SolverEntry;
 use zelus_core::register;
-use zelus_core::registry::Build;
 
-register! { Solver "Static",
+register! { SolverEntry "Static",
     aliases: &["static"],
     about: "equilibrium at each time; time only orders the loads",
     defaults: include_str!("../../../../configs/solvers/static.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/static.json"))],
-    build: Build::Factory(&SolverDefinition {
+    build: SolverDefinition {
         variant: |_| None,
         variables: &super::VARIABLES,
         explicit: false,
         scheme: |_| Ok("static".to_owned()),
         adapt: super::adapt,
-    }),
+    },
 }

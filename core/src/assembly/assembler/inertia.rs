@@ -5,9 +5,9 @@ use crate::assembly::{Dof, System};
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
+use crate::model::Role;
 use crate::model::variables::DISPLACEMENT;
 use crate::model::{ModelPart, Nodes};
-use crate::registry::Kind;
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///
@@ -82,7 +82,7 @@ impl Assembler {
         let mut lasting = true;
         let numbered = system.elements.iter().zip(&self.element_numbers);
         for (block, numbers) in numbered.chain(system.conditions.iter().zip(&self.condition_numbers)) {
-            let element = block.entry().kind == Kind::Element;
+            let element = block.entry().role == Role::Element;
             let [alpha, beta] = if element { rayleigh_of(part, block.as_ref(), rayleigh) } else { [0.0, rayleigh[1]] };
             if alpha != 0.0 {
                 let lumped = self.lumped;
@@ -153,7 +153,7 @@ impl Assembler {
 
     pub(super) fn stiffness(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut values = self.constant.clone().expect("assembled before the first residual");
-        let is_element = |block: &dyn EntityBlock| block.entry().kind == Kind::Element;
+        let is_element = |block: &dyn EntityBlock| block.entry().role == Role::Element;
         self.add_blocks(
             part,
             system,

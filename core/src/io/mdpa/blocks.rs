@@ -4,7 +4,8 @@ use super::document::*;
 use super::reader::{Open, Reader, text};
 use super::tokens::parse_prefix;
 use crate::diagnostics::{Diagnostic, did_you_mean};
-use crate::registry::{Kind, instead_of};
+use crate::model::Role;
+use crate::registry::instead_of;
 
 const PART_BLOCKS: [&str; 9] = [
     "SubModelPartData",
@@ -42,8 +43,8 @@ impl Reader<'_> {
         };
         let Some(nodes_per_entity) = (self.names.nodes_of)(&name) else {
             let fact = format!("`{name}` is not registered ({})", open.kind);
-            let sort = if open.kind == "Conditions" { Kind::Condition } else { Kind::Element };
-            let instead = instead_of(sort, &name).map(str::to_owned);
+            let sort = if open.kind == "Conditions" { Role::Condition } else { Role::Element };
+            let instead = instead_of(sort.word(), &name).map(str::to_owned);
             let remedy = instead.or_else(|| did_you_mean(&name, self.names.known.iter().copied()));
             let remedy = remedy.unwrap_or_else(|| "`zelus list` shows the registered names".to_owned());
             self.problems.push(open.line, Diagnostic::error("unknown-entity", fact).remedy(remedy));

@@ -1,5 +1,6 @@
 //! Compares a file that the run writes with a reference, once the run is over.
 
+use crate::processes::ProcessEntry;
 use std::path::{Path, PathBuf};
 
 use super::place::one_of;
@@ -10,7 +11,6 @@ use crate::parameters::Defaults;
 use crate::processes::comparison::is_close;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
 
 struct CompareTwoFiles {
     reference: PathBuf,
@@ -126,12 +126,12 @@ impl Process for CompareTwoFiles {
     }
 }
 
-register! { Process "compare_two_files_check_process",
+register! { ProcessEntry "compare_two_files_check_process",
     aliases: &["CompareTwoFilesCheckProcess"],
     about: "compares a file that the run writes with a reference at its end; a difference is an error",
     defaults: include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../configs/processes/compare_two_files_check_process.json"
     )),
-    build: Build::Process(build),
+    build: build,
 }

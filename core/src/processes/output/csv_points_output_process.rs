@@ -3,10 +3,10 @@
 use super::points::{REQUIRED, points_output};
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::parameters::Defaults;
+use crate::processes::ProcessEntry;
 use crate::processes::target::read_text;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let key = "csv_file_path";
@@ -36,9 +36,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     points_output(request, &settings, key, &points, true)
 }
 
-register! { Process "csv_points_output_process",
+register! { ProcessEntry "csv_points_output_process",
     aliases: &["CsvPointsOutputProcess", "CSVPointsOutputProcess"],
     about: "writes the histories of quantities at the points of a table, a file each, a line a step",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/csv_points_output_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

@@ -1,5 +1,7 @@
 //! Results compared with those of a JSON file; a difference ends the run.
 
+use crate::model::Role;
+use crate::processes::ProcessEntry;
 use std::path::PathBuf;
 
 use serde_json::Value;
@@ -17,7 +19,6 @@ use crate::parameters::Defaults;
 use crate::processes::comparison::{is_close, told};
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::{Build, Kind};
 
 /// Differences told in full; more are counted.
 const TOLD: usize = 10;
@@ -116,7 +117,7 @@ impl FromJsonCheck {
             }
         }
         for quantity in &self.gauss {
-            gauss::each(part, system, Kind::Element, &selection.elements, quantity, |row, gauss| {
+            gauss::each(part, system, Role::Element, &selection.elements, quantity, |row, gauss| {
                 let element = selection.elements[row];
                 if !passes(&part.elements.flags, self.flag, element) {
                     return;
@@ -194,12 +195,12 @@ impl FromJsonCheck {
     }
 }
 
-register! { Process "from_json_check_result_process",
+register! { ProcessEntry "from_json_check_result_process",
     aliases: &["FromJsonCheckResultProcess"],
     about: "compares results with those of a JSON file; a difference ends the run",
     defaults: include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../configs/processes/from_json_check_result_process.json"
     )),
-    build: Build::Process(build),
+    build: build,
 }

@@ -1,5 +1,6 @@
 //! Quantities at Gauss points, as means of entities, as values at nodes, and as they are.
 
+use crate::model::Role;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
@@ -11,7 +12,6 @@ use crate::entities::{EntityBlock, Gauss, StepView};
 use crate::geometry::Shape;
 use crate::io::results::{Column, GaussResult};
 use crate::model::ModelPart;
-use crate::registry::Kind;
 
 /// Not in the selection.
 const OUT: u32 = u32::MAX;
@@ -28,7 +28,7 @@ struct Seen<'a> {
 fn visit(
     part: &ModelPart,
     system: &System,
-    kind: Kind,
+    kind: Role,
     selected: &[u32],
     quantity: &GaussQuantity,
     mut visit: impl FnMut(usize, &Seen<'_>, &Gauss),
@@ -72,7 +72,7 @@ fn values_of(block: &dyn EntityBlock, view: &StepView<'_>, name: &str, at: usize
 pub(super) fn means(
     part: &ModelPart,
     system: &System,
-    kind: Kind,
+    kind: Role,
     selected: &[u32],
     quantity: &GaussQuantity,
 ) -> Column {
@@ -107,7 +107,7 @@ pub(super) enum Share {
 pub(super) fn at_nodes(
     part: &ModelPart,
     system: &System,
-    kind: Kind,
+    kind: Role,
     selected: &[u32],
     nodes: &[u32],
     quantity: &GaussQuantity,
@@ -168,7 +168,7 @@ fn widen(values: &[f64], from: usize, to: usize, rows: usize) -> Vec<f64> {
 pub(super) fn as_they_are(
     part: &ModelPart,
     system: &System,
-    kind: Kind,
+    kind: Role,
     selected: &[u32],
     ids: &[usize],
     quantity: &GaussQuantity,
@@ -269,7 +269,7 @@ fn local_points(shape: Shape, gauss: &Gauss) -> Vec<[f64; 3]> {
 pub(super) fn each(
     part: &ModelPart,
     system: &System,
-    kind: Kind,
+    kind: Role,
     selected: &[u32],
     quantity: &GaussQuantity,
     mut use_values: impl FnMut(usize, &Gauss),

@@ -1,5 +1,7 @@
 //! Results for GiD as text: a mesh file and a results file, or one pair a step.
 
+use crate::model::Role;
+use crate::processes::ProcessEntry;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -18,7 +20,6 @@ use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::{Defaults, Settings};
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::{Build, Kind};
 
 /// Where the settings of the files are in `Parameters`.
 const FILES: &str = "postprocess_parameters.result_file_configuration.";
@@ -150,7 +151,7 @@ impl GidOutput {
         columns.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, nodes)));
         columns.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, nodes)));
         let gauss = self.gauss.iter().flat_map(|quantity| {
-            gauss::as_they_are(part, system, Kind::Element, &selection.elements, &part.elements.ids, quantity)
+            gauss::as_they_are(part, system, Role::Element, &selection.elements, &part.elements.ids, quantity)
         });
         let gauss = if self.elements { gauss.collect() } else { Vec::new() };
         let ids: Vec<usize> = nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect();
@@ -225,9 +226,9 @@ impl Process for GidOutput {
     }
 }
 
-register! { Process "gid_output_process",
+register! { ProcessEntry "gid_output_process",
     aliases: &["GiDOutputProcess"],
     about: "writes text files for GiD: mesh (.post.msh) and results (.post.res)",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/gid_output_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

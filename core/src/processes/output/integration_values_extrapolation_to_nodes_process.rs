@@ -6,11 +6,12 @@ use super::quantity::GaussQuantity;
 use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::io::results::{Column, Values};
+use crate::model::Role;
 use crate::model::{Model, ModelPart, named};
 use crate::parameters::Defaults;
+use crate::processes::ProcessEntry;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::{Build, Kind};
 
 struct Extrapolation {
     part: PartPath,
@@ -54,7 +55,7 @@ impl Process for Extrapolation {
         let (part, selection) = self.part.find(model)?;
         let nodes = selection.nodes.clone();
         let of =
-            |quantity| gauss::at_nodes(part, system, Kind::Element, &selection.elements, &nodes, quantity, self.share);
+            |quantity| gauss::at_nodes(part, system, Role::Element, &selection.elements, &nodes, quantity, self.share);
         let columns: Vec<Column> = self.quantities.iter().map(of).collect();
         let part = model.root_mut(&self.part.path)?;
         columns.iter().for_each(|column| self.store(part, &nodes, column));
@@ -62,7 +63,7 @@ impl Process for Extrapolation {
     }
 }
 
-register! { Process "integration_values_extrapolation_to_nodes_process",
+register! { ProcessEntry "integration_values_extrapolation_to_nodes_process",
     aliases: &["IntegrationValuesExtrapolationToNodesProcess"],
     about: "gives the nodes what elements have at their Gauss points, averaged over the elements around a node",
     source: "v_i = Σ w J |N_i| v / Σ w J |N_i|",
@@ -70,5 +71,5 @@ register! { Process "integration_values_extrapolation_to_nodes_process",
         env!("CARGO_MANIFEST_DIR"),
         "/../configs/processes/integration_values_extrapolation_to_nodes_process.json"
     )),
-    build: Build::Process(build),
+    build: build,
 }

@@ -1,5 +1,7 @@
 //! Histories of nodes and Gauss points in a JSON file.
 
+use crate::model::Role;
+use crate::processes::ProcessEntry;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -18,7 +20,6 @@ use crate::model::{Fields, Flags, Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::{Build, Kind};
 
 /// How often at most the file is rewritten while the run goes on; at its end it is in any case.
 const REWRITE: Duration = Duration::from_secs(10);
@@ -119,7 +120,7 @@ impl JsonOutput {
             return;
         }
         let follows =
-            |&&e: &&u32| part.evaluates(Kind::Element, e as usize) && passes(&part.elements.flags, self.flag, e);
+            |&&e: &&u32| part.evaluates(Role::Element, e as usize) && passes(&part.elements.flags, self.flag, e);
         self.followed = selection.elements.iter().filter(follows).copied().collect();
         let ids = self.followed.iter().map(|&element| part.elements.ids[element as usize] as f64).collect();
         for id in world().to_root(ids).concat() {
@@ -158,7 +159,7 @@ impl JsonOutput {
         }
         for (at, quantity) in self.gauss.iter().enumerate() {
             let mut own = Vec::new();
-            gauss::each(part, system, Kind::Element, &self.followed, quantity, |row, gauss| {
+            gauss::each(part, system, Role::Element, &self.followed, quantity, |row, gauss| {
                 let element = self.followed[row];
                 if passes(&part.elements.flags, self.flag, element) {
                     let id = part.elements.ids[element as usize];
@@ -347,9 +348,9 @@ impl Process for JsonOutput {
     }
 }
 
-register! { Process "json_output_process",
+register! { ProcessEntry "json_output_process",
     aliases: &["JsonOutputProcess"],
     about: "writes histories of nodes and Gauss points to a JSON file",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/json_output_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

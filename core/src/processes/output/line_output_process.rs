@@ -3,9 +3,9 @@
 use super::points::{REQUIRED, points_output, position};
 use crate::diagnostics::Result;
 use crate::parameters::Defaults;
+use crate::processes::ProcessEntry;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let ends = ["start_point", "end_point"];
@@ -22,9 +22,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     points_output(request, &settings, "start_point", &points, true)
 }
 
-register! { Process "line_output_process",
+register! { ProcessEntry "line_output_process",
     aliases: &["LineOutputProcess"],
     about: "writes the histories of quantities at points along a line, a file each, a line a step",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/line_output_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

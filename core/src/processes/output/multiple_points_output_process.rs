@@ -3,9 +3,9 @@
 use super::points::{REQUIRED, points_output, position};
 use crate::diagnostics::Result;
 use crate::parameters::{Defaults, Node};
+use crate::processes::ProcessEntry;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(|defaults: Defaults| defaults.require(&REQUIRED).require(&["positions"]))?;
@@ -17,9 +17,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     points_output(request, &settings, "positions", &points, true)
 }
 
-register! { Process "multiple_points_output_process",
+register! { ProcessEntry "multiple_points_output_process",
     aliases: &["MultiplePointsOutputProcess"],
     about: "writes the histories of quantities at several points of space, a file each, a line a step",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/multiple_points_output_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

@@ -7,9 +7,9 @@ use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Report, Result};
 use crate::io::results::{Column, Dataset};
+use crate::model::Role;
 use crate::model::{EntityTable, ModelPart, SubPart};
 use crate::parameters::Settings;
-use crate::registry::Kind;
 
 /// Which entities are the cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub(super) struct Mesh {
     /// Entity index of each cell.
     pub(super) cells: Vec<u32>,
     /// Whether the cells are elements or conditions.
-    pub(super) kind: Kind,
+    pub(super) kind: Role,
 }
 
 impl Mesh {
@@ -41,8 +41,8 @@ impl Mesh {
             CellChoice::Conditions => false,
         };
         let (kind, table, chosen) = match elements {
-            true => (Kind::Element, &part.elements, &selection.elements),
-            false => (Kind::Condition, &part.conditions, &selection.conditions),
+            true => (Role::Element, &part.elements, &selection.elements),
+            false => (Role::Condition, &part.conditions, &selection.conditions),
         };
         let drawn = |&&at: &&u32| table.kinds[at as usize].cell.is_some() && part.evaluates(kind, at as usize);
         let cells: Vec<u32> = chosen.iter().filter(drawn).copied().collect();
@@ -59,7 +59,7 @@ impl Mesh {
 
     /// The table of the cells.
     pub(super) fn table<'m>(&self, part: &'m ModelPart) -> &'m EntityTable {
-        if self.kind == Kind::Element { &part.elements } else { &part.conditions }
+        if self.kind == Role::Element { &part.elements } else { &part.conditions }
     }
 }
 
@@ -148,7 +148,7 @@ impl Picture {
             out.push(gauss::at_nodes(
                 part,
                 system,
-                Kind::Element,
+                Role::Element,
                 &selection.elements,
                 &mesh.nodes,
                 quantity,
@@ -163,7 +163,7 @@ impl Picture {
     fn cell_data(&self, part: &ModelPart, system: &System, mesh: &Mesh) -> Vec<Column> {
         let table = mesh.table(part);
         let (quantities, flags, id) = match mesh.kind {
-            Kind::Element => (&self.element_values, &self.element_flags, "KRATOS_ELEMENT_ID"),
+            Role::Element => (&self.element_values, &self.element_flags, "KRATOS_ELEMENT_ID"),
             _ => (&self.condition_values, &self.condition_flags, "KRATOS_CONDITION_ID"),
         };
         let mut out: Vec<Column> = quantities.iter().map(|q| q.gather(&table.data, &mesh.cells)).collect();

@@ -3,9 +3,9 @@
 use super::points::{REQUIRED, points_output, position};
 use crate::diagnostics::Result;
 use crate::parameters::Defaults;
+use crate::processes::ProcessEntry;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(|defaults: Defaults| defaults.require(&REQUIRED).require(&["position"]))?;
@@ -13,9 +13,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     points_output(request, &settings, "position", &[point], false)
 }
 
-register! { Process "point_output_process",
+register! { ProcessEntry "point_output_process",
     aliases: &["PointOutputProcess"],
     about: "writes the history of quantities at one point of space, a line a step",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/point_output_process.json")),
-    build: Build::Process(build),
+    build: build,
 }

@@ -1,5 +1,6 @@
 //! Histories of quantities at points of space, as text files of columns, one a point.
 
+use crate::model::Role;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -14,7 +15,6 @@ use crate::io::{append_to_file, replace_file};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::{Interval, Node, Settings};
 use crate::processes::{Process, ProcessRequest};
-use crate::registry::Kind;
 
 /// Interpolates in the cells that hold the points; the cells are found once, before the first step.
 pub(super) struct PointsOutput {
@@ -118,14 +118,14 @@ impl PointsOutput {
                 let id = part.nodes.ids[found as usize];
                 (distance(found) <= self.tolerance).then(|| (distance(found), id, vec![(found, 1.0)]))
             }
-            1 => self.in_cells(part, Kind::Element, &selection.elements, point),
-            _ => self.in_cells(part, Kind::Condition, &selection.conditions, point),
+            1 => self.in_cells(part, Role::Element, &selection.elements, point),
+            _ => self.in_cells(part, Role::Condition, &selection.conditions, point),
         }
     }
 
-    fn in_cells(&self, part: &ModelPart, kind: Kind, cells: &[u32], point: [f64; 3]) -> Option<Found> {
+    fn in_cells(&self, part: &ModelPart, kind: Role, cells: &[u32], point: [f64; 3]) -> Option<Found> {
         let positions = if self.is_current { &part.nodes.current } else { &part.nodes.initial };
-        let table = if kind == Kind::Element { &part.elements } else { &part.conditions };
+        let table = if kind == Role::Element { &part.elements } else { &part.conditions };
         cells.iter().filter(|&&cell| part.evaluates(kind, cell as usize)).find_map(|&cell| {
             let shape = table.kinds[cell as usize].cell?;
             let nodes = table.nodes(cell);

@@ -1,5 +1,7 @@
 //! Each output process on a model of two quadrilaterals whose Gauss values are known.
 
+use crate::model::EntityKind;
+use crate::model::Role;
 use std::ops::Range;
 use std::path::Path;
 
@@ -11,25 +13,34 @@ use crate::model::flags::SLAVE;
 use crate::model::variables::DISPLACEMENT;
 use crate::model::{Model, ModelPart, Nodes, SubPart};
 use crate::parameters::Document;
+use crate::processes::ProcessEntry;
 use crate::processes::{Process, ProcessRequest};
-use crate::registry::{self, Build, Entry, Kind};
-use crate::{register, register_variable};
+use crate::register_variable;
+use crate::registry::{self, Entry};
 
 register_variable! {
     kind OUTPUT_TEST_VECTOR: Vector = "A vector at Gauss points.";
     kind OUTPUT_TEST_PRESSURE: Scalar = "A number.";
 }
-register! { Element "OutputTestElement2D4N", about: "a quadrilateral of the tests", cell: Some(Shape::Quad4), space: 2 }
-register! { Condition "OutputTestCondition2D2N", about: "a line of the tests", cell: Some(Shape::Line2), space: 2 }
+static QUADRILATERAL: EntityKind = EntityKind {
+    cell: Some(Shape::Quad4),
+    space: 2,
+    ..EntityKind::new(Role::Element, Entry::new("OutputTestElement2D4N", file!(), line!()))
+};
+static LINE: EntityKind = EntityKind {
+    cell: Some(Shape::Line2),
+    space: 2,
+    ..EntityKind::new(Role::Condition, Entry::new("OutputTestCondition2D2N", file!(), line!()))
+};
 
 /// Two entities with two Gauss points each: values (e, e + p), weights 1 and 3, first point at the first two nodes.
 struct Fake {
-    entry: &'static Entry,
+    entry: &'static EntityKind,
     nodes: Vec<[u32; 4]>,
 }
 
 impl EntityBlock for Fake {
-    fn entry(&self) -> &'static Entry {
+    fn entry(&self) -> &'static EntityKind {
         self.entry
     }
     fn members(&self) -> &[u32] {
@@ -72,8 +83,8 @@ fn model() -> Model {
     let positions = (0..6).map(|i| [f64::from(i % 3), f64::from(i / 3), 0.0]).collect();
     part.nodes = Nodes::new((1..=6).map(|i| 2 * i).collect(), positions);
     let connectivity = [[0, 1, 4, 3], [1, 2, 5, 4]];
-    let quad = registry::find(Kind::Element, "OutputTestElement2D4N").unwrap();
-    let line = registry::find(Kind::Condition, "OutputTestCondition2D2N").unwrap();
+    let quad = &QUADRILATERAL;
+    let line = &LINE;
     part.elements.push(1, quad, 7, &connectivity[0]);
     part.elements.push(3, quad, 8, &connectivity[1]);
     part.conditions.push(5, line, 0, &[0, 1]);
@@ -97,18 +108,17 @@ fn model() -> Model {
 
 /// The block over the elements of [`model`].
 fn system() -> System {
-    let entry = registry::find(Kind::Element, "OutputTestElement2D4N").unwrap();
+    let entry = &QUADRILATERAL;
     let fake = Fake { entry, nodes: vec![[0, 1, 4, 3], [1, 2, 5, 4]] };
     System { elements: vec![Box::new(fake)], ..System::default() }
 }
 
 fn make(name: &str, parameters: &str, model: &mut Model, folder: &Path) -> (Result<Box<dyn Process>>, Report) {
-    let entry = registry::find(Kind::Process, name).unwrap();
-    let Build::Process(factory) = entry.build else { panic!() };
+    let entry = registry::find::<ProcessEntry>(name).unwrap();
     let document = Document::from_str(parameters, "deck.json").unwrap();
     let mut report = Report::new();
     let request = &mut ProcessRequest { entry, parameters: &document.root, model, folder, report: &mut report };
-    let made = factory(request);
+    let made = (entry.build)(request);
     (made, report)
 }
 

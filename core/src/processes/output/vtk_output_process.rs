@@ -1,5 +1,6 @@
 //! Pictures for ParaView: `vtk_output_process` in Kratos' legacy form, `vtu_output_process` compressed with a PVD series.
 
+use crate::processes::ProcessEntry;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -15,7 +16,6 @@ use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
-use crate::registry::Build;
 
 /// Writes one file a step and part.
 struct VtkOutput {
@@ -166,17 +166,17 @@ impl Process for VtkOutput {
     }
 }
 
-register! { Process "vtk_output_process",
+register! { ProcessEntry "vtk_output_process",
     aliases: &["VtkOutputProcess"],
     about: "writes legacy VTK files for ParaView, laid out as Kratos writes them",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/vtk_output_process.json")),
-    build: Build::Process(|request| build(request, false)),
+    build: |request| build(request, false),
 }
 
-register! { Process "vtu_output_process",
+register! { ProcessEntry "vtu_output_process",
     aliases: &["VtuOutputProcess"],
     about: "writes compressed VTU files in double precision and a PVD file that lists them with their times; several ranks \
         write a piece each",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/vtu_output_process.json")),
-    build: Build::Process(|request| build(request, true)),
+    build: |request| build(request, true),
 }

@@ -4,13 +4,15 @@ use zelus_linear_algebra::{
     DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Preconditioner, create,
 };
 
+use crate::assembly::System;
+use crate::communication::world;
 use crate::diagnostics::Result;
+use crate::model::ModelPart;
 use crate::parameters::Settings;
-use crate::register;
-use crate::registry::{self, Build, Kind};
+use crate::{register, registered_kind, registry};
 
-/// What an engine is made from.
-pub(super) struct EngineRequest<'a> {
+/// What a linear solver is made from.
+pub struct LinearSolverRequest<'a> {
     /// `linear_solver_settings` of the deck.
     pub settings: &'a Settings,
     /// What iterative engines do with multipliers.
@@ -19,8 +21,15 @@ pub(super) struct EngineRequest<'a> {
     pub tolerance: f64,
 }
 
-/// An engine for the settings of a deck.
-pub(super) type EngineFactory = fn(&EngineRequest<'_>) -> Engine;
+/// Makes a linear solver.
+pub type LinearSolverFactory = fn(&LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>>;
+
+registered_kind! {
+    /// A linear solver that decks name.
+    pub struct LinearSolverEntry("linear_solver", "unknown-linear-solver") {
+        build: LinearSolverFactory;
+    }
+}
 
 /// Share of the tolerance of the residual that an iterative engine may leave, and the bounds of what it is asked for.
 const LEFT: f64 = 0.1;
@@ -30,7 +39,7 @@ const TOLERANCES: [f64; 2] = [1e-10, 1e-7];
 const LOOSEST: f64 = 1e-3;
 
 /// Relative residual to ask of an iterative engine in an iteration that ends at `residual`: each then gains seven digits.
-pub(super) fn tolerance(residual: f64) -> f64 {
+pub(crate) fn tolerance(residual: f64) -> f64 {
     (LEFT * residual).clamp(TOLERANCES[0], TOLERANCES[1])
 }
 
@@ -38,21 +47,15 @@ pub(super) fn tolerance(residual: f64) -> f64 {
 ///
 /// # Errors
 /// An unknown name.
-pub(super) fn make(request: &EngineRequest<'_>) -> Result<(Box<dyn LinearSolver>, String)> {
+pub(crate) fn make(request: &LinearSolverRequest<'_>) -> Result<(Box<dyn LinearSolver>, String)> {
     let settings = request.settings;
     let given = settings.node().get("solver_type").map(|n| n.str()).transpose()?.unwrap_or("");
     let name = given.rsplit('.').next().unwrap_or(given);
     let name = if name.is_empty() { "automatic" } else { name };
-    let entry = registry::require(Kind::LinearSolver, name).map_err(|d| d.at(settings.key_place("solver_type")))?;
-    let Build::Factory(factory) = entry.build else { unreachable!("linear solvers register a factory") };
-    let factory = factory.downcast_ref::<EngineFactory>().expect("linear solvers register an EngineFactory");
-    let engine = factory(request);
-    let condenses = matches!(&engine, Engine::ConjugateGradient(krylov) | Engine::Gmres { krylov, .. }
-        if matches!(krylov.multipliers, Multipliers::Condense(_)));
-    let how = if condenses { ", multipliers are condensed" } else { "" };
-    let solver = create(engine);
+    let entry = registry::require::<LinearSolverEntry>(name).map_err(|d| d.at(settings.key_place("solver_type")))?;
+    let solver = (entry.build)(request)?;
     let asked = if given.is_empty() { "no linear solver named".to_owned() } else { format!("\"{given}\"") };
-    let says = format!("linear solver: {asked} is served by {}{how}", solver.says());
+    let says = format!("linear solver: {asked} is served by {}", solver.says());
     Ok((solver, says))
 }
 
@@ -64,6 +67,12 @@ const MULTIGRID: usize = 70_000;
 /// this is where its memory may end.
 #[cfg(feature = "petsc")]
 const FACTORISED: usize = 500_000;
+
+/// Unknowns of all ranks; collective.
+pub(crate) fn unknowns_of_all(part: &ModelPart, system: &System) -> usize {
+    let own = system.dofs.dofs().iter().filter(|dof| part.owns_node(dof.node as usize)).count();
+    if part.share.is_some() { world().total(own as f64) as usize } else { own }
+}
 
 /// What PETSc solves with on several ranks, and a sentence saying so; `None` where rank 0 shall solve for all.
 ///
@@ -103,31 +112,31 @@ pub(super) fn petsc(
     Ok(Some((chosen, format!("linear solver: PETSc over all ranks, {engine}"))))
 }
 
-fn direct(_: &EngineRequest<'_>) -> Engine {
-    Engine::Direct(DirectSettings::default())
+fn direct(_: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
+    Ok(create(Engine::Direct(DirectSettings::default())))
 }
 
 /// Multigrid by the settings of a deck, with the direct engine below `least` equations where they do not say otherwise.
-fn multigrid_from(request: &EngineRequest<'_>, least: [usize; 2]) -> Engine {
+fn multigrid_from(request: &LinearSolverRequest<'_>, least: [usize; 2]) -> Result<Box<dyn LinearSolver>> {
     let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
     let tolerance = number("tolerance").map_or(request.tolerance, |tolerance| tolerance.min(request.tolerance));
-    Engine::Multigrid(MultigridSettings {
+    Ok(create(Engine::Multigrid(MultigridSettings {
         tolerance,
         loosest: if number("tolerance").is_some() { tolerance } else { LOOSEST },
         least: number("direct_below").map_or(least, |equations| [equations as usize; 2]),
         ..MultigridSettings::default()
-    })
+    })))
 }
 
-fn multigrid(request: &EngineRequest<'_>) -> Engine {
+fn multigrid(request: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
     multigrid_from(request, MultigridSettings::default().least)
 }
 
-fn automatic(request: &EngineRequest<'_>) -> Engine {
+fn automatic(request: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
     multigrid_from(request, MultigridSettings::FASTER)
 }
 
-fn krylov(request: &EngineRequest<'_>) -> KrylovSettings {
+fn krylov(request: &LinearSolverRequest<'_>) -> KrylovSettings {
     let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
     let multipliers = request.multipliers;
     let mut krylov = KrylovSettings { preconditioner: Preconditioner::Ilu0, multipliers, ..KrylovSettings::default() };
@@ -140,28 +149,28 @@ fn krylov(request: &EngineRequest<'_>) -> KrylovSettings {
     krylov
 }
 
-register! { LinearSolver "sparse_lu",
+register! { LinearSolverEntry "sparse_lu",
     aliases: &["skyline_lu_factorization", "pardiso_lu", "pardiso_ldlt", "pardiso_llt", "sparse_cg", "sparse_qr",
         "super_lu", "SuperLUSolver", "LUSkylineFactorizationSolver", "umfpack", "mumps", "direct"],
     about: "multifrontal factorisation; the interface of contact in a dense Schur complement",
-    build: Build::Factory(&(direct as EngineFactory)),
+    build: direct,
 }
-register! { LinearSolver "automatic",
+register! { LinearSolverEntry "automatic",
     about: "what is fastest: factorisation of small systems, multigrid for big ones",
-    build: Build::Factory(&(automatic as EngineFactory)),
+    build: automatic,
 }
-register! { LinearSolver "amgcl",
+register! { LinearSolverEntry "amgcl",
     aliases: &["AMGCL", "amgcl_raw", "multigrid", "deflated_cg"],
     about: "smoothed-aggregation multigrid with rigid motions, for conjugate gradients or GMRES",
-    build: Build::Factory(&(multigrid as EngineFactory)),
+    build: multigrid,
 }
-register! { LinearSolver "cg",
+register! { LinearSolverEntry "cg",
     aliases: &["CGSolver", "conjugate_gradient"],
     about: "conjugate gradients with incomplete LU; GMRES where contact leaves no symmetry, with condensed multipliers",
-    build: Build::Factory(&((|request| Engine::ConjugateGradient(krylov(request))) as EngineFactory)),
+    build: |request| Ok(create(Engine::ConjugateGradient(krylov(request)))),
 }
-register! { LinearSolver "gmres",
+register! { LinearSolverEntry "gmres",
     aliases: &["bicgstab", "BICGSTABSolver", "tfqmr", "TFQMRSolver"],
     about: "restarted GMRES with incomplete LU; multipliers of contact are condensed",
-    build: Build::Factory(&((|request| Engine::Gmres { krylov: krylov(request), restart: 100 }) as EngineFactory)),
+    build: |request| Ok(create(Engine::Gmres { krylov: krylov(request), restart: 100 })),
 }

@@ -1,0 +1,124 @@
+//! The registered elements and conditions: a kind of the mesh with what computes it.
+
+use std::ops::Deref;
+
+use super::block::{BlockRequest, EntityBlock};
+use crate::collect_kind;
+use crate::diagnostics::{Diagnostic, Result};
+use crate::geometry::Shape;
+use crate::model::{EntityKind, Role};
+use crate::registry::{self, Entry};
+
+/// Makes the block of entities of one kind.
+pub type BlockFactory = fn(&BlockRequest<'_>) -> Result<Box<dyn EntityBlock>>;
+
+/// What computes the entities of a kind.
+#[derive(Clone, Copy)]
+pub enum Build {
+    /// A block of those of the mesh.
+    Block(BlockFactory),
+    /// Blocks of the pairs that a search makes; a mesh cannot have them.
+    Pairs,
+}
+
+/// Declares the entries of one table.
+macro_rules! entity_entry {
+    ($(#[$doc:meta])* $type:ident, $role:ident($word:literal, $unknown:literal)) => {
+        $(#[$doc])*
+        pub struct $type {
+            kind: EntityKind,
+            /// What computes its entities.
+            pub build: Build,
+        }
+
+        impl $type {
+            /// For [`crate::register`].
+            pub const fn new(entry: Entry, build: Build) -> Self {
+                Self { kind: EntityKind::new(Role::$role, entry), build }
+            }
+
+            /// Its reference cell.
+            pub const fn cell(mut self, cell: Option<Shape>) -> Self {
+                self.kind.cell = cell;
+                self
+            }
+
+            /// Dimensions of the space it lives in.
+            pub const fn space(mut self, space: usize) -> Self {
+                self.kind.space = space;
+                self
+            }
+
+            /// Variables with history that its nodes have: name and number of components.
+            pub const fn nodal(mut self, nodal: &'static [(&'static str, usize)]) -> Self {
+                self.kind.nodal = nodal;
+                self
+            }
+        }
+
+        impl Deref for $type {
+            type Target = EntityKind;
+
+            fn deref(&self) -> &EntityKind {
+                &self.kind
+            }
+        }
+
+        collect_kind! { $type($word, $unknown) }
+    };
+}
+
+entity_entry! {
+    /// A registered element: a piece of a body.
+    ElementEntry, Element("element", "unknown-element")
+}
+entity_entry! {
+    /// A registered condition: a piece of a boundary, or a pair of them.
+    ConditionEntry, Condition("condition", "unknown-condition")
+}
+
+/// The registered kind of that name or alias.
+pub fn find_kind(role: Role, name: &str) -> Option<&'static EntityKind> {
+    match role {
+        Role::Element => registry::find::<ElementEntry>(name).map(|entry| &**entry),
+        Role::Condition => registry::find::<ConditionEntry>(name).map(|entry| &**entry),
+    }
+}
+
+/// As [`find_kind`].
+///
+/// # Errors
+/// As [`registry::require`].
+pub fn require_kind(role: Role, name: &str) -> Result<&'static EntityKind, Diagnostic> {
+    match role {
+        Role::Element => registry::require::<ElementEntry>(name).map(|entry| &**entry),
+        Role::Condition => registry::require::<ConditionEntry>(name).map(|entry| &**entry),
+    }
+}
+
+/// Names and aliases of the registered kinds, sorted.
+pub fn kind_names(role: Role) -> Vec<&'static str> {
+    match role {
+        Role::Element => registry::names::<ElementEntry>(),
+        Role::Condition => registry::names::<ConditionEntry>(),
+    }
+}
+
+/// What makes blocks of a registered kind; `None` for one that is not, and for pairs.
+pub fn block_factory(kind: &EntityKind) -> Option<BlockFactory> {
+    let build = match kind.role {
+        Role::Element => registry::find::<ElementEntry>(kind.name)?.build,
+        Role::Condition => registry::find::<ConditionEntry>(kind.name)?.build,
+    };
+    match build {
+        Build::Block(make) => Some(make),
+        Build::Pairs => None,
+    }
+}
+
+/// The registered kinds that make blocks of a mesh, elements first.
+pub fn block_kinds() -> Vec<&'static EntityKind> {
+    let elements = registry::all::<ElementEntry>().into_iter().map(|entry| (&**entry, entry.build));
+    let conditions = registry::all::<ConditionEntry>().into_iter().map(|entry| (&**entry, entry.build));
+    elements.chain(conditions).filter(|(_, build)| matches!(build, Build::Block(_))).map(|(kind, _)| kind).collect()
+}

@@ -1,0 +1,20 @@
+//! Names of the reference program that are known and not there.
+
+/// Names of one kind that are known and not there, by how they begin.
+pub struct Absent {
+    /// The word of their kind.
+    pub kind: &'static str,
+    /// Beginnings of the names.
+    pub stems: &'static [&'static str],
+    /// What to use instead.
+    pub remedy: &'static str,
+}
+
+inventory::collect!(Absent);
+
+/// What to use instead of a known name that is not there; of several beginnings the longest counts.
+pub fn instead_of(kind: &str, name: &str) -> Option<&'static str> {
+    let all = inventory::iter::<Absent>().filter(|absent| absent.kind == kind);
+    let known = all.flat_map(|absent| absent.stems.iter().map(|stem| (*stem, absent.remedy)));
+    known.filter(|(stem, _)| name.starts_with(stem)).max_by_key(|(stem, _)| stem.len()).map(|(_, remedy)| remedy)
+}

@@ -1,0 +1,36 @@
+//! How an assembled system reaches its linear solver: the builder-and-solver of a deck.
+//!
+//! Fixities and constraints are always eliminated during assembly; what a builder may do is change the system between
+//! assembly and solution, as scaling its rows does, by a solver around the deck's.
+
+use zelus_linear_algebra::LinearSolver;
+
+use crate::diagnostics::Result;
+use crate::parameters::Settings;
+use crate::{register, registered_kind};
+
+/// What a builder does.
+#[derive(Clone, Copy)]
+pub enum Builder {
+    /// The system goes to the solver as it is.
+    Direct,
+    /// A solver around the deck's, which is given with all solver settings.
+    Around(fn(&Settings, Box<dyn LinearSolver>) -> Result<Box<dyn LinearSolver>>),
+}
+
+registered_kind! {
+    /// A builder-and-solver that decks name.
+    pub struct BuilderEntry("builder_and_solver", "unknown-name") {
+        build: Builder;
+    }
+}
+
+register! { BuilderEntry "block",
+    aliases: &["block_lagrange"],
+    about: "fixities and constraints are eliminated; every builder gives the same answer",
+    build: Builder::Direct,
+}
+register! { BuilderEntry "elimination",
+    about: "fixities and constraints are eliminated; every builder gives the same answer",
+    build: Builder::Direct,
+}
