@@ -21,6 +21,7 @@ use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, Opera
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Pair, PairKey, PairRequest, Previous, condition_name, find_family, group_by_surroundings,
 };
+use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
 use zelus_core::entities::require_kind;
 use zelus_core::entities::{LocalSystems, Want};
@@ -52,6 +53,7 @@ struct Contact {
     block: Box<dyn ContactBlock>,
     interface: Interface,
     patches: Arc<NormalPatches>,
+    states: SlaveStates,
 }
 
 impl Contact {
@@ -157,9 +159,20 @@ impl Contact {
         let (around, (pairs, nodes)) = groups.into_iter().next().expect("one pair");
         let entry =
             require_kind(Role::Condition, &condition_name(family.condition, slave, master)).expect("a condition");
-        let request = PairRequest { entry, pairs, nodes, around, bodies, patches: patches.clone(), parameters };
+        let mut states = SlaveStates::of(&part, interface.nodes_of(Roles::Slave), family.columns());
+        states.read_friction(&part.nodes, &COULOMB);
+        let request = PairRequest {
+            entry,
+            pairs,
+            nodes,
+            around,
+            bodies,
+            patches: patches.clone(),
+            parameters,
+            states: Arc::new(states.clone()),
+        };
         let block = (family.block)(slave, master, request).expect("a block");
-        Self { part, block, interface, patches }
+        Self { part, block, interface, patches, states }
     }
 
     /// Moves the mesh by these displacements, `before` being those of the last state.
@@ -169,6 +182,8 @@ impl Contact {
         }
         self.part.move_mesh();
         self.patches.write(&mut self.part);
+        self.states.read_normals(&self.part.nodes);
+        self.block.set_states(Arc::new(self.states.clone()));
         let normal = |facet: usize| {
             let facet = &self.interface.facets[facet];
             let x: Vec<Vec3> = facet.nodes.iter().map(|&n| self.part.nodes.current[n as usize]).collect();

@@ -8,8 +8,9 @@ use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
-    ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Previous, condition_name,
+    ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, Previous, condition_name,
 };
+use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
@@ -198,6 +199,8 @@ impl Setting {
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         };
+        let mut states = SlaveStates::of(&part, (masters as u32..count as u32).collect(), family.columns());
+        states.read_friction(&part.nodes, &COULOMB);
         let pair = Pair {
             key: PairKey { interface: 0, slave: 0, master: 0 },
             slave_normal: self.slave_normal,
@@ -215,6 +218,7 @@ impl Setting {
             bodies: Arc::default(),
             patches: Arc::default(),
             parameters: Arc::new(parameters),
+            states: Arc::new(states.clone()),
         };
         let block = (family.block)(slave, master, request);
         assert_eq!(block.is_some(), entry.is_some(), "{name}: the name is registered for the shapes with a block");
@@ -222,7 +226,7 @@ impl Setting {
         part.move_mesh();
         let here = part.nodes.current.clone();
         part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));
-        block.keep_operators(&part.view(), &|_| true);
+        block.keep_operators(Present { view: &part.view(), states: &states, own: &|_| true });
         part.nodes.current = here;
         for (row, value) in self.multiplier_rows(block.as_ref()).zip(self.multiplier_values(block.as_ref())) {
             set(&mut part, block.as_ref(), row, value);

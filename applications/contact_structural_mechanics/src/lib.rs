@@ -2,8 +2,8 @@
 //!
 //! In the order of the data: [`interface`] makes facets of a deck's parts, [`search`] finds the pairs that may touch,
 //! [`mortar`] integrates a pair to D, M and the weighted gap, [`formulations`] state each method as the residual of one
-//! pair, [`pairs`] run them over blocks, [`interaction`] puts all of it into the Newton loop with the active set as a
-//! stage. `families` registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside
+//! pair, [`slave_states`] are what is known of slave nodes, [`pairs`] run formulations over blocks, [`interaction`] puts all
+//! of it into the Newton loop with the active set as a stage. `families` registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside
 //! them.
 
 pub mod variables;
@@ -13,6 +13,7 @@ pub mod mortar;
 pub mod formulations;
 pub mod friction_law;
 pub mod resolution;
+pub mod slave_states;
 pub mod active_set;
 pub mod penalty_adaptation;
 pub mod pairs;

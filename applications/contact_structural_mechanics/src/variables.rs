@@ -13,13 +13,9 @@ register_variable! {
     pub WEIGHTED_VECTOR_RESIDUAL: [f64; 3] = "Residual of a tied vector, integrated with dual shape functions.";
     pub FRICTION_TRACTION: [f64; 3] = "Tangential traction on a slave node by the penalty method, carried from step to step (force per area).";
     pub TRIAL_TRACTION: [f64; 3] = "Tangential traction on a slave node before the law of friction limits it (force per area).";
-    pub MEAN_WEIGHTED_GAP: f64 = "Weighted gaps of the pairs of a slave node, averaged by their areas (length times area).";
-    pub HELD_IN_CONTACT: f64 = "1 at slave nodes around which points are in contact until the next solve, whatever their pressure.";
-    pub HELD_IN_STICK: f64 = "1 at slave nodes around which points in contact stick until the next solve, whatever their traction.";
     pub CARRIED_TRACTION: [f64; 3] = "Tangential traction of contact less that of the slave's body by Nitsche's method, carried from step to step (force per area).";
     pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
-    pub HELD_MULTIPLIER: [f64; 3] = "What becomes of the components of a multiplier where supports hold both sides: 0 own equation, 1 kept, 2 as its neighbours, 3 kept in stick.";
     pub NODAL_H: f64 = "Distance to the nearest node that shares an element (length).";
     pub INITIAL_PENALTY: f64 = "Penalty parameter of contact (force per length cubed).";
     pub MULTIPLIER_WEIGHT: f64 = "What the equation of a slave node counts its multiplier with where it states a traction (force times area).";
@@ -28,9 +24,6 @@ register_variable! {
     pub TRESCA_FRICTION_THRESHOLD: f64 = "Tresca's limit of the tangential traction (force per area).";
     pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding.";
     pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";
-    pub NORMAL_OF_MASTER: f64 = "1 at slave nodes on sharp edges, whose normal is that of what they meet and does not turn with their facets.";
-    pub TURNING_BY_SLIP: f64 = "Tangential traction by weighted slip across the direction of sliding (force per length to the fifth).";
-    pub TURNING_BY_MULTIPLIER: f64 = "Turning of the direction of sliding by the tangential multiplier.";
     pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Normal traction of a slave node, negative in contact: scale factor times normal multiplier, plus penalty times weighted gap where pairs augment; of penalty methods their traction.";
     pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";
     kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";

@@ -27,18 +27,6 @@ pub enum Held {
 }
 
 impl Held {
-    const ALL: [Self; 4] = [Self::Free, Self::Kept, Self::Follows, Self::KeptInStick];
-
-    /// As a number of a nodal variable.
-    pub fn code(self) -> f64 {
-        f64::from(self as u8)
-    }
-
-    /// From a number of a nodal variable.
-    pub fn of_code(code: f64) -> Self {
-        Self::ALL.into_iter().find(|held| held.code() == code).unwrap_or_default()
-    }
-
     /// Whether both sides stand still along it.
     pub fn is_still(self) -> bool {
         matches!(self, Self::Kept | Self::Follows)
@@ -128,12 +116,5 @@ mod tests {
         // What moves with its supports is not restricted, and a clamp leaves no free normal.
         assert_eq!(along_free_tangents([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [Held::KeptInStick; 3]), [1.0, 0.0, 0.0]);
         assert_eq!(free_normal(slope, [Held::Follows; 3]), [0.0; 3]);
-    }
-
-    #[test]
-    fn codes_come_back() {
-        for held in Held::ALL {
-            assert_eq!(Held::of_code(held.code()), held);
-        }
     }
 }

@@ -1,10 +1,10 @@
 //! The stage that adapts penalties and the dynamic factor node by node, after the active set of an iteration.
 
-use zelus_core::model::ModelPart;
-use zelus_core::model::flags::ACTIVE;
+use zelus_core::model::{ModelPart, Nodes};
 
 use crate::penalty_adaptation::{Growth, PenaltyRule, dynamic_factor};
-use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_AREA, NODAL_H, WEIGHTED_GAP};
+use crate::slave_states::{SlaveState, SlaveStates};
+use crate::variables::NODAL_H;
 
 /// Least share of a penalty that stays: a gap of round-off would otherwise take all of it away.
 const LEAST_SHARE: f64 = 1e-3;
@@ -52,19 +52,19 @@ impl AdaptationSettings {
 
     /// Weighted gaps of the slave nodes before the next integration, when they will be needed: those of the last iterate,
     /// in explicit steps those of the last step.
-    pub(super) fn gaps(self, part: &ModelPart, slaves: &[u32], explicit: bool) -> Vec<f64> {
-        let gaps = part.nodes.history.values(&WEIGHTED_GAP, usize::from(explicit));
-        if self.acts() || explicit { slaves.iter().map(|&n| gaps[n as usize]).collect() } else { Vec::new() }
+    pub(super) fn gaps(self, states: &SlaveStates, explicit: bool) -> Vec<f64> {
+        let gap = |(_, state): (u32, &SlaveState)| if explicit { state.last.weighted_gap } else { state.weighted_gap };
+        if self.acts() || explicit { states.iter().map(gap).collect() } else { Vec::new() }
     }
 
-    /// Adapts INITIAL_PENALTY and DYNAMIC_FACTOR of the active slave nodes.
+    /// Adapts penalties and dynamic factors of the active slave nodes.
     ///
     /// `penalty` is the penalty of the run, `previous` the weighted gaps of the last iterate, and `growth` how explicit steps
     /// stiffen the penalty.
     pub(super) fn adapt(
         self,
-        part: &mut ModelPart,
-        slaves: &[u32],
+        nodes: &Nodes,
+        states: &mut SlaveStates,
         penalty: f64,
         previous: &[f64],
         growth: Option<Growth>,
@@ -72,31 +72,28 @@ impl AdaptationSettings {
         if !self.acts() && growth.is_none() {
             return;
         }
-        for (&node, &before) in slaves.iter().zip(previous) {
-            let at = node as usize;
-            let values = &mut part.nodes.values;
-            let area = values.values(&NODAL_AREA, 0)[at];
+        let sizes = nodes.values.values(&NODAL_H, 0);
+        let mut previous = previous.iter();
+        states.for_each(|node, state| {
+            let before = previous.next().expect("a gap of every slave node");
             // The gap of an open node says nothing about its penalty.
-            if area <= 0.0 || !part.nodes.flags.is(ACTIVE, at) {
-                continue;
-            }
-            let gap = part.nodes.history.values(&WEIGHTED_GAP, 0)[at] / area;
-            let before = before / area;
-            let mut adapted = values.values(&INITIAL_PENALTY, 0)[at];
+            let Some(gap) = state.gap().filter(|_| state.active) else { return };
+            let before = before / state.area;
+            let mut adapted = state.penalty;
             if self.rule.is_none() {
                 adapted = growth.map_or(penalty, |growth| growth.stiffened(penalty, gap));
             }
             if self.dynamic_factor {
-                values.values_mut(&DYNAMIC_FACTOR, 0)[at] = dynamic_factor(gap, before);
+                state.dynamic_factor = dynamic_factor(gap, before);
             }
             if let Some(rule) = self.rule {
-                let size = values.values(&NODAL_H, 0)[at];
+                let size = sizes[node as usize];
                 let next = rule.adapt(adapted, gap, before, [self.min_gap_factor * size, self.max_gap_factor * size]);
                 if next.is_finite() {
                     adapted = next.max(LEAST_SHARE * rule.floor_refers_to(penalty, adapted));
                 }
             }
-            values.values_mut(&INITIAL_PENALTY, 0)[at] = adapted;
-        }
+            state.penalty = adapted;
+        });
     }
 }

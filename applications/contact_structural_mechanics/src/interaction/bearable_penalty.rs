@@ -11,6 +11,7 @@ use zelus_core::model::variables::{DISPLACEMENT, NODAL_MASS};
 use zelus_core::strategies::CRITICAL_STEP;
 
 use crate::interface::{Interface, positions};
+use crate::slave_states::SlaveStates;
 use crate::solver::DELTA_TIME_FACTOR;
 use crate::variables::INITIAL_PENALTY;
 
@@ -32,6 +33,7 @@ impl BearablePenalty {
     pub(super) fn begin_step(
         &mut self,
         part: &mut ModelPart,
+        states: &mut SlaveStates,
         interfaces: &[Interface],
         revolution: Option<f64>,
         stiffened: f64,
@@ -51,7 +53,7 @@ impl BearablePenalty {
         let fixed = given || weighted;
         if !fixed {
             part.info.values.insert(INITIAL_PENALTY.name(), most);
-            part.nodes.values.values_mut(&INITIAL_PENALTY, 0).iter_mut().for_each(|own| *own = own.min(most));
+            states.for_all(|state| state.penalty = state.penalty.min(most));
         }
         if !std::mem::replace(&mut self.said, true) {
             part.messages.push(if fixed { warn(step, penalty, most) } else { note(step, penalty, most) });

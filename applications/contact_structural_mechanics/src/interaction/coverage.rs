@@ -8,39 +8,42 @@
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{cross, norm, sub};
 
+use super::nodal_sums::NodalSums;
 use crate::interface::{Interface, Roles, positions};
+use crate::slave_states::SlaveStates;
 
-/// Of each slave node whether it is beside the master: `area` that it integrates, as a share of its facets, is less than
-/// `least` of the share of a neighbour, half of that where it is in contact (`active`).
+/// Says of each slave node that is beside the master that it is isolated: the area that it integrates, as a share of its facets,
+/// is less than `least` of the share of a neighbour, half of that where it is in contact.
 ///
 /// `weight` of a node is what lengths and areas count with about an axis of revolution.
-pub(super) fn beside(
+pub(super) fn isolate_beside(
     part: &ModelPart,
+    states: &mut SlaveStates,
     interfaces: &[Interface],
-    area: &[f64],
     least: f64,
     weight: impl Fn(u32) -> f64,
-    active: impl Fn(u32) -> bool,
-) -> Vec<bool> {
+) {
+    let slaves = states.slaves();
     let facets = || interfaces.iter().flat_map(|i| &i.facets).filter(|facet| facet.role == Roles::Slave);
-    let mut whole = vec![0.0; area.len()];
+    let mut whole = NodalSums::<1>::new(part.nodes.len(), &slaves);
     for facet in facets() {
         let own = measure(positions(facet, part, &mut [[0.0; 3]; 4])) / facet.nodes.len() as f64;
         let mean = facet.nodes.iter().map(|&node| weight(node)).sum::<f64>() / facet.nodes.len() as f64;
         // What the shape function of a node integrates of a weight along a line: on the axis it is not nothing.
-        facet.nodes.iter().for_each(|&node| whole[node as usize] += own * (weight(node) + 2.0 * mean) / 3.0);
+        facet.nodes.iter().for_each(|&node| whole[node][0] += own * (weight(node) + 2.0 * mean) / 3.0);
     }
-    let share = |node: u32| match whole[node as usize] {
-        whole if whole > 0.0 => area[node as usize] / whole,
+    let share = |node: u32| match whole[node] {
+        [whole] if whole > 0.0 => states[node].area / whole,
         _ => 0.0,
     };
-    let mut best = vec![0.0_f64; area.len()];
+    let mut best = NodalSums::<1>::new(part.nodes.len(), &slaves);
     for facet in facets() {
         let most = facet.nodes.iter().map(|&node| share(node)).fold(0.0, f64::max);
-        facet.nodes.iter().for_each(|&node| best[node as usize] = best[node as usize].max(most));
+        facet.nodes.iter().for_each(|&node| best[node][0] = best[node][0].max(most));
     }
-    let bound = |node: u32| least * if active(node) { 0.5 } else { 1.0 };
-    (0..area.len() as u32).map(|node| share(node) < bound(node) * best[node as usize]).collect()
+    let bound = |node: u32| least * if states[node].active { 0.5 } else { 1.0 };
+    let beside: Vec<bool> = slaves.iter().map(|&node| share(node) < bound(node) * best[node][0]).collect();
+    slaves.iter().zip(beside).for_each(|(&node, beside)| states[node].isolated |= beside);
 }
 
 /// Length of a line, area of a surface.

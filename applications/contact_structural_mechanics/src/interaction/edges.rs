@@ -11,14 +11,14 @@ use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use super::pairing::Pairing;
 use crate::interface::{Facet, centre_normal, positions};
-use crate::variables::NORMAL_OF_MASTER;
+use crate::slave_states::SlaveStates;
 
 /// Cosine of the angle between a facet and the mean normal of its node, beyond which the node is on an edge: 35°.
 const SHARP: f64 = 0.82;
 
 /// Gives slave nodes on sharp edges the normal of what they meet, turned round.
-pub(super) fn turn_edges(part: &mut ModelPart, pairing: &Pairing) {
-    part.nodes.values.values_mut(&NORMAL_OF_MASTER, 0).fill(0.0);
+pub(super) fn turn_edges(part: &mut ModelPart, states: &mut SlaveStates, pairing: &Pairing) {
+    states.for_all(|state| state.normal_of_master = false);
     let met = opposite_normals(part, pairing);
     for (node, sum) in met {
         let size = norm(sum);
@@ -29,7 +29,7 @@ pub(super) fn turn_edges(part: &mut ModelPart, pairing: &Pairing) {
         let at = node as usize;
         let normal = scale(sum, 1.0 / size);
         part.nodes.history.values_mut(&NORMAL, 0)[3 * at..3 * at + 3].copy_from_slice(&normal);
-        part.nodes.values.values_mut(&NORMAL_OF_MASTER, 0)[at] = 1.0;
+        states[node].normal_of_master = true;
     }
 }
 

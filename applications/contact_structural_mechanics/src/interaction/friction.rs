@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::flags::SLIP;
-use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::model::{ModelPart, Nodes};
 use zelus_core::vector3::{add, dot, norm, scale};
 
-use super::activation;
+use super::decision::slip;
 use super::step_parameters::StepParameters;
 use crate::active_set::{Margin, SlipRule};
 use crate::formulations::NodeState;
@@ -15,6 +14,7 @@ use crate::friction_law::{COULOMB, FrictionLaw};
 use crate::interface::Interface;
 use crate::mortar::tangential;
 use crate::pairs::{Friction, Multiplier};
+use crate::slave_states::{SlaveState, SlaveStates};
 use crate::variables::NODAL_H;
 
 /// Slip, in mesh sizes, below which its direction says nothing.
@@ -77,38 +77,25 @@ pub(super) fn prepare(
 }
 
 /// Step start: every so many steps the nodes with friction begin in stick.
-pub(super) fn start_in_stick(part: &mut ModelPart, slaves: &[u32], rule: SlipRule, settings: &FrictionSettings) {
-    if rule == SlipRule::Pure || settings.reset_frequency.is_none_or(|f| !part.info.step.is_multiple_of(f)) {
-        return;
-    }
-    for &node in slaves {
-        let smooth = settings.law.bound_at(&part.nodes, node as usize).is_smooth();
-        part.nodes.flags.set(SLIP, node as usize, smooth);
+pub(super) fn start_in_stick(step: usize, states: &mut SlaveStates, rule: SlipRule, settings: &FrictionSettings) {
+    if rule != SlipRule::Pure && settings.reset_frequency.is_some_and(|frequency| step.is_multiple_of(frequency)) {
+        states.for_each(|_, state| state.slides = Some(state.friction.is_smooth()));
     }
 }
 
 /// Puts the tractions of sliding nodes exactly at their bound: tolerances leave a little more or less, which is much where
 /// the pressure is small.
-pub(super) fn meet_bounds(
-    part: &mut ModelPart,
-    slaves: &[u32],
-    multiplier: Multiplier,
-    law: &FrictionLaw,
-    scale_factor: f64,
-) {
-    let Multiplier::Vector(variable) = multiplier else { return };
-    for at in slaves.iter().map(|&n| n as usize) {
-        if NodeState::of_flags(&part.nodes.flags, at) != NodeState::Slip {
-            continue;
-        }
-        let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, at));
-        let bound = law.bound_at(&part.nodes, at);
-        let traction = &mut part.nodes.history.values_mut(variable, 0)[3 * at..3 * at + 3];
-        let whole = [traction[0], traction[1], traction[2]];
-        let (pressure, along) = (dot(whole, normal), tangential(whole, normal));
-        let limit = bound.at(scale_factor * pressure).max(0.0) / scale_factor;
+pub(super) fn meet_bounds(nodes: &mut Nodes, states: &SlaveStates, multiplier: Multiplier, scale_factor: f64) {
+    if !matches!(multiplier, Multiplier::Vector(_)) {
+        return;
+    }
+    for (node, state) in states.iter().filter(|(_, state)| state.contact() == NodeState::Slip) {
+        let whole = multiplier.value(nodes, node);
+        let (pressure, along) = (dot(whole, state.normal), tangential(whole, state.normal));
+        let limit = state.friction.at(scale_factor * pressure).max(0.0) / scale_factor;
         if norm(along) > 0.0 {
-            traction.copy_from_slice(&add(scale(normal, pressure), scale(along, limit / norm(along))));
+            let met = add(scale(state.normal, pressure), scale(along, limit / norm(along)));
+            multiplier.set(nodes, node, met);
         }
     }
 }
@@ -117,22 +104,23 @@ pub(super) fn meet_bounds(
 /// conditions.
 pub(super) fn warn_of_pushing(
     part: &ModelPart,
-    slaves: &[u32],
+    states: &SlaveStates,
     multiplier: Multiplier,
     parameters: &StepParameters,
 ) -> Option<Diagnostic> {
-    let Multiplier::Vector(variable) = multiplier else { return None };
-    let vector_of = |name: &str, at: usize| part.nodes.history.get(name).map_or([0.0; 3], |f| f.vector(0, at));
+    if !matches!(multiplier, Multiplier::Vector(_)) {
+        return None;
+    }
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let pushed = |at: &usize| {
-        let slip = activation::slip(part, *at, multiplier, parameters);
-        let traction = tangential(vector_of(variable.name(), *at), vector_of(NORMAL.name(), *at));
-        NodeState::of_flags(&part.nodes.flags, *at) == NodeState::Slip
-            && !parameters.friction_law.bound_at(&part.nodes, *at).is_smooth()
-            && norm(slip) > LEAST_SLIP * sizes[*at]
+    let pushed = |(node, state): &(u32, &SlaveState)| {
+        let slip = slip(&part.nodes, *node, state, multiplier, parameters);
+        let traction = tangential(multiplier.value(&part.nodes, *node), state.normal);
+        state.contact() == NodeState::Slip
+            && !state.friction.is_smooth()
+            && norm(slip) > LEAST_SLIP * sizes[*node as usize]
             && dot(slip, traction) < 0.0
     };
-    let nodes: Vec<usize> = slaves.iter().map(|&n| n as usize).filter(pushed).map(|at| part.nodes.ids[at]).collect();
+    let nodes: Vec<usize> = states.iter().filter(pushed).map(|(node, _)| part.nodes.ids[node as usize]).collect();
     let first = nodes.first()?;
     let fact = format!(
         "step {}: friction pushes {} sliding nodes along their motion, e.g. node {first}",

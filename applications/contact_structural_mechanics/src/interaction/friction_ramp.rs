@@ -6,14 +6,13 @@
 //! What converges in the end is the step as the deck has it.
 
 use zelus_core::entities::Outer;
-use zelus_core::model::flags::{ACTIVE, SLIP};
-use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, scale};
 
 use crate::friction_law::FrictionLaw;
 use crate::mortar::tangent;
 use crate::resolution::Resolution;
-use crate::variables::{NODAL_AREA, TANGENT_XI, WEIGHTED_SLIP};
+use crate::slave_states::SlaveStates;
 
 /// Shares of friction that act one after the other, each from where the one before has converged.
 const SHARES: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
@@ -66,7 +65,7 @@ impl FrictionRamp {
     pub(super) fn after_convergence(
         &mut self,
         part: &mut ModelPart,
-        slaves: &[u32],
+        states: &mut SlaveStates,
         law: &FrictionLaw,
         resolution: Resolution,
     ) -> Outer {
@@ -77,21 +76,20 @@ impl FrictionRamp {
         if stage + 2 < SHARES.len() {
             self.waiting = Some((stage + 1, numbers));
         }
+        states.read_friction(&part.nodes, law);
         if stage > 0 {
             return Outer::Again;
         }
-        for at in slaves.iter().map(|&n| n as usize) {
-            if !part.nodes.flags.is(ACTIVE, at) {
-                continue;
+        let dimension = part.info.domain_size;
+        states.for_each(|_, state| {
+            if state.active {
+                let area = state.area;
+                let slip = if area > 0.0 { scale(state.weighted_slip, area.recip()) } else { [0.0; 3] };
+                let slides = norm(resolution.vector_of(slip)) > 0.0 || state.friction.is_smooth();
+                state.tangent = tangent(slip, state.normal, dimension);
+                state.slides = Some(slides);
             }
-            let vector_of = |name: &str| part.nodes.history.get(name).map_or([0.0; 3], |field| field.vector(0, at));
-            let area = part.nodes.values.values(&NODAL_AREA, 0)[at];
-            let slip = if area > 0.0 { scale(vector_of(WEIGHTED_SLIP.name()), area.recip()) } else { [0.0; 3] };
-            let slides = norm(resolution.vector_of(slip)) > 0.0 || law.bound_at(&part.nodes, at).is_smooth();
-            let direction = tangent(slip, vector_of(NORMAL.name()), part.info.domain_size);
-            part.nodes.flags.set(SLIP, at, slides);
-            part.nodes.values.values_mut(&TANGENT_XI, 0)[3 * at..3 * at + 3].copy_from_slice(&direction);
-        }
+        });
         Outer::Again
     }
 }

@@ -15,7 +15,7 @@ use crate::interface::{
     Facet, Fixed, Interface, NodalNormals, NormalPatches, centre_normal, fixed_components, positions, symmetry_planes,
 };
 use crate::pairs::{Family, Multiplier};
-use crate::variables::HELD_MULTIPLIER;
+use crate::slave_states::SlaveStates;
 
 /// Share of a master facet by which a node may lie beyond its edge and still face it.
 const BESIDE: f64 = 0.02;
@@ -108,20 +108,21 @@ impl Holding {
         }
     }
 
-    /// Writes what becomes of the multipliers of held nodes in contact by this family.
-    pub(super) fn write<'a>(
+    /// Says of the slave nodes what becomes of their multipliers by this family.
+    pub(super) fn hold<'a>(
         &mut self,
         part: &mut ModelPart,
+        states: &mut SlaveStates,
         family: &Family,
         pairs: impl Iterator<Item = (&'a Facet, &'a Facet)> + Clone,
     ) {
-        let mut codes = vec![0.0; 3 * part.nodes.len()];
+        states.for_all(|state| state.held = [Held::Free; 3]);
         let held = if family.multiplier.is_unknown() { self.nodes(part, pairs.clone()) } else { BTreeMap::new() };
         let followed = followed(&held, pairs.clone().map(|(slave, _)| slave));
         let resting = self.resting(pairs);
         let mut dropped = BTreeMap::new();
         for (&node, own) in &held {
-            let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
+            let normal = states[node].normal;
             let rule = |c: usize| match () {
                 () if !own.components[c] => Held::Free,
                 () if own.moves => Held::KeptInStick,
@@ -141,12 +142,11 @@ impl Holding {
                 }
                 _ => continue,
             };
-            (0..3).for_each(|c| codes[3 * node as usize + c] = rules[c].code());
+            states[node].held = rules;
             dropped.insert(node, rules.map(Held::is_still));
         }
         let scalar = matches!(family.multiplier, Multiplier::Scalar(_));
         self.say(part, &dropped, scalar);
-        part.nodes.values.values_mut(&HELD_MULTIPLIER, 0).copy_from_slice(&codes);
     }
 
     /// Components in which nothing that a node faces can move.
@@ -195,12 +195,6 @@ fn foot(part: &ModelPart, node: u32, master: &Facet, points: &[[f64; 3]]) -> [f6
         slope if slope < -LEAST_SLOPE => add(at, scale(normal, dot(sub(points[0], at), across) / slope)),
         _ => at,
     }
-}
-
-/// What becomes of the components of a node's multiplier.
-pub(super) fn held_at(part: &ModelPart, node: usize) -> [Held; 3] {
-    let codes = part.nodes.values.values(&HELD_MULTIPLIER, 0);
-    codes.get(3 * node..3 * node + 3).map_or([Held::Free; 3], |own| std::array::from_fn(|c| Held::of_code(own[c])))
 }
 
 /// The components of held nodes that some node of their facets has free.

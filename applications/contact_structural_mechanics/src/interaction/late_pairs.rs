@@ -1,21 +1,20 @@
 //! Facets that have come to face each other within a step although the search at its start left them out.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use zelus_core::Result;
 use zelus_core::communication::world;
-use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
 use zelus_core::vector3::{add, dot, norm, sub};
 
-use super::contact_settings::ContactSettings;
-use super::pairing::{Pairing, add_up_nodes, searching};
-use super::step_parameters::StepParameters;
+use super::nodal_sums::NodalSums;
+use super::pairing::{Pairing, integrals, searching};
+use super::setup::Setup;
 use crate::interface::{Facet, centre_normal};
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
-use crate::variables::{NODAL_AREA, NODAL_H, WEIGHTED_GAP};
+use crate::slave_states::SlaveStates;
+use crate::variables::NODAL_H;
 
 /// Share of a node's area that a pair must integrate to be missed, and of a mesh size (its square in space, its way about the
 /// axis of revolution) that it must face to be in a master. Less than that is a sliver at the edge of a surface.
@@ -56,19 +55,18 @@ pub(super) struct Late {
 /// Facets that face each other now and are no pair, where that matters: at nodes in contact, and at nodes that they show to
 /// be in a master.
 ///
-/// They are those that a search would find now, within `limit`, and, however deep, those that crossed in the step. Weighted
-/// gaps and areas of the nodes must be those of the present state.
+/// They are those that a search would find now and, however deep, those that crossed in the step. The states
+/// must be integrated in the present configuration.
 ///
 /// # Errors
 /// Those of making blocks.
 pub(super) fn late_pairs(
     part: &ModelPart,
-    pairing: &Pairing,
-    settings: &ContactSettings,
-    parameters: &Arc<StepParameters>,
-    limit: f64,
+    (pairing, states): (&Pairing, &SlaveStates),
+    setup: &Setup,
     wanted: Wanted,
 ) -> Result<Late> {
+    let Setup { settings, parameters, .. } = setup;
     let known: BTreeSet<_> = pairing.keys().into_iter().collect();
     let near = pairing.candidates(part, settings).into_iter();
     let near = near.filter_map(|(key, within_reach)| (within_reach && !known.contains(&key)).then_some(key));
@@ -76,42 +74,37 @@ pub(super) fn late_pairs(
         .map(|key| pairing.pair(part, key))
         .partition(|pair| have_crossed(part, pairing.slave(pair.key), pairing.master(pair.key)));
     let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;
-    blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, limit))?);
-    let own = |nodes: &[u32]| part.evaluates_pair(nodes);
-    let mut gap = part.nodes.history.values(&WEIGHTED_GAP, 0).to_vec();
-    let mut area = part.nodes.values.values(&NODAL_AREA, 0).to_vec();
-    let (mut more_gap, mut more_area) = (vec![0.0; gap.len()], vec![0.0; gap.len()]);
-    let integrals: Vec<_> = blocks.iter().map(|block| block.integrate(&part.view(), &own)).collect();
+    blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, setup.limit()))?);
+    let slaves = states.slaves();
+    let mut more = NodalSums::<2>::new(part.nodes.len(), &slaves);
+    let integrals = integrals(&blocks, part, states);
     for (block, integrals) in blocks.iter().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate().filter(|(_, integral)| integral.overlapping) {
             for (local, &node) in block.slave_nodes(at).iter().enumerate() {
-                more_gap[node as usize] += integral.gap[local];
-                more_area[node as usize] += integral.area[local];
+                more[node][0] += integral.gap[local];
+                more[node][1] += integral.area[local];
             }
         }
     }
-    let slaves = pairing.slaves();
-    if part.share.is_some() {
-        add_up_nodes(part, &slaves, &mut [(1, &mut more_gap[..]), (1, &mut more_area[..])]);
-    }
-    gap.iter_mut().zip(&more_gap).for_each(|(sum, more)| *sum += more);
-    area.iter_mut().zip(&more_area).for_each(|(sum, more)| *sum += more);
+    more.over_ranks(part);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let active = |n: u32| part.nodes.flags.is(ACTIVE, n as usize);
+    let area = |node: u32| states[node].area + more[node][1];
     let inside = |&n: &u32| {
         let at = n as usize;
         let around =
             parameters.segmentation.revolution().map_or(1.0, |per_radius| per_radius * part.nodes.current[at][0]);
         let whole = around * sizes[at].powi(part.info.domain_size as i32 - 1);
-        !active(n) && more_area[at] > wanted.facing * whole && gap[at] < -wanted.depth * area[at]
+        let [more_gap, more_area] = more[n];
+        let gap = states[n].weighted_gap + more_gap;
+        !states[n].active && more_area > wanted.facing * whole && gap < -wanted.depth * area(n)
     };
     let nodes: BTreeSet<u32> = slaves.iter().copied().filter(inside).collect();
     let (mut pairs, mut missed) = (Vec::new(), Vec::new());
     for (block, integrals) in blocks.iter().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate() {
-            let matters = |(local, node): (usize, &u32)| {
-                nodes.contains(node)
-                    || active(*node) && integral.area[local].abs() > wanted.share * area[*node as usize].abs()
+            let matters = |(local, &node): (usize, &u32)| {
+                nodes.contains(&node)
+                    || states[node].active && integral.area[local].abs() > wanted.share * area(node).abs()
             };
             missed.push(integral.overlapping && block.slave_nodes(at).iter().enumerate().any(matters));
             pairs.push(&block.pairs()[at]);

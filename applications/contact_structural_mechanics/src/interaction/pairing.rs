@@ -15,16 +15,19 @@ use zelus_core::vector3::dot;
 
 use super::contact_settings::ContactSettings;
 use super::holding::Holding;
+use super::nodal_sums::NodalSums;
+use super::setup::Setup;
 use super::step_parameters::{NormalVariation, StepParameters};
 use crate::interface::{
     Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, slave_nodes,
 };
 use crate::mortar::{Habit, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Integral, Pair, PairKey, PairRequest, Previous, condition_name, group_by_shapes,
+    ContactBlock, Integral, Pair, PairKey, PairRequest, Present, Previous, condition_name, group_by_shapes,
     group_by_surroundings,
 };
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
+use crate::slave_states::SlaveStates;
 use crate::solver::AVERAGED_EDGES;
 
 /// Cosine of the angle at which facets look past each other, 84°.
@@ -44,6 +47,8 @@ pub(super) struct Pairing {
     pub touching: BTreeSet<u32>,
     /// Number of the present set of pairs.
     pub graph: u64,
+    /// The states that blocks evaluate with.
+    states: Arc<SlaveStates>,
     /// Pairs that another rank evaluates than the owner of their slave.
     pub moved: usize,
     saved: Vec<Pair>,
@@ -69,6 +74,7 @@ impl Pairing {
             blocks: Vec::new(),
             touching: BTreeSet::new(),
             graph: 1,
+            states: Arc::default(),
             moved: 0,
             saved: Vec::new(),
             warned_of_reach: false,
@@ -133,19 +139,14 @@ impl Pairing {
 
     /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
     ///
-    /// Lines behind each other by more than `limit` are not taken for a pair: they may be the far sides of a thin body. Those
+    /// Lines behind each other by more than the limit of the setup are not taken for a pair: they may be the far sides of a thin body. Those
     /// that are a pair stay one until the next search, however deep an iterate presses them in. Surfaces must not be farther
-    /// apart than `limit`.
+    /// apart than that.
     ///
     /// # Errors
     /// A condition for these shapes that is not registered.
-    pub(super) fn search(
-        &mut self,
-        part: &mut ModelPart,
-        settings: &ContactSettings,
-        parameters: &Arc<StepParameters>,
-        limit: f64,
-    ) -> Result<()> {
+    pub(super) fn search(&mut self, part: &mut ModelPart, states: &SlaveStates, setup: &Setup) -> Result<()> {
+        let Setup { settings, parameters, .. } = setup;
         let still = predicted_positions(part, settings.search.dynamic);
         let sides = |key: PairKey| (self.slave(key).role, self.master(key).role);
         let of_these_sides = |pair: &Pair| sides(pair.key) == (Roles::Slave, Roles::Master);
@@ -171,8 +172,8 @@ impl Pairing {
             part.nodes.current = still;
         }
         let before = self.keys();
-        self.set(known.into_values().collect(), settings, &searching(parameters, limit))?;
-        let found: Vec<(Pair, Meeting)> = self.pairs().into_iter().zip(self.integrals(part).1).collect();
+        self.set(known.into_values().collect(), settings, &searching(parameters, setup.limit()))?;
+        let found: Vec<(Pair, Meeting)> = self.pairs().into_iter().zip(self.integrals(part, states).1).collect();
         let lost = found.iter().filter(|(pair, i)| i.overlapping && beyond.contains(&pair.key)).count();
         warn_of_reach(part, lost, &mut self.warned_of_reach);
         // Slivers too: within the step they may grow to overlaps.
@@ -254,7 +255,8 @@ impl Pairing {
             let behind = |pair: &Pair| self.bodies.nodes([pair.key.interface, pair.key.slave]).to_vec();
             for (around, (pairs, nodes)) in group_by_surroundings(patches, behind, slave.nodes(), pairs, &nodes) {
                 let (bodies, patches, parameters) = (self.bodies.clone(), self.patches.clone(), parameters.clone());
-                let request = PairRequest { entry, pairs, nodes, around, bodies, patches, parameters };
+                let states = self.states.clone();
+                let request = PairRequest { entry, pairs, nodes, around, bodies, patches, parameters, states };
                 let block = (settings.family.block)(slave, master, request).ok_or_else(|| {
                     Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
                 })?;
@@ -273,9 +275,8 @@ impl Pairing {
     }
 
     /// The integrals of the pairs of this rank, and of all pairs how they meet.
-    pub(super) fn integrals(&self, part: &ModelPart) -> (Vec<Vec<Integral>>, Vec<Meeting>) {
-        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
-        let integrals: Vec<_> = self.blocks.iter().map(|block| block.integrate(&part.view(), &own)).collect();
+    pub(super) fn integrals(&self, part: &ModelPart, states: &SlaveStates) -> (Vec<Vec<Integral>>, Vec<Meeting>) {
+        let integrals = integrals(&self.blocks, part, states);
         let mut flags: Vec<bool> = integrals.iter().flatten().flat_map(|i| [i.overlapping, i.facing]).collect();
         if part.share.is_some() {
             world().any_of(&mut flags);
@@ -297,51 +298,53 @@ impl Pairing {
     }
 
     /// Step start: keeps the operators against which slip is measured, and forgets the habits of the last step. Slivers count
-    /// where `slivers` holds and the nodes of their slave, among `slaves`, have other overlaps; a node that only slivers
-    /// reach is beside the master.
-    pub(super) fn begin_step(&mut self, part: &ModelPart, slaves: &[u32], slivers: bool) {
+    /// where `slivers` holds and the nodes of their slave have other overlaps; a node that only slivers reach is beside the
+    /// master.
+    pub(super) fn begin_step(&mut self, part: &ModelPart, states: &SlaveStates, slivers: bool) {
         self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.habit = Habit::default());
         if slivers {
-            let mut area = vec![0.0; part.nodes.len()];
-            for (block, integrals) in self.blocks.iter().zip(&self.integrals(part).0) {
+            let slaves = states.slaves();
+            let mut area = NodalSums::new(part.nodes.len(), &slaves);
+            for (block, integrals) in self.blocks.iter().zip(&self.integrals(part, states).0) {
                 for (at, integral) in integrals.iter().enumerate() {
                     for (local, &node) in block.slave_nodes(at).iter().enumerate() {
-                        area[node as usize] += integral.area[local];
+                        area[node][0] += integral.area[local];
                     }
                 }
             }
-            add_up_nodes(part, slaves, &mut [(1, &mut area)]);
+            area.over_ranks(part);
             for block in &mut self.blocks {
-                let covered = |at: usize| block.slave_nodes(at).iter().all(|&node| area[node as usize] > 0.0);
+                let covered = |at: usize| block.slave_nodes(at).iter().all(|&node| area[node] > [0.0]);
                 let covered: Vec<bool> = (0..block.len()).map(covered).collect();
                 block.pairs_mut().iter_mut().zip(covered).for_each(|(pair, covered)| pair.habit.slivers = covered);
             }
         }
-        for block in &mut self.blocks {
-            block.keep_operators(&part.view(), &|nodes| part.evaluates_pair(nodes));
-        }
+        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
+        let present = Present { view: &part.view(), states, own: &own };
+        self.blocks.iter_mut().for_each(|block| block.keep_operators(present));
     }
 
     /// Lets pairs go on as they integrate now, until the step ends.
-    pub(super) fn keep_habits(&mut self, part: &ModelPart) {
-        for block in &mut self.blocks {
-            block.keep_habits(&part.view(), &|nodes| part.evaluates_pair(nodes));
-        }
+    pub(super) fn keep_habits(&mut self, part: &ModelPart, states: &SlaveStates) {
+        let own = |nodes: &[u32]| part.evaluates_pair(nodes);
+        let present = Present { view: &part.view(), states, own: &own };
+        self.blocks.iter_mut().for_each(|block| block.keep_habits(present));
+    }
+
+    /// Gives blocks the states with which the assembly evaluates them.
+    pub(super) fn set_states(&mut self, states: &SlaveStates) {
+        self.states = Arc::new(states.clone());
+        self.blocks.iter_mut().for_each(|block| block.set_states(self.states.clone()));
     }
 
     /// Takes more pairs in, within a step.
     ///
     /// # Errors
     /// Those of making blocks.
-    pub(super) fn add(
-        &mut self,
-        pairs: Vec<Pair>,
-        settings: &ContactSettings,
-        parameters: &Arc<StepParameters>,
-    ) -> Result<()> {
+    pub(super) fn add(&mut self, pairs: Vec<Pair>, setup: &Setup) -> Result<()> {
         let all = self.pairs().into_iter().chain(pairs).collect();
         self.graph += 1;
-        self.set(all, settings, parameters)
+        self.set(all, &setup.settings, &setup.parameters)
     }
 
     /// Keeps the pairs of an accepted state.
@@ -350,10 +353,10 @@ impl Pairing {
     }
 
     /// Goes back to the pairs kept last.
-    pub(super) fn restore(&mut self, settings: &ContactSettings, parameters: &Arc<StepParameters>) {
+    pub(super) fn restore(&mut self, setup: &Setup) {
         let saved = std::mem::take(&mut self.saved);
         // The same shapes were made into blocks before.
-        let _ = self.set(saved, settings, parameters);
+        let _ = self.set(saved, &setup.settings, &setup.parameters);
         self.graph += 1;
     }
 
@@ -373,23 +376,13 @@ fn normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
     centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
 }
 
-/// Adds up over the ranks what each has at these nodes, ascending, which all of them have; each column comes with its number
-/// of numbers a node. Collective.
-pub(super) fn add_up_nodes(part: &ModelPart, nodes: &[u32], columns: &mut [(usize, &mut [f64])]) {
-    let Some(share) = &part.share else { return };
-    let width: usize = columns.iter().map(|(width, _)| width).sum();
-    let place = |width: usize, node: u32| width * node as usize..width * (node as usize + 1);
-    let row = |&node: &u32| columns.iter().flat_map(move |(width, column)| column[place(*width, node)].to_vec());
-    let mut values: Vec<f64> = nodes.iter().flat_map(row).collect();
-    let halo = share.halo.only(|node| nodes.binary_search(&node).is_ok());
-    let at = |node: u32| nodes.partition_point(|&other| other < node);
-    halo.expand(|node, out| out.extend(place(width, at(node) as u32).map(|at| at as u32))).sum(&mut values);
-    for (&node, row) in nodes.iter().zip(values.chunks_exact(width.max(1))) {
-        let mut rest = row;
-        for (width, column) in columns.iter_mut() {
-            let (sums, others) = rest.split_at(*width);
-            column[place(*width, node)].copy_from_slice(sums);
-            rest = others;
-        }
-    }
+/// The integrals of the pairs of this rank.
+pub(super) fn integrals(
+    blocks: &[Box<dyn ContactBlock>],
+    part: &ModelPart,
+    states: &SlaveStates,
+) -> Vec<Vec<Integral>> {
+    let own = |nodes: &[u32]| part.evaluates_pair(nodes);
+    let present = Present { view: &part.view(), states, own: &own };
+    blocks.iter().map(|block| block.integrate(present)).collect()
 }

@@ -5,8 +5,9 @@
 //! penalty, and each converged state raises it, so that motions are small where the spring is stiff.
 
 use zelus_core::entities::Outer;
-use zelus_core::model::ModelPart;
+use zelus_core::model::ProcessInfo;
 
+use crate::slave_states::SlaveStates;
 use crate::variables::INITIAL_PENALTY;
 
 /// Share of the penalty with which a retried step begins.
@@ -35,26 +36,26 @@ impl PenaltyRamp {
     }
 
     /// Step start: all of the penalty, or of a retried step the first share.
-    pub(super) fn begin_step(&mut self, part: &mut ModelPart) {
+    pub(super) fn begin_step(&mut self, info: &ProcessInfo, states: &mut SlaveStates) {
         if self.retried || self.share < 1.0 {
             self.share = if self.retried { FIRST } else { 1.0 };
-            self.write(part);
+            self.set(info, states);
         }
         self.retried = false;
     }
 
     /// The iteration has converged with the present share.
-    pub(super) fn after_convergence(&mut self, part: &mut ModelPart) -> Outer {
+    pub(super) fn after_convergence(&mut self, info: &ProcessInfo, states: &mut SlaveStates) -> Outer {
         if self.share >= 1.0 {
             return Outer::Done;
         }
         self.share = (self.share * RISE).min(1.0);
-        self.write(part);
+        self.set(info, states);
         Outer::Again
     }
 
-    fn write(self, part: &mut ModelPart) {
-        let penalty = part.info.value_or(INITIAL_PENALTY.name(), 1.0);
-        part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(self.share * penalty);
+    fn set(self, info: &ProcessInfo, states: &mut SlaveStates) {
+        let penalty = info.value_or(INITIAL_PENALTY.name(), 1.0);
+        states.for_all(|state| state.penalty = self.share * penalty);
     }
 }

@@ -5,75 +5,61 @@
 
 use std::collections::BTreeSet;
 
-use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{ModelPart, variables::NORMAL};
 use zelus_core::vector3::{dot, norm};
 
-use super::activation::vector_at;
 use crate::active_set::Decision;
 use crate::formulations::NodeState;
 use crate::interface::{Interface, Roles};
 use crate::resolution::Resolution;
-use crate::variables::{AUGMENTED_TANGENT_CONTACT_PRESSURE, HELD_IN_CONTACT, HELD_IN_STICK, TRIAL_TRACTION};
+use crate::slave_states::SlaveStates;
 
 /// Step start: takes hold of the active slave nodes of interfaces where nothing presses.
-pub(super) fn hold_open_interfaces(part: &mut ModelPart, interfaces: &[Interface], resolution: Resolution) {
-    let tractions = part.nodes.values.values(&TRIAL_TRACTION, 0);
-    let presses = |&node: &u32| {
-        let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
-        resolution.exceeds(-dot(vector_at(tractions, node as usize), normal), 0.0, false)
-    };
-    let mut held = BTreeSet::new();
+pub(super) fn hold_open_interfaces(states: &mut SlaveStates, interfaces: &[Interface], resolution: Resolution) {
+    release(states);
     for interface in interfaces {
         let nodes = interface.nodes_of(Roles::Slave);
+        let presses = |&node: &u32| resolution.exceeds(-dot(states[node].trial, states[node].normal), 0.0, false);
         if !nodes.iter().any(presses) {
-            held.extend(nodes.into_iter().filter(|&node| part.nodes.flags.is(ACTIVE, node as usize)));
+            nodes.into_iter().for_each(|node| states[node].pressed = states[node].active);
         }
     }
-    release(part);
-    hold(part, &held);
 }
 
 /// Takes hold of the points around these nodes until the next solve.
-pub(super) fn hold(part: &mut ModelPart, nodes: &BTreeSet<u32>) {
-    let column = part.nodes.values.values_mut(&HELD_IN_CONTACT, 0);
-    nodes.iter().for_each(|&node| column[node as usize] = 1.0);
+pub(super) fn hold(states: &mut SlaveStates, nodes: &BTreeSet<u32>) {
+    nodes.iter().for_each(|&node| states[node].pressed = true);
 }
 
 /// Takes hold of the points around active nodes; `false` where all of them are held already, or there are none.
-pub(super) fn hold_active(part: &mut ModelPart, slaves: &[u32]) -> bool {
-    let held = part.nodes.values.values(&HELD_IN_CONTACT, 0);
-    let is_free = |&node: &u32| part.nodes.flags.is(ACTIVE, node as usize) && held[node as usize] == 0.0;
-    let free: BTreeSet<u32> = slaves.iter().copied().filter(is_free).collect();
-    hold(part, &free);
-    !free.is_empty()
+pub(super) fn hold_active(states: &mut SlaveStates) -> bool {
+    let mut any = false;
+    states.for_each(|_, state| {
+        any |= state.active && !state.pressed;
+        state.pressed |= state.active;
+    });
+    any
 }
 
 /// Lets all points decide by their pressure and traction.
-pub(super) fn release(part: &mut ModelPart) {
-    for variable in [&HELD_IN_CONTACT, &HELD_IN_STICK] {
-        part.nodes.values.values_mut(variable, 0).fill(0.0);
-    }
+pub(super) fn release(states: &mut SlaveStates) {
+    states.for_all(|state| (state.pressed, state.stuck) = (false, false));
 }
 
 /// Lets points stick until the next solve around nodes that slide back: one solve took them from one bound beyond the other.
 pub(super) fn hold_turned(
-    part: &mut ModelPart,
+    states: &mut SlaveStates,
     decisions: &mut [(u32, Decision)],
     before: &[NodeState],
     resolution: Resolution,
 ) {
-    let earlier = part.nodes.values.values(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0);
-    let mut turned = Vec::new();
+    let counts = |traction: [f64; 3]| resolution.exceeds(norm(traction), 0.0, false);
     for ((node, decision), &was) in decisions.iter_mut().zip(before) {
+        let state = &mut states[*node];
         let slides = was == NodeState::Slip && decision.state == NodeState::Slip;
-        let before = vector_at(earlier, *node as usize);
-        let counts = |traction: [f64; 3]| resolution.exceeds(norm(traction), 0.0, false);
-        if slides && counts(before) && counts(decision.traction) && dot(before, decision.traction) < 0.0 {
+        let turned = dot(state.traction, decision.traction) < 0.0;
+        if slides && counts(state.traction) && counts(decision.traction) && turned {
             decision.slip_changed = true;
-            turned.push(*node as usize);
+            state.stuck = true;
         }
     }
-    let column = part.nodes.values.values_mut(&HELD_IN_STICK, 0);
-    turned.into_iter().for_each(|node| column[node] = 1.0);
 }

@@ -12,7 +12,8 @@ use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::model::{ModelPart, Nodes};
 use zelus_core::vector3::add;
 
-use super::sliding::write_tangents;
+use super::decision::Rules;
+use super::sliding::find_tangents;
 use super::{NormalVariation, StepParameters};
 use crate::active_set::{Margin, SlipRule};
 use crate::formulations::{Augmentation, Nitsche};
@@ -21,13 +22,12 @@ use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatche
 use crate::mortar::tests::Noise;
 use crate::mortar::{Habit, OperatorThreshold, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Previous, condition_name, find_family, group_by_shapes,
-    group_by_surroundings,
+    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Present, Previous, condition_name, find_family,
+    group_by_shapes, group_by_surroundings,
 };
 use crate::resolution::Resolution;
-use crate::variables::{
-    DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA, VECTOR_LAGRANGE_MULTIPLIER, WEIGHTED_SLIP,
-};
+use crate::slave_states::SlaveStates;
+use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA, VECTOR_LAGRANGE_MULTIPLIER};
 
 /// Facets of two sides that overlap in several pairs a node, and all that their forces depend on.
 struct Contact {
@@ -37,6 +37,7 @@ struct Contact {
     interface: Interface,
     blocks: Vec<Box<dyn ContactBlock>>,
     patches: Arc<NormalPatches>,
+    states: SlaveStates,
 }
 
 /// A node whose multiplier is zero.
@@ -119,7 +120,10 @@ impl Contact {
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         });
-        let mut contact = Self { family, parameters, part, interface, blocks: Vec::new(), patches };
+        let mut states = SlaveStates::of(&part, interface.nodes.clone(), family.columns());
+        states.set_slaves(interface.nodes_of(Roles::Slave));
+        states.read_friction(&part.nodes, &COULOMB);
+        let mut contact = Self { family, parameters, part, interface, blocks: Vec::new(), patches, states };
         contact.make_blocks();
         contact.leave_start();
         contact
@@ -151,14 +155,14 @@ impl Contact {
                 group_by_surroundings(Some(&self.patches), |_| Vec::new(), slave.nodes(), pairs, &nodes)
             {
                 let (patches, parameters) = (self.patches.clone(), self.parameters.clone());
-                let request = PairRequest { entry, pairs, nodes, around, bodies: Arc::default(), patches, parameters };
+                let (bodies, states) = (Arc::default(), Arc::default());
+                let request = PairRequest { entry, pairs, nodes, around, bodies, patches, parameters, states };
                 self.blocks.push((family.block)(slave, master, request).unwrap());
             }
         }
         self.follow();
-        for block in &mut self.blocks {
-            block.keep_operators(&self.part.view(), &|_| true);
-        }
+        let present = Present { view: &self.part.view(), states: &self.states, own: &|_| true };
+        self.blocks.iter_mut().for_each(|block| block.keep_operators(present));
     }
 
     /// Moves somewhere else than at the start of the step, with multipliers of its own.
@@ -184,13 +188,12 @@ impl Contact {
         }
         self.follow();
         for block in &mut self.blocks {
-            let integrals = block.integrate(&self.part.view(), &|_| true);
+            let integrals = block.integrate(Present { view: &self.part.view(), states: &self.states, own: &|_| true });
             block.pairs_mut().iter_mut().zip(integrals).for_each(|(pair, integral)| pair.area = integral.area);
         }
         // Areas stay those of this state: they weigh slips in the direction of sliding only.
         let areas = self.sums(|integral, j| [integral.area[j], 0.0, 0.0]);
-        let column = self.part.nodes.values.values_mut(&NODAL_AREA, 0);
-        column.iter_mut().zip(areas).for_each(|(area, [sum, ..])| *area = sum);
+        self.states.for_each(|node, state| state.area = areas[node as usize][0]);
         self.follow();
     }
 
@@ -198,7 +201,7 @@ impl Contact {
     fn sums(&self, of: impl Fn(&Integral, usize) -> [f64; 3]) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; self.part.nodes.len()];
         for block in &self.blocks {
-            for (at, integral) in block.integrate(&self.part.view(), &|_| true).iter().enumerate() {
+            for (at, integral) in self.integrals(block.as_ref()).iter().enumerate() {
                 for (j, &node) in block.slave_nodes(at).iter().enumerate() {
                     sums[node as usize] = add(sums[node as usize], of(integral, j));
                 }
@@ -211,6 +214,7 @@ impl Contact {
     fn follow(&mut self) {
         self.part.move_mesh();
         self.patches.write(&mut self.part);
+        self.states.read_normals(&self.part.nodes);
         for pair in self.blocks.iter_mut().flat_map(|block| block.pairs_mut()) {
             let normal = |facet: u32| {
                 let facet = &self.interface.facets[facet as usize];
@@ -221,26 +225,23 @@ impl Contact {
         }
         if self.family.frictional() {
             let slips = self.sums(|integral, j| integral.slip[j]);
-            self.part.nodes.history.values_mut(&WEIGHTED_SLIP, 0).copy_from_slice(slips.as_flattened());
-            let slaves = self.interface.nodes_of(Roles::Slave);
-            let mut counts = vec![0; self.part.nodes.len()];
+            self.states.for_each(|node, state| (state.weighted_slip, state.pairs) = (slips[node as usize], 0));
             for block in &self.blocks {
-                let integrals = block.integrate(&self.part.view(), &|_| true);
+                let integrals = self.integrals(block.as_ref());
                 for at in (0..block.len()).filter(|&at| integrals[at].overlapping) {
-                    block.slave_nodes(at).iter().for_each(|&node| counts[node as usize] += 1);
+                    block.slave_nodes(at).iter().for_each(|&node| self.states[node].pairs += 1);
                 }
             }
-            write_tangents(
-                &mut self.part,
-                &slaves,
-                self.family,
-                &self.parameters,
-                Resolution::default(),
-                &counts,
-                false,
-                &mut std::collections::BTreeMap::new(),
-            );
+            let (family, parameters) = (self.family, self.parameters.clone());
+            let rules = Rules { family, parameters: &parameters, resolution: Resolution::default() };
+            find_tangents(&self.part, &mut self.states, rules, false, &mut BTreeMap::new());
         }
+        let states = Arc::new(self.states.clone());
+        self.blocks.iter_mut().for_each(|block| block.set_states(states.clone()));
+    }
+
+    fn integrals(&self, block: &dyn ContactBlock) -> Vec<Integral> {
+        block.integrate(Present { view: &self.part.view(), states: &self.states, own: &|_| true })
     }
 
     /// Visits the entries of residual and tangent, the latter with its column.

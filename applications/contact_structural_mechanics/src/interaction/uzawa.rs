@@ -1,10 +1,10 @@
 //! Uzawa's outer loop: the pressure that is kept follows the multipliers until nothing gives way (eq. D.10).
 
 use zelus_core::entities::Outer;
-use zelus_core::model::ModelPart;
-use zelus_core::model::flags::ACTIVE;
+use zelus_core::model::Nodes;
 
-use crate::variables::{KEPT_CONTACT_PRESSURE, LAGRANGE_MULTIPLIER_CONTACT_PRESSURE};
+use crate::slave_states::{SlaveState, SlaveStates};
+use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
 /// How far the outer loop goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,19 +30,18 @@ impl Uzawa {
     /// p° ← k λ at the slave nodes in contact, none that pulls; zero at all others.
     pub(super) fn update(
         &mut self,
-        part: &mut ModelPart,
-        slaves: &[u32],
+        nodes: &Nodes,
+        states: &mut SlaveStates,
         scale_factor: f64,
         settings: UzawaSettings,
     ) -> Outer {
-        let multipliers = part.nodes.history.values(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE, 0);
-        let active = |n: usize| part.nodes.flags.is(ACTIVE, n);
-        let pressure =
-            |&n: &u32| if active(n as usize) { (scale_factor * multipliers[n as usize]).min(0.0) } else { 0.0 };
-        let pressures: Vec<f64> = slaves.iter().map(pressure).collect();
-        let kept = part.nodes.history.values(&KEPT_CONTACT_PRESSURE, 0);
+        let multipliers = nodes.history.values(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE, 0);
+        let pressure = |(n, state): (u32, &SlaveState)| {
+            if state.active { (scale_factor * multipliers[n as usize]).min(0.0) } else { 0.0 }
+        };
+        let pressures: Vec<f64> = states.iter().map(pressure).collect();
         let size = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
-        let change = size(&mut slaves.iter().zip(&pressures).map(|(&n, p)| p - kept[n as usize]));
+        let change = size(&mut states.iter().zip(&pressures).map(|((_, state), p)| p - state.kept_pressure));
         let total = size(&mut pressures.iter().copied());
         if self.updates > 0 && self.last > 0.0 {
             self.rate = change / self.last;
@@ -60,8 +59,8 @@ impl Uzawa {
             ));
         }
         self.updates += 1;
-        let column = part.nodes.history.values_mut(&KEPT_CONTACT_PRESSURE, 0);
-        slaves.iter().zip(pressures).for_each(|(&n, p)| column[n as usize] = p);
+        let mut pressures = pressures.into_iter();
+        states.for_each(|_, state| state.kept_pressure = pressures.next().unwrap_or(0.0));
         Outer::Again
     }
 }

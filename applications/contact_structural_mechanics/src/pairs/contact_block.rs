@@ -1,11 +1,22 @@
 //! What the interaction asks of a block of pairs, whatever their family and their shapes.
 
+use std::sync::Arc;
+
 use zelus_core::entities::{EntityBlock, StepView};
 
 use super::pair::{Integral, Pair};
+use crate::slave_states::SlaveStates;
 
-/// Whether this rank evaluates the pair with these nodes.
-pub type Own<'a> = &'a (dyn Fn(&[u32]) -> bool + Sync);
+/// The present state, as pairs are integrated in it.
+#[derive(Clone, Copy)]
+pub struct Present<'a> {
+    /// Fields and step data.
+    pub view: &'a StepView<'a>,
+    /// The slave nodes.
+    pub states: &'a SlaveStates,
+    /// Whether this rank evaluates the pair with these nodes.
+    pub own: &'a (dyn Fn(&[u32]) -> bool + Sync),
+}
 
 /// A block of pairs as the interaction sees it.
 pub trait ContactBlock: EntityBlock {
@@ -18,14 +29,17 @@ pub trait ContactBlock: EntityBlock {
     /// Node indices on the slave side of the `at`-th pair.
     fn slave_nodes(&self, at: usize) -> &[u32];
 
-    /// Gap, slip and area of every pair in the present configuration; those whose nodes are not `own` stay without overlap.
-    fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral>;
+    /// Takes the states of slave nodes in which the assembly evaluates the block from now on.
+    fn set_states(&mut self, states: Arc<SlaveStates>);
 
-    /// Step start: keeps the operators of the `own` pairs against which slip is measured.
-    fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>);
+    /// Gap, slip and area of every pair in the present configuration; those of other ranks stay without overlap.
+    fn integrate(&self, present: Present<'_>) -> Vec<Integral>;
 
-    /// Lets the `own` pairs go on as they integrate now.
-    fn keep_habits(&mut self, view: &StepView<'_>, own: Own<'_>);
+    /// Step start: keeps the operators of the pairs of this rank against which slip is measured.
+    fn keep_operators(&mut self, present: Present<'_>);
+
+    /// Lets the pairs of this rank go on as they integrate now.
+    fn keep_habits(&mut self, present: Present<'_>);
 
     /// The same block for the assembly.
     fn as_entities(&self) -> &dyn EntityBlock;

@@ -7,14 +7,17 @@ use zelus_core::Result;
 use zelus_core::analysis::NodalVariable;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_core::geometry::Shape;
-use zelus_core::model::{ScalarVariable, Variable};
+use zelus_core::model::{Nodes, ScalarVariable, Variable};
 use zelus_core::registered_kind;
 use zelus_core::registry;
+use zelus_core::vector3::scale;
 
 use super::contact_block::ContactBlock;
 use super::pair::Pair;
 use crate::interaction::StepParameters;
 use crate::interface::{Bodies, NormalPatches};
+use crate::slave_states::{Columns, SlaveStates};
+use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
 
 /// The multipliers of a family.
 #[derive(Clone, Copy)]
@@ -33,6 +36,34 @@ impl Multiplier {
     /// Whether it is solved for.
     pub fn is_unknown(self) -> bool {
         matches!(self, Self::Scalar(_) | Self::Vector(_))
+    }
+
+    /// Its value at a node, a scalar one in the first component; zero without.
+    pub fn value(self, nodes: &Nodes, node: u32) -> [f64; 3] {
+        let at = node as usize;
+        match self {
+            Self::None | Self::Body => [0.0; 3],
+            Self::Scalar(variable) => [nodes.history.values(variable, 0)[at], 0.0, 0.0],
+            Self::Vector(variable) => nodes.history.get(variable.name()).map_or([0.0; 3], |field| field.vector(0, at)),
+        }
+    }
+
+    /// Its value at a node as a vector, a scalar one along the normal.
+    pub fn vector(self, nodes: &Nodes, node: u32, normal: [f64; 3]) -> [f64; 3] {
+        let value = self.value(nodes, node);
+        if matches!(self, Self::Scalar(_)) { scale(normal, value[0]) } else { value }
+    }
+
+    /// Sets its value at a node, a scalar one from the first component.
+    pub fn set(self, nodes: &mut Nodes, node: u32, value: [f64; 3]) {
+        let at = node as usize;
+        match self {
+            Self::None | Self::Body => {}
+            Self::Scalar(variable) => nodes.history.values_mut(variable, 0)[at] = value[0],
+            Self::Vector(variable) => {
+                nodes.history.values_mut(variable, 0)[3 * at..3 * at + 3].copy_from_slice(&value);
+            }
+        }
     }
 
     /// The unknowns in `dimension` dimensions.
@@ -72,6 +103,8 @@ pub struct PairRequest {
     pub patches: Arc<NormalPatches>,
     /// Settings and numbers of the step.
     pub parameters: Arc<StepParameters>,
+    /// The states of slave nodes.
+    pub states: Arc<SlaveStates>,
 }
 
 /// A penalty method by node: the traction of a node is the penalty times its gap and slip over all its pairs.
@@ -125,6 +158,17 @@ impl Family {
     /// Whether it has friction, sliding or sticking.
     pub fn frictional(&self) -> bool {
         self.friction != Friction::None
+    }
+
+    /// What of its slave nodes has nodal columns.
+    pub fn columns(&self) -> Columns {
+        let carries = |variable: &&Variable<[f64; 3]>| self.variables.iter().any(|(name, _)| *name == variable.name());
+        Columns {
+            tractions: true,
+            friction: self.frictional(),
+            points: matches!(self.multiplier, Multiplier::Body),
+            carried: [&FRICTION_TRACTION, &CARRIED_TRACTION].into_iter().find(carries),
+        }
     }
 }
 

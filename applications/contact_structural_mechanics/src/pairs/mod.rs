@@ -9,7 +9,7 @@ mod pair;
 mod pair_block;
 mod tying_block;
 
-pub use contact_block::{ContactBlock, Own};
+pub use contact_block::{ContactBlock, Present};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
 pub use family::{
     ByNode, Family, FamilyEntry, Friction, Multiplier, PairRequest, TyingFamily, TyingFamilyEntry, find_family,

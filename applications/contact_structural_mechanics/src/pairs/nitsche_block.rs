@@ -9,14 +9,14 @@ use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown,
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, dot};
 
-use super::contact_block::{ContactBlock, Own};
+use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
 use super::pair::{Integral, Pair};
 use super::pair_block::PairBlock;
 use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
 use crate::interface::{Bodies, Tractions};
 use crate::mortar::{PairGeometry, dimension};
-use crate::variables::{CARRIED_TRACTION, HELD_IN_CONTACT, HELD_IN_STICK};
+use crate::slave_states::SlaveStates;
 
 /// Pairs with `NS` slave and `NM` master nodes, `NU` displacement unknowns of the facets, `NN` components of nodal normals,
 /// and `NV` = `NU` + 2 `NN` variables: displacements, normals, and tractions at the inner points of the slave.
@@ -44,34 +44,27 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         [key.interface, key.slave]
     }
 
-    fn nodes_of_points(&self, at: usize, view: &StepView<'_>) -> [NodeOfPoints; NS] {
-        let column = |variable, node: u32| view.nodes.values.values(variable, 0).get(node as usize).copied();
-        let law = self.pairs.parameters().friction_law;
-        let carried = view.nodes.history.get(CARRIED_TRACTION.name());
-        self.pairs.slaves(at).map(|node| NodeOfPoints {
-            carried: carried.map_or([0.0; 3], |field| field.vector(1, node as usize)),
-            friction: law.bound_at(view.nodes, node as usize),
-            held: column(&HELD_IN_CONTACT, node).unwrap_or(0.0),
-            stuck: column(&HELD_IN_STICK, node).unwrap_or(0.0),
+    fn nodes_of_points(&self, at: usize, states: &SlaveStates) -> [NodeOfPoints; NS] {
+        self.pairs.slaves(at).map(|node| {
+            let own = &states[node];
+            let (held, stuck) = (f64::from(u8::from(own.pressed)), f64::from(u8::from(own.stuck)));
+            NodeOfPoints { carried: own.last.carried, friction: own.friction, held, stuck }
         })
-    }
-
-    fn last(&self, at: usize, view: &StepView<'_>) -> LastState<NS, NM> {
-        let previous = self.pairs.previous(at, view);
-        LastState { slave: previous.slave, master: previous.master }
     }
 
     fn forces<T: Real>(
         &self,
         at: usize,
-        view: &StepView<'_>,
+        (view, states): (&StepView<'_>, &SlaveStates),
         geometry: &PairGeometry<T, NS, NM>,
         tractions: &[[T; 3]; NS],
     ) -> Option<PointForces<T, NS, NM>> {
         let face = self.bodies.slave_face(self.key(at));
-        let nodes = self.nodes_of_points(at, view);
+        let nodes = self.nodes_of_points(at, states);
+        let previous = self.pairs.previous(at, view, states);
+        let last = LastState { slave: previous.slave, master: previous.master };
         let settings = &self.pairs.parameters().segmentation;
-        self.pairs.formulation().forces(geometry, tractions, (&face, &nodes), &self.last(at, view), settings)
+        self.pairs.formulation().forces(geometry, tractions, (&face, &nodes), &last, settings)
     }
 
     /// The right-hand side alone.
@@ -79,7 +72,9 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         let key = self.key(at);
         let consistent = self.pairs.formulation().theta != 0.0;
         let tractions = self.bodies.tractions::<NS>(key, view, consistent)?;
-        let Some(out) = self.forces(at, view, &self.pairs.geometry(at, view), &tractions.values) else { return Ok(()) };
+        let states = self.pairs.states();
+        let geometry = self.pairs.geometry(at, view, states);
+        let Some(out) = self.forces(at, (view, states), &geometry, &tractions.values) else { return Ok(()) };
         let dim = dimension(NS);
         let facets = out.master.iter().chain(&out.slave).flat_map(|force| &force[..dim]);
         rhs.iter_mut().zip(facets).for_each(|(row, force)| *row += force);
@@ -103,7 +98,8 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
     ) -> Result<(), EntityError> {
         let (key, dim) = (self.key(at), dimension(NS));
         let Tractions { values, by } = self.bodies.tractions::<NS>(key, view, true)?;
-        let plain = self.pairs.geometry(at, view);
+        let states = self.pairs.states();
+        let plain = self.pairs.geometry(at, view, states);
         let mut geometry = self.pairs.seeded::<NV>(&plain);
         let variable = |vector: [f64; 3], first: usize| -> [Dual<NV>; 3] {
             let mut out = constant(vector);
@@ -114,7 +110,7 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
             geometry.nodal_normals = std::array::from_fn(|j| variable(plain.nodal_normals[j], NU + dim * j));
         }
         let tractions = std::array::from_fn(|g| variable(values[g], NU + NN + dim * g));
-        let Some(out) = self.forces(at, view, &geometry, &tractions) else { return Ok(()) };
+        let Some(out) = self.forces(at, (view, states), &geometry, &tractions) else { return Ok(()) };
 
         // The rows of all local unknowns by the variables of the formula.
         let mut rows = vec![[0.0; NV]; width];
@@ -228,14 +224,20 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         self.pairs.slave_nodes(at)
     }
 
+    fn set_states(&mut self, states: Arc<SlaveStates>) {
+        self.pairs.set_states(states);
+    }
+
     /// The forces of points stand for area times traction. Where an element is inverted there are none; the assembly, which
     /// meets the same element, says so.
-    fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral> {
-        let mut integrals = self.pairs.integrate(view, own);
+    fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
+        let Present { view, states, .. } = present;
+        let mut integrals = self.pairs.integrate(present);
         integrals.par_iter_mut().enumerate().with_min_len(32).filter(|(_, found)| found.overlapping).for_each(
             |(at, found)| {
                 let Ok(tractions) = self.bodies.tractions::<NS>(self.key(at), view, false) else { return };
-                if let Some(forces) = self.forces(at, view, &self.pairs.geometry(at, view), &tractions.values) {
+                let geometry = self.pairs.geometry(at, view, states);
+                if let Some(forces) = self.forces(at, (view, states), &geometry, &tractions.values) {
                     found.trial[..NS].copy_from_slice(&forces.slave);
                     found.carried[..NS].copy_from_slice(&forces.carried);
                 }
@@ -244,12 +246,12 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         integrals
     }
 
-    fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>) {
-        self.pairs.keep_operators(view, own);
+    fn keep_operators(&mut self, present: Present<'_>) {
+        self.pairs.keep_operators(present);
     }
 
-    fn keep_habits(&mut self, view: &StepView<'_>, own: Own<'_>) {
-        self.pairs.keep_habits(view, own);
+    fn keep_habits(&mut self, present: Present<'_>) {
+        self.pairs.keep_habits(present);
     }
 
     fn as_entities(&self) -> &dyn EntityBlock {

@@ -6,23 +6,18 @@ use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT, variables::NORMAL};
+use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{add, cross, normalised, scale, sub};
 
-use super::contact_block::{ContactBlock, Own};
+use super::contact_block::{ContactBlock, Present};
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{
-    self, Augmentation, Formulation, Held, Kinematics, NodeState, OperatorTangent, SlaveNode, Turning,
-};
+use crate::formulations::{self, Augmentation, Formulation, Kinematics, OperatorTangent, SlaveNode};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::mortar::{Habit, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
-use crate::variables::{
-    DYNAMIC_FACTOR, FRICTION_TRACTION, HELD_MULTIPLIER, INITIAL_PENALTY, KEPT_CONTACT_PRESSURE, NODAL_AREA,
-    NORMAL_OF_MASTER, TANGENT_XI, TURNING_BY_MULTIPLIER, TURNING_BY_SLIP, WEIGHTED_GAP,
-};
+use crate::slave_states::SlaveStates;
 
 /// A formulation as the blocks use it.
 pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
@@ -68,6 +63,7 @@ pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize, const
     around: usize,
     patches: Arc<NormalPatches>,
     parameters: Arc<StepParameters>,
+    states: Arc<SlaveStates>,
     formulation: F,
     unknowns: Vec<LocalUnknown>,
 }
@@ -83,7 +79,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
 
     /// The block of a request with this formulation.
     pub(super) fn new(request: PairRequest, formulation: F) -> Self {
-        let PairRequest { entry, pairs, nodes, around, patches, parameters, .. } = request;
+        let PairRequest { entry, pairs, nodes, around, patches, parameters, states, .. } = request;
         let dim = dimension(NS);
         let displacements = |nodes: Range<usize>| {
             nodes.flat_map(move |node| {
@@ -96,7 +92,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
         }
         unknowns.extend(displacements(0..around));
-        Self { entry, pairs, nodes, around, patches, parameters, formulation, unknowns }
+        Self { entry, pairs, nodes, around, patches, parameters, states, formulation, unknowns }
     }
 
     pub(super) fn parameters(&self) -> &StepParameters {
@@ -129,13 +125,16 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         std::array::from_fn(|n| self.nodes[self.first(at) + NM + n])
     }
 
-    pub(super) fn geometry(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
-        let normals = view.nodes.history.values(&NORMAL, 0);
+    pub(super) fn states(&self) -> &SlaveStates {
+        &self.states
+    }
+
+    pub(super) fn geometry(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, NS, NM> {
         let pair = &self.pairs[at];
         PairGeometry {
             slave: self.slaves(at).map(|n| view.nodes.current[n as usize]),
             master: self.masters(at).map(|n| view.nodes.current[n as usize]),
-            nodal_normals: self.slaves(at).map(|n| vector(normals, n)),
+            nodal_normals: self.slaves(at).map(|n| states[n].normal),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
             habit: pair.habit,
@@ -193,9 +192,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         let own = self.pairs[at].key;
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
-        let of_master = view.nodes.values.values(&NORMAL_OF_MASTER, 0);
         for (j, node) in self.slaves(at).into_iter().enumerate() {
-            if of_master.get(node as usize).is_some_and(|edge| *edge != 0.0) {
+            if self.states[node].normal_of_master {
                 continue;
             }
             self.patches.variation(node, &view.nodes.current, knows, |by, matrix| {
@@ -221,7 +219,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         }
     }
 
-    pub(super) fn previous(&self, at: usize, view: &StepView<'_>) -> PairGeometry<f64, NS, NM> {
+    pub(super) fn previous(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, NS, NM> {
         let displacement = &view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns").levels;
         let back = &displacement[self.parameters.levels_back.min(displacement.len() - 1)];
         let position = |n: u32| {
@@ -232,69 +230,43 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         PairGeometry {
             slave: self.slaves(at).map(position),
             master: self.masters(at).map(position),
-            ..self.geometry(at, view)
+            ..self.geometry(at, view, states)
         }
     }
 
-    fn slave_states(&self, at: usize, view: &StepView<'_>) -> [SlaveNode; NS] {
-        let penalty = view.nodes.values.values(&INITIAL_PENALTY, 0);
-        let kept = view.nodes.history.get(KEPT_CONTACT_PRESSURE.name());
-        let factor = view.nodes.values.values(&DYNAMIC_FACTOR, 0);
-        let areas = view.nodes.values.values(&NODAL_AREA, 0);
-        let positive = |area: Option<&f64>| area.copied().filter(|area| *area > 0.0).unwrap_or(1.0);
+    /// Constants of the slave nodes of the `at`-th pair.
+    fn slave_constants(&self, at: usize, states: &SlaveStates) -> [SlaveNode; NS] {
+        let positive = |area: f64| if area > 0.0 { area } else { 1.0 };
         // The bounds of pairs that augment have gaps of their own, which add up to zero if all count alike.
         let by_pair = self.parameters.augmentation == Augmentation::Pair;
         let own = self.pairs[at].area;
-        let tangent = view.nodes.values.values(&TANGENT_XI, 0);
-        let of_friction = |level: usize| {
-            view.nodes.history.get(FRICTION_TRACTION.name()).map_or(&[][..], |field| &field.levels[level])
-        };
-        let (friction, carried) = (of_friction(0), of_friction(1));
-        let gaps = view.nodes.history.get(WEIGHTED_GAP.name()).map_or(&[][..], |field| &field.levels[0]);
-        let normals = view.nodes.history.values(&NORMAL, 0);
-        let by_slip = view.nodes.values.values(&TURNING_BY_SLIP, 0);
-        let by_multiplier = view.nodes.values.values(&TURNING_BY_MULTIPLIER, 0);
-        let held = view.nodes.values.values(&HELD_MULTIPLIER, 0);
         let k = self.parameters.scale_factor;
         let slaves = self.slaves(at);
         std::array::from_fn(|j| {
-            let (n, node) = (slaves[j], slaves[j] as usize);
-            let stiffness = self.parameters.nodal_stiffness(penalty[node], positive(areas.get(node)));
+            let node = &states[slaves[j]];
+            let area = positive(node.area);
+            let stiffness = self.parameters.nodal_stiffness(node.penalty, area);
             SlaveNode {
-                state: NodeState::of_flags(&view.nodes.flags, node),
-                penalty: penalty[node],
-                compliance: if self.parameters.compliant { penalty[node].recip() } else { 0.0 },
-                kept: kept.map_or(0.0, |field| field.levels[0][node]),
+                state: node.contact(),
+                penalty: node.penalty,
+                compliance: if self.parameters.compliant { node.penalty.recip() } else { 0.0 },
+                kept: node.kept_pressure,
                 stiffness,
-                area: positive(if by_pair { areas.get(node) } else { own.get(j) }),
-                dynamic_factor: factor[node],
-                friction: self.parameters.friction_law.bound_at(view.nodes, node),
-                tangent: if tangent.is_empty() { [0.0; 3] } else { vector(tangent, n) },
-                turning: Turning {
-                    by_slip: by_slip.get(node).copied().unwrap_or(0.0),
-                    by_multiplier: by_multiplier.get(node).copied().unwrap_or(0.0),
-                },
-                held: if held.is_empty() { Default::default() } else { vector(held, n).map(Held::of_code) },
-                held_weight: k * k * positive(areas.get(node)) / stiffness,
-                carried: if carried.is_empty() { [0.0; 3] } else { vector(carried, n) },
-                traction: add(
-                    if friction.is_empty() { [0.0; 3] } else { vector(friction, n) },
-                    scale(
-                        vector(normals, n),
-                        penalty[node] * gaps.get(node).map_or(0.0, |gap| gap / positive(areas.get(node))),
-                    ),
-                ),
+                area: if by_pair { area } else { positive(own[j]) },
+                dynamic_factor: node.dynamic_factor,
+                friction: node.friction,
+                tangent: node.tangent,
+                turning: node.turning,
+                held: node.held,
+                held_weight: k * k * area / stiffness,
+                carried: node.last.carried,
+                traction: add(node.carried, scale(node.normal, node.penalty * (node.weighted_gap / area))),
             }
         })
     }
 
     fn multipliers(&self, at: usize, view: &StepView<'_>) -> [[f64; 3]; NS] {
-        let history = &view.nodes.history;
-        self.slaves(at).map(|n| match F::multiplier() {
-            Multiplier::None | Multiplier::Body => [0.0; 3],
-            Multiplier::Scalar(variable) => [history.values(variable, 0)[n as usize], 0.0, 0.0],
-            Multiplier::Vector(variable) => vector(history.values(variable, 0), n),
-        })
+        self.slaves(at).map(|n| F::multiplier().value(view.nodes, n))
     }
 }
 
@@ -361,10 +333,10 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             if !self.pairs[at].overlapping {
                 continue;
             }
-            let geometry = self.geometry(at, view);
-            let nodes = self.slave_states(at, view);
+            let geometry = self.geometry(at, view, &self.states);
+            let nodes = self.slave_constants(at, &self.states);
             let multipliers = self.multipliers(at, view);
-            let history = F::history(&self.pairs[at], &self.previous(at, view));
+            let history = F::history(&self.pairs[at], &self.previous(at, view, &self.states));
             let settings = &self.parameters.segmentation;
             let (width, rows) = (out.size, out.size - dimension(NS) * self.around);
             let (lhs, rhs) = out.entity(slot);
@@ -409,7 +381,12 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         &self.nodes[self.first(at) + NM..self.first(at) + NM + NS]
     }
 
-    fn integrate(&self, view: &StepView<'_>, own: Own<'_>) -> Vec<Integral> {
+    fn set_states(&mut self, states: Arc<SlaveStates>) {
+        self.states = states;
+    }
+
+    fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
+        let Present { view, states, own } = present;
         (0..self.pairs.len())
             .into_par_iter()
             .with_min_len(32)
@@ -418,13 +395,13 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                 if !own(self.nodes(at)) {
                     return out;
                 }
-                let geometry = self.geometry(at, view);
+                let geometry = self.geometry(at, view, states);
                 let found = operators(&geometry, &self.parameters.segmentation);
                 out.facing = found != Overlap::None;
                 if let Overlap::Cells(operators) = found {
                     out.overlapping = true;
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
-                    let history = F::history(&self.pairs[at], &self.previous(at, view));
+                    let history = F::history(&self.pairs[at], &self.previous(at, view, states));
                     let pair = Kinematics {
                         operators,
                         slave: geometry.slave,
@@ -433,7 +410,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                         multipliers: [[0.0; 3]; NS],
                     };
                     let slip = self.formulation.slip(&pair, &history);
-                    let trial = self.formulation.trial(&pair, &self.slave_states(at, view), &history);
+                    let trial = self.formulation.trial(&pair, &self.slave_constants(at, states), &history);
                     for j in 0..NS {
                         out.area[j] = operators.d[j].iter().sum();
                         out.gap[j] = gaps[j];
@@ -448,14 +425,15 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             .collect()
     }
 
-    fn keep_operators(&mut self, view: &StepView<'_>, own: Own<'_>) {
-        let kept: Vec<Previous> = self.integrate(view, own).into_iter().map(|integral| integral.operators).collect();
+    fn keep_operators(&mut self, present: Present<'_>) {
+        let kept: Vec<Previous> = self.integrate(present).into_iter().map(|integral| integral.operators).collect();
         self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
     }
 
-    fn keep_habits(&mut self, view: &StepView<'_>, own: Own<'_>) {
+    fn keep_habits(&mut self, present: Present<'_>) {
+        let Present { view, states, own } = present;
         let habit = |at: usize| {
-            let geometry = self.geometry(at, view);
+            let geometry = self.geometry(at, view, states);
             let found = own(self.nodes(at)).then(|| operators(&geometry, &self.parameters.segmentation).cells());
             let found = found.flatten();
             found.map_or(geometry.habit, |found| habit_of(&geometry, &self.parameters.segmentation, &found))

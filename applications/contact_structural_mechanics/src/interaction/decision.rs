@@ -1,0 +1,257 @@
+//! The active-set stage: what the rules of [`active_set`](crate::active_set) look at and decide for every slave node, and how
+//! their decisions become the states of the nodes.
+
+use std::collections::BTreeSet;
+
+use zelus_core::entities::SetChange;
+use zelus_core::model::{ModelPart, Nodes};
+use zelus_core::vector3::{add, dot, norm, scale, sub};
+
+use super::cycling::ALLOWED;
+use super::step_parameters::StepParameters;
+use crate::active_set::{self, Decision, SlaveNumbers};
+use crate::formulations::held::along_free_tangents;
+use crate::formulations::{Augmentation, Held, NodeState};
+use crate::mortar::{tangent, tangential};
+use crate::pairs::{Family, Friction, Multiplier};
+use crate::resolution::Resolution;
+use crate::slave_states::{SlaveState, SlaveStates};
+
+/// What decisions are taken by: the rules of a family with the numbers of the step.
+#[derive(Clone, Copy)]
+pub(super) struct Rules<'a> {
+    /// The family.
+    pub family: &'a Family,
+    /// Settings and numbers of the step.
+    pub parameters: &'a StepParameters,
+    /// What is too small to decide on.
+    pub resolution: Resolution,
+}
+
+impl Rules<'_> {
+    /// What they want of every slave node, and the states the nodes are in.
+    ///
+    /// Nodes that nothing overlaps are not in contact. When nothing changes at all, nodes that slide on within a margin and that
+    /// friction pushes along their motion stick, each once a step: those in `released` did before.
+    pub(super) fn decide(
+        self,
+        nodes: &Nodes,
+        states: &SlaveStates,
+        released: &mut BTreeSet<u32>,
+    ) -> (Vec<(u32, Decision)>, Vec<NodeState>) {
+        let rule = self.parameters.slip_rule;
+        let (mut decisions, mut before, mut pushed) = (Vec::new(), Vec::new(), Vec::new());
+        for (node, state) in states.iter() {
+            let numbers = self.numbers(nodes, node, state);
+            let mut decision = match (self.family.friction, self.family.penalty) {
+                _ if matches!(self.family.multiplier, Multiplier::Body) => active_set::of_points(&numbers),
+                (Friction::None, _) => active_set::frictionless(&numbers),
+                (_, false) => active_set::alm_frictional(&numbers, rule),
+                (_, true) => active_set::penalty_frictional(&numbers, rule),
+            };
+            if state.isolated {
+                decision = active_set::inactive(&numbers, decision.pressure);
+            }
+            let multipliers = self.family.frictional() && self.family.multiplier.is_unknown();
+            if multipliers && !released.contains(&node) && active_set::is_pushed(&numbers, rule) {
+                pushed.push(decisions.len());
+            }
+            decisions.push((node, decision));
+            before.push(numbers.state);
+        }
+        if decisions.iter().zip(&before).all(|((_, decision), was)| decision.state == *was) {
+            for at in pushed {
+                decisions[at].1.stay(NodeState::Stick, NodeState::Slip);
+                released.insert(decisions[at].0);
+            }
+        }
+        (decisions, before)
+    }
+
+    /// Why a converged state is none: slave nodes that face the master are in it without contact, by more than where no set
+    /// fulfils all conditions. Rules that decide otherwise have lost sight of what is small.
+    pub(super) fn passed_through(self, nodes: &Nodes, states: &SlaveStates) -> Option<String> {
+        let facing = states.iter().filter(|(_, state)| !state.isolated);
+        let facing: Vec<(u32, SlaveNumbers)> = facing.map(|(n, state)| (n, self.numbers(nodes, n, state))).collect();
+        let pressed = facing.iter().filter(|(_, numbers)| numbers.state.is_active());
+        let largest = pressed.map(|(_, numbers)| -numbers.pressure()).fold(0.0, f64::max);
+        let inside: Vec<_> =
+            facing.iter().filter(|(_, numbers)| numbers.has_passed_through(ALLOWED * largest)).collect();
+        let deepest = inside.iter().min_by(|(_, a), (_, b)| a.gap.total_cmp(&b.gap))?;
+        Some(format!(
+            "{} nodes without contact are in the master, node {} by {:.3e}",
+            inside.len(),
+            nodes.ids[deepest.0 as usize],
+            -deepest.1.gap
+        ))
+    }
+
+    /// Makes the decisions of an iteration the active set.
+    ///
+    /// A node that becomes active starts from its augmented pressure; one that becomes inactive keeps its multiplier, which the
+    /// next solve drives to zero.
+    pub(super) fn apply(
+        self,
+        part: &mut ModelPart,
+        states: &mut SlaveStates,
+        decisions: &[(u32, Decision)],
+        before: &[NodeState],
+    ) -> SetChange {
+        let mut change = SetChange::default();
+        let frictional = self.family.frictional();
+        for ((node, decision), &was) in decisions.iter().zip(before) {
+            let (id, active) = (part.nodes.ids[*node as usize], decision.state.is_active());
+            match (decision.changed, active) {
+                (true, true) => change.activated.push(id),
+                (true, false) => change.deactivated.push(id),
+                (false, _) if decision.slip_changed => change.stick_slip.push(id),
+                (false, _) => {}
+            }
+            let state = &mut states[*node];
+            state.pressure = self.acting_pressure(&part.nodes, *node, state, decision);
+            state.active = active;
+            if active {
+                state.slides = Some(decision.state == NodeState::Slip);
+            } else if decision.changed && frictional {
+                state.slides = None;
+                state.weighted_slip = [0.0; 3];
+            }
+            let slides = decision.state == NodeState::Slip && was != NodeState::Slip;
+            if slides && frictional && decision.traction != [0.0; 3] {
+                state.tangent = tangent(decision.traction, state.normal, part.info.domain_size);
+            }
+            if frictional {
+                state.traction = decision.traction;
+                // By Nitsche's method points carry what the integration finds.
+                if !matches!(self.family.multiplier, Multiplier::Body) {
+                    state.carried = decision.traction;
+                }
+            }
+            if let Some(multiplier) = decision.multiplier {
+                let along_normal = [decision.pressure / self.parameters.scale_factor, 0.0, 0.0];
+                let scalar = matches!(self.family.multiplier, Multiplier::Scalar(_));
+                self.family.multiplier.set(&mut part.nodes, *node, if scalar { along_normal } else { multiplier });
+            }
+        }
+        change
+    }
+
+    /// The pressure that acts at a slave node: k λ·n + ε g̃ where pairs augment, else that of the decision.
+    fn acting_pressure(self, nodes: &Nodes, node: u32, state: &SlaveState, decision: &Decision) -> f64 {
+        match (self.family.multiplier, self.parameters.augmentation) {
+            (Multiplier::None | Multiplier::Body, _) | (_, Augmentation::Node) => decision.pressure,
+            (multiplier, Augmentation::Pair) => {
+                let augmentation = state.penalty * state.weighted_gap;
+                let pressure = dot(multiplier.vector(nodes, node, state.normal), state.normal);
+                self.parameters.scale_factor * pressure + augmentation
+            }
+        }
+    }
+
+    /// What the rules look at, of one slave node.
+    ///
+    /// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
+    /// kept until the next update, also of a node that is not in contact meanwhile.
+    fn numbers(self, nodes: &Nodes, node: u32, state: &SlaveState) -> SlaveNumbers {
+        let Self { family, parameters, resolution } = self;
+        let (normal, area, penalty, held) = (state.normal, state.area, state.penalty, state.held);
+        let by_area = if area > 0.0 { area.recip() } else { 0.0 };
+        let kept = if state.kept_pressure == 0.0 { 0.0 } else { state.kept_pressure / penalty };
+        let slip = resolution.vector_of(slip(nodes, node, state, family.multiplier, parameters));
+        let stiffness = match family.multiplier {
+            Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
+            Multiplier::None if parameters.weighted_penalty => penalty * area,
+            Multiplier::None | Multiplier::Body => penalty,
+        };
+        let whole = family.multiplier.vector(nodes, node, normal);
+        let multiplier = match family.multiplier {
+            // No multiplier holds what supports move: the slip itself says what would.
+            Multiplier::Vector(_) if held.contains(&Held::KeptInStick) => {
+                add(whole, scale(slip, stiffness / parameters.scale_factor))
+            }
+            // What slides, slides along what is free.
+            Multiplier::Vector(_) => {
+                add(scale(normal, dot(whole, normal)), along_free_tangents(tangential(whole, normal), normal, held))
+            }
+            _ => whole,
+        };
+        SlaveNumbers {
+            state: state.contact(),
+            normal,
+            multiplier,
+            solved: family.multiplier.is_unknown(),
+            gap: resolution.length_of(parameters.counted_gap(state) * by_area + kept),
+            slip,
+            trial: state.trial,
+            tangent: state.tangent,
+            stiffness,
+            friction: state.friction,
+            scale_factor: parameters.scale_factor,
+            tangent_factor: parameters.tangent_factor,
+            resolution,
+        }
+    }
+}
+
+/// Slip of a node in this step (length). Where surfaces give way, that of a node in contact without its elastic part:
+/// (q − k P λ)/(κ ε), with the trial traction q.
+pub(super) fn slip(
+    nodes: &Nodes,
+    node: u32,
+    state: &SlaveState,
+    multiplier: Multiplier,
+    parameters: &StepParameters,
+) -> [f64; 3] {
+    match multiplier {
+        Multiplier::Vector(_) if parameters.compliant && state.active => {
+            let whole = multiplier.value(nodes, node);
+            let traction = scale(tangential(whole, state.normal), parameters.scale_factor);
+            let elastic = parameters.tangent_factor * state.penalty;
+            along_free_tangents(scale(sub(state.trial, traction), elastic.recip()), state.normal, state.held)
+        }
+        _ if state.area > 0.0 => scale(state.weighted_slip, state.area.recip()),
+        _ => [0.0; 3],
+    }
+}
+
+/// What is too small to decide on at the `nodes` of the interfaces.
+///
+/// Tractions are known as well as a solve leaves multipliers, and as the round-off of displacements leaves forces.
+pub(super) fn resolution(
+    part: &ModelPart,
+    nodes: &[u32],
+    states: &SlaveStates,
+    family: &Family,
+    parameters: &StepParameters,
+) -> Resolution {
+    let motion = farthest(nodes, |at| norm(sub(part.nodes.current[at], part.nodes.initial[at])));
+    let traction = |node: u32, state: &SlaveState| match family.multiplier {
+        Multiplier::Body => norm(state.trial),
+        Multiplier::None => {
+            let by_area = if state.area > 0.0 && !parameters.weighted_penalty { state.area.recip() } else { 1.0 };
+            state.penalty * parameters.counted_gap(state).min(0.0).abs() * by_area
+        }
+        multiplier => parameters.scale_factor * norm(multiplier.value(&part.nodes, node)),
+    };
+    let in_contact = states.iter().filter(|(_, state)| state.active);
+    let largest = in_contact.map(|(node, state)| traction(node, state)).fold(0.0, f64::max);
+    let mut found = Resolution::of(extent(part, nodes), largest, parameters.stiffness * motion);
+    if matches!(family.multiplier, Multiplier::Body) {
+        // Where points decide, a length makes a pressure.
+        found.traction += parameters.nitsche.factor * parameters.stiffness * found.length;
+    }
+    found
+}
+
+/// Lengths at these nodes up to this are none.
+pub(super) fn resolved_length(part: &ModelPart, nodes: &[u32]) -> f64 {
+    Resolution::of(extent(part, nodes), 0.0, 0.0).length
+}
+
+fn extent(part: &ModelPart, nodes: &[u32]) -> f64 {
+    farthest(nodes, |at| norm(part.nodes.current[at]).max(norm(part.nodes.initial[at])))
+}
+
+fn farthest(nodes: &[u32], reach: impl Fn(usize) -> f64) -> f64 {
+    nodes.iter().map(|&n| reach(n as usize)).fold(0.0, f64::max)
+}

@@ -1,0 +1,170 @@
+//! The relations of all pairs of contact by constraints: made by the search, renewed as nodes move.
+
+use std::collections::BTreeMap;
+
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
+use zelus_core::vector3::{dot, norm, sub};
+
+use super::mpc_relation::{NodeRelation, PairRelation, node_relations};
+use super::mpc_settings::MpcSettings;
+use crate::interface::{Facet, Interface};
+use crate::mortar::{IntegrationOrder, SegmentationSettings};
+use crate::pairs::{FacetPair, PairKey, facet_operators, overlapping_pairs};
+use crate::slave_states::SlaveStates;
+use crate::variables::NODAL_H;
+
+/// Gauss rule that tells the functions of every facet apart, so that dual ones exist wherever there is area.
+const FINE: usize = 4;
+
+/// Relations by pair and by slave node.
+#[derive(Default)]
+pub(super) struct Relations {
+    /// By pair.
+    pub pairs: BTreeMap<PairKey, PairRelation>,
+    /// Of slave nodes, over their pairs.
+    pub nodes: BTreeMap<u32, NodeRelation>,
+    /// Where the nodes of the interfaces were when relations were made.
+    places: Vec<[f64; 3]>,
+    saved: BTreeMap<PairKey, PairRelation>,
+    warned: bool,
+}
+
+/// The facets of a pair, slave and master.
+fn facets(interfaces: &[Interface], key: PairKey) -> (&Facet, &Facet) {
+    let facets = &interfaces[key.interface as usize].facets;
+    (&facets[key.slave as usize], &facets[key.master as usize])
+}
+
+impl Relations {
+    /// Relations of the pairs that overlap; those that hold a node stay as they were made, unless they are to be renewed.
+    pub(super) fn search(
+        &mut self,
+        part: &mut ModelPart,
+        interfaces: &[Interface],
+        settings: &MpcSettings,
+        states: &SlaveStates,
+    ) {
+        let holds = |relation: &PairRelation| relation.nodes().any(|n| states[n].active);
+        let keep = !settings.update_relations || settings.ties();
+        let segmentation = &settings.segmentation;
+        self.pairs.retain(|key, relation| {
+            let (slave, master) = facets(interfaces, *key);
+            keep && holds(relation) && facet_operators(part, slave, master, segmentation).is_some()
+        });
+        let known = |key: &PairKey| self.pairs.contains_key(key);
+        let found = overlapping_pairs(part, interfaces, &settings.search, segmentation, &known);
+        self.relate(part, interfaces, settings, &found);
+        self.warn_of_unlike_meshes(part, settings);
+    }
+
+    /// Renews the relations of the pairs there are.
+    pub(super) fn renew(&mut self, part: &ModelPart, interfaces: &[Interface], settings: &MpcSettings) {
+        let pair = |key: &PairKey| {
+            let (slave, master) = facets(interfaces, *key);
+            let operators = facet_operators(part, slave, master, &settings.segmentation)?;
+            Some(FacetPair { key: *key, operators })
+        };
+        let pairs: Vec<FacetPair> = self.pairs.keys().filter_map(pair).collect();
+        self.relate(part, interfaces, settings, &pairs);
+    }
+
+    /// How far nodes of the interfaces are from where they were when relations were made, in mesh sizes.
+    pub(super) fn farthest(&self, part: &ModelPart, interfaces: &[Interface]) -> f64 {
+        let sizes = part.nodes.values.values(&NODAL_H, 0);
+        let nodes = interfaces.iter().flat_map(|interface| &interface.nodes).map(|&node| node as usize);
+        let ratio = |(at, before): (usize, &[f64; 3])| {
+            let moved = norm(sub(part.nodes.current[at], *before));
+            if sizes[at] > 0.0 { moved / sizes[at] } else { moved }
+        };
+        nodes.zip(&self.places).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Makes the relations of these pairs, and those of the nodes.
+    pub(super) fn relate(
+        &mut self,
+        part: &ModelPart,
+        interfaces: &[Interface],
+        settings: &MpcSettings,
+        pairs: &[FacetPair],
+    ) {
+        for pair in pairs {
+            let (slave, master) = facets(interfaces, pair.key);
+            let finer = || {
+                let integration_order = IntegrationOrder::new(FINE)?.max(settings.segmentation.integration_order);
+                let segmentation = SegmentationSettings { integration_order, ..settings.segmentation };
+                facet_operators(part, slave, master, &segmentation)
+            };
+            let relation = PairRelation::new(part, interfaces, pair, settings.weights, finer);
+            self.pairs.insert(pair.key, relation);
+        }
+        let nodes = interfaces.iter().flat_map(|interface| &interface.nodes);
+        self.places = nodes.map(|&node| part.nodes.current[node as usize]).collect();
+        let pairs = self.pairs.iter().map(|(key, relation)| (key.interface, relation));
+        self.nodes = node_relations(pairs, interfaces, settings.weights);
+    }
+
+    /// With weights that do not add up to one nodes that follow several masters pass forces on wrongly, unless the master is
+    /// held.
+    fn warn_of_unlike_meshes(&mut self, part: &mut ModelPart, settings: &MpcSettings) {
+        if self.warned || settings.consistent() {
+            return;
+        }
+        let dimension = part.info.domain_size as u8;
+        let deforms = |node: u32| (0..dimension).any(|c| !part.nodes.is_fixed(DISPLACEMENT.component(c), node));
+        let mixed = self.nodes.values().filter(|relation| relation.is_mixed()).count();
+        if mixed > 0 && self.nodes.values().flat_map(|n| &n.weights).any(|&(node, _)| deforms(node)) {
+            self.warned = true;
+            let fact = format!(
+                "constraints join unlike meshes of deformable bodies at {mixed} slave nodes: stresses there are wrong"
+            );
+            part.messages.push(
+                Diagnostic::warning("mpc-unlike-meshes", fact).remedy(
+                    "leave \"consistent_weights\" at true: forces are then passed on as by alm_contact_process",
+                ),
+            );
+        }
+    }
+
+    /// Finds gaps and areas of the slave nodes in the present configuration.
+    pub(super) fn integrate(
+        &self,
+        part: &ModelPart,
+        interfaces: &[Interface],
+        settings: &MpcSettings,
+        states: &mut SlaveStates,
+    ) {
+        states.for_all(|state| (state.weighted_gap, state.area) = (0.0, 0.0));
+        states.read_normals(&part.nodes);
+        for key in self.pairs.keys() {
+            let (slave, master) = facets(interfaces, *key);
+            let Some(operators) = facet_operators(part, slave, master, &settings.segmentation) else { continue };
+            let origin = part.nodes.current[slave.nodes[0] as usize];
+            let place = |n: &u32| sub(part.nodes.current[*n as usize], origin);
+            let of_slave: Vec<[f64; 3]> = slave.nodes.iter().map(place).collect();
+            let of_master: Vec<[f64; 3]> = master.nodes.iter().map(place).collect();
+            for (j, &node) in slave.nodes.iter().enumerate() {
+                let state = &mut states[node];
+                state.weighted_gap -= dot(state.normal, operators.jump(j, &of_slave, &of_master));
+                state.area += operators.d[j][..slave.nodes.len()].iter().sum::<f64>();
+            }
+        }
+        states.for_each(|node, state| state.isolated = !self.nodes.contains_key(&node));
+    }
+
+    /// Nothing is related any more.
+    pub(super) fn clear(&mut self) {
+        self.pairs.clear();
+        self.nodes.clear();
+    }
+
+    /// Keeps the pairs of an accepted state.
+    pub(super) fn save(&mut self) {
+        self.saved = self.pairs.clone();
+    }
+
+    /// Goes back to the pairs kept last.
+    pub(super) fn restore(&mut self) {
+        self.pairs = std::mem::take(&mut self.saved);
+    }
+}

@@ -1,0 +1,65 @@
+//! What a deck chooses about contact by constraints.
+
+use std::collections::BTreeMap;
+
+use zelus_core::parameters::Interval;
+
+use super::friction::FrictionSettings;
+use super::mpc_relation::Weights;
+use crate::mortar::SegmentationSettings;
+use crate::search::SearchSettings;
+
+/// What constraints enforce.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MpcKind {
+    /// Contact without friction.
+    Frictionless,
+    /// Contact with Coulomb friction.
+    Frictional,
+    /// All overlaps are tied for good.
+    MeshTying,
+}
+
+/// What a deck chooses about contact by constraints.
+pub struct MpcSettings {
+    /// Parts of the interfaces by key.
+    pub parts: BTreeMap<String, Vec<String>>,
+    /// Parts on the slave side by key.
+    pub slaves: BTreeMap<String, Vec<String>>,
+    /// What the constraints enforce.
+    pub kind: MpcKind,
+    /// Whether contact always slides.
+    pub pure_slip: bool,
+    /// Friction.
+    pub friction: FrictionSettings,
+    /// Times in which the constraints act.
+    pub interval: Interval,
+    /// Which facets are looked at.
+    pub search: SearchSettings,
+    /// Steps between searches.
+    pub database_step_update: usize,
+    /// How overlaps are cut and integrated.
+    pub segmentation: SegmentationSettings,
+    /// Pressure, in Young's moduli, below which an active node is released.
+    pub reaction_check_stiffness_factor: f64,
+    /// Whether relations are made anew at each step.
+    pub update_relations: bool,
+    /// How the rows of a node make up its relation.
+    pub weights: Weights,
+    /// Whether openings stay as they are in the first step of a run.
+    pub keeps_first_opening: bool,
+    /// Whether sides are exchanged where supports hold all slaves of an interface.
+    pub swaps_held_slaves: bool,
+}
+
+impl MpcSettings {
+    /// Whether overlaps are tied for good.
+    pub(super) fn ties(&self) -> bool {
+        self.kind == MpcKind::MeshTying
+    }
+
+    /// Whether relations hold all that their pairs integrate.
+    pub(super) fn consistent(&self) -> bool {
+        self.weights == Weights::Consistent
+    }
+}

@@ -1,0 +1,77 @@
+//! The active set within a step: decided in every iteration, held where it cycles, settled in converged states.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use zelus_core::entities::{Outer, SetChange};
+use zelus_core::model::ModelPart;
+
+use super::cycling::{CycleGuard, Settled};
+use super::points;
+use super::setup::Setup;
+use super::sliding::find_tangents;
+use crate::slave_states::SlaveStates;
+
+/// What the stage remembers of a step.
+#[derive(Debug, Clone, Default)]
+pub(super) struct SetStage {
+    cycles: CycleGuard,
+    /// Nodes that were pushed along their motion and stick since.
+    released: BTreeSet<u32>,
+    /// How often nodes that always slide have turned back.
+    reversals: BTreeMap<u32, usize>,
+}
+
+impl SetStage {
+    /// A step begins.
+    pub(super) fn begin_step(&mut self) {
+        self.forget_sets();
+        self.released.clear();
+        self.reversals.clear();
+    }
+
+    /// The equations are others from now on: sets that come back are no cycle.
+    pub(super) fn forget_sets(&mut self) {
+        self.cycles.begin_step();
+    }
+
+    /// Lets the rules decide in the present state.
+    pub(super) fn update(&mut self, part: &mut ModelPart, states: &mut SlaveStates, setup: &Setup) -> SetChange {
+        let rules = setup.rules();
+        let (mut decisions, before) = rules.decide(&part.nodes, states, &mut self.released);
+        if !setup.by_points() {
+            self.cycles.restrict(&mut decisions, &before);
+            part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
+        } else if setup.settings.family.frictional() {
+            // What points decide they decide in each evaluation of forces: nodes only tell of it.
+            points::hold_turned(states, &mut decisions, &before, setup.resolution);
+        }
+        rules.apply(part, states, &decisions, &before)
+    }
+
+    /// Lets the rules decide in a converged state, where the set was held.
+    pub(super) fn settle(&mut self, part: &mut ModelPart, states: &mut SlaveStates, setup: &Setup) -> Outer {
+        if !self.cycles.holds() {
+            return Outer::Done;
+        }
+        let rules = setup.rules();
+        let (mut decisions, before) = rules.decide(&part.nodes, states, &mut self.released);
+        let largest = decisions.iter().map(|(_, decision)| -decision.pressure).fold(0.0, f64::max);
+        match self.cycles.settle(&mut decisions, &before, largest, &part.nodes.ids) {
+            Settled::Done => Outer::Done,
+            Settled::Failed(why) => Outer::Failed(why),
+            Settled::Change => {
+                rules.apply(part, states, &decisions, &before);
+                self.find_tangents(part, states, setup);
+                Outer::Again
+            }
+        }
+    }
+
+    /// Finds the directions of sliding, where nodes have them.
+    pub(super) fn find_tangents(&mut self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
+        if setup.settings.family.frictional() && !setup.by_points() {
+            let keeps = setup.settings.friction.keeps_direction;
+            find_tangents(part, states, setup.rules(), keeps, &mut self.reversals);
+        }
+    }
+}
