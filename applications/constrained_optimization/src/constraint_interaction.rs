@@ -6,7 +6,7 @@ use zelus_core::entities::find_kind;
 use zelus_core::model::Role;
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{EntityBlock, Interaction, SetChange};
+use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange};
 use zelus_core::model::{ModelPart, ScalarVariable};
 
 use crate::constraint_block::ConstraintBlock;
@@ -77,11 +77,6 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
         Ok(())
     }
 
-    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
-        let nodes: Vec<u32> = self.blocks.iter().flat_map(|b| b.constraints().iter().map(|c| c.node)).collect();
-        MULTIPLIERS[..M::MULTIPLIERS].iter().map(|variable| (variable.scalar(), nodes.clone())).collect()
-    }
-
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.update(part, |method, _, state| {
             state.previous_gap = state.gap;
@@ -91,10 +86,44 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
         Ok(())
     }
 
-    fn after_prediction(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
+    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        let active = self.blocks.iter().flat_map(|block| &block.states).filter(|state| state.active).count();
+        vec![("active constraints", active as f64)]
     }
 
+    fn coupling(&self) -> Option<&dyn Coupling> {
+        Some(self)
+    }
+
+    fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {
+        Some(self)
+    }
+
+    fn retry(&mut self) -> Option<&mut dyn Retry> {
+        Some(self)
+    }
+}
+
+impl<M: Method> Coupling for ConstraintInteraction<M> {
+    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+        let nodes: Vec<u32> = self.blocks.iter().flat_map(|b| b.constraints().iter().map(|c| c.node)).collect();
+        MULTIPLIERS[..M::MULTIPLIERS].iter().map(|variable| (variable.scalar(), nodes.clone())).collect()
+    }
+
+    fn blocks(&self) -> Vec<&dyn EntityBlock> {
+        self.blocks.iter().map(|block| block as &dyn EntityBlock).collect()
+    }
+
+    fn graph_version(&self) -> u64 {
+        0
+    }
+
+    fn idle_diagonal(&self) -> f64 {
+        self.method.idle_diagonal()
+    }
+}
+
+impl<M: Method> ActiveSet for ConstraintInteraction<M> {
     fn after_update(&mut self, part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
         let (mut activated, mut deactivated) = (Vec::new(), Vec::new());
         self.update(part, |method, constraint, state| {
@@ -111,23 +140,9 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
         let ids = |nodes: Vec<u32>| nodes.into_iter().map(|node| part.nodes.ids[node as usize]).collect();
         Ok(SetChange { activated: ids(activated), deactivated: ids(deactivated), ..SetChange::default() })
     }
+}
 
-    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
-    }
-
-    fn blocks(&self) -> Vec<&dyn EntityBlock> {
-        self.blocks.iter().map(|block| block as &dyn EntityBlock).collect()
-    }
-
-    fn graph_version(&self) -> u64 {
-        0
-    }
-
-    fn idle_diagonal(&self) -> f64 {
-        self.method.idle_diagonal()
-    }
-
+impl<M: Method> Retry for ConstraintInteraction<M> {
     fn save(&mut self) {
         self.saved = self.blocks.iter().map(|block| block.states.clone()).collect();
     }
@@ -136,10 +151,5 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
         for (block, states) in self.blocks.iter_mut().zip(&self.saved) {
             block.states.clone_from(states);
         }
-    }
-
-    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
-        let active = self.blocks.iter().flat_map(|block| &block.states).filter(|state| state.active).count();
-        vec![("active constraints", active as f64)]
     }
 }

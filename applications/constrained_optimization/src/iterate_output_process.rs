@@ -7,7 +7,7 @@ use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
-use zelus_core::entities::{EntityBlock, Interaction, SetChange};
+use zelus_core::entities::{Interaction, Observer};
 use zelus_core::io::replace_file;
 use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus_core::processes::{Process, ProcessRequest};
@@ -111,38 +111,12 @@ impl Interaction for Watch {
         "iterate output"
     }
 
-    fn initialize(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
+    fn observer(&mut self) -> Option<&mut dyn Observer> {
+        Some(self)
     }
+}
 
-    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
-        Vec::new()
-    }
-
-    fn begin_step(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
-    }
-
-    fn after_prediction(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
-    }
-
-    fn after_update(&mut self, _part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
-        Ok(SetChange::default())
-    }
-
-    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
-    }
-
-    fn blocks(&self) -> Vec<&dyn EntityBlock> {
-        Vec::new()
-    }
-
-    fn graph_version(&self) -> u64 {
-        0
-    }
-
+impl Observer for Watch {
     fn observe(&mut self, part: &ModelPart, iteration: usize, residual: &[f64]) {
         let nodes = &part.nodes;
         let value = |&(variable, node): &(ScalarVariable, u32)| {
@@ -156,10 +130,6 @@ impl Interaction for Watch {
             residual_norm: residual.iter().map(|r| r * r).sum::<f64>().sqrt(),
         });
     }
-
-    fn save(&mut self) {}
-
-    fn restore(&mut self) {}
 }
 
 register! { ProcessEntry "iterate_output_process",

@@ -15,7 +15,7 @@ pub(super) struct Saved {
 impl Saved {
     /// The present state.
     pub(super) fn of(part: &ModelPart, system: &mut System) -> Self {
-        system.interactions.iter_mut().for_each(|interaction| interaction.save());
+        system.interactions.iter_mut().filter_map(|i| i.retry()).for_each(|own| own.save());
         Self {
             nodes: part.nodes.clone(),
             elements: (part.elements.data.clone(), part.elements.flags.clone()),
@@ -34,6 +34,6 @@ impl Saved {
         part.conditions.finish();
         part.constraints = self.constraints;
         part.info = self.info;
-        system.interactions.iter_mut().for_each(|interaction| interaction.restore());
+        system.interactions.iter_mut().filter_map(|i| i.retry()).for_each(|own| own.restore());
     }
 }

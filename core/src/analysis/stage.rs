@@ -281,7 +281,7 @@ impl Stage {
             let failure = record.failure.clone().unwrap_or_default();
             let can_cut = saved.is_some() && self.cutting.times > 0;
             let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
-                && !self.system.interactions.iter().any(|interaction| interaction.has_another_way());
+                && !self.system.interactions.iter_mut().filter_map(|i| i.retry()).any(|own| own.has_alternative());
             let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
                 let tried = match self.cutting {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),

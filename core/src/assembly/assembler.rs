@@ -28,7 +28,7 @@ use super::redistribution::Redistribution;
 use super::system::System;
 use crate::communication::world;
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, Interaction, LocalSystems, Tangent, Want};
+use crate::entities::{Coupling, EntityBlock, LocalSystems, Tangent, Want};
 use crate::model::ModelPart;
 
 /// Largest stiffness of an interaction in those of the bodies: what a stiff penalty adds to the round-off of forces.
@@ -133,8 +133,8 @@ impl Assembler {
             carriers = carriers_of_all(carriers, part.nodes.len(), &share.halo);
         }
         carriers.sort_by_key(|(variable, ..)| *variable);
-        for interaction in &system.interactions {
-            carriers.extend(interaction.unknowns(part).into_iter().map(|(variable, nodes)| (variable, true, nodes)));
+        for coupling in couplings(system) {
+            carriers.extend(coupling.unknowns(part).into_iter().map(|(variable, nodes)| (variable, true, nodes)));
         }
         system.dofs.number(&part.nodes, &carriers);
         let numbers = |blocks: &[Box<dyn EntityBlock>]| -> Vec<Vec<u32>> {
@@ -193,10 +193,9 @@ impl Assembler {
         } else {
             self.equations.leaning = equations.leaning;
         }
-        let graph =
-            system.interactions.iter().fold(1_u64, |sum, i| sum.wrapping_mul(31).wrapping_add(i.graph_version()));
+        let graph = couplings(system).fold(1_u64, |sum, own| sum.wrapping_mul(31).wrapping_add(own.graph_version()));
         if self.coupling_graph != Some(graph) {
-            let blocks = blocks_of(&system.interactions);
+            let blocks = blocks_of(system);
             let is_own = |nodes: &[u32]| part.evaluates_pair(nodes);
             self.coupling = GroupMatrix::new(&system.dofs, &blocks, &self.interaction_unknowns, is_own);
             self.coupling_graph = Some(graph);
@@ -250,7 +249,7 @@ impl Assembler {
             let forces = self.own_inertia_forces(part, system, inertia)?;
             rhs.iter_mut().zip(forces).for_each(|(r, force)| *r -= force);
         }
-        self.coupling.add_residual(&blocks_of(&system.interactions), &view, &mut rhs)?;
+        self.coupling.add_residual(&blocks_of(system), &view, &mut rhs)?;
         self.seconds.residual += start.elapsed().as_secs_f64();
         Ok(rhs)
     }
@@ -434,8 +433,13 @@ fn load_blocks(system: &System) -> Blocks<'_> {
     system.conditions.iter().map(AsRef::as_ref).filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::General).collect()
 }
 
-fn blocks_of(interactions: &[Box<dyn Interaction>]) -> Blocks<'_> {
-    interactions.iter().flat_map(|interaction| interaction.blocks()).collect()
+/// What interactions couple.
+fn couplings(system: &System) -> impl Iterator<Item = &dyn Coupling> {
+    system.interactions.iter().filter_map(|interaction| interaction.coupling())
+}
+
+fn blocks_of(system: &System) -> Blocks<'_> {
+    couplings(system).flat_map(|own| own.blocks()).collect()
 }
 
 /// Adds `|A| x` of the matrix A with this pattern and these values.

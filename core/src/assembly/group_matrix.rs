@@ -114,7 +114,7 @@ impl GroupMatrix {
     }
 
     /// Gives rows of lonely unknowns that are not in use `diagonal`.
-    pub fn hold_lonely(&mut self, in_use: &[bool], diagonal: f64, is_own: impl Fn(usize) -> bool) {
+    pub fn set_idle_diagonal(&mut self, in_use: &[bool], diagonal: f64, is_own: impl Fn(usize) -> bool) {
         for (&number, in_use) in self.lonely.iter().zip(in_use) {
             let row = number as usize;
             if !in_use && is_own(row) {

@@ -53,10 +53,11 @@ pub struct MasslessNodes {
     pub near: Vec<u32>,
 }
 
-/// A participant in the Newton loop that owns blocks of its own and decides which of them act.
+/// A participant in the solution of steps: contact, ties, constraints that switch, an observer.
 ///
-/// Called by the strategy in the order of the methods below. The model part it receives holds no interactions while they
-/// run, so it can be read and changed freely.
+/// Of itself it only has a name and the ends of steps. What else it takes part in are capabilities, each a trait of its own
+/// that it gives out where it has it. The strategy calls them in the order in which they stand here. The model part they
+/// receive holds no interactions, so it can be read and changed freely.
 pub trait Interaction: Send + Sync {
     /// Short name for the log.
     fn name(&self) -> &str;
@@ -65,22 +66,111 @@ pub trait Interaction: Send + Sync {
     ///
     /// # Errors
     /// Whatever is wrong with the deck's interfaces.
-    fn initialize(&mut self, part: &mut ModelPart) -> Result<()>;
-
-    /// Unknowns it adds (beside those of elements), with the nodes that carry them; constant over the run.
-    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)>;
+    fn initialize(&mut self, _part: &mut ModelPart) -> Result<()> {
+        Ok(())
+    }
 
     /// Step start, before the prediction: search, pairs, initial active set.
     ///
     /// # Errors
     /// A failed search.
-    fn begin_step(&mut self, part: &mut ModelPart) -> Result<()>;
+    fn begin_step(&mut self, _part: &mut ModelPart) -> Result<()> {
+        Ok(())
+    }
 
+    /// The step is accepted.
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
+        Ok(())
+    }
+
+    /// Changes whenever what it wrote into [`ModelPart::constraints`] does; the equations are then derived again.
+    fn constraints_version(&self) -> u64 {
+        0
+    }
+
+    /// Numbers chosen once for the run, by name: printed at its start and kept in its report.
+    fn parameters(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
+    /// Numbers for the report of a step, by name.
+    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
+    /// Its blocks and unknowns, where it has any.
+    fn coupling(&self) -> Option<&dyn Coupling> {
+        None
+    }
+
+    /// Its decisions within a step, where it takes any.
+    fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {
+        None
+    }
+
+    /// Its part in the first iterate of a step, where that decides on the step's answer.
+    fn first_iterate(&mut self) -> Option<&mut dyn FirstIterate> {
+        None
+    }
+
+    /// Its nodes without mass, where it has any.
+    fn massless(&mut self) -> Option<&mut dyn Massless> {
+        None
+    }
+
+    /// Its state beside that of the model part, which a retried step must restore.
+    fn retry(&mut self) -> Option<&mut dyn Retry> {
+        None
+    }
+
+    /// Its look at iterates.
+    fn observer(&mut self) -> Option<&mut dyn Observer> {
+        None
+    }
+}
+
+/// Blocks of an interaction, and the unknowns it adds.
+pub trait Coupling {
+    /// Unknowns it adds (beside those of elements), with the nodes that carry them; constant over the run.
+    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+        Vec::new()
+    }
+
+    /// Blocks that act now.
+    fn blocks(&self) -> Vec<&dyn EntityBlock>;
+
+    /// Changes whenever the connectivity of [`Coupling::blocks`] does.
+    fn graph_version(&self) -> u64;
+
+    /// Diagonal and right-hand side for unknowns of [`Coupling::unknowns`] that no block touches now.
+    fn idle_diagonal(&self) -> f64 {
+        1.0
+    }
+
+    /// What may be added to the tangent's diagonal of its unknowns where constraints are redundant, as by supports at
+    /// the edge of an interface; `None` where that must end the run.
+    fn relaxation(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Decisions that follow the iterates of a step.
+pub trait ActiveSet {
     /// After the prediction and before the first assembly of the step.
     ///
     /// # Errors
     /// A geometry that cannot be computed with.
-    fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()>;
+    fn after_prediction(&mut self, _part: &mut ModelPart) -> Result<()> {
+        Ok(())
+    }
+
+    /// Whether [`ActiveSet::after_update`] reads REACTION, which is then that of the updated state.
+    fn needs_reactions(&self) -> bool {
+        false
+    }
 
     /// After the update of iteration `iteration`: the active-set stage.
     ///
@@ -96,86 +186,51 @@ pub trait Interaction: Send + Sync {
         Ok(Outer::Done)
     }
 
-    /// The system is singular: takes hold of bodies that it keeps apart, so that none of them is free to move; `false` where
-    /// there are none, or no more. What has been taken hold of may be let go after the solve as anything else.
-    fn reach_out(&mut self, _part: &mut ModelPart) -> bool {
+    /// The system is singular: activates contact of bodies that are free to move; `false` where there is none, or no more.
+    /// The active set may release it after the solve.
+    fn restrain_free_bodies(&mut self, _part: &mut ModelPart) -> bool {
         false
     }
+}
 
-    /// The step is accepted.
+/// A first iterate that decides on the answer of its step.
+///
+/// Statics then begin a step as the reference program does: prescribed displacements are in the field before the first solve,
+/// some nodes follow them at once and the rest of the mesh after the solve.
+pub trait FirstIterate {
+    /// The nodes that follow prescribed displacements at once, ascending; `None` where the step begins as others do.
+    fn moved_first(&self) -> Option<Vec<u32>>;
+
+    /// The step is restarted without its first iterate: keeps what the answer takes from it.
     ///
-    /// # Errors
-    /// A geometry that cannot be computed with.
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()>;
+    /// Called in place of [`ActiveSet::after_update`]; [`ActiveSet::after_prediction`] follows.
+    fn keep(&mut self, part: &mut ModelPart);
+}
 
-    /// Blocks that act now.
-    fn blocks(&self) -> Vec<&dyn EntityBlock>;
+/// Nodes that others carry the mass of.
+pub trait Massless {
+    /// Step start, in motion with inertia: nodes whose mass others carry, since forces on them come and go at once.
+    fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes;
+}
 
-    /// Changes whenever the connectivity of [`Interaction::blocks`] does.
-    fn graph_version(&self) -> u64;
-
-    /// Changes whenever what it wrote into [`ModelPart::constraints`] does; the equations are then derived again.
-    fn constraints_version(&self) -> u64 {
-        0
-    }
-
-    /// Whether [`Interaction::after_update`] reads REACTION, which is then that of the updated state.
-    fn needs_reactions(&self) -> bool {
-        false
-    }
-
-    /// Diagonal and right-hand side for unknowns of [`Interaction::unknowns`] that no block touches now.
-    fn idle_diagonal(&self) -> f64 {
-        1.0
-    }
-
-    /// What may be added to the tangent's diagonal of its unknowns where constraints are redundant, as by supports at
-    /// the edge of an interface; `None` where that must end the run.
-    fn relaxation(&self) -> Option<f64> {
-        None
-    }
-
-    /// The balance of an iterate is known: of the starting one (iteration 0) and of each after a solve.
-    ///
-    /// `residual` holds the equations that are solved. For those who watch; nothing may change.
-    fn observe(&mut self, _part: &ModelPart, _iteration: usize, _residual: &[f64]) {}
-
-    /// The nodes it looks at, ascending, when the first iterate of a step decides on its answer.
-    ///
-    /// Statics then begin a step as the reference program does: prescribed displacements are in the field before the first
-    /// solve, these nodes follow them at once and the rest of the mesh after the solve.
-    fn led_nodes(&self) -> Option<Vec<u32>> {
-        None
-    }
-
-    /// The first iterate is there, and the step begins again without it: keeps what the step's answer takes from it.
-    ///
-    /// Called in place of [`Interaction::after_update`]; [`Interaction::after_prediction`] follows.
-    fn keep_first_iterate(&mut self, _part: &mut ModelPart) {}
-
-    /// Step start, in motion with inertia: nodes that others carry the mass of, since forces on them come and go at once.
-    fn massless_nodes(&mut self, _part: &ModelPart) -> MasslessNodes {
-        MasslessNodes::default()
-    }
-
-    /// Whether a step that fails again would be gone another way than the last time, whatever its length.
-    fn has_another_way(&self) -> bool {
-        false
-    }
-
+/// A state that a retried step must restore.
+pub trait Retry {
     /// Keeps what a retried step must restore.
-    fn save(&mut self);
+    fn save(&mut self) {}
 
-    /// Brings back what [`Interaction::save`] kept.
+    /// Brings back what [`Retry::save`] kept.
     fn restore(&mut self);
 
-    /// Numbers chosen once for the run, by name: printed at its start and kept in its report.
-    fn parameters(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
-        Vec::new()
+    /// Whether a step that fails again would next be solved by another method, whatever its length.
+    fn has_alternative(&self) -> bool {
+        false
     }
+}
 
-    /// Numbers for the report of a step, by name.
-    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
-        Vec::new()
-    }
+/// A look at iterates that changes nothing.
+pub trait Observer {
+    /// The balance of an iterate is known: of the starting one (iteration 0) and of each after a solve.
+    ///
+    /// `residual` holds the equations that are solved.
+    fn observe(&mut self, part: &ModelPart, iteration: usize, residual: &[f64]);
 }

@@ -12,7 +12,9 @@ mod view;
 
 pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
 pub use face_point::FacePoint;
-pub use interaction::{Interaction, MasslessNodes, Outer, SetChange};
+pub use interaction::{
+    ActiveSet, Coupling, FirstIterate, Interaction, Massless, MasslessNodes, Observer, Outer, Retry, SetChange,
+};
 pub use kernel::{Gather, Kernel, KernelBlock};
 pub use registered::{
     BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, kind_names, require_kind,

@@ -7,7 +7,9 @@
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded, update_interactions};
+use super::strategy::{
+    SolutionStrategy, StrategyEntry, accept, after_prediction, recorded, relaxation, update_interactions,
+};
 use crate::assembly::{Assembler, System};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
@@ -154,10 +156,8 @@ impl ArcLength {
                 .remedy("keep it constant, or use \"newton_raphson\"")
                 .into());
         }
-        for interaction in &mut system.interactions {
-            interaction.after_prediction(part)?;
-        }
-        let amount = system.interactions.iter().find_map(|interaction| interaction.relaxation());
+        after_prediction(part, &mut system.interactions)?;
+        let amount = relaxation(&system.interactions);
         let mut relaxation = Relaxation { amount, taken: false };
         let mut factor = self.factor;
         let mut predictor = Vec::new();

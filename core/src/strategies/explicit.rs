@@ -145,8 +145,10 @@ impl ExplicitStrategy {
         }
         self.assembler.begin_step(part, system)?;
         for interaction in &mut system.interactions {
-            interaction.after_prediction(part)?;
-            interaction.after_update(part, 1)?;
+            if let Some(set) = interaction.active_set() {
+                set.after_prediction(part)?;
+                set.after_update(part, 1)?;
+            }
         }
         self.assembler.begin_step(part, system)?;
         let damping = self.damping(part, system);

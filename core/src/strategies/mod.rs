@@ -2,7 +2,7 @@
 //!
 //! A [`Scheme`] says what inertia adds and how rates follow displacements; a [`ConvergenceCriterion`] judges and changes
 //! nothing; [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each
-//! iteration, see [`crate::entities::Interaction::after_update`].
+//! iteration, see [`crate::entities::ActiveSet::after_update`].
 
 mod arc_length;
 mod bdf_scheme;

@@ -141,6 +141,19 @@ pub(super) fn accept(part: &mut ModelPart, system: &mut System) -> Result<()> {
     system.interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part))
 }
 
+/// The prediction is made: lets the interactions follow it.
+///
+/// # Errors
+/// A geometry that cannot be computed with.
+pub(super) fn after_prediction(part: &mut ModelPart, interactions: &mut [Box<dyn Interaction>]) -> Result<()> {
+    interactions.iter_mut().filter_map(|i| i.active_set()).try_for_each(|set| set.after_prediction(part))
+}
+
+/// What may be added to the diagonal of interactions whose constraints are redundant.
+pub(super) fn relaxation(interactions: &[Box<dyn Interaction>]) -> Option<f64> {
+    interactions.iter().filter_map(|interaction| interaction.coupling()).find_map(|coupling| coupling.relaxation())
+}
+
 /// Lets interactions follow an update of the unknowns; what changed in all of them.
 ///
 /// # Errors
@@ -152,7 +165,9 @@ pub(super) fn update_interactions(
 ) -> Result<SetChange> {
     let mut change = SetChange::default();
     for interaction in interactions {
-        change.extend(interaction.after_update(part, iteration)?);
+        if let Some(set) = interaction.active_set() {
+            change.extend(set.after_update(part, iteration)?);
+        }
     }
     Ok(change)
 }

@@ -7,8 +7,8 @@
 use zelus_core::assembly::System;
 use zelus_core::communication::world;
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{EntityBlock, Interaction, LocalSystems, SetChange, StepView, Want};
-use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart, ScalarVariable};
+use zelus_core::entities::{ActiveSet, Interaction, LocalSystems, Retry, SetChange, StepView, Want};
+use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart};
 use zelus_core::processes::ProcessEntry;
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
@@ -82,18 +82,25 @@ impl Interaction for EliminationInteraction {
         Ok(())
     }
 
-    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
-        Vec::new()
+    fn constraints_version(&self) -> u64 {
+        self.version
     }
 
-    fn begin_step(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
+    fn summary(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
+        let active = self.eliminations.iter().filter(|e| part.constraints[e.at].active).count();
+        vec![("active constraints", active as f64)]
     }
 
-    fn after_prediction(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
+    fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {
+        Some(self)
     }
 
+    fn retry(&mut self) -> Option<&mut dyn Retry> {
+        Some(self)
+    }
+}
+
+impl ActiveSet for EliminationInteraction {
     fn after_update(&mut self, part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
         let mut change = SetChange::default();
         for Elimination { constraint, slave, at } in &self.eliminations {
@@ -116,32 +123,11 @@ impl Interaction for EliminationInteraction {
         }
         Ok(change)
     }
+}
 
-    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
-    }
-
-    fn blocks(&self) -> Vec<&dyn EntityBlock> {
-        Vec::new()
-    }
-
-    fn graph_version(&self) -> u64 {
-        0
-    }
-
-    fn constraints_version(&self) -> u64 {
-        self.version
-    }
-
-    fn save(&mut self) {}
-
+impl Retry for EliminationInteraction {
     fn restore(&mut self) {
         self.version += 1;
-    }
-
-    fn summary(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
-        let active = self.eliminations.iter().filter(|e| part.constraints[e.at].active).count();
-        vec![("active constraints", active as f64)]
     }
 }
 

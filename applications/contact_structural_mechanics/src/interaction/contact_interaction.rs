@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, MasslessNodes, NORMALS_OF_FIRST_ITERATION, Outer, SetChange};
+use zelus_core::entities::{
+    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, NORMALS_OF_FIRST_ITERATION,
+    Outer, Retry, SetChange,
+};
 use zelus_core::model::flags::{CONTACT, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
 
@@ -312,11 +315,6 @@ impl Interaction for ContactInteraction {
         Ok(())
     }
 
-    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
-        let unknowns = self.setup.settings.family.multiplier.unknowns(part.info.domain_size);
-        unknowns.into_iter().map(|variable| (variable, self.pairing.carriers())).collect()
-    }
-
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.acting = self.setup.settings.interval.contains(part.info.time);
         self.states.begin_step();
@@ -350,6 +348,110 @@ impl Interaction for ContactInteraction {
         Ok(())
     }
 
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.impact_error = 0.0;
+        if self.setup.parameters.dynamic {
+            let family = self.setup.settings.family;
+            let stores = family.compliant || matches!(family.multiplier, Multiplier::None);
+            let conserves = !stores && !family.frictional();
+            part.messages.extend(self.work.accept(part, conserves));
+        }
+        self.friction_ramp.accept();
+        // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
+        self.clear_inactive(part, &self.states.slaves());
+        let (family, clears) = (self.setup.settings.family, self.setup.settings.clear_inactive);
+        self.states.for_each(|_, state| {
+            if clears && !state.active {
+                (state.pressure, state.traction) = (0.0, [0.0; 3]);
+            }
+        });
+        if family.frictional() {
+            let parameters = &self.setup.parameters;
+            friction::meet_bounds(&mut part.nodes, &self.states, family.multiplier, parameters.scale_factor);
+            if !self.warned_of_friction {
+                let warning = friction::warn_of_pushing(part, &self.states, family.multiplier, parameters);
+                self.warned_of_friction = warning.is_some();
+                part.messages.extend(warning);
+            }
+        }
+        self.publish(part);
+        Ok(())
+    }
+
+    /// The ALM values of eq. 4.11.
+    fn parameters(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
+        if let Some([least, most]) = self.pairing.bodies.stiffness() {
+            let factor = self.setup.settings.nitsche.factor;
+            return vec![("least γ", factor * least), ("largest γ", factor * most)];
+        }
+        let penalty = part.info.value_or(INITIAL_PENALTY.name(), 0.0);
+        vec![("penalty ε", penalty), ("scale factor k", self.setup.parameters.scale_factor)]
+    }
+
+    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        let deepest = self.states.iter().filter_map(|(_, state)| state.gap()).fold(0.0, f64::min);
+        let mut out = vec![
+            ("pairs", self.pairing.len() as f64),
+            ("active nodes", self.states.count_active() as f64),
+            ("deepest penetration", -deepest),
+        ];
+        if self.pairing.moved > 0 {
+            out.push(("pairs moved to other ranks", self.pairing.moved as f64));
+        }
+        if self.setup.settings.family.updated {
+            out.extend([("multiplier updates", self.uzawa.updates as f64), ("rate", self.uzawa.rate)]);
+        }
+        out
+    }
+
+    fn coupling(&self) -> Option<&dyn Coupling> {
+        Some(self)
+    }
+
+    fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {
+        Some(self)
+    }
+
+    fn first_iterate(&mut self) -> Option<&mut dyn FirstIterate> {
+        Some(self)
+    }
+
+    fn massless(&mut self) -> Option<&mut dyn Massless> {
+        Some(self)
+    }
+
+    fn retry(&mut self) -> Option<&mut dyn Retry> {
+        Some(self)
+    }
+}
+
+impl Coupling for ContactInteraction {
+    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+        let unknowns = self.setup.settings.family.multiplier.unknowns(part.info.domain_size);
+        unknowns.into_iter().map(|variable| (variable, self.pairing.carriers())).collect()
+    }
+
+    fn blocks(&self) -> Vec<&dyn EntityBlock> {
+        self.pairing.as_entities()
+    }
+
+    fn graph_version(&self) -> u64 {
+        self.pairing.graph
+    }
+
+    fn idle_diagonal(&self) -> f64 {
+        self.setup.parameters.scale_factor
+    }
+
+    fn relaxation(&self) -> Option<f64> {
+        let parameters = &self.setup.parameters;
+        let largest_area = self.states.iter().map(|(_, state)| state.area).fold(0.0, f64::max);
+        let weight = parameters.scale_factor.powi(2) * largest_area / parameters.stiffness;
+        Some(RELAXATION * if largest_area > 0.0 { weight } else { parameters.scale_factor })
+    }
+}
+
+impl ActiveSet for ContactInteraction {
     fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()> {
         if self.acting {
             self.integrate(part);
@@ -357,12 +459,6 @@ impl Interaction for ContactInteraction {
             self.publish(part);
         }
         Ok(())
-    }
-
-    fn keep_first_iterate(&mut self, part: &mut ModelPart) {
-        if self.acting {
-            self.find_normals(part);
-        }
     }
 
     fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange> {
@@ -411,7 +507,7 @@ impl Interaction for ContactInteraction {
         Ok(outer)
     }
 
-    fn reach_out(&mut self, part: &mut ModelPart) -> bool {
+    fn restrain_free_bodies(&mut self, part: &mut ModelPart) -> bool {
         if !self.acting || self.setup.settings.explicit.is_some() {
             return false;
         }
@@ -429,61 +525,22 @@ impl Interaction for ContactInteraction {
         self.publish(part);
         any
     }
+}
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        self.impact_error = 0.0;
-        if self.setup.parameters.dynamic {
-            let family = self.setup.settings.family;
-            let stores = family.compliant || matches!(family.multiplier, Multiplier::None);
-            let conserves = !stores && !family.frictional();
-            part.messages.extend(self.work.accept(part, conserves));
-        }
-        self.friction_ramp.accept();
-        // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
-        self.clear_inactive(part, &self.states.slaves());
-        let (family, clears) = (self.setup.settings.family, self.setup.settings.clear_inactive);
-        self.states.for_each(|_, state| {
-            if clears && !state.active {
-                (state.pressure, state.traction) = (0.0, [0.0; 3]);
-            }
-        });
-        if family.frictional() {
-            let parameters = &self.setup.parameters;
-            friction::meet_bounds(&mut part.nodes, &self.states, family.multiplier, parameters.scale_factor);
-            if !self.warned_of_friction {
-                let warning = friction::warn_of_pushing(part, &self.states, family.multiplier, parameters);
-                self.warned_of_friction = warning.is_some();
-                part.messages.extend(warning);
-            }
-        }
-        self.publish(part);
-        Ok(())
-    }
-
-    fn blocks(&self) -> Vec<&dyn EntityBlock> {
-        self.pairing.as_entities()
-    }
-
-    fn graph_version(&self) -> u64 {
-        self.pairing.graph
-    }
-
+impl FirstIterate for ContactInteraction {
     /// Without updates, normals are those after the first iteration.
-    fn led_nodes(&self) -> Option<Vec<u32>> {
+    fn moved_first(&self) -> Option<Vec<u32>> {
         (self.acting && !self.setup.updates_normals()).then(|| self.pairing.nodes())
     }
 
-    fn idle_diagonal(&self) -> f64 {
-        self.setup.parameters.scale_factor
+    fn keep(&mut self, part: &mut ModelPart) {
+        if self.acting {
+            self.find_normals(part);
+        }
     }
+}
 
-    fn relaxation(&self) -> Option<f64> {
-        let parameters = &self.setup.parameters;
-        let largest_area = self.states.iter().map(|(_, state)| state.area).fold(0.0, f64::max);
-        let weight = parameters.scale_factor.powi(2) * largest_area / parameters.stiffness;
-        Some(RELAXATION * if largest_area > 0.0 { weight } else { parameters.scale_factor })
-    }
-
+impl Massless for ContactInteraction {
     fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes {
         if !self.setup.parameters.dynamic {
             self.setup.parameters = Arc::new(StepParameters { dynamic: true, ..(*self.setup.parameters).clone() });
@@ -494,11 +551,9 @@ impl Interaction for ContactInteraction {
         self.near_nodes = near_nodes(part, &self.pairing, &self.states.slaves(), &self.near_nodes);
         MasslessNodes { surface: self.pairing.nodes(), near: self.near_nodes.clone() }
     }
+}
 
-    fn has_another_way(&self) -> bool {
-        self.setup.ramps_friction() && self.friction_ramp.comes_next()
-    }
-
+impl Retry for ContactInteraction {
     fn save(&mut self) {
         self.pairing.save();
         self.saved = self.states.clone();
@@ -512,29 +567,7 @@ impl Interaction for ContactInteraction {
         self.steps_since_search = usize::MAX;
     }
 
-    /// The ALM values of eq. 4.11.
-    fn parameters(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
-        if let Some([least, most]) = self.pairing.bodies.stiffness() {
-            let factor = self.setup.settings.nitsche.factor;
-            return vec![("least γ", factor * least), ("largest γ", factor * most)];
-        }
-        let penalty = part.info.value_or(INITIAL_PENALTY.name(), 0.0);
-        vec![("penalty ε", penalty), ("scale factor k", self.setup.parameters.scale_factor)]
-    }
-
-    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
-        let deepest = self.states.iter().filter_map(|(_, state)| state.gap()).fold(0.0, f64::min);
-        let mut out = vec![
-            ("pairs", self.pairing.len() as f64),
-            ("active nodes", self.states.count_active() as f64),
-            ("deepest penetration", -deepest),
-        ];
-        if self.pairing.moved > 0 {
-            out.push(("pairs moved to other ranks", self.pairing.moved as f64));
-        }
-        if self.setup.settings.family.updated {
-            out.extend([("multiplier updates", self.uzawa.updates as f64), ("rate", self.uzawa.rate)]);
-        }
-        out
+    fn has_alternative(&self) -> bool {
+        self.setup.ramps_friction() && self.friction_ramp.comes_next()
     }
 }

@@ -9,11 +9,9 @@ use std::collections::BTreeSet;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, SetChange, require_kind};
+use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, require_kind};
 use zelus_core::model::flags::{CONTACT, MASTER, SLAVE};
-use zelus_core::model::{
-    MasterSlaveConstraint, ModelPart, Nodes, Role, ScalarVariable, variables::NORMAL, variables::REACTION,
-};
+use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role, variables::NORMAL, variables::REACTION};
 use zelus_core::vector3::{dot, scale};
 
 use super::activation::{self, Start};
@@ -262,10 +260,6 @@ impl Interaction for MpcInteraction {
         Ok(())
     }
 
-    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
-        Vec::new()
-    }
-
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.acting = self.settings.interval.contains(part.info.time);
         self.states.read_friction(&part.nodes, self.settings.friction.law);
@@ -301,8 +295,45 @@ impl Interaction for MpcInteraction {
         Ok(())
     }
 
-    fn after_prediction(&mut self, _part: &mut ModelPart) -> Result<()> {
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.warn_of_held(part);
         Ok(())
+    }
+
+    fn constraints_version(&self) -> u64 {
+        self.version
+    }
+
+    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        vec![("pairs", self.relations.pairs.len() as f64), ("active nodes", self.states.count_active() as f64)]
+    }
+
+    fn coupling(&self) -> Option<&dyn Coupling> {
+        Some(self)
+    }
+
+    fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {
+        Some(self)
+    }
+
+    fn retry(&mut self) -> Option<&mut dyn Retry> {
+        Some(self)
+    }
+}
+
+impl Coupling for MpcInteraction {
+    fn blocks(&self) -> Vec<&dyn EntityBlock> {
+        self.friction.sliders.iter().map(|forces| forces as &dyn EntityBlock).collect()
+    }
+
+    fn graph_version(&self) -> u64 {
+        self.friction.graph
+    }
+}
+
+impl ActiveSet for MpcInteraction {
+    fn needs_reactions(&self) -> bool {
+        !self.settings.ties()
     }
 
     fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange> {
@@ -331,7 +362,7 @@ impl Interaction for MpcInteraction {
         Ok(change)
     }
 
-    fn reach_out(&mut self, part: &mut ModelPart) -> bool {
+    fn restrain_free_bodies(&mut self, part: &mut ModelPart) -> bool {
         if !self.acting || self.settings.ties() {
             return false;
         }
@@ -341,28 +372,9 @@ impl Interaction for MpcInteraction {
         self.states.export(&mut part.nodes);
         !near.is_empty()
     }
+}
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        self.warn_of_held(part);
-        Ok(())
-    }
-
-    fn blocks(&self) -> Vec<&dyn EntityBlock> {
-        self.friction.sliders.iter().map(|forces| forces as &dyn EntityBlock).collect()
-    }
-
-    fn graph_version(&self) -> u64 {
-        self.friction.graph
-    }
-
-    fn constraints_version(&self) -> u64 {
-        self.version
-    }
-
-    fn needs_reactions(&self) -> bool {
-        !self.settings.ties()
-    }
-
+impl Retry for MpcInteraction {
     fn save(&mut self) {
         self.relations.save();
         self.friction.save();
@@ -374,9 +386,5 @@ impl Interaction for MpcInteraction {
         self.friction.restore();
         self.states = self.saved.clone();
         self.steps_since_search = usize::MAX;
-    }
-
-    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
-        vec![("pairs", self.relations.pairs.len() as f64), ("active nodes", self.states.count_active() as f64)]
     }
 }

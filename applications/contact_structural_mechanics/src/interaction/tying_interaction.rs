@@ -6,7 +6,7 @@ use zelus_core::model::Role;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, Interaction, SetChange};
+use zelus_core::entities::{Coupling, EntityBlock, Interaction};
 use zelus_core::model::flags::{ACTIVE, CONTACT};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, ScalarVariable, variables::DISPLACEMENT};
 use zelus_core::parameters::Interval;
@@ -236,11 +236,6 @@ impl Interaction for TyingInteraction {
         Ok(())
     }
 
-    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
-        let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
-        unknowns.into_iter().map(|variable| (variable, self.slaves.clone())).collect()
-    }
-
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         if !self.settings.interval.contains(part.info.time) {
             self.switch_off(part);
@@ -274,16 +269,23 @@ impl Interaction for TyingInteraction {
         Ok(())
     }
 
-    fn after_prediction(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
+    fn constraints_version(&self) -> u64 {
+        self.constrained
     }
 
-    fn after_update(&mut self, _part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
-        Ok(SetChange::default())
+    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        vec![("tied pairs", if self.blocks.is_empty() { 0.0 } else { self.pairs.len() as f64 })]
     }
 
-    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
-        Ok(())
+    fn coupling(&self) -> Option<&dyn Coupling> {
+        Some(self)
+    }
+}
+
+impl Coupling for TyingInteraction {
+    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+        let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
+        unknowns.into_iter().map(|variable| (variable, self.slaves.clone())).collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
@@ -294,24 +296,11 @@ impl Interaction for TyingInteraction {
         self.graph
     }
 
-    fn constraints_version(&self) -> u64 {
-        self.constrained
-    }
-
-    fn relaxation(&self) -> Option<f64> {
-        Some(RELAXATION * self.scale_factor)
-    }
-
     fn idle_diagonal(&self) -> f64 {
         self.scale_factor
     }
 
-    fn save(&mut self) {}
-
-    // Pairs made at the start of a step are those that the retried step would make.
-    fn restore(&mut self) {}
-
-    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
-        vec![("tied pairs", if self.blocks.is_empty() { 0.0 } else { self.pairs.len() as f64 })]
+    fn relaxation(&self) -> Option<f64> {
+        Some(RELAXATION * self.scale_factor)
     }
 }

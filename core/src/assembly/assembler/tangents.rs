@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use zelus_linear_algebra::Csr;
 
-use super::{Assembler, blocks_of, load_blocks};
+use super::{Assembler, blocks_of, couplings, load_blocks};
 use crate::assembly::assembler::inertia::{Inertia, damped_by_properties, without_rates};
 use crate::assembly::{DofTable, System};
 use crate::communication::world;
@@ -22,12 +22,12 @@ impl Assembler {
         let start = Instant::now();
         // Damped unknowns without rates may be on other ranks only.
         self.bulk_general = world().any(self.bulk_general);
-        let acting = system.interactions.iter().filter(|i| !i.blocks().is_empty());
-        let diagonal = acting.map(|i| i.idle_diagonal()).fold(1.0, |_, d| d);
+        let acting = couplings(system).filter(|own| !own.blocks().is_empty());
+        let diagonal = acting.map(|own| own.idle_diagonal()).fold(1.0, |_, d| d);
         let mut in_use = self.coupling.lonely_rows_in_use();
         world().any_of(&mut in_use);
         let distribution = self.distribution.as_ref();
-        self.coupling.hold_lonely(&in_use, diagonal, |n| distribution.is_none_or(|d| d.is_own(n)));
+        self.coupling.set_idle_diagonal(&in_use, diagonal, |n| distribution.is_none_or(|d| d.is_own(n)));
         let coupling = &self.coupling.matrix;
         self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;
@@ -80,7 +80,7 @@ impl Assembler {
         self.loads.assemble(&load_blocks(system), &view)?;
         self.seconds.bulk += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        self.coupling.assemble(&blocks_of(&system.interactions), &view)?;
+        self.coupling.assemble(&blocks_of(system), &view)?;
         self.seconds.coupling += start.elapsed().as_secs_f64();
         Ok(())
     }

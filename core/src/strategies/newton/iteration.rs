@@ -11,7 +11,7 @@ use crate::strategies::criterion::Check;
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::reactions::write_reactions;
 use crate::strategies::records::{IterationRecord, Monitor};
-use crate::strategies::strategy::update_interactions;
+use crate::strategies::strategy::{after_prediction, relaxation, update_interactions};
 
 /// Share of the increment that ends a swing between two states.
 const HALF: f64 = 0.5;
@@ -21,8 +21,8 @@ const LEFT: f64 = 0.01;
 
 /// What the iterations of a step hand on to each other.
 struct Step {
-    /// Nodes that lead the mesh, see [`NewtonRaphson::led_nodes`].
-    led: Option<Vec<u32>>,
+    /// Nodes that move before the mesh, see [`NewtonRaphson::moved_first`].
+    moved_first: Option<Vec<u32>>,
     /// Unknowns at its start.
     begin: Vec<f64>,
     /// Increments that the next solve takes on through the tangent; zero where unknowns are free.
@@ -110,27 +110,23 @@ impl NewtonRaphson {
             self.scheme.keep(forces);
         }
         let begin = self.assembler.values(part, system);
-        let led = self.led_nodes(part, system);
-        let prescribed = self.start(part, system, led.as_deref())?;
-        for interaction in &mut system.interactions {
-            interaction.after_prediction(part)?;
-        }
+        let moved_first = self.moved_first(part, system);
+        let prescribed = self.start(part, system, moved_first.as_deref())?;
+        after_prediction(part, &mut system.interactions)?;
         let mut residual = self.residual(part, system);
         if residual.is_err() && self.scheme.has_inertia() {
             self.stay(part, system);
-            for interaction in &mut system.interactions {
-                interaction.after_prediction(part)?;
-            }
+            after_prediction(part, &mut system.interactions)?;
             residual = self.residual(part, system);
         }
         Ok(Step {
-            led,
+            moved_first,
             begin,
             prescribed,
             residual: residual?,
             references: References::default(),
             records: Vec::new(),
-            relaxation: system.interactions.iter().find_map(|interaction| interaction.relaxation()),
+            relaxation: relaxation(&system.interactions),
             relaxed: None,
             widened: None,
             last: self.allowed().0,
@@ -161,9 +157,9 @@ impl NewtonRaphson {
         let increment = self.take(&solved, step, part, system)?;
         // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
         // serves for what the interactions take from it and nothing else.
-        let afresh =
-            step.led.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
-        let change = self.let_decide(iteration, afresh, step, part, system)?;
+        let restart =
+            step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
+        let change = self.decide(iteration, restart, step, part, system)?;
         let balanced = self.assembler.equations().balanced(&step.residual);
         if iteration == 1 {
             self.refer_to_first(system, &balanced, &mut step.references);
@@ -173,7 +169,7 @@ impl NewtonRaphson {
         }
         if !system.interactions.is_empty() {
             let balance = self.assembler.equations().reduce(&step.residual);
-            system.interactions.iter_mut().for_each(|interaction| interaction.observe(part, iteration, &balance));
+            observe(&mut system.interactions, part, iteration, &balance);
         }
         let verdict = self.judge(part, system, iteration, &self.with_pending(step), &step.references, &increment);
         agree(iteration, &change, verdict.converged)?;
@@ -186,7 +182,7 @@ impl NewtonRaphson {
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
             return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
-        if afresh {
+        if restart {
             step.prescribed = self.begin_again(part, system, &step.begin)?;
             step.residual = self.residual(part, system)?;
             return Ok(Turn::On);
@@ -201,7 +197,7 @@ impl NewtonRaphson {
         match (self.settings.linear, verdict.converged && change.count() == 0) {
             (true, _) => Ok(Turn::Converged),
             (false, false) => Ok(Turn::On),
-            (false, true) => self.look_beyond(iteration, step, part, system, monitor),
+            (false, true) => self.judge_converged(iteration, step, part, system, monitor),
         }
     }
 
@@ -215,7 +211,7 @@ impl NewtonRaphson {
     ) -> Result<Solved, Failed> {
         let constraints = constraints_version(&system.interactions);
         let mut solved = self.solve_once(iteration, step, part, system);
-        while matches!(solved, Err(Failed::Singular(_))) && reach_out(&mut system.interactions, part) {
+        while matches!(solved, Err(Failed::Singular(_))) && restrain_free_bodies(&mut system.interactions, part) {
             if constraints != constraints_version(&system.interactions) {
                 self.assembler.begin_step(part, system)?;
                 step.prescribed = self.followed(part, system, &step.prescribed);
@@ -258,7 +254,7 @@ impl NewtonRaphson {
         }
         let rhs = self.assembler.equations().reduce(&step.residual);
         if iteration == 1 {
-            system.interactions.iter_mut().for_each(|interaction| interaction.observe(part, 0, &rhs));
+            observe(&mut system.interactions, part, 0, &rhs);
         }
         self.solver.aim(step.needed());
         self.solve(part, system, &rhs)
@@ -316,23 +312,23 @@ impl NewtonRaphson {
         Ok(increment)
     }
 
-    /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `afresh` where they only
-    /// keep what the first iterate is for.
-    fn let_decide(
+    /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `restart` where they only
+    /// keep what the answer takes from the first iterate.
+    fn decide(
         &mut self,
         iteration: usize,
-        afresh: bool,
+        restart: bool,
         step: &mut Step,
         part: &mut ModelPart,
         system: &mut System,
     ) -> Result<SetChange> {
-        if system.interactions.iter().any(|interaction| interaction.needs_reactions()) {
+        if system.interactions.iter_mut().filter_map(|i| i.active_set()).any(|set| set.needs_reactions()) {
             let residual = self.residual(part, system)?;
             write_reactions(part, &system.dofs, &residual, None);
         }
         let (constraints, graph) = (constraints_version(&system.interactions), graph_version(&system.interactions));
-        let change = if afresh {
-            system.interactions.iter_mut().for_each(|interaction| interaction.keep_first_iterate(part));
+        let change = if restart {
+            system.interactions.iter_mut().filter_map(|i| i.first_iterate()).for_each(|first| first.keep(part));
             SetChange::default()
         } else {
             update_interactions(part, &mut system.interactions, iteration)?
@@ -357,7 +353,7 @@ impl NewtonRaphson {
     }
 
     /// Asks the interactions whether a converged state may be accepted; where it may not, the count of iterations begins anew.
-    fn look_beyond(
+    fn judge_converged(
         &mut self,
         iteration: usize,
         step: &mut Step,
@@ -366,8 +362,8 @@ impl NewtonRaphson {
         monitor: &mut dyn Monitor,
     ) -> Result<Turn> {
         let mut accepted = true;
-        for interaction in &mut system.interactions {
-            match interaction.after_convergence(part)? {
+        for set in system.interactions.iter_mut().filter_map(|i| i.active_set()) {
+            match set.after_convergence(part)? {
                 Outer::Done => {}
                 Outer::Again => accepted = false,
                 Outer::Widened(why) => {
@@ -425,17 +421,24 @@ fn agree(iteration: usize, change: &SetChange, converged: bool) -> Result<()> {
     Err(Error::System(format!("{fact}\n    run them on machines of one kind, or on fewer ranks")))
 }
 
-/// Whether any interaction takes hold of bodies that are free to move.
-fn reach_out(interactions: &mut [Box<dyn Interaction>], part: &mut ModelPart) -> bool {
+/// Shows the balance of an iterate to those who look at it.
+fn observe(interactions: &mut [Box<dyn Interaction>], part: &ModelPart, iteration: usize, residual: &[f64]) {
+    let observers = interactions.iter_mut().filter_map(|interaction| interaction.observer());
+    observers.for_each(|observer| observer.observe(part, iteration, residual));
+}
+
+/// Whether any interaction activates contact of bodies that are free to move.
+fn restrain_free_bodies(interactions: &mut [Box<dyn Interaction>], part: &mut ModelPart) -> bool {
     let mut any = false;
     for interaction in interactions {
-        any |= interaction.reach_out(part);
+        any |= interaction.active_set().is_some_and(|set| set.restrain_free_bodies(part));
     }
     any
 }
 
 fn graph_version(interactions: &[Box<dyn Interaction>]) -> u64 {
-    interactions.iter().fold(0, |sum, interaction| sum.wrapping_mul(31).wrapping_add(interaction.graph_version()))
+    let couplings = interactions.iter().filter_map(|interaction| interaction.coupling());
+    couplings.fold(0, |sum, coupling| sum.wrapping_mul(31).wrapping_add(coupling.graph_version()))
 }
 
 fn constraints_version(interactions: &[Box<dyn Interaction>]) -> u64 {

@@ -6,6 +6,7 @@ use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, MasslessNodes};
 use crate::model::{MasterSlaveConstraint, ModelPart};
+use crate::strategies::strategy::after_prediction;
 
 impl NewtonRaphson {
     /// Takes the mass off the nodes that interactions name.
@@ -13,8 +14,8 @@ impl NewtonRaphson {
     /// Not where elements yield: without mass a node follows in balance, and at the limit of its material there is none.
     pub(super) fn redistribute_mass(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         let mut nodes = MasslessNodes::default();
-        for interaction in &mut system.interactions {
-            let own = interaction.massless_nodes(part);
+        for massless in system.interactions.iter_mut().filter_map(|interaction| interaction.massless()) {
+            let own = massless.massless_nodes(part);
             nodes.surface.extend(own.surface);
             nodes.near.extend(own.near);
         }
@@ -34,16 +35,16 @@ impl NewtonRaphson {
     /// Moves free unknowns to the prediction and gives the increments of prescribed and constrained ones, which are
     /// left at their old values: the first solve takes them on through the tangent.
     ///
-    /// With `led` nodes they stay at their new values instead, ahead of the mesh, which follows at those nodes only.
+    /// With nodes that move first they stay at their new values instead, ahead of the mesh, which follows at those nodes only.
     pub(in crate::strategies) fn start(
         &mut self,
         part: &mut ModelPart,
         system: &System,
-        led: Option<&[u32]>,
+        moved_first: Option<&[u32]>,
     ) -> Result<Vec<f64>> {
         let targets = self.assembler.values(part, system);
-        if let Some(led) = led {
-            led.iter().for_each(|&node| part.nodes.follow(node as usize));
+        if let Some(nodes) = moved_first {
+            nodes.iter().for_each(|&node| part.nodes.follow(node as usize));
             return Ok(vec![0.0; targets.len()]);
         }
         for (number, dof) in system.dofs.dofs().iter().enumerate() {
@@ -82,14 +83,14 @@ impl NewtonRaphson {
     /// answer; `None` where the step begins as others do.
     ///
     /// Not so after a failed attempt, since elements may turn inside out that way.
-    pub(super) fn led_nodes(&self, part: &ModelPart, system: &System) -> Option<Vec<u32>> {
+    pub(super) fn moved_first(&self, part: &ModelPart, system: &mut System) -> Option<Vec<u32>> {
         let free = !self.failed
             && self.settings.move_mesh
             && !part.constraints.iter().any(|c| c.active && !self.is_multiplier(system, c));
         if !free || !self.scheme.is_static() {
             return None;
         }
-        system.interactions.iter().find_map(|interaction| interaction.led_nodes())
+        system.interactions.iter_mut().filter_map(|i| i.first_iterate()).find_map(|first| first.moved_first())
     }
 
     fn is_multiplier(&self, system: &System, constraint: &MasterSlaveConstraint) -> bool {
@@ -116,9 +117,7 @@ impl NewtonRaphson {
         let back: Vec<f64> = (0..now.len()).map(|n| if fixed(n) { 0.0 } else { begin[n] - now[n] }).collect();
         system.dofs.scatter_add(&back, &mut part.nodes);
         let prescribed = self.start(part, system, None)?;
-        for interaction in &mut system.interactions {
-            interaction.after_prediction(part)?;
-        }
+        after_prediction(part, &mut system.interactions)?;
         Ok(prescribed)
     }
 
