@@ -38,6 +38,7 @@ pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
 pub use partition::{WeightedGraph, partition_graph};
+pub use precondition::{Precondition, PreconditionerFactory};
 pub use rank::rank;
 pub use solver::{
     DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Preconditioner, SolveError,

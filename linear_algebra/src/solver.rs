@@ -1,6 +1,7 @@
 //! The one interface of all solvers, what they report and how they fail.
 
 use crate::condensation::{CondensationSettings, NotCondensable};
+use crate::precondition::PreconditionerFactory;
 use crate::system::System;
 
 /// What one solve did.
@@ -99,7 +100,7 @@ pub trait LinearSolver: Send {
 }
 
 /// Which solver to create, with its settings.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Engine {
     /// Multifrontal factorisation with the interface in a dense Schur complement; the default.
     Direct(DirectSettings),
@@ -145,7 +146,7 @@ impl Default for DirectSettings {
 }
 
 /// Settings of the Krylov engines.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct KrylovSettings {
     /// Relative residual `‖b - A x‖ / ‖b‖` at which iteration stops.
     pub tolerance: f64,
@@ -181,7 +182,7 @@ pub enum Multipliers {
 }
 
 /// Approximate inverses that speed up a Krylov engine.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default)]
 pub enum Preconditioner {
     /// None.
     Identity,
@@ -190,6 +191,8 @@ pub enum Preconditioner {
     /// Incomplete LU on the pattern of the matrix.
     #[default]
     Ilu0,
+    /// One of another crate.
+    Other(PreconditionerFactory),
 }
 
 /// Settings of [`Engine::Multigrid`].

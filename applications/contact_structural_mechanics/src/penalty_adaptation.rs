@@ -1,40 +1,95 @@
 //! Rules that adapt the penalty of a node while the iteration runs; gaps are lengths, negative in penetration.
 
-use serde::Deserialize;
+use serde::de::{Deserialize, Deserializer, Error};
+use zelus_core::registry::{all, find};
+use zelus_core::{register, registered_kind};
 
-/// How the penalty of an active node follows its gap.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-pub enum PenaltyRule {
-    /// Algorithm 7 as the reference program runs it.
-    #[serde(rename = "AALM")]
-    AugmentedLagrangian,
-    /// Algorithm 7 as it is printed.
-    #[serde(rename = "printed")]
-    Printed,
-    /// Eq. D.4.
-    #[serde(rename = "APM")]
-    AdaptedPenalty,
+/// A rule by which the penalty of an active node follows its gap.
+pub struct PenaltyAdaptation {
+    /// The next penalty, from the present one, the present and the last iterate's gap, and the least and largest gap that is
+    /// good enough.
+    pub adapt: fn(f64, f64, f64, [f64; 2]) -> f64,
+    /// Whether the answer does not depend on the penalty, so that a share of that of the run stays; otherwise a share of the
+    /// present one.
+    pub keeps_share_of_run: bool,
 }
 
+registered_kind! {
+    /// A rule that `adaptation_rule` names.
+    pub struct PenaltyAdaptationEntry("penalty_adaptation", "invalid-value") {
+        build: PenaltyAdaptation;
+    }
+}
+
+/// The registered rule that a deck names.
+#[derive(Clone, Copy)]
+pub struct PenaltyRule(&'static PenaltyAdaptationEntry);
+
 impl PenaltyRule {
-    /// The next penalty, from the present and the last iterate's gap and the least and largest gap that is good enough.
-    pub fn adapt(self, penalty: f64, gap: f64, previous: f64, [least, largest]: [f64; 2]) -> f64 {
-        match self {
-            Self::AugmentedLagrangian => adapted_augmented_lagrangian(penalty, gap, previous, largest),
-            Self::Printed => printed_augmented_lagrangian(penalty, -gap, -previous, largest),
-            Self::AdaptedPenalty if gap < 0.0 => adapted_penalty(penalty, gap, least, largest),
-            Self::AdaptedPenalty => penalty,
-        }
+    /// Algorithm 7, as the reference program runs it.
+    pub fn usual() -> Self {
+        Self(find("AALM").expect("registered below"))
     }
 
-    /// The penalty of which a share must stay: that of the `run` where the answer does not depend on it, and the `present`
-    /// one where it is to find its way.
-    pub fn floor_refers_to(self, run: f64, present: f64) -> f64 {
-        match self {
-            Self::AugmentedLagrangian | Self::Printed => run,
-            Self::AdaptedPenalty => present,
-        }
+    /// See [`PenaltyAdaptation::adapt`].
+    pub fn adapt(self, penalty: f64, gap: f64, previous: f64, enough: [f64; 2]) -> f64 {
+        (self.0.build.adapt)(penalty, gap, previous, enough)
     }
+
+    /// The penalty of which a share must stay.
+    pub fn floor_refers_to(self, run: f64, present: f64) -> f64 {
+        if self.0.build.keeps_share_of_run { run } else { present }
+    }
+}
+
+impl std::fmt::Debug for PenaltyRule {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0.name)
+    }
+}
+
+impl PartialEq for PenaltyRule {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.name == other.0.name
+    }
+}
+
+impl<'de> Deserialize<'de> for PenaltyRule {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        find(&name).map(Self).ok_or_else(|| {
+            let known: Vec<String> =
+                all::<PenaltyAdaptationEntry>().into_iter().map(|entry| format!("`{}`", entry.name)).collect();
+            D::Error::custom(format!("unknown variant `{name}`, expected one of {}", known.join(", ")))
+        })
+    }
+}
+
+register! { PenaltyAdaptationEntry "AALM",
+    about: "adapted augmented Lagrangian, as the reference program runs it",
+    source: "Algorithm 7; Bussetta, Marceau and Ponthot",
+    build: PenaltyAdaptation {
+        adapt: |penalty, gap, previous, [_, largest]| adapted_augmented_lagrangian(penalty, gap, previous, largest),
+        keeps_share_of_run: true,
+    },
+}
+register! { PenaltyAdaptationEntry "printed",
+    about: "adapted augmented Lagrangian, as it is printed",
+    source: "Algorithm 7; Bussetta, Marceau and Ponthot",
+    build: PenaltyAdaptation {
+        adapt: |penalty, gap, previous, [_, largest]| printed_augmented_lagrangian(penalty, -gap, -previous, largest),
+        keeps_share_of_run: true,
+    },
+}
+register! { PenaltyAdaptationEntry "APM",
+    about: "adapted penalty method: penetrations between two bounds",
+    source: "eq. D.4",
+    build: PenaltyAdaptation {
+        adapt: |penalty, gap, _, [least, largest]| {
+            if gap < 0.0 { adapted_penalty(penalty, gap, least, largest) } else { penalty }
+        },
+        keeps_share_of_run: false,
+    },
 }
 
 /// Adapted augmented Lagrangian (Algorithm 7, Bussetta, Marceau and Ponthot), as the reference program runs it.
@@ -180,7 +235,8 @@ mod tests {
 
     #[test]
     fn algorithm_7_as_printed() {
-        let rule = |gap, previous| PenaltyRule::Printed.adapt(100.0, gap, previous, [0.0, 0.1]);
+        let printed = PenaltyRule(find("printed").unwrap());
+        let rule = |gap, previous| printed.adapt(100.0, gap, previous, [0.0, 0.1]);
         // Line 4 for any sign change, also of a small gap.
         close(rule(0.2, -0.4), 100.0 * 2.0 * 0.3 / 0.6);
         close(rule(-0.5, 0.05), 100.0 * 0.1 * 0.6 / 0.55);

@@ -1,7 +1,10 @@
 //! From a mesh document to a model part: ids become indices, names become registered kinds and variables.
 
 use crate::model::Role;
+mod constraints;
+
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use rustc_hash::FxHashMap;
@@ -13,8 +16,8 @@ use crate::entities::{find_kind, kind_names, require_kind};
 use crate::geometry::Shape;
 use crate::model::flags::{FLAGS, flag};
 use crate::model::{
-    EntityTable, Fields, Flags, MasterSlaveConstraint, ModelPart, Named, Nodes, Properties, PropertyValue,
-    ScalarVariable, SubPart, Table, VariableKind, named,
+    EntityTable, Fields, Flags, ModelPart, Named, Nodes, Properties, PropertyValue, ScalarVariable, SubPart, Table,
+    VariableKind, named,
 };
 
 /// Reads an mdpa file into `part`; gives the warnings. Columns the part already has are kept and made longer.
@@ -318,44 +321,7 @@ impl Import<'_> {
         }
     }
 
-    /// Adds the constraints; gives their indices by id.
-    fn constraints(&mut self, part: &mut ModelPart) -> FxHashMap<u32, u32> {
-        let mut indices = FxHashMap::default();
-        for block in &self.document.constraints {
-            let scalar = match named(&block.variables[0]) {
-                Some(Named::Component(scalar)) => scalar,
-                Some(Named::Whole(column, VariableKind::Scalar)) => ScalarVariable { column, component: None },
-                Some(Named::Whole(..)) => {
-                    let fact = format!("a constraint relates single numbers, {} is more", block.variables[0]);
-                    self.push(block.line, Diagnostic::error("wrong-type", fact).remedy("name a component, as …_X"));
-                    continue;
-                }
-                None => {
-                    self.push(block.line, unknown_variable(&block.variables[0]));
-                    continue;
-                }
-            };
-            if block.variables.iter().any(|name| *name != block.variables[0]) {
-                let fact = format!("only the first variable of the heading is used ({scalar}), as Kratos does");
-                self.push(block.line, Diagnostic::warning("mixed-constraint", fact));
-            }
-            for row in &block.rows {
-                let unknown = |id: u32| (part.nodes.find(id as usize).expect("checked by the reader"), scalar);
-                indices.insert(row.id, part.constraints.len() as u32);
-                part.constraints.push(MasterSlaveConstraint {
-                    id: row.id as usize,
-                    slave: unknown(row.slave),
-                    masters: row.masters.iter().map(|&id| unknown(id)).zip(row.weights.iter().copied()).collect(),
-                    forces: None,
-                    constant: row.constant,
-                    active: true,
-                });
-            }
-        }
-        indices
-    }
-
-    fn sub_parts(&mut self, part: &mut ModelPart, constraints: &FxHashMap<u32, u32>) {
+    fn sub_parts(&mut self, part: &mut ModelPart, constraints: &FxHashMap<u32, Range<u32>>) {
         let mut tree = std::mem::take(&mut part.tree);
         for source in &self.document.sub_model_parts {
             let child = self.sub_part(source, part, constraints);
@@ -376,14 +342,14 @@ impl Import<'_> {
         &mut self,
         source: &mdpa::SubModelPart,
         part: &ModelPart,
-        constraints: &FxHashMap<u32, u32>,
+        constraints: &FxHashMap<u32, Range<u32>>,
     ) -> SubPart {
         let mut out = SubPart::new(source.name.clone());
         out.nodes = source.nodes.iter().filter_map(|&id| part.nodes.find(id as usize)).collect();
         out.elements = source.elements.iter().filter_map(|&id| part.elements.find(id as usize)).collect();
         out.conditions = source.conditions.iter().filter_map(|&id| part.conditions.find(id as usize)).collect();
         out.geometries = source.geometries.iter().filter_map(|&id| part.geometries.find(id as usize)).collect();
-        out.constraints = source.constraints.iter().filter_map(|id| constraints.get(id).copied()).collect();
+        out.constraints = source.constraints.iter().filter_map(|id| constraints.get(id).cloned()).flatten().collect();
         out.tables = source.tables.iter().map(|&id| id as usize).collect();
         out.properties = source.properties.iter().map(|&id| id as usize).collect();
         for entry in &source.data {

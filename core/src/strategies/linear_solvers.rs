@@ -8,7 +8,7 @@ use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
-use crate::parameters::Settings;
+use crate::parameters::{Node, Settings};
 use crate::{register, registered_kind, registry};
 
 /// What a linear solver is made from.
@@ -23,6 +23,13 @@ pub struct LinearSolverRequest<'a> {
 
 /// Makes a linear solver.
 pub type LinearSolverFactory = fn(&LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>>;
+
+registered_kind! {
+    /// A preconditioner that `preconditioner_type` names, for conjugate gradients and GMRES.
+    pub struct PreconditionerEntry("preconditioner", "unknown-name") {
+        build: Preconditioner;
+    }
+}
 
 registered_kind! {
     /// A linear solver that decks name.
@@ -136,19 +143,41 @@ fn automatic(request: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>>
     multigrid_from(request, MultigridSettings::FASTER)
 }
 
-fn krylov(request: &LinearSolverRequest<'_>) -> KrylovSettings {
-    let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
-    let multipliers = request.multipliers;
-    let mut krylov = KrylovSettings { preconditioner: Preconditioner::Ilu0, multipliers, ..KrylovSettings::default() };
-    if let Some(tolerance) = number("tolerance") {
-        krylov.tolerance = tolerance;
-    }
-    if let Some(iterations) = number("max_iteration") {
-        krylov.iterations = iterations as usize;
-    }
-    krylov
+fn krylov(request: &LinearSolverRequest<'_>) -> Result<KrylovSettings> {
+    let settings = request.settings;
+    let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
+    let named = settings.node().get("preconditioner_type").map(Node::str).transpose()?.filter(|name| !name.is_empty());
+    let preconditioner = match named {
+        None => Preconditioner::Ilu0,
+        Some(name) => {
+            let entry = registry::require::<PreconditionerEntry>(name);
+            entry.map_err(|d| d.at(settings.key_place("preconditioner_type")))?.build
+        }
+    };
+    let usual = KrylovSettings::default();
+    Ok(KrylovSettings {
+        tolerance: number("tolerance").unwrap_or(usual.tolerance),
+        iterations: number("max_iteration").map_or(usual.iterations, |iterations| iterations as usize),
+        preconditioner,
+        multipliers: request.multipliers,
+    })
 }
 
+register! { PreconditionerEntry "ilu0",
+    aliases: &["ilu", "ILU0Preconditioner", "ILUPreconditioner"],
+    about: "incomplete LU on the pattern of the matrix",
+    build: Preconditioner::Ilu0,
+}
+register! { PreconditionerEntry "diagonal",
+    aliases: &["DiagonalPreconditioner"],
+    about: "inverses of the diagonal blocks of the nodes",
+    build: Preconditioner::BlockJacobi,
+}
+register! { PreconditionerEntry "none",
+    aliases: &["None", "Preconditioner"],
+    about: "no preconditioner",
+    build: Preconditioner::Identity,
+}
 register! { LinearSolverEntry "sparse_lu",
     aliases: &["skyline_lu_factorization", "pardiso_lu", "pardiso_ldlt", "pardiso_llt", "sparse_cg", "sparse_qr",
         "super_lu", "SuperLUSolver", "LUSkylineFactorizationSolver", "umfpack", "mumps", "direct"],
@@ -167,10 +196,10 @@ register! { LinearSolverEntry "amgcl",
 register! { LinearSolverEntry "cg",
     aliases: &["CGSolver", "conjugate_gradient"],
     about: "conjugate gradients with incomplete LU; GMRES where contact leaves no symmetry, with condensed multipliers",
-    build: |request| Ok(create(Engine::ConjugateGradient(krylov(request)))),
+    build: |request| Ok(create(Engine::ConjugateGradient(krylov(request)?))),
 }
 register! { LinearSolverEntry "gmres",
     aliases: &["bicgstab", "BICGSTABSolver", "tfqmr", "TFQMRSolver"],
     about: "restarted GMRES with incomplete LU; multipliers of contact are condensed",
-    build: |request| Ok(create(Engine::Gmres { krylov: krylov(request), restart: 100 })),
+    build: |request| Ok(create(Engine::Gmres { krylov: krylov(request)?, restart: 100 })),
 }

@@ -48,7 +48,7 @@ pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{CRITICAL_STEP, ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
-pub use linear_solvers::{LinearSolverEntry, LinearSolverFactory, LinearSolverRequest};
+pub use linear_solvers::{LinearSolverEntry, LinearSolverFactory, LinearSolverRequest, PreconditionerEntry};
 pub(crate) use linear_solvers::{make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all};
 pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use pseudo_static_scheme::PseudoStaticScheme;

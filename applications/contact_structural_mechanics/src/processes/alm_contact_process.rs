@@ -207,7 +207,7 @@ fn interaction(
         whole.augmentation.unwrap_or(if family.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
     let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
     let factor = nitsche_factor(settings, whole.nitsche_factor)?;
-    let rule = whole.parameters.adaptation_rule.unwrap_or(PenaltyRule::AugmentedLagrangian);
+    let rule = whole.parameters.adaptation_rule.unwrap_or_else(PenaltyRule::usual);
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,

@@ -7,6 +7,7 @@
 mod compare_two_files_check_process;
 mod control;
 mod csv_points_output_process;
+mod format;
 mod from_json_check_result_process;
 mod gauss;
 mod gid_output_process;
@@ -22,3 +23,5 @@ mod quantity;
 #[cfg(test)]
 mod tests;
 mod vtk_output_process;
+
+pub use format::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};

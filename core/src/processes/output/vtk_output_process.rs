@@ -1,29 +1,28 @@
 //! Pictures for ParaView: `vtk_output_process` in Kratos' legacy form, `vtu_output_process` compressed with a PVD series.
 
 use crate::processes::ProcessEntry;
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::control::{OutputControl, Unit};
-use super::picture::{Mesh, Picture};
-use super::place::{PartPath, one_of};
+use super::format::{OutputFormat, OutputFormatEntry, Shown};
+use super::picture::Picture;
+use super::place::PartPath;
 use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::io::on_one_rank;
-use crate::io::results::{VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessRequest};
 use crate::register;
+use crate::registry::require;
 
 /// Writes one file a step and part.
 struct VtkOutput {
     part: PartPath,
     control: OutputControl,
     picture: Picture,
-    /// `None` writes VTU.
-    legacy: Option<VtkFormat>,
+    format: Box<dyn OutputFormat>,
     folder: PathBuf,
     /// Whether files of earlier runs in the folder are removed.
     clears: bool,
@@ -31,8 +30,6 @@ struct VtkOutput {
     postfix: String,
     decimals: usize,
     sub_parts: bool,
-    /// Time and file of every step written, by series.
-    series: BTreeMap<String, Vec<(f64, String)>>,
 }
 
 fn adapt(defaults: Defaults) -> Defaults {
@@ -47,26 +44,21 @@ fn adapt(defaults: Defaults) -> Defaults {
 fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Process>> {
     let settings = &request.settings_with(adapt)?;
     let decimals = settings.get_usize("output_precision")?;
-    let legacy = if is_vtu {
-        None
-    } else {
-        let formats = [VtkFormat::Ascii { precision: decimals }, VtkFormat::Binary];
-        Some(formats[one_of(settings, "file_format", &["ascii", "binary"])?])
-    };
+    let format = if is_vtu { "vtu" } else { settings.get_str("file_format")? };
+    let format = require::<OutputFormatEntry>(format).map_err(|d| d.at(settings.key_place("file_format")))?;
     let in_folder = settings.get_bool("save_output_files_in_folder")?;
     let folder = if in_folder { request.folder.join(settings.get_str("output_path")?) } else { request.folder.into() };
     Ok(Box::new(VtkOutput {
         part: PartPath::new(settings)?,
         control: OutputControl::new(settings, "")?,
         picture: Picture::new(settings, request.report)?,
-        legacy,
+        format: (format.build)(settings)?,
         folder,
         clears: in_folder,
         prefix: settings.get_str("custom_name_prefix")?.to_owned(),
         postfix: settings.get_str("custom_name_postfix")?.to_owned(),
         decimals,
         sub_parts: settings.get_bool("output_sub_model_parts")?,
-        series: BTreeMap::new(),
     }))
 }
 
@@ -78,46 +70,13 @@ impl VtkOutput {
             Unit::Time => format!("{:.*}", self.decimals, part.info.time),
         };
         let series = format!("{}{}{}", self.prefix, path.replace('.', "_"), self.postfix);
-        let Some(format) = self.legacy else {
-            let file = self.write_vtu(part, &mesh, &format!("{series}_{label}"))?;
-            let steps = self.series.entry(series.clone()).or_default();
-            steps.push((part.info.time, file));
-            return write_pvd(&self.folder.join(format!("{series}.pvd")), steps);
-        };
-        let path = self.folder.join(format!("{series}_0_{label}.vtk"));
-        if part.share.is_some() {
-            return write_vtk(&path, &mesh.data.gathered(), format);
-        }
-        write_vtk(&path, &mesh.data, format)
-    }
-
-    /// Writes a VTU file, or one a rank and a PVTU file that lists them; gives the name of what to open. Collective.
-    ///
-    /// Ranks without cells and points write nothing, unless all are without. The list is written once all that it lists is.
-    fn write_vtu(&self, part: &ModelPart, mesh: &Mesh, name: &str) -> Result<String> {
-        let Some(share) = &part.share else {
-            let file = format!("{name}.vtu");
-            write_vtu(&self.folder.join(&file), &mesh.data)?;
-            return Ok(file);
-        };
-        let piece_file = |rank: usize| format!("{name}_{rank}.vtu");
-        let own = &mesh.data;
-        let is_empty = !world().any(!own.points.is_empty());
-        let is_needed = !own.points.is_empty() || (is_empty && world().is_root());
-        let path = self.folder.join(piece_file(world().rank()));
-        world().agree(if is_needed { write_piece(&path, own) } else { Ok(()) })?;
-        let mut has_piece = vec![false; share.ranks];
-        has_piece[world().rank()] = is_needed;
-        world().any_of(&mut has_piece);
-        let pieces: Vec<String> = (0..share.ranks).filter(|&rank| has_piece[rank]).map(piece_file).collect();
-        let file = format!("{name}.pvtu");
-        write_pvtu(&self.folder.join(&file), own, &pieces)?;
-        Ok(file)
+        let folder = &self.folder;
+        self.format.write(&Shown { part, data: &mesh.data, folder, series: &series, label: &label })
     }
 
     /// Removes the pictures of an earlier run, so that no step of it is taken for one of this run.
     fn clear(&self) -> Result<()> {
-        let endings: &[&str] = if self.legacy.is_some() { &["vtk"] } else { &["vtu", "pvtu", "pvd"] };
+        let endings = self.format.endings();
         for entry in std::fs::read_dir(&self.folder).into_iter().flatten().flatten() {
             let path = entry.path();
             if path.extension().and_then(|e| e.to_str()).is_some_and(|e| endings.contains(&e)) && path.is_file() {
@@ -159,10 +118,7 @@ impl Process for VtkOutput {
     }
 
     fn outputs(&self) -> Vec<PathBuf> {
-        if self.legacy.is_some() {
-            return vec![self.folder.clone()];
-        }
-        self.series.keys().map(|series| self.folder.join(format!("{series}.pvd"))).collect()
+        self.format.outputs(&self.folder)
     }
 }
 

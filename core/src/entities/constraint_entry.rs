@@ -1,0 +1,50 @@
+//! Constraints that a mesh names: linear relations made of the rows of a `Constraints` block.
+
+use crate::model::{MasterSlaveConstraint, Nodes, ScalarVariable};
+use crate::{register, registered_kind};
+
+/// One row of a `Constraints` block, its nodes by index.
+pub struct ConstraintRow<'a> {
+    /// Its id.
+    pub id: usize,
+    /// Variables of the heading: the slave's, then the masters' where given.
+    pub variables: &'a [ScalarVariable],
+    /// The constant term.
+    pub constant: f64,
+    /// One weight a master.
+    pub weights: &'a [f64],
+    /// The node that follows.
+    pub slave: u32,
+    /// The nodes that it follows.
+    pub masters: &'a [u32],
+    /// All nodes of the mesh.
+    pub nodes: &'a Nodes,
+}
+
+/// Makes the relations of a row; the error says what is wrong with it.
+pub type ConstraintFactory = fn(&ConstraintRow<'_>) -> Result<Vec<MasterSlaveConstraint>, String>;
+
+registered_kind! {
+    /// A constraint that meshes name.
+    pub struct ConstraintEntry("constraint", "unknown-constraint") {
+        build: ConstraintFactory;
+        /// Whether it relates different variables; otherwise the first of the heading counts.
+        mixes_variables: bool = false,
+    }
+}
+
+register! { ConstraintEntry "LinearMasterSlaveConstraint",
+    about: "a node's unknown is a constant and weights times that unknown of other nodes",
+    source: "u_slave = Σ weight · u_master + constant",
+    build: |row| {
+        let masters = row.masters.iter().map(|&node| (node, row.variables[0]));
+        Ok(vec![MasterSlaveConstraint {
+            id: row.id,
+            slave: (row.slave, row.variables[0]),
+            masters: masters.zip(row.weights.iter().copied()).collect(),
+            forces: None,
+            constant: row.constant,
+            active: true,
+        }])
+    },
+}

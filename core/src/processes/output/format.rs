@@ -1,0 +1,132 @@
+//! Formats of pictures: how points, cells and columns become files.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::communication::world;
+use crate::diagnostics::Result;
+use crate::io::results::{Dataset, VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
+use crate::model::ModelPart;
+use crate::parameters::Settings;
+use crate::{register, registered_kind};
+
+/// A picture of a model part in one step, for a format to write.
+pub struct Shown<'a> {
+    /// The part, for its step data and what a rank has of it.
+    pub part: &'a ModelPart,
+    /// Points, cells and columns; of several ranks what this one has.
+    pub data: &'a Dataset,
+    /// Folder of the files.
+    pub folder: &'a Path,
+    /// Name of the pictures of one part.
+    pub series: &'a str,
+    /// Step or time of this one.
+    pub label: &'a str,
+}
+
+/// Writes pictures.
+pub trait OutputFormat: Send {
+    /// Writes one picture. Collective.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    fn write(&mut self, shown: &Shown<'_>) -> Result<()>;
+
+    /// Endings of its files: those of earlier runs are removed from the folder.
+    fn endings(&self) -> &'static [&'static str];
+
+    /// What a user would open; the folder unless the format has files that name the others.
+    fn outputs(&self, folder: &Path) -> Vec<PathBuf> {
+        vec![folder.to_owned()]
+    }
+}
+
+/// Makes a format from the settings of the process that writes in it.
+pub type OutputFormatFactory = fn(&Settings) -> Result<Box<dyn OutputFormat>>;
+
+registered_kind! {
+    /// A format that `file_format` of `vtk_output_process` names.
+    pub struct OutputFormatEntry("output_format", "unknown-name") {
+        build: OutputFormatFactory;
+    }
+}
+
+/// Kratos' layout of the legacy format.
+struct Legacy(VtkFormat);
+
+impl OutputFormat for Legacy {
+    fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
+        let path = shown.folder.join(format!("{}_0_{}.vtk", shown.series, shown.label));
+        if shown.part.share.is_some() {
+            return write_vtk(&path, &shown.data.gathered(), self.0);
+        }
+        write_vtk(&path, shown.data, self.0)
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["vtk"]
+    }
+}
+
+/// Compressed VTU, with a PVD file a series.
+#[derive(Default)]
+struct Vtu {
+    /// Time and file of every step written, by series.
+    series: BTreeMap<String, Vec<(f64, String)>>,
+}
+
+impl Vtu {
+    /// Writes a VTU file, or one a rank and a PVTU file that lists them; gives the name of what to open. Collective.
+    ///
+    /// Ranks without cells and points write nothing, unless all are without. The list is written once all that it lists is.
+    fn write_file(shown: &Shown<'_>) -> Result<String> {
+        let (own, name) = (shown.data, format!("{}_{}", shown.series, shown.label));
+        let Some(share) = &shown.part.share else {
+            let file = format!("{name}.vtu");
+            write_vtu(&shown.folder.join(&file), own)?;
+            return Ok(file);
+        };
+        let piece_file = |rank: usize| format!("{name}_{rank}.vtu");
+        let is_empty = !world().any(!own.points.is_empty());
+        let is_needed = !own.points.is_empty() || (is_empty && world().is_root());
+        let path = shown.folder.join(piece_file(world().rank()));
+        world().agree(if is_needed { write_piece(&path, own) } else { Ok(()) })?;
+        let mut has_piece = vec![false; share.ranks];
+        has_piece[world().rank()] = is_needed;
+        world().any_of(&mut has_piece);
+        let pieces: Vec<String> = (0..share.ranks).filter(|&rank| has_piece[rank]).map(piece_file).collect();
+        let file = format!("{name}.pvtu");
+        write_pvtu(&shown.folder.join(&file), own, &pieces)?;
+        Ok(file)
+    }
+}
+
+impl OutputFormat for Vtu {
+    fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
+        let file = Self::write_file(shown)?;
+        let steps = self.series.entry(shown.series.to_owned()).or_default();
+        steps.push((shown.part.info.time, file));
+        write_pvd(&shown.folder.join(format!("{}.pvd", shown.series)), steps)
+    }
+
+    fn endings(&self) -> &'static [&'static str] {
+        &["vtu", "pvtu", "pvd"]
+    }
+
+    fn outputs(&self, folder: &Path) -> Vec<PathBuf> {
+        self.series.keys().map(|series| folder.join(format!("{series}.pvd"))).collect()
+    }
+}
+
+register! { OutputFormatEntry "ascii",
+    about: "legacy VTK as text, laid out as Kratos writes it",
+    build: |settings| Ok(Box::new(Legacy(VtkFormat::Ascii { precision: settings.get_usize("output_precision")? }))),
+}
+register! { OutputFormatEntry "binary",
+    about: "legacy VTK in binary, laid out as Kratos writes it",
+    build: |_| Ok(Box::new(Legacy(VtkFormat::Binary))),
+}
+register! { OutputFormatEntry "vtu",
+    about: "compressed VTU in double precision with a PVD file that lists the steps; several ranks write a piece each",
+    build: |_| Ok(Box::<Vtu>::default()),
+}
