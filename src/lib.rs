@@ -3,16 +3,27 @@
 //! This crate links the framework and all applications, and is what programs that embed zelus depend on:
 //!
 //! ```no_run
-//! use zelus::{RunOptions, Silent};
-//! let (result, report) = zelus::run("ProjectParameters.json".as_ref(), &RunOptions::default(), &mut Silent);
-//! result.unwrap();
-//! println!("{} steps", report.steps.len());
+//! use zelus::{RunOptions, Silent, Simulation};
+//! # fn main() -> zelus::Result<()> {
+//! let mut simulation = Simulation::open("ProjectParameters.json".as_ref(), &RunOptions::default())?;
+//! while simulation.step(&mut Silent)? {
+//!     let displacement = simulation.field("DISPLACEMENT").expect("a solver that moves nodes");
+//!     let farthest = displacement.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+//!     println!("time {:?}: {farthest}", simulation.time());
+//! }
+//! # Ok(())
+//! # }
 //! ```
 //!
 //! A program that adds its own conditions, processes or criteria names their crate and calls [`program::main`]; see
 //! `examples/plugin`.
 
 pub mod program;
+
+/// The code of `docs/library.md`, run by the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+struct Library;
 
 use zelus_constrained_optimization as _;
 use zelus_contact_structural_mechanics as _;
@@ -21,7 +32,7 @@ use zelus_structural_mechanics as _;
 pub use zelus_constrained_optimization as constrained_optimization;
 pub use zelus_contact_structural_mechanics as contact_structural_mechanics;
 pub use zelus_core as core;
-pub use zelus_core::analysis::{RunOptions, RunReport, check, run};
+pub use zelus_core::analysis::{RunOptions, RunReport, Simulation};
 pub use zelus_core::strategies::{Monitor, Silent};
 pub use zelus_core::{Error, Result};
 pub use zelus_structural_mechanics as structural_mechanics;

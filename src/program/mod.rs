@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use zelus_core::analysis::{RunOptions, RunReport};
+use zelus_core::analysis::{RunOptions, RunReport, Simulation};
 use zelus_core::communication::{self, world};
 use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
@@ -100,11 +100,15 @@ fn execute(command: Command) -> Result<()> {
                 check_writable(path)?;
             }
             let options = RunOptions { threads, like };
+            let opened = Simulation::open(&file, &options);
             if !world().is_root() {
-                return zelus_core::analysis::run(&file, &options, &mut Silent).0;
+                return opened?.run(&mut Silent);
             }
             let mut terminal = Terminal::new();
-            let (result, run) = zelus_core::analysis::run(&file, &options, &mut terminal);
+            let (result, run) = match opened {
+                Ok(mut simulation) => (simulation.run(&mut terminal), simulation.into_report()),
+                Err(error) => (Err(error), RunReport::default()),
+            };
             terminal.finish(&run, result.is_ok());
             let written = report.map_or(Ok(()), |path| write_report(&path, &run));
             result.and(written)
@@ -113,11 +117,12 @@ fn execute(command: Command) -> Result<()> {
             let options = RunOptions { like, ..RunOptions::default() };
             let mut monitor: Box<dyn Monitor> =
                 if world().is_root() { Box::new(Terminal::new()) } else { Box::new(Silent) };
-            let (result, report) = zelus_core::analysis::check(&file, &options, monitor.as_mut());
-            result?;
+            let mut simulation = Simulation::open(&file, &options)?;
+            simulation.check(monitor.as_mut())?;
             if !world().is_root() {
                 return Ok(());
             }
+            let report = simulation.report();
             say(&format!(
                 "{}: no errors; {} nodes, {} elements, {} conditions, {} unknowns",
                 file.display(),

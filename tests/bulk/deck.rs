@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
-use zelus::{RunOptions, RunReport, Silent};
+use zelus::{RunOptions, RunReport, Silent, Simulation};
 use zelus_core::geometry::Shape;
 
 use super::grid::{Grid, Vec3};
@@ -213,7 +213,6 @@ impl<'a> Deck<'a> {
     /// Runs the deck; what was said of it, and what it left on disk.
     pub fn attempt(&self) -> (zelus_core::Result<()>, Ran) {
         let folder = tempfile::tempdir().expect("a scratch folder");
-        let step = self.solver["time_stepping"]["time_step"].as_f64().expect("a time step");
         let mut processes = self.processes.clone();
         processes.push(json!({
             "python_module": "json_output_process", "kratos_module": "KratosMultiphysics", "Parameters": {
@@ -221,7 +220,7 @@ impl<'a> Deck<'a> {
                 "output_variables": ["DISPLACEMENT", "REACTION"], "gauss_points_output_variables": self.gauss}}));
         let deck = json!({
             "problem_data": {"problem_name": "bulk", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
-                "end_time": self.end_time - 0.5 * step},
+                "end_time": self.end_time},
             "solver_settings": self.solver,
             "processes": {"list": processes}});
         let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("a file");
@@ -229,9 +228,10 @@ impl<'a> Deck<'a> {
         write("materials.json", self.material.to_string());
         write("mesh.mdpa", self.mesh());
         let path = folder.path().join("ProjectParameters.json");
-        let (result, report) = zelus::run(&path, &RunOptions::default(), &mut Silent);
+        let mut simulation = Simulation::open(&path, &RunOptions::default()).expect("a deck");
+        let result = simulation.run(&mut Silent);
         let text = std::fs::read_to_string(folder.path().join("results.json")).expect("results");
-        (result, Ran { json: serde_json::from_str(&text).expect("JSON"), report })
+        (result, Ran { json: serde_json::from_str(&text).expect("JSON"), report: simulation.into_report() })
     }
 }
 

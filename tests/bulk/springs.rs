@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
-use zelus::{RunOptions, Silent};
+use zelus::{RunOptions, Silent, Simulation};
 
 /// Runs a deck of a mesh given as text; the histories of its nodes.
 fn run(mesh: &str, materials: &Value, solver: Value, processes: Value, end_time: f64) -> Value {
@@ -27,7 +27,9 @@ fn run(mesh: &str, materials: &Value, solver: Value, processes: Value, end_time:
     write("ProjectParameters.json", &deck.to_string());
     write("materials.json", &materials.to_string());
     write("mesh.mdpa", mesh);
-    let (result, _) = zelus::run(&folder.path().join("ProjectParameters.json"), &RunOptions::default(), &mut Silent);
+    let path = folder.path().join("ProjectParameters.json");
+    let opened = Simulation::open(&path, &RunOptions::default());
+    let result = opened.and_then(|mut simulation| simulation.run(&mut Silent));
     result.unwrap_or_else(|problem| panic!("{problem}"));
     serde_json::from_str(&std::fs::read_to_string(folder.path().join("results.json")).expect("results")).expect("JSON")
 }

@@ -2,25 +2,25 @@
 //!
 //! A stage holds the system of one model part, a strategy and processes.
 //!
-//! [`run`] reads `ProjectParameters.json` and runs its stage, or, in the form with an orchestrator, its stages one after
-//! another on one model. [`check`] does everything that can be done without solving.
+//! A [`Simulation`] reads `ProjectParameters.json` and makes the steps of its stage, or, in the form with an orchestrator, of its
+//! stages one after another on one model.
 
 mod cutting;
 mod deck;
 mod like;
 mod mesh;
 mod older_decks;
-mod orchestrator;
 mod report;
 mod saved;
 mod sharing;
+mod simulation;
 mod solver;
 mod stage;
 mod time_stepping;
 
 pub use cutting::Cutting;
 pub use mesh::{DeckMesh, read_deck_mesh};
-pub use orchestrator::{RunOptions, check, run};
 pub use report::{RunReport, Sizes};
+pub use simulation::{RunOptions, Simulation};
 pub use solver::{EXPLICIT, ExtensionDefinition, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry};
 pub use time_stepping::TimeStepping;

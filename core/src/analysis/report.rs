@@ -23,7 +23,7 @@ pub struct Sizes {
 }
 
 /// What a run leaves behind, as written by `--report`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunReport {
     /// Version of the program.
     pub version: String,
@@ -55,6 +55,29 @@ pub struct RunReport {
     pub outputs: Vec<PathBuf>,
     /// Whether every step converged.
     pub converged: bool,
+}
+
+impl Default for RunReport {
+    /// Nothing has run by this version.
+    fn default() -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            problem: String::new(),
+            like: None,
+            laid_defaults: Vec::new(),
+            stages: Vec::new(),
+            sizes: Sizes::default(),
+            steps: Vec::new(),
+            notes: Vec::new(),
+            warnings: Vec::new(),
+            linear_solver: String::new(),
+            parameters: BTreeMap::new(),
+            seconds: BTreeMap::new(),
+            threads: 0,
+            outputs: Vec::new(),
+            converged: false,
+        }
+    }
 }
 
 impl RunReport {

@@ -40,10 +40,12 @@ pub(super) struct Stage {
     first_length: Option<f64>,
     strategy: Box<dyn SolutionStrategy>,
     processes: Vec<Box<dyn Process>>,
+    begun: bool,
 }
 
 impl Stage {
-    /// Reads mesh and materials, makes the processes, blocks and strategy: everything short of solving.
+    /// Reads mesh and materials, makes the processes, blocks and strategy: everything short of solving. Processes of `more` act
+    /// after those of the deck.
     ///
     /// # Errors
     /// Every problem of the deck that can be found, gathered.
@@ -55,6 +57,7 @@ impl Stage {
         systems: &mut Systems,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
+        more: Vec<Box<dyn Process>>,
     ) -> Result<Self> {
         let start = Instant::now();
         let (stage, later) = stages.split_first().expect("there is a stage to prepare");
@@ -104,7 +107,9 @@ impl Stage {
             problems.absorb(solver)
         });
         let Some(solver) = solver else { return Err(finish(problems)) };
-        let stepping = problems.absorb(solver.settings.get("time_stepping").and_then(TimeStepping::from_node));
+        let stepping = solver.settings.get("time_stepping");
+        let stepping = stepping.and_then(|node| TimeStepping::from_node(node, &mut problems));
+        let stepping = problems.absorb(stepping);
         let cutting = problems.absorb(solver.cutting());
         problems.absorb(solver.domain_size());
         problems.absorb(solver.scheme().map(|_| ()));
@@ -139,6 +144,7 @@ impl Stage {
         }
         distribute(model.root_mut(&root)?, &decks, changes, monitor)?;
         let mut processes = make_processes(&deck, folder, model, &mut problems);
+        processes.extend(more);
         problems = problems_of_all(problems)?;
         let mut system = systems.remove(&root).unwrap_or_default();
         for process in &mut processes {
@@ -191,22 +197,68 @@ impl Stage {
             first_length: None,
             strategy,
             processes,
+            begun: false,
         })
     }
 
-    /// Runs all steps and finalises the processes, also when a step fails.
+    /// Name of the part that it solves for.
+    pub(super) fn root(&self) -> &str {
+        &self.root
+    }
+
+    /// What computes on that part.
+    pub(super) fn system(&self) -> &System {
+        &self.system
+    }
+
+    fn begin(&mut self, model: &mut Model, report: &mut RunReport) -> Result<()> {
+        self.begun = true;
+        report.stages.push(self.name.clone());
+        for process in &mut self.processes {
+            world().agree(process.before_loop(model))?;
+        }
+        model.root_mut(&self.root)?.info.time = self.start_time;
+        Ok(())
+    }
+
+    /// Makes the next step of the deck, in several shorter ones where it does not converge; `false` when none is left.
     ///
     /// # Errors
     /// A step that does not converge, however short; a failed solver, process or file.
-    pub(super) fn run(
+    pub(super) fn step(
+        &mut self,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+    ) -> Result<bool> {
+        if !self.begun {
+            self.begin(model, report)?;
+        }
+        let part = model.root_mut(&self.root)?;
+        let time = part.info.time;
+        if time >= self.end_time {
+            if time > self.end_time {
+                let ends = format!("the last step ends at {time}, after \"end_time\" {}", self.end_time);
+                monitor.note(&format!("{ends}: \"last_step\": \"shortened\" in \"time_stepping\" would end it there"));
+            }
+            return Ok(false);
+        }
+        let length = self.strategy.step_length(part, &self.system, self.stepping.next(time)?)?;
+        let target = self.stepping.target(time, length, self.end_time);
+        self.reach(target, model, report, monitor).map(|()| true)
+    }
+
+    /// Finalises the processes, also after a step that has failed; what elements remember goes to `systems`.
+    ///
+    /// # Errors
+    /// `result`, the end of the last step, or else what a process has met.
+    pub(super) fn finish(
         mut self,
+        result: Result<()>,
         model: &mut Model,
         systems: &mut Systems,
         report: &mut RunReport,
-        monitor: &mut dyn Monitor,
     ) -> Result<()> {
-        report.stages.push(self.name.clone());
-        let result = self.all_steps(model, report, monitor);
         if result.is_err() {
             world().announce_failure();
         }
@@ -226,22 +278,6 @@ impl Stage {
         report.add_seconds("assemble: interactions", assembly.coupling);
         systems.insert(self.root, System { elements: self.system.elements, ..System::default() });
         result.and(finals.finish().map(|_| ()))
-    }
-
-    fn all_steps(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
-        for process in &mut self.processes {
-            world().agree(process.before_loop(model))?;
-        }
-        model.root_mut(&self.root)?.info.time = self.start_time;
-        let mut time = self.start_time;
-        while time < self.end_time {
-            let asked = self.stepping.next(time)?;
-            let part = model.root_mut(&self.root)?;
-            let target = time + self.strategy.step_length(part, &self.system, asked)?;
-            self.reach(target, model, report, monitor)?;
-            time = model.root(&self.root)?.info.time;
-        }
-        Ok(())
     }
 
     /// Solves up to `target`, in one step or, where that does not converge, in shorter ones.

@@ -1,12 +1,34 @@
 //! Lengths of the steps, as the deck gives them.
 
-use crate::diagnostics::{Diagnostic, Result};
+use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
 use crate::model::Table;
 use crate::parameters::{Interval, Node};
 
+/// Share of a step that sums of step lengths may be off by.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Steps of the deck: their lengths, and whether the last one ends at `end_time`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeStepping {
+    rule: StepLength,
+    /// What becomes of the step that would go beyond the end.
+    last_step: LastStep,
+}
+
+/// The end of a run whose steps do not add up to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum LastStep {
+    /// The last step is whole and goes beyond the end; what is round-off is no step.
+    Whole,
+    /// It is shortened.
+    Shortened,
+    /// There are steps while the time, as a number, is below the end.
+    WhileBelow,
+}
+
 /// The rule that gives the next step's length from the present time.
 #[derive(Debug, Clone, PartialEq)]
-pub enum TimeStepping {
+enum StepLength {
     /// `time_step`: always the same.
     Constant(f64),
     /// `time_step_table`: piecewise linear in time.
@@ -16,11 +38,53 @@ pub enum TimeStepping {
 }
 
 impl TimeStepping {
-    /// From the deck's `time_stepping` object.
+    /// From the deck's `time_stepping` object; keys that nothing reads are warned of.
     ///
     /// # Errors
     /// No rule, or one that cannot be used.
-    pub fn from_node(node: &Node) -> Result<Self> {
+    pub fn from_node(node: &Node, warnings: &mut Report) -> Result<Self> {
+        const KEYS: [&str; 4] = ["time_step", "time_step_table", "time_step_intervals", "last_step"];
+        for unknown in node.object()?.iter().filter(|member| !KEYS.contains(&member.key.as_str())) {
+            let fact = format!("\"time_stepping\" has no key {:?}: nothing reads it", unknown.key);
+            let remedy = did_you_mean(&unknown.key, KEYS).unwrap_or_else(|| format!("there is: {}", KEYS.join(", ")));
+            let problem = Diagnostic::warning("key-without-effect", fact).at(node.key_place(&unknown.key));
+            warnings.push(problem.remedy(remedy));
+        }
+        let last_step = match node.get("last_step").map(|node| Ok::<_, Error>((node, node.str()?))).transpose()? {
+            None | Some((_, "whole")) => LastStep::Whole,
+            Some((_, "shortened")) => LastStep::Shortened,
+            Some((_, "while_below")) => LastStep::WhileBelow,
+            Some((node, word)) => {
+                return Err(Diagnostic::error("invalid-value", format!("\"last_step\" is {word:?}"))
+                    .at(node.place())
+                    .remedy("write \"whole\", \"shortened\" or \"while_below\"")
+                    .into());
+            }
+        };
+        Ok(Self { rule: StepLength::from_node(node)?, last_step })
+    }
+
+    /// End of the step of `length` from `time` in a run that ends at `end`.
+    pub fn target(&self, time: f64, length: f64, end: f64) -> f64 {
+        let beyond = time + length - end;
+        match self.last_step {
+            LastStep::Whole if beyond.abs() <= ROUND_OFF * length => end,
+            LastStep::Shortened if beyond >= -ROUND_OFF * length => end,
+            _ => time + length,
+        }
+    }
+
+    /// Length of the step that begins at `time`.
+    ///
+    /// # Errors
+    /// A time that no interval contains, or a table that gives no positive length.
+    pub fn next(&self, time: f64) -> Result<f64> {
+        self.rule.next(time)
+    }
+}
+
+impl StepLength {
+    fn from_node(node: &Node) -> Result<Self> {
         if let Some(step) = node.get("time_step") {
             let length = step.f64()?;
             if !(length > 0.0 && length.is_finite()) {
@@ -63,11 +127,7 @@ impl TimeStepping {
             .into())
     }
 
-    /// Length of the step that begins at `time`.
-    ///
-    /// # Errors
-    /// A time that no interval contains, or a table that gives no positive length.
-    pub fn next(&self, time: f64) -> Result<f64> {
+    fn next(&self, time: f64) -> Result<f64> {
         let length = match self {
             Self::Constant(length) => *length,
             Self::Table(table) => table.value(time),
@@ -82,5 +142,49 @@ impl TimeStepping {
             Err(Diagnostic::error("time-step", format!("\"time_stepping\" gives no positive step at time {time}"))
                 .into())
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Document;
+
+    fn ends(stepping: &str, end: f64) -> Vec<f64> {
+        let deck = Document::from_str(stepping, "deck.json").expect("JSON").root;
+        let stepping = TimeStepping::from_node(&deck, &mut Report::new()).expect("steps");
+        let (mut time, mut ends) = (0.0, Vec::new());
+        while time < end {
+            time = stepping.target(time, stepping.next(time).expect("a length"), end);
+            ends.push(time);
+        }
+        ends
+    }
+
+    #[test]
+    fn sums_of_steps_meet_the_end() {
+        let tenths = ends(r#"{ "time_step": 0.1 }"#, 1.0);
+        assert_eq!((tenths.len(), tenths[9]), (10, 1.0));
+        assert_eq!(ends(r#"{ "time_step": 1.1 }"#, 1.0), [1.1]);
+        let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
+        assert!(thirds.len() == 4 && thirds[3] > 1.19);
+    }
+
+    #[test]
+    fn the_last_step_is_what_the_deck_says() {
+        let thirds = ends(r#"{ "time_step": 0.3, "last_step": "shortened" }"#, 1.0);
+        assert_eq!((thirds.len(), thirds[3]), (4, 1.0));
+        assert_eq!(ends(r#"{ "time_step": 2.0, "last_step": "shortened" }"#, 1.0), [1.0]);
+        let beyond = ends(r#"{ "time_step": 0.1, "last_step": "while_below" }"#, 1.0);
+        assert!(beyond.len() == 11 && beyond[10] > 1.09, "ten tenths sum up to less than one");
+    }
+
+    #[test]
+    fn keys_that_nothing_reads_are_named() {
+        let deck = Document::from_str(r#"{ "time_step": 0.1, "time_stepp": 1 }"#, "deck.json").expect("JSON").root;
+        let mut warnings = Report::new();
+        TimeStepping::from_node(&deck, &mut warnings).expect("steps");
+        let warning = warnings.finish().expect("no errors").remove(0).to_string();
+        assert!(warning.contains("time_stepp") && warning.contains("deck.json:1:20"), "{warning}");
     }
 }

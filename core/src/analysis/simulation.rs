@@ -1,0 +1,260 @@
+//! A deck that is run step by step, and what it holds on the way.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::deck::{StageDeck, open, stages};
+use super::report::RunReport;
+use super::stage::{Stage, Systems};
+use crate::assembly::System;
+use crate::communication::fair_threads;
+use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::model::{Model, ModelPart};
+use crate::parameters::{Node, Value};
+use crate::processes::Process;
+use crate::strategies::{Monitor, StepRecord};
+
+/// What a caller of a [`Simulation`] chooses.
+#[derive(Debug, Clone, Default)]
+pub struct RunOptions {
+    /// Threads; `None` takes all of the machine, as rayon sees them.
+    pub threads: Option<usize>,
+    /// Program whose defaults hold where the deck names nothing, e.g. `kratos`; `None` for what the deck says, else our own.
+    pub like: Option<String>,
+}
+
+/// A deck with its model and the stage under way.
+///
+/// [`Simulation::step`] makes one step of the deck after another; between them fields can be read and written, and what they
+/// hold then is what the next step begins with. Several simulations in one process know nothing of each other.
+///
+/// The monitor that watches is passed to what computes: [`Silent`](crate::strategies::Silent) says nothing.
+pub struct Simulation {
+    stages: Vec<StageDeck>,
+    /// Stages that are over.
+    over: usize,
+    stage: Option<Stage>,
+    /// The part that the present or the last stage solves for.
+    root: String,
+    folder: PathBuf,
+    like: Option<String>,
+    model: Model,
+    systems: Systems,
+    /// Processes to act in the next stage.
+    more: Vec<Box<dyn Process>>,
+    pool: Arc<rayon::ThreadPool>,
+    report: RunReport,
+    checkpoints: Option<Diagnostic>,
+}
+
+impl Simulation {
+    /// Reads a deck; paths in it are relative to its folder.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no JSON; stages that are not there; threads that cannot be started.
+    pub fn open(path: &Path, options: &RunOptions) -> Result<Self> {
+        let (deck, folder) = open(path)?;
+        Self::new(&deck, folder, options)
+    }
+
+    /// A deck that is in memory; `folder` is where paths in it begin.
+    ///
+    /// # Errors
+    /// As [`Simulation::open`].
+    pub fn of_value(deck: &serde_json::Value, folder: &Path, options: &RunOptions) -> Result<Self> {
+        Self::new(&Node::from_json(deck, &Place::file("the deck"))?, folder.to_owned(), options)
+    }
+
+    fn new(deck: &Node, folder: PathBuf, options: &RunOptions) -> Result<Self> {
+        let threads = options.threads.unwrap_or_else(fair_threads);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| Error::System(format!("cannot start threads: {error}")))?;
+        let mut report = RunReport { threads: pool.current_num_threads(), ..RunReport::default() };
+        let stages = stages(deck, &mut report)?;
+        Ok(Self {
+            stages,
+            over: 0,
+            stage: None,
+            root: String::new(),
+            folder,
+            like: options.like.clone(),
+            model: Model::default(),
+            systems: Systems::new(),
+            more: Vec::new(),
+            pool: Arc::new(pool),
+            report,
+            checkpoints: warning_of_checkpoints(deck),
+        })
+    }
+
+    /// A process of the caller's, which acts after those of the deck: in the stage that is prepared next.
+    pub fn add_process(&mut self, process: Box<dyn Process>) {
+        self.more.push(process);
+    }
+
+    /// Prepares the next stage, when none is under way: mesh, materials, processes, unknowns. Without it [`Simulation::step`]
+    /// does so.
+    ///
+    /// # Errors
+    /// Every problem of the deck that can be found without solving, gathered.
+    pub fn prepare(&mut self, monitor: &mut dyn Monitor) -> Result<()> {
+        self.timed(|simulation| simulation.prepare_stage(monitor))
+    }
+
+    /// Makes the next step of the deck; `false` when there was none left, and every process has come to its end.
+    ///
+    /// # Errors
+    /// Problems of the deck, before anything is solved; a step that does not converge, however short; a failed solver, process or
+    /// file. Processes have then come to their end, and what has converged is written.
+    pub fn step(&mut self, monitor: &mut dyn Monitor) -> Result<bool> {
+        self.timed(|simulation| simulation.next_step(monitor))
+    }
+
+    /// Makes all steps that are left.
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    pub fn run(&mut self, monitor: &mut dyn Monitor) -> Result<()> {
+        self.timed(|simulation| {
+            while simulation.next_step(monitor)? {}
+            Ok(())
+        })
+    }
+
+    /// Ends here, before the last step: every process comes to its end and writes what it holds.
+    ///
+    /// # Errors
+    /// A process or file that fails.
+    pub fn finish(&mut self) -> Result<()> {
+        let ended = self.timed(|simulation| simulation.end_stage(Ok(())));
+        self.over = self.stages.len();
+        self.report.converged = false;
+        ended
+    }
+
+    /// Does everything that can be known of all stages without solving.
+    ///
+    /// # Errors
+    /// Every problem of the first stage that has any.
+    pub fn check(&mut self, monitor: &mut dyn Monitor) -> Result<()> {
+        self.timed(|simulation| {
+            while simulation.over < simulation.stages.len() {
+                simulation.prepare_stage(monitor)?;
+                simulation.stage = None;
+                simulation.report.stages.push(simulation.stages[simulation.over].name.clone());
+                simulation.over += 1;
+            }
+            Ok(())
+        })
+    }
+
+    /// The model: all parts with their nodes, fields, elements and properties.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The model, to write fields, fixities or properties of.
+    pub fn model_mut(&mut self) -> &mut Model {
+        &mut self.model
+    }
+
+    /// The part that the stage under way, or the last one, solves for; `None` before the first is prepared.
+    pub fn part(&self) -> Option<&ModelPart> {
+        self.model.parts.get(&self.root)
+    }
+
+    /// Unknowns, blocks and interactions of the stage under way.
+    pub fn system(&self) -> Option<&System> {
+        self.stage.as_ref().map(Stage::system)
+    }
+
+    /// Numbers of a field with history at the end of the last step (`components` a node), in the order of `part().nodes`; `None`
+    /// when nodes have no such variable.
+    pub fn field(&self, name: &str) -> Option<&[f64]> {
+        self.part()?.nodes.history.get(name).map(|field| field.levels[0].as_slice())
+    }
+
+    /// As [`Simulation::field`], to write.
+    pub fn field_mut(&mut self, name: &str) -> Option<&mut [f64]> {
+        let field = self.model.parts.get_mut(&self.root)?.nodes.history.get_mut(name)?;
+        field.levels.first_mut().map(Vec::as_mut_slice)
+    }
+
+    /// The time that is reached in the stage under way.
+    pub fn time(&self) -> Option<f64> {
+        self.part().map(|part| part.info.time)
+    }
+
+    /// Records of all attempts at steps so far.
+    pub fn records(&self) -> &[StepRecord] {
+        &self.report.steps
+    }
+
+    /// The report up to now.
+    pub fn report(&self) -> &RunReport {
+        &self.report
+    }
+
+    /// The report, at the end.
+    pub fn into_report(self) -> RunReport {
+        self.report
+    }
+
+    fn prepare_stage(&mut self, monitor: &mut dyn Monitor) -> Result<()> {
+        if self.stage.is_some() || self.over == self.stages.len() {
+            return Ok(());
+        }
+        if let Some(warning) = self.checkpoints.take() {
+            self.report.warnings.push(warning.to_string());
+            monitor.warn(&warning);
+        }
+        let more = std::mem::take(&mut self.more);
+        let (stages, like) = (&self.stages[self.over..], self.like.as_deref());
+        let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
+        let stage = Stage::prepare(stages, &self.folder, like, model, systems, report, monitor, more)?;
+        stage.root().clone_into(&mut self.root);
+        self.stage = Some(stage);
+        Ok(())
+    }
+
+    fn next_step(&mut self, monitor: &mut dyn Monitor) -> Result<bool> {
+        while self.over < self.stages.len() {
+            self.prepare_stage(monitor)?;
+            let stage = self.stage.as_mut().expect("just prepared");
+            let stepped = stage.step(&mut self.model, &mut self.report, monitor);
+            if matches!(stepped, Ok(true)) {
+                return Ok(true);
+            }
+            self.end_stage(stepped.map(|_| ()))?;
+        }
+        Ok(false)
+    }
+
+    /// Brings the processes of the stage under way to their end, `result` being that of its last step.
+    fn end_stage(&mut self, result: Result<()>) -> Result<()> {
+        let Some(stage) = self.stage.take() else { return result };
+        let ended = stage.finish(result, &mut self.model, &mut self.systems, &mut self.report);
+        self.over = if ended.is_ok() { self.over + 1 } else { self.stages.len() };
+        self.report.converged = ended.is_ok() && self.over == self.stages.len();
+        ended
+    }
+
+    /// Does `work` with the threads of this simulation.
+    fn timed<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> Result<T> + Send) -> Result<T> {
+        let (start, pool) = (Instant::now(), Arc::clone(&self.pool));
+        let result = pool.install(|| work(self));
+        self.report.add_seconds("total", start.elapsed().as_secs_f64());
+        result
+    }
+}
+
+/// The warning that a deck asks for checkpoints.
+fn warning_of_checkpoints(deck: &Node) -> Option<Diagnostic> {
+    let wanted = deck.get_path("orchestrator.settings.stage_checkpoints")?;
+    if matches!(&wanted.value, Value::Bool(false)) || wanted.as_array().is_some_and(|list| list.is_empty()) {
+        return None;
+    }
+    let warning = Diagnostic::warning("checkpoint", "checkpoints are not written").at(wanted.place());
+    Some(warning.remedy("set \"stage_checkpoints\" to false: all stages are run from the first"))
+}
