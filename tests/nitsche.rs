@@ -17,7 +17,7 @@ use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepPara
 use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles, centre_normal,
 };
-use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, OperatorThreshold, SegmentationSettings};
+use zelus::contact_structural_mechanics::mortar::{Choices, IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Pair, PairKey, PairRequest, Previous, condition_name, find_family, group_by_surroundings,
 };
@@ -151,7 +151,7 @@ impl Contact {
             overlapping: true,
             area: [0.0; 4],
             previous: Previous::default(),
-            habit: Habit::default(),
+            choices: Choices::default(),
         };
         let own: Vec<u32> = interface.facets[1].nodes.iter().chain(&interface.facets[0].nodes).copied().collect();
         let behind = |_: &Pair| bodies.nodes([0, 0]).to_vec();

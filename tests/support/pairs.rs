@@ -6,7 +6,7 @@ use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::formulations::{Augmentation, Nitsche};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
-use zelus::contact_structural_mechanics::mortar::{Habit, IntegrationOrder, OperatorThreshold, SegmentationSettings};
+use zelus::contact_structural_mechanics::mortar::{Choices, IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, Previous, condition_name,
 };
@@ -208,7 +208,7 @@ impl Setting {
             overlapping: true,
             area: [0.6; 4],
             previous: Previous::default(),
-            habit: Habit::default(),
+            choices: Choices::default(),
         };
         let request = PairRequest {
             entry: entry.unwrap_or(block_kinds()[0]),

@@ -38,7 +38,7 @@ pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
 pub use penalty_by_node::PenaltyByNode;
 pub use penalty_frictional::{LastState, PenaltyFrictional};
 pub use penalty_frictionless::PenaltyFrictionless;
-pub use system::{OperatorTangent, by_normals, local_size, residual, tangent};
+pub use system::{by_normals, local_size, residual, tangent};
 
 use zelus_core::scalar::Real;
 

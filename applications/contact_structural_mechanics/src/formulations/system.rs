@@ -3,9 +3,8 @@
 use super::held::restate;
 use super::pair::{Kinematics, PairResidual, SlaveNode};
 use super::{Formulation, Multipliers};
-use crate::mortar::{
-    Operators, Overlap, PairGeometry, SegmentationSettings, dimension, operators, operators_on_flat_master,
-};
+use crate::kratos::FirstIterateTangent;
+use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, dimension, operators};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::constant;
 
@@ -37,17 +36,6 @@ pub fn residual<F: Formulation, const NS: usize, const NM: usize>(
     found
 }
 
-/// What a tangent knows of the operators.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OperatorTangent {
-    /// Their exact derivative.
-    Exact,
-    /// The derivative of the reference program, see [`operators_on_flat_master`].
-    FlatMaster,
-    /// Nothing: D and M count as constant.
-    Frozen,
-}
-
 /// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns); zero without overlap.
 /// `geometry` comes from [`PairGeometry::seeded`]; `NU` is its number of displacement unknowns. `lhs` has a row for each
 /// unknown, each of `width` numbers that begin with those of the unknowns. Returns the operators.
@@ -58,7 +46,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     formulation: &F,
     geometry: &PairGeometry<Dual<NU>, NS, NM>,
     settings: &SegmentationSettings,
-    knows: OperatorTangent,
+    knows: FirstIterateTangent,
     nodes: &[SlaveNode; NS],
     multipliers: &[[f64; 3]; NS],
     history: &F::History<NS, NM>,
@@ -70,11 +58,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     assert_eq!(lhs.len(), n * width, "one row per local unknown");
     lhs.fill(0.0);
     rhs.fill(0.0);
-    let found = match knows {
-        OperatorTangent::Exact => operators(geometry, settings).cells(),
-        OperatorTangent::FlatMaster => operators_on_flat_master(geometry, settings).cells(),
-        OperatorTangent::Frozen => operators(&geometry.values(), settings).cells().map(|plain| plain.as_constants()),
-    };
+    let found = knows.operators(geometry, settings);
     let Some(dual) = found else { return Overlap::None };
 
     let out = stated(formulation, &kinematics(geometry, dual, multipliers), nodes, history);

@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::friction_law::Bound;
+use crate::kratos::FirstIterateTangent;
 use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
 use crate::mortar::{
-    Habit, OperatorThreshold, Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential,
+    Choices, OperatorThreshold, Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential,
 };
 use zelus_core::vector3::{dot, normalised};
 
@@ -72,7 +73,7 @@ fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usi
                 formulation,
                 &pair.seeded::<NU>(),
                 &settings,
-                OperatorTangent::Exact,
+                FirstIterateTangent::Exact,
                 &nodes,
                 &lambda,
                 &history,
@@ -218,7 +219,7 @@ fn line_pair(line: &[f64], start: &[f64]) -> PairGeometry<f64, 2, 2> {
         nodal_normals: [vector(line, 4), vector(line, 5)],
         slave_normal: vector(start, 6),
         master_normal: vector(start, 7),
-        habit: Habit::default(),
+        choices: Choices::default(),
     }
 }
 
@@ -281,7 +282,7 @@ fn sign_of_the_contact_force() {
         nodal_normals: [up; 4],
         slave_normal: up,
         master_normal: down,
-        habit: Habit::default(),
+        choices: Choices::default(),
     };
     let node = SlaveNode {
         state: NodeState::Slip,
@@ -373,7 +374,7 @@ fn cost_of_local_systems() {
                     formulation,
                     &pair.seeded::<NU>(),
                     &settings,
-                    OperatorTangent::Exact,
+                    FirstIterateTangent::Exact,
                     nodes,
                     lambda,
                     history,
@@ -414,7 +415,7 @@ fn penalty_friction_acts_through_the_mortar_operators() {
                 nodal_normals: [free(up); 4],
                 slave_normal: free(up),
                 master_normal: free(down),
-                habit: Habit::default(),
+                choices: Choices::default(),
             };
             let node = SlaveNode {
                 state,

@@ -1,13 +1,13 @@
 //! Penalty, scale factor and reach of the search, from the bodies behind the interfaces and what the deck says.
 
-use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
 use super::contact_settings::ContactSettings;
 use super::friction;
 use super::step_parameters::StepParameters;
 use crate::formulations::Augmentation;
-use crate::interface::{AlmParameters, Interface, Roles, alm_parameters, unit_of_length};
+use crate::interface::{AlmParameters, Interface, Roles, alm_parameters};
+use crate::kratos::PenaltyUnit;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::search::GapCheck;
 use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_H};
@@ -29,18 +29,17 @@ pub(super) fn calibrate(
     before: &StepParameters,
 ) -> (f64, StepParameters) {
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
-    let unit = unit_of_length(&part.nodes.initial);
-    let measure = if part.info.domain_size == 2 && !settings.axisymmetric { unit } else { unit * unit };
+    let unit = PenaltyUnit::of(&part.nodes.initial, part.info.domain_size == 2 && !settings.axisymmetric);
     // Only penalties of weighted gaps hold an area.
     let pairwise = settings.family.weighted_gaps && settings.augmentation == Augmentation::Pair;
     let weighted = pairwise || settings.weighted_penalty;
     let mut chosen = settings.manual.unwrap_or(AlmParameters {
-        penalty: estimate.penalty * settings.penalty_factor / if weighted { measure } else { 1.0 },
+        penalty: estimate.penalty * settings.penalty_factor / if weighted { unit.measure } else { 1.0 },
         scale_factor: estimate.scale_factor,
     });
     chosen = chosen.with_floors(settings.least_penalty);
-    if unit != 1.0 && settings.weighted_penalty && settings.manual.is_none() {
-        part.messages.push(warn_of_unit(unit, measure));
+    if settings.weighted_penalty && settings.manual.is_none() {
+        part.messages.extend(unit.warning());
     }
     // Without factors, which a deck may have chosen for what else they do.
     let of_bodies = alm_parameters(part, interfaces, 1.0, 1.0).penalty;
@@ -65,7 +64,7 @@ pub(super) fn calibrate(
         },
         scale_factor: chosen.scale_factor,
         operator_threshold: OperatorThreshold {
-            area: settings.operator_threshold.area * measure,
+            area: settings.operator_threshold.area * unit.measure,
             ..settings.operator_threshold
         },
         stiffness: of_bodies,
@@ -73,16 +72,6 @@ pub(super) fn calibrate(
         ..before.clone()
     };
     (threshold, parameters)
-}
-
-/// The warning that the penalty, on which answers depend without multipliers, is not the reference program's but that
-/// over `measure`.
-fn warn_of_unit(unit: f64, measure: f64) -> Diagnostic {
-    let fact =
-        format!("the penalty is estimated as for a unit of length of {unit:e}: it is Kratos' own over {measure:e}");
-    Diagnostic::warning("penalty-unit", fact).remedy(format!(
-        "for Kratos' own multiply \"stiffness_factor\" by {measure:e}; \"manual_ALM\" with \"penalty\" sets any other"
-    ))
 }
 
 /// Mean of NODAL_H over the nodes of a side; of an open interface over all its nodes.

@@ -3,10 +3,8 @@
 use std::sync::Arc;
 
 use zelus_core::Result;
-use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
-    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, NORMALS_OF_FIRST_ITERATION,
-    Outer, Retry, SetChange,
+    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, Outer, Retry, SetChange,
 };
 use zelus_core::model::flags::{CONTACT, MASTER, SLAVE};
 use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
@@ -31,11 +29,12 @@ use super::step_search::StepSearch;
 use super::uzawa::Uzawa;
 use super::work::ContactWork;
 use crate::interface::{Bodies, Roles, add_contact_part, find_nodal_h, interfaces};
+use crate::kratos::FirstIterateTangent;
 use crate::pairs::{Multiplier, Pair};
 use crate::penalty_adaptation::Growth;
 use crate::search::{GapCheck, assign_roles};
 use crate::slave_states::SlaveStates;
-use crate::solver::{AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS, SIMPLIFIED_SEMI_SMOOTH_NEWTON};
+use crate::solver::{AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, ENSURE_CONTACT, KEEP_MASS};
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
 /// Iterations after which pairs go on as they integrate: most steps have converged by then, as in the reference program.
@@ -288,19 +287,11 @@ impl Interaction for ContactInteraction {
         find_nodal_h(part);
         part.info.marks.insert(CONTACT, explicit.is_none());
         if !self.setup.updates_normals() {
-            part.info.marks.insert(NORMALS_OF_FIRST_ITERATION, true);
+            FirstIterateTangent::announce(part);
         }
         // Forces of a spring by node have a potential, and keep the energy as long as nothing scales them.
         self.setup.settings.adaptation.dynamic_factor = (explicit.is_some() && self.setup.settings.weighted_penalty)
             || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
-        if part.info.is(SIMPLIFIED_SEMI_SMOOTH_NEWTON) {
-            let fact =
-                "\"simplified_semi_smooth_newton\" is not followed: the active set is updated in every iteration";
-            part.messages.push(
-                Diagnostic::warning("simplified-newton", fact)
-                    .remedy("nothing to do: the converged state is the same; leave the setting out to silence this"),
-            );
-        }
         self.setup.calibrate(part, &self.pairing.interfaces);
         self.growth = explicit.map(|explicit| explicit.growth(part));
         if self.setup.by_points() {
@@ -485,7 +476,7 @@ impl ActiveSet for ContactInteraction {
             }
         }
         if iteration >= SETTLED {
-            self.pairing.keep_habits(part, &self.states);
+            self.pairing.freeze_choices(part, &self.states);
         }
         let change = self.set.update(part, &mut self.states, &self.setup);
         let penalty = part.info.value_or(INITIAL_PENALTY.name(), 1.0);

@@ -21,7 +21,7 @@ use super::step_parameters::{NormalVariation, StepParameters};
 use crate::interface::{
     Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, slave_nodes,
 };
-use crate::mortar::{Habit, SegmentationSettings};
+use crate::mortar::{Choices, SegmentationSettings};
 use crate::pairs::{
     ContactBlock, Integral, Pair, PairKey, PairRequest, Present, Previous, condition_name, group_by_shapes,
     group_by_surroundings,
@@ -229,7 +229,7 @@ impl Pairing {
             overlapping: true,
             area: [0.0; 4],
             previous: Previous::default(),
-            habit: Habit::default(),
+            choices: Choices::default(),
         }
     }
 
@@ -297,11 +297,11 @@ impl Pairing {
         self.blocks = blocks;
     }
 
-    /// Step start: keeps the operators against which slip is measured, and forgets the habits of the last step. Slivers count
+    /// Step start: keeps the operators against which slip is measured, and forgets the choices of the last step. Slivers count
     /// where `slivers` holds and the nodes of their slave have other overlaps; a node that only slivers reach is beside the
     /// master.
     pub(super) fn begin_step(&mut self, part: &ModelPart, states: &SlaveStates, slivers: bool) {
-        self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.habit = Habit::default());
+        self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.choices = Choices::default());
         if slivers {
             let slaves = states.slaves();
             let mut area = NodalSums::new(part.nodes.len(), &slaves);
@@ -316,7 +316,7 @@ impl Pairing {
             for block in &mut self.blocks {
                 let covered = |at: usize| block.slave_nodes(at).iter().all(|&node| area[node] > [0.0]);
                 let covered: Vec<bool> = (0..block.len()).map(covered).collect();
-                block.pairs_mut().iter_mut().zip(covered).for_each(|(pair, covered)| pair.habit.slivers = covered);
+                block.pairs_mut().iter_mut().zip(covered).for_each(|(pair, covered)| pair.choices.slivers = covered);
             }
         }
         let own = |nodes: &[u32]| part.evaluates_pair(nodes);
@@ -325,10 +325,10 @@ impl Pairing {
     }
 
     /// Lets pairs go on as they integrate now, until the step ends.
-    pub(super) fn keep_habits(&mut self, part: &ModelPart, states: &SlaveStates) {
+    pub(super) fn freeze_choices(&mut self, part: &ModelPart, states: &SlaveStates) {
         let own = |nodes: &[u32]| part.evaluates_pair(nodes);
         let present = Present { view: &part.view(), states, own: &own };
-        self.blocks.iter_mut().for_each(|block| block.keep_habits(present));
+        self.blocks.iter_mut().for_each(|block| block.freeze_choices(present));
     }
 
     /// Gives blocks the states with which the assembly evaluates them.

@@ -20,7 +20,7 @@ use crate::formulations::{Augmentation, Nitsche};
 use crate::friction_law::COULOMB;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles, centre_normal};
 use crate::mortar::tests::Noise;
-use crate::mortar::{Habit, OperatorThreshold, SegmentationSettings};
+use crate::mortar::{Choices, OperatorThreshold, SegmentationSettings};
 use crate::pairs::{
     ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Present, Previous, condition_name, find_family,
     group_by_shapes, group_by_surroundings,
@@ -144,7 +144,7 @@ impl Contact {
                 overlapping: true,
                 area: [0.0; 4],
                 previous: Previous::default(),
-                habit: Habit::default(),
+                choices: Choices::default(),
             })
             .collect();
         for ((slave, master), (pairs, nodes)) in

@@ -7,7 +7,6 @@ mod nodal_h;
 mod normals;
 mod parameters;
 mod supports;
-mod unit_of_length;
 
 pub use bodies::{Bodies, Tractions};
 pub use contact_part::add_contact_part;
@@ -16,4 +15,3 @@ pub use nodal_h::find_nodal_h;
 pub use normals::{Corner, NodalNormals, NormalPatches, centre_normal, nodal_normals, positions};
 pub use parameters::{AlmParameters, alm_parameters};
 pub use supports::{Fixed, fixed_components, symmetry_planes};
-pub use unit_of_length::unit_of_length;

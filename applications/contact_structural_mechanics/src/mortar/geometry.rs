@@ -1,6 +1,6 @@
 //! The two facets of a contact pair as they stand, and the normals that go with them.
 
-use super::habit::Habit;
+use super::choices::Choices;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, value};
 
@@ -19,7 +19,7 @@ pub struct PairGeometry<T, const NS: usize, const NM: usize> {
     /// Unit normal of the plane of the master onto which points are projected; it may lag behind the master facet.
     pub master_normal: [T; 3],
     /// What the pair did before and goes on doing.
-    pub habit: Habit,
+    pub choices: Choices,
 }
 
 /// Number of space dimensions of a pair whose slave has `ns` nodes.
@@ -57,7 +57,7 @@ impl<const NS: usize, const NM: usize> PairGeometry<f64, NS, NM> {
             nodal_normals: self.nodal_normals.map(constant),
             slave_normal: constant(self.slave_normal),
             master_normal: constant(self.master_normal),
-            habit: self.habit,
+            choices: self.choices,
         }
     }
 }
@@ -72,7 +72,7 @@ impl<T: Real, const NS: usize, const NM: usize> PairGeometry<T, NS, NM> {
             nodal_normals: self.nodal_normals.map(value),
             slave_normal: value(self.slave_normal),
             master_normal: value(self.master_normal),
-            habit: self.habit,
+            choices: self.choices,
         }
     }
 }

@@ -13,7 +13,7 @@
 //! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments;
 //! 8. [`turn`]: how a facet has turned since, with what it carries along.
 //!
-//! All of it is continuous in the positions but for a few choices, which a pair can keep: [`habit`].
+//! All of it is continuous in the positions but for a few choices, which a pair can keep: [mod@choices].
 //!
 //! With normals that belong to the present geometry, D, M and g̃ agree with the reference program to 1e-10 (its inverse
 //! maps stop there). Four deliberate differences: slivers may count; a lagging slave normal tilts the direction of projection but does
@@ -24,10 +24,9 @@
 //! overlap has, where iterations end) are made on values; derivatives then come from one corrected evaluation at the
 //! solution, so that dual numbers cost a small multiple of the plain kernel and are exact.
 
-mod flat_master;
+pub mod choices;
 pub mod gap;
 pub mod geometry;
-pub mod habit;
 pub mod operators;
 pub mod points;
 mod quadrature;
@@ -38,10 +37,11 @@ pub mod shape;
 pub mod slip;
 pub mod turn;
 
+pub use choices::Choices;
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{PairGeometry, dimension};
-pub use habit::Habit;
-pub use operators::{Operators, Overlap, habit_of, operators, operators_on_flat_master};
+pub use operators::{Operators, Overlap, choices_of, operators, operators_by};
+pub use points::MasterMotion;
 pub use settings::{IntegrationOrder, SegmentationSettings};
 pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential, turned_slip};
 pub use turn::Turn;

@@ -6,10 +6,9 @@
 //! Where Me cannot be inverted, Φ = N¹ and D = Me is full. With the usual three points a triangle this is so for every
 //! quadrilateral slave whose overlap is a single triangle: three points cannot tell four functions apart.
 
-use super::flat_master::FlatMaster;
+use super::choices::Choices;
 use super::geometry::PairGeometry;
-use super::habit::Habit;
-use super::points::{Point, Points};
+use super::points::{ExactMotion, MasterMotion, Point, Points};
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
 use super::shape;
@@ -60,48 +59,45 @@ pub fn operators<T: Real, const NS: usize, const NM: usize>(
     pair: &PairGeometry<T, NS, NM>,
     settings: &SegmentationSettings,
 ) -> Overlap<Operators<T, NS, NM>> {
-    integrated(&Points { pair, flat: None }, settings)
+    operators_by(pair, settings, &ExactMotion)
 }
 
-/// D and M with the derivative of the reference program in space: points move on the master as if it lay in the slave's
-/// plane. Values are those of [`operators`].
-pub fn operators_on_flat_master<T: Real, const NS: usize, const NM: usize>(
+/// The same with the derivatives of another motion of points on the master.
+pub fn operators_by<T: Real, P: MasterMotion<T, NS>, const NS: usize, const NM: usize>(
     pair: &PairGeometry<T, NS, NM>,
     settings: &SegmentationSettings,
-) -> Overlap<Operators<T, NS, NM>> {
-    integrated(&Points { pair, flat: Some(FlatMaster::new(pair)) }, settings)
-}
-
-/// The choices that gave the operators `found` of a pair.
-pub fn habit_of<const NS: usize, const NM: usize>(
-    pair: &PairGeometry<f64, NS, NM>,
-    settings: &SegmentationSettings,
-    found: &Operators<f64, NS, NM>,
-) -> Habit {
-    let origin = || {
-        // Intervals of the plane have no such choice.
-        let polygon = if NS == 2 { None } else { Polygon::new(pair, settings) }?;
-        Some(polygon.local(polygon.vertices()[0]))
-    };
-    Habit { origin: pair.habit.origin.or_else(origin), plain: pair.habit.plain || !found.is_diagonal(), slivers: true }
-}
-
-fn integrated<T: Real, const NS: usize, const NM: usize>(
-    points: &Points<'_, T, NS, NM>,
-    settings: &SegmentationSettings,
+    motion: &P,
 ) -> Overlap<Operators<T, NS, NM>> {
     let mut sums = Sums::new();
-    let covered = points.visit(settings, |point| sums.add_point(point));
+    let covered = Points { pair, motion }.visit(settings, |point| sums.add_point(point));
     match covered {
-        covered if covered > least_overlap(points.pair) => Overlap::Cells(sums.finish(points.pair.habit)),
+        covered if covered > least_overlap(pair) => Overlap::Cells(sums.finish(pair.choices)),
         covered if covered > 0.0 => Overlap::Sliver,
         _ => Overlap::None,
     }
 }
 
+/// The choices that gave the operators `found` of a pair.
+pub fn choices_of<const NS: usize, const NM: usize>(
+    pair: &PairGeometry<f64, NS, NM>,
+    settings: &SegmentationSettings,
+    found: &Operators<f64, NS, NM>,
+) -> Choices {
+    let origin = || {
+        // Intervals of the plane have no such choice.
+        let polygon = if NS == 2 { None } else { Polygon::new(pair, settings) }?;
+        Some(polygon.local(polygon.vertices()[0]))
+    };
+    Choices {
+        origin: pair.choices.origin.or_else(origin),
+        plain: pair.choices.plain || !found.is_diagonal(),
+        slivers: true,
+    }
+}
+
 /// Length or area above which an overlap counts.
 pub(crate) fn least_overlap<T: Real, const NS: usize, const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> f64 {
-    if pair.habit.slivers { 0.0 } else { SLIVER * shape::measure(&pair.slave.map(value)) }
+    if pair.choices.slivers { 0.0 } else { SLIVER * shape::measure(&pair.slave.map(value)) }
 }
 
 impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
@@ -179,13 +175,13 @@ impl<T: Real, const NS: usize, const NM: usize> Sums<T, NS, NM> {
     }
 
     /// D and M from the integrals.
-    fn finish(mut self, habit: Habit) -> Operators<T, NS, NM> {
+    fn finish(mut self, choices: Choices) -> Operators<T, NS, NM> {
         for j in 0..NS {
             for k in 0..j {
                 self.me[j][k] = self.me[k][j];
             }
         }
-        let inverse = inverse(self.me.map(|row| row.map(T::value))).filter(|_| !habit.plain);
+        let inverse = inverse(self.me.map(|row| row.map(T::value))).filter(|_| !choices.plain);
         let Some(inverse) = inverse else {
             return Operators { d: self.me, m: self.mixed };
         };

@@ -1,6 +1,5 @@
 //! The integration points of the overlap of a pair: Gauss points on its cells, and where they go on the master.
 
-use super::flat_master::FlatMaster;
 use super::geometry::PairGeometry;
 use super::quadrature;
 use super::segmentation_2d;
@@ -32,16 +31,39 @@ pub fn for_each_point<T: Real, const NS: usize, const NM: usize>(
     settings: &SegmentationSettings,
     visit: impl FnMut(&Point<T, NS, NM>),
 ) -> f64 {
-    Points { pair, flat: None }.visit(settings, visit)
+    Points { pair, motion: &ExactMotion }.visit(settings, visit)
+}
+
+/// How points of the slave move on the master: where they are is the same for all.
+pub trait MasterMotion<T: Real, const NS: usize> {
+    /// Lengths at the slave nodes by which vertices on them are lifted, for motions that know of it.
+    fn lift(&self) -> Option<&[T; NS]>;
+
+    /// Local coordinates on `master` of its point at `place`, which belongs to the slave's point `x` lifted by `lift`.
+    fn local<const NM: usize>(&self, master: &[[T; 3]; NM], place: [T; 3], x: [T; 3], lift: T) -> [T; 2];
+}
+
+/// Points that stay on the projection along the interpolated normal.
+pub(super) struct ExactMotion;
+
+impl<T: Real, const NS: usize> MasterMotion<T, NS> for ExactMotion {
+    fn lift(&self) -> Option<&[T; NS]> {
+        None
+    }
+
+    #[inline]
+    fn local<const NM: usize>(&self, master: &[[T; 3]; NM], place: [T; 3], _: [T; 3], _: T) -> [T; 2] {
+        shape::closest_point(master, place, shape::centre::<NM>())
+    }
 }
 
 /// A pair whose overlap is walked.
-pub(super) struct Points<'a, T, const NS: usize, const NM: usize> {
+pub(super) struct Points<'a, T, P, const NS: usize, const NM: usize> {
     pub(super) pair: &'a PairGeometry<T, NS, NM>,
-    pub(super) flat: Option<FlatMaster<T, NS>>,
+    pub(super) motion: &'a P,
 }
 
-impl<T: Real, const NS: usize, const NM: usize> Points<'_, T, NS, NM> {
+impl<T: Real, P: MasterMotion<T, NS>, const NS: usize, const NM: usize> Points<'_, T, P, NS, NM> {
     /// As [`for_each_point`].
     #[inline]
     pub(super) fn visit(&self, settings: &SegmentationSettings, visit: impl FnMut(&Point<T, NS, NM>)) -> f64 {
@@ -123,11 +145,11 @@ impl<T: Real, const NS: usize, const NM: usize> Points<'_, T, NS, NM> {
     }
 
     fn lift(&self, polygon: &Polygon<T, NS, NM>, vertex: Vertex) -> T {
-        self.flat.as_ref().map_or(T::zero(), |flat| polygon.weigh(vertex, &flat.lift))
+        self.motion.lift().map_or(T::zero(), |lift| polygon.weigh(vertex, lift))
     }
 
-    /// Shape functions of the master where a point of the slave goes along the interpolated normal; `lift` is what
-    /// [`FlatMaster`] lifts it by.
+    /// Shape functions of the master where a point of the slave goes along the interpolated normal; `lift` is that of
+    /// [`MasterMotion`].
     #[inline]
     fn on_master(&self, slave: &[T; NS], x: [T; 3], lift: T) -> [T; NM] {
         let pair = self.pair;
@@ -135,10 +157,6 @@ impl<T: Real, const NS: usize, const NM: usize> Points<'_, T, NS, NM> {
         let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
         let mut projected = x;
         (0..3).for_each(|c| projected[c].add_product(normal[c], distance));
-        let xi = match &self.flat {
-            None => shape::closest_point(&pair.master, projected, shape::centre::<NM>()),
-            Some(flat) => flat.local(&pair.master, projected, x, lift),
-        };
-        shape::values::<T, NM>(xi)
+        shape::values::<T, NM>(self.motion.local(&pair.master, projected, x, lift))
     }
 }

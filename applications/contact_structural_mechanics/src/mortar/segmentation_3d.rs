@@ -56,7 +56,7 @@ impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
         }
         list.sort();
         let mut polygon = Self { slave, master, vertices: list.vertices, len: list.len };
-        if let Some(origin) = pair.habit.origin {
+        if let Some(origin) = pair.choices.origin {
             polygon.begin_near(origin);
         }
         Some(polygon)

@@ -46,7 +46,7 @@ fn pair<const NS: usize, const NM: usize>(slave: [[f64; 3]; NS], master: [[f64; 
         nodal_normals: [slave_normal; NS],
         slave_normal,
         master_normal,
-        habit: Habit::default(),
+        choices: Choices::default(),
     }
 }
 
@@ -256,7 +256,7 @@ fn rigid<const NS: usize, const NM: usize, const NU: usize>() {
             nodal_normals: before.nodal_normals.map(rotated),
             slave_normal: rotated(before.slave_normal),
             master_normal: rotated(before.master_normal),
-            habit: before.habit,
+            choices: before.choices,
         };
         let settings = SegmentationSettings::default();
         let (Overlap::Cells(a), Overlap::Cells(b)) = (operators(&before, &settings), operators(&after, &settings))
@@ -410,7 +410,7 @@ fn reference_values<const NS: usize, const NM: usize, const NU: usize>() {
             nodal_normals: std::array::from_fn(|_| vector()),
             slave_normal: vector(),
             master_normal: vector(),
-            habit: Habit::default(),
+            choices: Choices::default(),
         };
         let o = value_of(&pair);
         let gap = weighted_gap(&o, &pair.slave, &pair.master, &pair.nodal_normals);

@@ -39,7 +39,7 @@ pub trait ContactBlock: EntityBlock {
     fn keep_operators(&mut self, present: Present<'_>);
 
     /// Lets the pairs of this rank go on as they integrate now.
-    fn keep_habits(&mut self, present: Present<'_>);
+    fn freeze_choices(&mut self, present: Present<'_>);
 
     /// The same block for the assembly.
     fn as_entities(&self) -> &dyn EntityBlock;

@@ -10,7 +10,7 @@ use super::pair::PairKey;
 use crate::interface::{Facet, Interface, centre_normal, positions};
 use crate::mortar::operators::SLIVER;
 use crate::mortar::shape;
-use crate::mortar::{Habit, Overlap, PairGeometry, SegmentationSettings, operators};
+use crate::mortar::{Choices, Overlap, PairGeometry, SegmentationSettings, operators};
 use crate::search::{Candidate, SearchSettings, candidates};
 
 /// D and M of a pair, in the leading rows and columns (area).
@@ -94,7 +94,7 @@ fn of_shapes<const NS: usize, const NM: usize>(
         nodal_normals: std::array::from_fn(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
         slave_normal: centre_normal(slave.shape, positions(slave, part, &mut buffer))?,
         master_normal: centre_normal(master.shape, positions(master, part, &mut buffer))?,
-        habit: Habit { slivers: settings.slivers, ..Habit::default() },
+        choices: Choices { slivers: settings.slivers, ..Choices::default() },
     };
     let found = match operators(&geometry, settings) {
         Overlap::Cells(found) => found,

@@ -250,8 +250,8 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         self.pairs.keep_operators(present);
     }
 
-    fn keep_habits(&mut self, present: Present<'_>) {
-        self.pairs.keep_habits(present);
+    fn freeze_choices(&mut self, present: Present<'_>) {
+        self.pairs.freeze_choices(present);
     }
 
     fn as_entities(&self) -> &dyn EntityBlock {

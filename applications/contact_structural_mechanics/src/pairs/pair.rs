@@ -1,6 +1,6 @@
 //! One slave facet and one master facet that overlap.
 
-use crate::mortar::{Habit, Operators};
+use crate::mortar::{Choices, Operators};
 
 /// Which facets of which interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -48,7 +48,7 @@ pub struct Pair {
     /// Operators at the start of the step.
     pub previous: Previous,
     /// What it goes on doing until the step ends.
-    pub habit: Habit,
+    pub choices: Choices,
 }
 
 /// What a pair adds to its slave nodes.

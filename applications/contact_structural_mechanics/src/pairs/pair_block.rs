@@ -13,10 +13,11 @@ use zelus_core::vector3::{add, cross, normalised, scale, sub};
 use super::contact_block::{ContactBlock, Present};
 use super::family::{Multiplier, PairRequest};
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Augmentation, Formulation, Kinematics, OperatorTangent, SlaveNode};
+use crate::formulations::{self, Augmentation, Formulation, Kinematics, SlaveNode};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
-use crate::mortar::{Habit, Overlap, PairGeometry, dimension, habit_of, operators, weighted_gap};
+use crate::kratos::FirstIterateTangent;
+use crate::mortar::{Choices, Overlap, PairGeometry, choices_of, dimension, operators, weighted_gap};
 use crate::slave_states::SlaveStates;
 
 /// A formulation as the blocks use it.
@@ -137,7 +138,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             nodal_normals: self.slaves(at).map(|n| states[n].normal),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
-            habit: pair.habit,
+            choices: pair.choices,
         }
     }
 
@@ -205,17 +206,6 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                     }
                 }
             });
-        }
-    }
-
-    /// Where the first iteration decides the normals of the step, the reference program's derivative is followed.
-    ///
-    /// It leaves part of the operators' derivative out: in the plane constant operators come nearest to it.
-    fn operator_tangent(&self, view: &StepView<'_>) -> OperatorTangent {
-        match view.decides_normals() {
-            false => OperatorTangent::Exact,
-            true if NS == 2 => OperatorTangent::Frozen,
-            true => OperatorTangent::FlatMaster,
         }
     }
 
@@ -347,7 +337,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                     &self.formulation,
                     &self.seeded::<NU>(&geometry),
                     settings,
-                    self.operator_tangent(view),
+                    FirstIterateTangent::of(view, dimension(NS)),
                     &nodes,
                     &multipliers,
                     &history,
@@ -430,16 +420,16 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
         self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
     }
 
-    fn keep_habits(&mut self, present: Present<'_>) {
+    fn freeze_choices(&mut self, present: Present<'_>) {
         let Present { view, states, own } = present;
-        let habit = |at: usize| {
+        let choices = |at: usize| {
             let geometry = self.geometry(at, view, states);
             let found = own(self.nodes(at)).then(|| operators(&geometry, &self.parameters.segmentation).cells());
             let found = found.flatten();
-            found.map_or(geometry.habit, |found| habit_of(&geometry, &self.parameters.segmentation, &found))
+            found.map_or(geometry.choices, |found| choices_of(&geometry, &self.parameters.segmentation, &found))
         };
-        let habits: Vec<Habit> = (0..self.pairs.len()).into_par_iter().map(habit).collect();
-        self.pairs.iter_mut().zip(habits).for_each(|(pair, habit)| pair.habit = habit);
+        let choices: Vec<Choices> = (0..self.pairs.len()).into_par_iter().map(choices).collect();
+        self.pairs.iter_mut().zip(choices).for_each(|(pair, choices)| pair.choices = choices);
     }
 
     fn as_entities(&self) -> &dyn EntityBlock {

@@ -23,8 +23,6 @@ pub const KEEP_MASS: &str = "KEEP_MASS";
 pub const LARGEST_ENERGY_GAIN: &str = "LARGEST_ENERGY_GAIN";
 /// Factor of explicit steps while there is contact.
 pub const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
-/// The deck asks for an active set that changes only between complete Newton loops.
-pub const SIMPLIFIED_SEMI_SMOOTH_NEWTON: &str = "SIMPLIFIED_SEMI_SMOOTH_NEWTON";
 
 register! { SolverExtensionEntry "contact_settings",
     about: "what the solver needs to know of contact",
@@ -57,7 +55,6 @@ register! { SolverExtensionEntry "contact_settings",
             for (key, wanted, mark) in [
                 ("ensure_contact", true, ENSURE_CONTACT),
                 ("compute_dynamic_factor", true, COMPUTE_DYNAMIC_FACTOR),
-                ("simplified_semi_smooth_newton", true, SIMPLIFIED_SEMI_SMOOTH_NEWTON),
                 ("condn_convergence_criterion", true, CONDITION_NUMBER),
                 ("use_mixed_ulm_solver", true, CONDENSE_MULTIPLIERS),
                 ("use_mixed_ulm_solver", false, KEEP_MULTIPLIERS),

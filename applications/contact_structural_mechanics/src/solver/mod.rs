@@ -5,6 +5,6 @@ mod mpc_contact_settings;
 
 pub(crate) use contact_settings::{
     AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, ENSURE_CONTACT, IMPACT_TOLERANCE, KEEP_MASS,
-    LARGEST_ENERGY_GAIN, SIMPLIFIED_SEMI_SMOOTH_NEWTON,
+    LARGEST_ENERGY_GAIN,
 };
 pub(crate) use mpc_contact_settings::UPDATE_EACH_ITERATION;

@@ -6,21 +6,29 @@
 //! δξ = (GᵀG)⁻¹ Gᵀ (P δx + n δl − Σ N²_l P δx²_l), with G the tangents of the master and P = I − n⊗n. Its vertices keep
 //! a share of the normal motion of the slave nodes they lie on, as the centre of the slave moves with them: the lift l.
 
-use super::geometry::PairGeometry;
-use super::shape;
+use crate::mortar::shape;
+use crate::mortar::{MasterMotion, Operators, Overlap, PairGeometry, SegmentationSettings, operators_by};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, value};
 
+/// D and M with this derivative; their values are those of [`operators`](crate::mortar::operators()).
+pub fn operators_on_flat_master<T: Real, const NS: usize, const NM: usize>(
+    pair: &PairGeometry<T, NS, NM>,
+    settings: &SegmentationSettings,
+) -> Overlap<Operators<T, NS, NM>> {
+    operators_by(pair, settings, &FlatMaster::new(pair))
+}
+
 /// The slave's plane, as the reference program lets it carry points of the master.
-pub(super) struct FlatMaster<T, const NS: usize> {
+struct FlatMaster<T, const NS: usize> {
     normal: [f64; 3],
     /// Share of the heights of the slave nodes by which vertices on them are lifted (length).
-    pub(super) lift: [T; NS],
+    lift: [T; NS],
 }
 
 impl<T: Real, const NS: usize> FlatMaster<T, NS> {
     /// That of a pair.
-    pub(super) fn new<const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> Self {
+    fn new<const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> Self {
         let normal = value(pair.slave_normal);
         let lift = pair.slave.map(|x| {
             let mut height = T::zero();
@@ -29,9 +37,15 @@ impl<T: Real, const NS: usize> FlatMaster<T, NS> {
         });
         Self { normal, lift }
     }
+}
+
+impl<T: Real, const NS: usize> MasterMotion<T, NS> for FlatMaster<T, NS> {
+    fn lift(&self) -> Option<&[T; NS]> {
+        Some(&self.lift)
+    }
 
     /// Local coordinates on `master` of its point at `place`, moving as the slave's point `x` lifted by `lift`.
-    pub(super) fn local<const NM: usize>(&self, master: &[[T; 3]; NM], place: [T; 3], x: [T; 3], lift: T) -> [T; 2] {
+    fn local<const NM: usize>(&self, master: &[[T; 3]; NM], place: [T; 3], x: [T; 3], lift: T) -> [T; 2] {
         let nodes = master.map(value);
         let at = shape::closest_point(&nodes, value(place), shape::centre::<NM>());
         let (weights, gradients) = (shape::values::<f64, NM>(at), shape::gradients::<NM>(at));
@@ -68,8 +82,8 @@ impl<T: Real, const NS: usize> FlatMaster<T, NS> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Overlap, SegmentationSettings, operators, operators_on_flat_master};
     use super::*;
+    use crate::mortar::{Choices, operators};
 
     /// A unit square below one shifted aside whose far side is higher by `rise`.
     fn pair(rise: f64) -> PairGeometry<f64, 4, 4> {
@@ -81,7 +95,7 @@ mod tests {
             nodal_normals: [[0.0, 0.0, 1.0]; 4],
             slave_normal: [0.0, 0.0, 1.0],
             master_normal: zelus_core::vector3::normalised([rise, 0.0, -1.0]),
-            habit: crate::mortar::Habit::default(),
+            choices: Choices::default(),
         }
     }
 

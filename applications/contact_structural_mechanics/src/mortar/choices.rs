@@ -1,12 +1,12 @@
-//! What a pair goes on doing while a step is iterated, so that its operators stay continuous.
+//! Choices of the integration that a pair freezes while a step is iterated, so that its operators stay continuous.
 //!
 //! The reference program's integration jumps: cells share the first vertex of the overlap by a rule on kinds of
 //! vertices, an overlap of one triangle takes plain functions for dual ones, a sliver counts for nothing. Where an
-//! equilibrium lies on such a jump no state is one, however short the step; a pair that keeps what it did last has one.
+//! equilibrium lies on such a jump no iterate reaches it, however short the step; with frozen choices one does.
 
-/// The choices a pair keeps; none at first.
+/// The choices a pair has frozen; none at first.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Habit {
+pub struct Choices {
     /// Local coordinates on the slave near which the vertex lies that all cells share.
     pub origin: Option<[f64; 2]>,
     /// Whether plain functions stand in for dual ones.
@@ -17,11 +17,11 @@ pub struct Habit {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Overlap, PairGeometry, SegmentationSettings, habit_of, operators};
+    use super::super::{Overlap, PairGeometry, SegmentationSettings, choices_of, operators};
     use super::*;
 
     /// Two trapezoids; moved by `x`, a master node leaves the slave across its lower edge.
-    fn pair(x: f64, habit: Habit) -> PairGeometry<f64, 4, 4> {
+    fn pair(x: f64, choices: Choices) -> PairGeometry<f64, 4, 4> {
         let place = |[px, py]: [f64; 2]| [px + 0.4, py + x, 0.1];
         PairGeometry {
             slave: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 1.0, 0.0], [0.0, 1.3, 0.0]],
@@ -29,12 +29,12 @@ mod tests {
             nodal_normals: [[0.0, 0.0, 1.0]; 4],
             slave_normal: [0.0, 0.0, 1.0],
             master_normal: [0.0, 0.0, -1.0],
-            habit,
+            choices,
         }
     }
 
-    fn jump(habit: Habit) -> f64 {
-        let at = |x| match operators(&pair(x, habit), &SegmentationSettings::default()) {
+    fn jump(choices: Choices) -> f64 {
+        let at = |x| match operators(&pair(x, choices), &SegmentationSettings::default()) {
             Overlap::Cells(found) => found,
             _ => panic!("they overlap"),
         };
@@ -44,12 +44,12 @@ mod tests {
 
     #[test]
     fn a_pair_that_keeps_its_first_vertex_changes_continuously() {
-        let Overlap::Cells(found) = operators(&pair(1e-9, Habit::default()), &SegmentationSettings::default()) else {
+        let Overlap::Cells(found) = operators(&pair(1e-9, Choices::default()), &SegmentationSettings::default()) else {
             panic!("they overlap")
         };
-        let kept = habit_of(&pair(1e-9, Habit::default()), &SegmentationSettings::default(), &found);
+        let kept = choices_of(&pair(1e-9, Choices::default()), &SegmentationSettings::default(), &found);
         assert!(kept.origin.is_some() && !kept.plain);
-        assert!(jump(Habit::default()) > 1e-4, "{}", jump(Habit::default()));
+        assert!(jump(Choices::default()) > 1e-4, "{}", jump(Choices::default()));
         assert!(jump(kept) < 1e-7, "{}", jump(kept));
     }
 }

@@ -5,12 +5,42 @@
 //! Engineers' units step by thousands: µm, mm, m, km.
 
 use zelus_core::communication::world;
+use zelus_core::diagnostics::Diagnostic;
+
+/// The unit of length of a model, and the area that a penalty of weighted gaps is divided by (`penalty_of_weighted_gaps`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PenaltyUnit {
+    /// The unit (length).
+    pub length: f64,
+    /// What a weighted gap counts beside a gap: an area, in the plane a length.
+    pub measure: f64,
+}
+
+impl PenaltyUnit {
+    /// That of these points; `by_length` in the plane, where weighted gaps hold a length. Collective.
+    pub fn of(points: &[[f64; 3]], by_length: bool) -> Self {
+        let length = unit_of_length(points);
+        Self { length, measure: if by_length { length } else { length * length } }
+    }
+
+    /// The warning that a penalty, on which answers depend without multipliers, is Kratos' over the measure.
+    pub fn warning(self) -> Option<Diagnostic> {
+        let Self { length, measure } = self;
+        let fact = format!(
+            "the penalty is estimated as for a unit of length of {length:e}: it is Kratos' own over {measure:e}"
+        );
+        let remedy = format!(
+            "for Kratos' own multiply \"stiffness_factor\" by {measure:e}; \"manual_ALM\" with \"penalty\" sets any other"
+        );
+        (length != 1.0).then(|| Diagnostic::warning("penalty-unit", fact).remedy(remedy))
+    }
+}
 
 /// That power of a thousand in which points extend over about one: between 1/√1000 and √1000 (length).
 ///
 /// The extent is the diagonal of the box around those of all ranks; 1 without any. In units a thousand times smaller it is a
 /// thousand times the number, to the last bit. Collective.
-pub fn unit_of_length(points: &[[f64; 3]]) -> f64 {
+fn unit_of_length(points: &[[f64; 3]]) -> f64 {
     let bounds = |c: usize| {
         let of = points.iter().map(|x| x[c]);
         let own = of.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)]);
