@@ -1,35 +1,44 @@
 #!/usr/bin/env python3
 """Time zelus and the reference program on the same decks and print a markdown table.
 
-    compare.py [--zelus PROGRAM] [--threads 2] [--rounds 3] [--ours DECK] DECK...
+    compare.py [--threads 2] [--rounds 3] [DECK...]
+    compare.py --blocks 8 16 24 [--kinds frictionless friction] [--steps 1]
 
-A DECK is a ProjectParameters.json or its folder. Both programs run on a scratch copy, by turns, and the time is that
-of the whole process; the table gives the shortest of the rounds, of the time on the clock and of the time processors
-were busy with it. The latter means something on a machine that does other work as well; take it with one thread, since
-waiting threads of the reference count as busy. Comparisons with stored results, and output in a
-format that one program does not know, are left out. `--ours` names a deck that zelus runs in place of the one DECK
-(say, one that differs in the linear solver). A run that fails shows as such and ends in exit code 1.
+A DECK is a ProjectParameters.json or its folder; `--blocks` names sizes of the decks of gen_blocks.py instead (cells along an edge of
+the lower block: 8 are 3,000 unknowns, 60 a million). All programs run on scratch copies, by turns, and times are those of the
+whole process, the shortest of the rounds, on the clock and of the processors. The latter means something on a machine that
+does other work as well; take it with one thread, since waiting threads of the reference count as busy. Memory is the
+largest of the process. Comparisons with stored results, and output in a format that one program does not know, are left
+out. `--ours` names a deck that zelus runs in place of the one DECK (say, one that differs in the linear solver). A run
+that fails, or takes longer than --limit, shows as such and ends in exit code 1.
 
-The reference is found by the environment: KRATOS_PYTHON is a Python that has KratosMultiphysics with the structural
-and the contact application. KRATOS_RUN may name a script that runs a deck given as its argument; without it a
-plain structural-mechanics analysis is run. Without KRATOS_PYTHON only zelus is timed, and the script says so.
+The reference is KratosMultiphysics: that of the Python that the environment names (KRATOS_PYTHON), or else one that is
+installed into target/reference by pip, once. `--alone` times zelus only. KRATOS_RUN may name a script that runs a
+deck given as its argument; without it a plain structural-mechanics analysis is run. Of the kind `body` CalculiX solves the same
+mesh, too, where `ccx` is installed.
 """
 import argparse
 import json
 import os
-import resource
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+import venv
+
+import gen_blocks
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PACKAGES = ["KratosMultiphysics", "KratosStructuralMechanicsApplication", "KratosContactStructuralMechanicsApplication",
+            "KratosConstitutiveLawsApplication", "KratosLinearSolversApplication"]
 REFERENCE = """
 import os, sys
 import KratosMultiphysics as KM
 KM.Logger.GetDefaultOutput().SetSeverity(KM.Logger.Severity.WARNING)
 import KratosMultiphysics.LinearSolversApplication
+import KratosMultiphysics.ConstitutiveLawsApplication
 import KratosMultiphysics.ContactStructuralMechanicsApplication
 from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis import StructuralMechanicsAnalysis
 parameters = KM.Parameters(open(sys.argv[1]).read())
@@ -62,77 +71,136 @@ def without_checks(folder, name):
         json.dump(deck, file, indent=1)
 
 
-def busy():
-    """Processor seconds of the processes that have ended."""
-    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return ended.ru_utime + ended.ru_stime
-
-
-def seconds(command, source, name, threads):
-    """Seconds on the clock and of processors of a run on a scratch copy of the deck; None when it fails."""
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = os.path.join(scratch, "deck")
-        shutil.copytree(source, folder)
-        without_checks(folder, name)
-        limits = {"OMP_NUM_THREADS": str(threads), "RAYON_NUM_THREADS": str(threads), "RUST_BACKTRACE": "0"}
-        environment = {**os.environ, **limits}
-        begin, busy_before = time.perf_counter(), busy()
-        done = subprocess.run(command + [name], cwd=folder, env=environment, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True, errors="replace")
-        spent = time.perf_counter() - begin, busy() - busy_before
-    if done.returncode != 0:
-        print("\n".join(done.stdout.splitlines()[-8:]), file=sys.stderr)
+def measured(command, folder, threads, limit):
+    """Seconds on the clock, seconds of processors and megabytes of a run in `folder`; None when it fails."""
+    limits = {"OMP_NUM_THREADS": str(threads), "RAYON_NUM_THREADS": str(threads), "RUST_BACKTRACE": "0"}
+    said = os.path.join(folder, "said.txt")
+    begin = time.perf_counter()
+    with open(said, "w") as out:
+        run = subprocess.Popen(command, cwd=folder, env={**os.environ, **limits}, stdout=out, stderr=subprocess.STDOUT)
+        timer = threading.Timer(limit, run.kill)
+        timer.start()
+        _, status, used = os.wait4(run.pid, 0)
+        timer.cancel()
+        run.returncode = os.waitstatus_to_exitcode(status)
+    spent = time.perf_counter() - begin
+    if run.returncode != 0:
+        with open(said, errors="replace") as file:
+            print("\n".join(file.read().splitlines()[-8:]), file=sys.stderr)
         return None
-    return spent
+    return spent, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+
+
+def iterations_of(path):
+    """Unknowns, Newton iterations and linear iterations of a run of zelus, in words; from its report."""
+    with open(path) as file:
+        report = json.load(file)
+    linear = [i["linear_iterations"] for step in report["steps"] for i in step["iterations"]]
+    mean = sum(linear) / max(len(linear), 1)
+    return report["sizes"]["unknowns"], f"{len(linear)} × {mean:.0f}"
+
+
+def one_round(command, deck, threads, limit):
+    """A run on a scratch copy of the deck, and what the report says if there is one."""
+    folder, name = deck
+    with tempfile.TemporaryDirectory() as scratch:
+        copy = os.path.join(scratch, "deck")
+        shutil.copytree(folder, copy)
+        without_checks(copy, name)
+        done = measured(command, copy, threads, limit)
+        report = os.path.join(copy, "report.json")
+        return done, iterations_of(report) if done and os.path.isfile(report) else None
+
+
+def python_of_reference():
+    """The Python with the reference program, installed here if there is none."""
+    named = os.environ.get("KRATOS_PYTHON")
+    if named:
+        return named
+    folder = os.path.join(ROOT, "target", "reference")
+    python = os.path.join(folder, "bin", "python")
+    there = os.path.isfile(python) and subprocess.run(
+        [python, "-c", "import KratosMultiphysics.ContactStructuralMechanicsApplication"],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
+    if not there:
+        print(f"installing the reference program into {folder}", file=sys.stderr)
+        venv.create(folder, with_pip=True)
+        subprocess.run([python, "-m", "pip", "install", "-q", *PACKAGES], check=True, stdout=sys.stderr)
+    return python
+
+
+def columns(rounds, which, form):
+    """What each program took, smallest of its rounds, and how many times as much as zelus the others."""
+    best = {name: None if None in done or not done else min(r[which] for r in done) for name, done in rounds.items()}
+    words = []
+    for name, value in best.items():
+        text = "–" if not rounds[name] else "failed" if value is None else format(value, form)
+        if name != "zelus" and value is not None and best["zelus"]:
+            text += f" ({value / best['zelus']:.1f})"
+        words.append(text)
+    return " | ".join(words)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("decks", nargs="+", metavar="DECK")
+    parser.add_argument("decks", nargs="*", metavar="DECK")
+    parser.add_argument("--blocks", type=int, nargs="+", default=[], metavar="CELLS")
+    parser.add_argument("--kinds", nargs="+", choices=gen_blocks.KINDS, default=["frictionless"])
+    parser.add_argument("--steps", type=int, default=1, help="steps of the blocks")
+    parser.add_argument("--solver", default="", help="linear solver that the blocks name")
     parser.add_argument("--ours", metavar="DECK", help="what zelus runs instead of the one DECK")
+    parser.add_argument("--alone", action="store_true", help="zelus only")
     parser.add_argument("--zelus", default=os.path.join(ROOT, "target", "release", "zelus"))
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--limit", type=float, default=3600.0, help="seconds after which a run is ended")
     options = parser.parse_args()
     if options.ours and len(options.decks) != 1:
         parser.error("--ours goes with one DECK")
+    if not options.decks and not options.blocks:
+        parser.error("name decks, or sizes with --blocks")
     zelus = os.path.abspath(options.zelus)
     if not os.path.isfile(zelus):
         sys.exit(f"there is no {zelus}; build it with `cargo build --release`, or name another with --zelus")
-    python = os.environ.get("KRATOS_PYTHON")
-    if python:
-        script = os.environ.get("KRATOS_RUN")
-        reference = [python, os.path.abspath(script)] if script else [python, "-c", REFERENCE]
-    else:
-        reference = None
-        print("KRATOS_PYTHON is not set: the reference program is skipped", file=sys.stderr)
+    programs = {"zelus": [zelus, "run", "--threads", str(options.threads), "--report", "report.json"]}
+    if not options.alone:
+        python, script = python_of_reference(), os.environ.get("KRATOS_RUN")
+        programs["Kratos"] = [python, os.path.abspath(script)] if script else [python, "-c", REFERENCE]
+    ccx = shutil.which("ccx") if "body" in options.kinds and options.blocks else None
+    names = [*programs, *(["CalculiX"] if ccx else [])]
 
-    print(f"Whole process, {options.threads} threads, shortest of {options.rounds} alternating rounds.\n")
-    print("| deck | zelus, s | reference, s | ratio | zelus, processor s | reference, processor s | ratio |")
-    print("|---|---:|---:|---:|---:|---:|---:|")
+    print(f"Whole process, {options.threads} threads, best of {options.rounds} alternating rounds; in brackets the multiple of zelus.\n")
+    heads = [f"{name}, {what}" for what in ("s", "processor s", "MB") for name in names]
+    print("| deck | unknowns | " + " | ".join(heads) + " | Newton × linear iterations |")
+    print("|---|---:|" + "---:|" * (len(heads) + 1), flush=True)
     failed = False
-    for path in options.decks:
-        theirs = deck_of(path)
-        ours = deck_of(options.ours) if options.ours else theirs
-        rounds = {"zelus": [], "reference": []}
-        for _ in range(options.rounds):
-            rounds["zelus"].append(seconds([zelus, "run", "--threads", str(options.threads)], *ours, options.threads))
-            if reference:
-                rounds["reference"].append(seconds(reference, *theirs, options.threads))
-        failed |= any(None in spent for spent in rounds.values())
-
-        def columns(which):
-            """Both times and their ratio, of the clock (0) or of processors (1)."""
-            times = [None if None in spent or not spent else min(s[which] for s in spent) for spent in rounds.values()]
-            words = [
-                f"{best:.3g}" if best is not None else "failed" if None in spent else "skipped"
-                for best, spent in zip(times, rounds.values())
-            ]
-            ratio = "–" if None in times or not times[0] else f"{times[1] / times[0]:.1f}"
-            return f"{words[0]} | {words[1]} | {ratio}"
-
-        name = os.path.relpath(theirs[0], os.path.dirname(os.path.dirname(theirs[0])))
-        print(f"| {name} | {columns(0)} | {columns(1)} |", flush=True)
+    with tempfile.TemporaryDirectory() as made:
+        decks = [(deck_of(path), os.path.relpath(deck_of(path)[0], os.path.dirname(os.path.dirname(deck_of(path)[0]))))
+                 for path in options.decks]
+        for kind in options.kinds:
+            for cells in options.blocks:
+                folder = os.path.join(made, f"{kind}-{cells}")
+                gen_blocks.write(folder, cells, cells * 3 // 4, kind, options.steps, options.solver)
+                steps = f", {options.steps} steps" if options.steps > 1 else ""
+                decks.append(((folder, "ProjectParameters.json"), f"{kind}, {cells}{steps}"))
+        for theirs, label in decks:
+            rounds, said = {name: [] for name in names}, None
+            for _ in range(options.rounds):
+                for name in names:
+                    deck = deck_of(options.ours) if options.ours and name == "zelus" else theirs
+                    if name == "CalculiX":
+                        if not os.path.isfile(os.path.join(theirs[0], "blocks.inp")):
+                            continue
+                        command = [ccx, "-i", "blocks"]
+                    else:
+                        command = programs[name] + [deck[1]]
+                    done, report = one_round(command, deck, options.threads, options.limit)
+                    rounds[name].append(done)
+                    said = report or said
+                    failed |= done is None
+            unknowns, iterations = said or ("", "")
+            cells = [columns(rounds, 0, ".3g"), columns(rounds, 1, ".3g"), columns(rounds, 2, ".0f")]
+            print(f"| {label} | {unknowns} | {' | '.join(cells)} | {iterations} |", flush=True)
     sys.exit(1 if failed else 0)
 
 

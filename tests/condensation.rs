@@ -204,6 +204,27 @@ fn multigrid_has_the_answer_of_the_direct_engine() {
     }
 }
 
+/// The limit stands for the memory of the machine: two megabytes hold the levels of multigrid, and no factors.
+#[test]
+fn a_run_that_does_not_fit_takes_multigrid_or_ends_before_it_starts() {
+    let case = "contact_3d/friction_stick";
+    let limited = |gigabytes: f64| {
+        Run::of(case, DIRECT, move |deck| {
+            deck["solver_settings"]["linear_solver_settings"]["memory_limit"] = json!(gigabytes);
+        })
+    };
+    let run = limited(0.002);
+    assert!(run.said.contains("warning[memory] ProjectParameters.json:"), "{}", run.said);
+    assert!(run.is_solved_by("multigrid"), "{:?}", run.engines);
+    let (difference, field) = Run::converged(case, DIRECT, as_it_is).difference(&run);
+    assert!(difference < AGREE, "{field} differs by {difference:e}");
+
+    let refused = limited(0.001);
+    assert_eq!(refused.code, Some(2), "{}", refused.said);
+    assert!(refused.said.contains("error[memory]") && refused.said.contains("nothing was run"), "{}", refused.said);
+    assert!(!limited(10.0).said.contains("[memory]"));
+}
+
 /// Gradients serve while nothing touches, GMRES stands in where contact leaves no symmetry.
 #[test]
 fn conjugate_gradients_go_as_far_as_symmetry() {

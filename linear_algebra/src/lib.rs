@@ -34,6 +34,8 @@ mod precondition;
 mod condition;
 mod rank;
 
+pub mod memory;
+
 pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;

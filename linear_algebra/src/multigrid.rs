@@ -7,6 +7,7 @@ use crate::check;
 use crate::csr::Runs;
 use crate::direct::DirectSolver;
 use crate::krylov::{Answers, Progress, conjugate_gradient, gmres};
+use crate::memory;
 use crate::precondition::{Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::system::{Stamps, System};
@@ -18,8 +19,6 @@ const RESTART: usize = 80;
 const STALE: (f64, f64) = (1.3, 0.3);
 /// Digits from which on they say how well a hierarchy does.
 const TELLING: f64 = 2.0;
-/// Entries of a row, on average, from which on factors fill like those of solids in space.
-const MANY_ENTRIES: usize = 40;
 /// Failures in a row after which multigrid is not tried again.
 const FAILURES: usize = 2;
 /// Share of the nodes with multipliers that may prescribe other motions than when the hierarchy was made.
@@ -81,8 +80,11 @@ impl MultigridSolver {
 
     /// Whether multigrid is to solve a system, by its size and what came of it before.
     fn serves(&self, system: &System<'_>) -> bool {
-        let is_dense = system.bulk.entries() > MANY_ENTRIES * system.equations();
-        self.failures < FAILURES && system.equations() >= self.settings.least[usize::from(!is_dense)]
+        self.failures < FAILURES && self.is_large(system.equations(), system.bulk.entries())
+    }
+
+    fn is_large(&self, equations: usize, entries: usize) -> bool {
+        equations >= self.settings.least[usize::from(!memory::is_dense(equations, entries))]
     }
 
     /// Brings the constraints and the hierarchy up to date, or names the multiplier that nothing determines.
@@ -204,6 +206,14 @@ impl LinearSolver for MultigridSolver {
     fn aim(&mut self, tolerance: f64) {
         let MultigridSettings { tolerance: tightest, loosest, .. } = self.settings;
         self.tolerance = tolerance.clamp(tightest, loosest.max(tightest));
+    }
+
+    fn needs(&self, equations: usize, entries: usize) -> u64 {
+        if self.is_large(equations, entries) {
+            memory::multigrid(equations, entries)
+        } else {
+            memory::factor(equations, entries)
+        }
     }
 
     fn takes_loads(&self, system: &System<'_>) -> bool {

@@ -88,6 +88,11 @@ pub trait LinearSolver: Send {
     /// Says what relative residual is enough for the next solves; engines ask no more of themselves than their settings do.
     fn aim(&mut self, _: f64) {}
 
+    /// Bytes that it takes beside the matrix, about, for systems of this size; 0 where that is not known.
+    fn needs(&self, _equations: usize, _entries: usize) -> u64 {
+        0
+    }
+
     /// Whether a small part without symmetry may join the coupling of this system at no cost.
     fn takes_loads(&self, _: &System<'_>) -> bool {
         false

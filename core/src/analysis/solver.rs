@@ -12,8 +12,8 @@ use crate::registry::{self, Registered};
 use crate::strategies::{
     Builder, BuilderEntry, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionEntry,
     CriterionRequest, ExplicitSettings, ExplicitStrategy, LinearSolverRequest, NewtonSettings, Scheme, SchemeEntry,
-    SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, linear_tolerance,
-    make_linear_solver, multipliers,
+    SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
+    linear_tolerance, make_linear_solver, multipliers,
 };
 
 /// Objects of the settings that name strategy and builder.
@@ -288,11 +288,12 @@ impl SolverSettings {
         }
         let linear = analysis == "linear";
         let residual = if linear { 0.0 } else { self.settings.get_f64("residual_relative_tolerance")? };
-        let (solver, mut says) = make_linear_solver(&LinearSolverRequest {
+        let request = LinearSolverRequest {
             settings: &named,
             multipliers: multipliers(&part.info),
             tolerance: linear_tolerance(residual),
-        })?;
+        };
+        let (solver, mut says) = make_linear_solver(&request)?;
         let strategy = self.named::<StrategyEntry>(STRATEGY)?;
         let builder = self.named::<BuilderEntry>(BUILDER)?;
         let (solver, replaceable) = match builder.build {
@@ -319,6 +320,8 @@ impl SolverSettings {
             scheme,
             criterion,
             solver,
+            frugal: if replaceable { Some(frugal_linear_solver(&request)?) } else { None },
+            report,
             part,
             system,
             replaceable,

@@ -268,8 +268,7 @@ impl Stage {
             finals.absorb(if result.is_ok() { world().agree(finalized) } else { finalized });
             report.outputs.extend(process.outputs());
         }
-        let seconds = self.strategy.linear_seconds();
-        for (phase, seconds) in ["linear: order", "linear: factor", "linear: solve"].into_iter().zip(seconds) {
+        for (phase, seconds) in self.strategy.phases().iter() {
             report.add_seconds(phase, seconds);
         }
         let assembly = self.strategy.assembler().seconds;

@@ -163,6 +163,11 @@ impl Assembler {
         self.traits.variable_elements
     }
 
+    /// Entries of the elements' matrix over all unknowns.
+    pub fn entries(&self) -> usize {
+        self.pattern.zero.entries()
+    }
+
     /// The map between unknowns and equations.
     pub fn equations(&self) -> &Equations {
         &self.equations

@@ -6,6 +6,7 @@
 
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
+use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::strategy::{
     SolutionStrategy, StrategyEntry, accept, after_prediction, recorded, relaxation, update_interactions,
@@ -261,8 +262,8 @@ impl SolutionStrategy for ArcLength {
         &self.newton.assembler
     }
 
-    fn linear_seconds(&self) -> [f64; 3] {
-        self.newton.linear_seconds()
+    fn phases(&self) -> Phases {
+        self.newton.phases()
     }
 }
 

@@ -66,6 +66,14 @@ pub(crate) fn make(request: &LinearSolverRequest<'_>) -> Result<(Box<dyn LinearS
     Ok((solver, says))
 }
 
+/// The solver of any system that takes the least memory.
+///
+/// # Errors
+/// As [`make`].
+pub(crate) fn frugal(request: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
+    multigrid_from(request, [0; 2])
+}
+
 /// Unknowns from which on PETSc solves by multigrid where the deck does not say who shall: rank 0 is as fast below.
 #[cfg(feature = "petsc")]
 const MULTIGRID: usize = 70_000;

@@ -21,11 +21,13 @@ mod line_search;
 mod linear_solve;
 mod linear_solvers;
 mod meaning;
+mod memory;
 mod newton;
 #[cfg(feature = "petsc")]
 mod owned_condensation;
 #[cfg(feature = "petsc")]
 mod owned_rows;
+mod phases;
 mod pseudo_static_scheme;
 mod reactions;
 mod records;
@@ -49,8 +51,11 @@ pub use explicit::{CRITICAL_STEP, ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
 pub use linear_solvers::{LinearSolverEntry, LinearSolverFactory, LinearSolverRequest, PreconditionerEntry};
-pub(crate) use linear_solvers::{make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all};
+pub(crate) use linear_solvers::{
+    frugal as frugal_linear_solver, make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all,
+};
 pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
+pub use phases::Phases;
 pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
 pub use residual_criterion::ResidualCriterion;

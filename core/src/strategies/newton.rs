@@ -5,6 +5,8 @@ mod lost_body;
 mod references;
 mod start;
 
+use std::time::Instant;
+
 #[cfg(feature = "petsc")]
 use zelus_linear_algebra::Multipliers;
 use zelus_linear_algebra::{LinearSolver, SolveReport};
@@ -17,6 +19,7 @@ use super::gathered::Gathered;
 use super::line_search::LineSearch;
 use super::linear_solve::{self, Failed, Solved};
 use super::meaning::Meaning;
+use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded};
@@ -61,7 +64,7 @@ pub struct NewtonRaphson {
     /// Whether the last step did not converge.
     failed: bool,
     pub(super) gathered: Gathered,
-    linear_seconds: [f64; 3],
+    phases: Phases,
     /// Whether the last step ended at a singular system.
     singular: bool,
     /// Why the last step would better be shorter.
@@ -78,8 +81,8 @@ impl SolutionStrategy for NewtonRaphson {
         &self.assembler
     }
 
-    fn linear_seconds(&self) -> [f64; 3] {
-        self.linear_seconds
+    fn phases(&self) -> Phases {
+        self.phases.clone()
     }
 
     fn solve_step(
@@ -106,21 +109,22 @@ impl SolutionStrategy for NewtonRaphson {
         if self.scheme.has_inertia() && !system.interactions.is_empty() {
             self.measure_energy(part, system)?;
         }
-        accept(part, system)
+        let start = Instant::now();
+        let accepted = accept(part, system);
+        self.phases.since("accept", start);
+        accepted
     }
 }
 
 impl NewtonRaphson {
-    /// Numbers the unknowns of `part`, whose blocks and interactions are ready.
+    /// The iteration over the system that `assembler` assembles.
     pub fn new(
         settings: NewtonSettings,
         scheme: Box<dyn Scheme>,
         criterion: Box<dyn ConvergenceCriterion>,
         solver: Box<dyn LinearSolver>,
-        part: &mut ModelPart,
-        system: &mut System,
+        assembler: Assembler,
     ) -> Self {
-        let assembler = Assembler::new(part, system, scheme.lumped_mass());
         Self {
             settings,
             scheme,
@@ -129,7 +133,7 @@ impl NewtonRaphson {
             assembler,
             gathered: Gathered::default(),
             failed: false,
-            linear_seconds: [0.0; 3],
+            phases: Phases::default(),
             singular: false,
             coarse: None,
             warned: false,
@@ -168,10 +172,14 @@ impl NewtonRaphson {
             return Ok(Solved { increment, relative_residual: 0.0, iterations: 0, engine, fallback: None });
         }
         let (solver, gathered) = (self.solver.as_mut(), &mut self.gathered);
-        let (increment, report) =
-            linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &system.dofs, &part.nodes)?;
-        let phases = [report.seconds_symbolic, report.seconds_numeric, report.seconds_solve];
-        self.linear_seconds.iter_mut().zip(phases).for_each(|(sum, seconds)| *sum += seconds);
+        let start = Instant::now();
+        let solved = linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &system.dofs, &part.nodes);
+        let known = solved.as_ref().map_or([0.0; 2], |(_, report)| [report.seconds_symbolic, report.seconds_numeric]);
+        self.phases.add("linear: order", known[0]);
+        self.phases.add("linear: factor", known[1]);
+        // With what engines spent that gave no answer.
+        self.phases.add("linear: solve", start.elapsed().as_secs_f64() - known[0] - known[1]);
+        let (increment, report) = solved?;
         let SolveReport { engine, relative_residual, iterations, mut fallback, .. } = report;
         if let Some(refused) = self.solver.not_condensed().or(self.gathered.not_condensed()) {
             // Said once, and with the names of nodes.

@@ -7,12 +7,14 @@ use super::condensing::multipliers;
 use super::criterion::ConvergenceCriterion;
 #[cfg(feature = "petsc")]
 use super::linear_solvers;
+use super::memory::{self, Size};
 use super::newton::{NewtonRaphson, NewtonSettings};
+use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use crate::assembly::{Assembler, System};
 use crate::communication::world;
-use crate::diagnostics::{Error, Result};
+use crate::diagnostics::{Error, Report, Result};
 use crate::entities::{Interaction, SetChange};
 use crate::model::ModelPart;
 use crate::parameters::{Node, Settings};
@@ -64,9 +66,9 @@ pub trait SolutionStrategy: Send {
     /// The system of the last step.
     fn assembler(&self) -> &Assembler;
 
-    /// Seconds spent in linear solves: symbolic, numeric, solution.
-    fn linear_seconds(&self) -> [f64; 3] {
-        [0.0; 3]
+    /// Seconds spent beside assembly.
+    fn phases(&self) -> Phases {
+        Phases::default()
     }
 }
 
@@ -86,6 +88,10 @@ pub struct StrategyRequest<'a> {
     pub criterion: Box<dyn ConvergenceCriterion>,
     /// Solves the linear systems.
     pub solver: Box<dyn LinearSolver>,
+    /// Solves them where those that `solver` takes do not fit in memory, if another may.
+    pub frugal: Option<Box<dyn LinearSolver>>,
+    /// Takes warnings.
+    pub report: &'a mut Report,
     /// The part.
     pub part: &'a mut ModelPart,
     /// The system over it, whose blocks and interactions are ready.
@@ -100,11 +106,17 @@ impl StrategyRequest<'_> {
     /// Newton's iteration of all of these, which other strategies may be made of.
     ///
     /// # Errors
-    /// An engine of PETSc that does not exist.
+    /// An engine of PETSc that does not exist; too little memory.
     pub fn newton(self) -> Result<NewtonRaphson> {
         let named = self.settings.sub("linear_solver_settings")?;
-        let mut newton =
-            NewtonRaphson::new(self.iteration, self.scheme, self.criterion, self.solver, self.part, self.system);
+        let assembler = Assembler::new(self.part, self.system, self.scheme.lumped_mass());
+        let size = Size { unknowns: self.system.dofs.len(), entries: assembler.entries() };
+        let (solver, warning) = memory::fitting(self.solver, self.frugal, size, &named)?;
+        if let Some(warning) = warning {
+            *self.says = format!("linear solver: {} serves, which fits in memory", solver.name());
+            self.report.push(warning);
+        }
+        let mut newton = NewtonRaphson::new(self.iteration, self.scheme, self.criterion, solver, assembler);
         newton.solver_named_at(named.key_place("solver_type"));
         #[cfg(feature = "petsc")]
         if self.part.share.is_some() && self.replaceable {

@@ -12,6 +12,7 @@ use crate::check::{self, NAMED_EQUATIONS, Refined};
 use crate::interface::Interface;
 use crate::krylov::gmres;
 use crate::lu::SparseLu;
+use crate::memory;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
 use crate::system::{Stamps, Symmetry, System};
 use crate::vector;
@@ -338,6 +339,10 @@ fn largest_entries(vector: &[f64]) -> Vec<usize> {
 impl LinearSolver for DirectSolver {
     fn name(&self) -> &'static str {
         "direct"
+    }
+
+    fn needs(&self, equations: usize, entries: usize) -> u64 {
+        memory::factor(equations, entries)
     }
 
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {

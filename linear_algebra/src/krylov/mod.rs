@@ -15,6 +15,7 @@ use crate::check;
 use crate::condensation::{Condensation, CondensationSettings, NotCondensable};
 use crate::csr::Csr;
 use crate::direct::DirectSolver;
+use crate::memory;
 use crate::precondition::{self, Precondition};
 use crate::solver::{DirectSettings, KrylovSettings, LinearSolver, Multipliers, SolveError, SolveReport};
 use crate::system::{Stamps, System};
@@ -194,6 +195,10 @@ impl LinearSolver for KrylovSolver {
 
     fn not_condensed(&self) -> Option<NotCondensable> {
         self.refused
+    }
+
+    fn needs(&self, equations: usize, entries: usize) -> u64 {
+        memory::incomplete(equations, entries)
     }
 
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {

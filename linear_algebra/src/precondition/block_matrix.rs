@@ -37,15 +37,25 @@ impl BlockRow {
         Self { place: vec![u32::MAX; columns], columns: Vec::new(), values: Vec::new(), size }
     }
 
-    /// The entries of a block, zero at first.
-    pub(super) fn block(&mut self, column: u32) -> &mut [f32] {
+    /// Where the entries of a block begin among [`BlockRow::entries`]; they are zero at first.
+    pub(super) fn start(&mut self, column: u32) -> usize {
         let at = &mut self.place[column as usize];
         if *at == u32::MAX {
             *at = self.columns.len() as u32;
             self.columns.push(column);
             self.values.resize(self.values.len() + self.size, 0.0);
         }
-        let start = *at as usize * self.size;
+        *at as usize * self.size
+    }
+
+    /// The entries of the blocks so far.
+    pub(super) fn entries(&mut self) -> &mut [f32] {
+        &mut self.values
+    }
+
+    /// The entries of a block, zero at first.
+    pub(super) fn block(&mut self, column: u32) -> &mut [f32] {
+        let start = self.start(column);
         &mut self.values[start..start + self.size]
     }
 

@@ -1,5 +1,7 @@
 //! The iterations of one step: solve, move, let the interactions decide, judge.
 
+use std::time::Instant;
+
 use super::{ENERGY_OF_MOTION, NewtonRaphson, References};
 use crate::assembly::System;
 use crate::communication::world;
@@ -15,6 +17,10 @@ use crate::strategies::strategy::{after_prediction, relaxation, update_interacti
 
 /// Share of the increment that ends a swing between two states.
 const HALF: f64 = 0.5;
+
+/// Phases of the interactions: finding what may meet, and deciding what acts, with what is found late.
+const SEARCH: &str = "interactions: search";
+const STATES: &str = "interactions: states";
 
 /// Share of the tolerances that a linear solve may leave.
 const LEFT: f64 = 0.01;
@@ -95,10 +101,12 @@ impl NewtonRaphson {
 
     fn begin_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<Step> {
         part.info.nl_iteration = 0;
+        let start = Instant::now();
         for interaction in &mut system.interactions {
             interaction.begin_step(part)?;
         }
-        self.assembler.begin_step(part, system)?;
+        self.phases.since(SEARCH, start);
+        self.lay_out(part, system)?;
         if self.scheme.has_inertia() {
             self.redistribute_mass(part, system)?;
             if !part.info.values.contains_key(ENERGY_OF_MOTION) {
@@ -112,7 +120,9 @@ impl NewtonRaphson {
         let begin = self.assembler.values(part, system);
         let moved_first = self.moved_first(part, system);
         let prescribed = self.start(part, system, moved_first.as_deref())?;
+        let start = Instant::now();
         after_prediction(part, &mut system.interactions)?;
+        self.phases.since(STATES, start);
         let mut residual = self.residual(part, system);
         if residual.is_err() && self.scheme.has_inertia() {
             self.stay(part, system);
@@ -168,10 +178,14 @@ impl NewtonRaphson {
             step.references.switched = Some(balanced.to_vec());
         }
         if !system.interactions.is_empty() {
+            let start = Instant::now();
             let balance = self.assembler.equations().reduce(&step.residual);
             observe(&mut system.interactions, part, iteration, &balance);
+            self.phases.since(STATES, start);
         }
+        let start = Instant::now();
         let verdict = self.judge(part, system, iteration, &self.with_pending(step), &step.references, &increment);
+        self.phases.since("judge", start);
         agree(iteration, &change, verdict.converged)?;
         let record = IterationRecord {
             condition_number: condition,
@@ -213,7 +227,7 @@ impl NewtonRaphson {
         let mut solved = self.solve_once(iteration, step, part, system);
         while matches!(solved, Err(Failed::Singular(_))) && restrain_free_bodies(&mut system.interactions, part) {
             if constraints != constraints_version(&system.interactions) {
-                self.assembler.begin_step(part, system)?;
+                self.lay_out(part, system)?;
                 step.prescribed = self.followed(part, system, &step.prescribed);
             }
             step.residual = self.residual(part, system)?;
@@ -327,17 +341,19 @@ impl NewtonRaphson {
             write_reactions(part, &system.dofs, &residual, None);
         }
         let (constraints, graph) = (constraints_version(&system.interactions), graph_version(&system.interactions));
+        let start = Instant::now();
         let change = if restart {
             system.interactions.iter_mut().filter_map(|i| i.first_iterate()).for_each(|first| first.keep(part));
             SetChange::default()
         } else {
             update_interactions(part, &mut system.interactions, iteration)?
         };
+        self.phases.since(STATES, start);
         if constraints != constraints_version(&system.interactions) {
-            self.assembler.begin_step(part, system)?;
+            self.lay_out(part, system)?;
             step.prescribed = self.constraint_increment(part, system);
         } else if graph != graph_version(&system.interactions) {
-            self.assembler.begin_step(part, system)?;
+            self.lay_out(part, system)?;
         }
         step.residual = self.residual(part, system)?;
         Ok(change)
@@ -362,6 +378,7 @@ impl NewtonRaphson {
         monitor: &mut dyn Monitor,
     ) -> Result<Turn> {
         let mut accepted = true;
+        let start = Instant::now();
         for set in system.interactions.iter_mut().filter_map(|i| i.active_set()) {
             match set.after_convergence(part)? {
                 Outer::Done => {}
@@ -375,14 +392,23 @@ impl NewtonRaphson {
                 Outer::Failed(why) => return Ok(Turn::Failed(why)),
             }
         }
+        self.phases.since(SEARCH, start);
         if accepted {
             return Ok(Turn::Converged);
         }
-        self.assembler.begin_step(part, system)?;
+        self.lay_out(part, system)?;
         let (last, most) = self.allowed();
         (step.last, step.most) = (iteration + last, iteration + most);
         step.residual = self.residual(part, system)?;
         Ok(Turn::On)
+    }
+
+    /// The equations and patterns of what acts now.
+    fn lay_out(&mut self, part: &ModelPart, system: &System) -> Result<()> {
+        let start = Instant::now();
+        let result = self.assembler.begin_step(part, system);
+        self.phases.since("assemble: equations", start);
+        result
     }
 
     /// Iterations of a step, and of one that converges steadily.

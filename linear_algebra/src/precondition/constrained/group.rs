@@ -8,8 +8,9 @@
 
 use crate::dense_lu;
 
-/// Size of a multiplier in a condition, relative to that of motions, below which the condition prescribes a motion.
-const PRESCRIBES: f64 = 1e-6;
+/// Size of a multiplier in a condition, relative to that of motions, below which the condition prescribes a motion: so do
+/// compliances, those of stiff penalties, that are small beside that of the node.
+const PRESCRIBES: f64 = 0.03;
 /// Share of a column that must be left for it to be independent of those before it.
 const INDEPENDENT: f64 = 1e-8;
 
@@ -60,6 +61,12 @@ pub(super) fn eliminate([d, m]: [usize; 2], a: &[f64], c: &[f64], e: &[f64]) -> 
         (0..d * tangential).map(|at| q[(at / tangential) * d + prescribed + at % tangential]).collect();
     // [A; N₁ E], (d + m − a) × m.
     let s = d + m - prescribed;
+    if prescribed == 0
+        && let Some(inverse) = inverse(m, |row, j| combined(row, e, m, j))
+    {
+        let (recovery, left) = by_compliance([d, m], a, &inverse);
+        return Some(GroupElimination { prescribed, conditions, held, free: identity(d), recovery, left });
+    }
     let mut stack = a.to_vec();
     for row in prescribed..m {
         stack.extend((0..m).map(|j| combined(row, e, m, j)));
@@ -75,6 +82,39 @@ pub(super) fn eliminate([d, m]: [usize; 2], a: &[f64], c: &[f64], e: &[f64]) -> 
     let mut left: Vec<f64> = (0..tangential * s).map(|at| q[(at % s) * s + m + at / s]).collect();
     scale(d, tangential, s, &mut left, &free)?;
     Some(GroupElimination { prescribed, conditions, held, free, recovery, left })
+}
+
+/// `R` and `L` where the conditions alone give the multipliers, `λ = (N₁ E)⁻¹ …`: what is left is the node's stiffness with
+/// that of its penalty, symmetric where both are.
+fn by_compliance([d, m]: [usize; 2], a: &[f64], inverse: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let s = d + m;
+    let (mut recovery, mut left) = (vec![0.0; m * s], vec![0.0; d * s]);
+    for k in 0..m {
+        (0..m).for_each(|i| recovery[i * s + d + k] = inverse[i * m + k]);
+        (0..d).for_each(|i| left[i * s + d + k] = -(0..m).map(|p| a[i * m + p] * inverse[p * m + k]).sum::<f64>());
+    }
+    (0..d).for_each(|i| left[i * s + i] = 1.0);
+    (recovery, left)
+}
+
+fn identity(n: usize) -> Vec<f64> {
+    (0..n * n).map(|at| f64::from(u8::from(at / n == at % n))).collect()
+}
+
+/// The inverse of a matrix by rows; `None` where it is nearly singular.
+fn inverse(n: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<f64>> {
+    let mut lu: Vec<f64> = (0..n * n).map(|at| entry(at % n, at / n)).collect();
+    let pivots = dense_lu::factorise(&mut lu, n, INDEPENDENT);
+    if !pivots.replaced.is_empty() {
+        return None;
+    }
+    let mut out = vec![0.0; n * n];
+    for column in 0..n {
+        let mut x: Vec<f64> = (0..n).map(|row| f64::from(u8::from(row == column))).collect();
+        dense_lu::solve(&lu, n, &pivots, &mut x);
+        x.iter().enumerate().for_each(|(row, x)| out[row * n + column] = *x);
+    }
+    Some(out)
 }
 
 /// `L ← (L_d Z)⁻¹ L` with the first d columns `L_d`.

@@ -328,9 +328,20 @@ impl Constrained {
         let mut plain = vec![true; system.equations()];
         self.beside.iter().for_each(|&e| plain[e as usize] = false);
         self.loads.iter().for_each(|(e, _)| plain[*e as usize] = false);
-        let w = self.width;
+        let (w, inverse) = (self.width, 1.0 / largest);
+        let at: Vec<(u32, u32)> = self
+            .place
+            .iter()
+            .map(|&place| if place == NONE { (NONE, 0) } else { (place / w as u32, place % w as u32) })
+            .collect();
+        let coupled = |i: usize| {
+            let rows = system.active_coupling().into_iter().map(move |coupling| coupling.row(i));
+            rows.flat_map(|(columns, values)| columns.iter().zip(values))
+                .filter(|(_, value)| **value != 0.0)
+                .map(|(&j, &value)| (j as usize, value))
+        };
         let add = |row: &mut BlockRow, k: usize, place: u32, value: f64| {
-            row.block(place / w as u32)[place as usize % w * w + k] += (value / largest) as f32;
+            row.block(place / w as u32)[place as usize % w * w + k] += (value * inverse) as f32;
         };
         let fill = |b: usize, row: &mut BlockRow| {
             row.block(b as u32);
@@ -344,9 +355,21 @@ impl Constrained {
                 }
                 let i = equation as usize;
                 if plain[i] && self.group_of[i] == NONE {
-                    system.row(i).filter(|&(j, _)| self.place[j] != NONE).for_each(|(j, value)| {
+                    let (columns, values) = system.bulk.row(i);
+                    // Unknowns of a node stand side by side.
+                    let (mut block, mut start) = (NONE, 0);
+                    let filled = columns.iter().zip(values).filter(|(_, value)| **value != 0.0);
+                    for ((of, slot), value) in filled.map(|(&j, value)| (at[j as usize], value)) {
+                        if of != block && of != NONE {
+                            (block, start) = (of, row.start(of));
+                        }
+                        if of != NONE {
+                            row.entries()[start + slot as usize * w + k] += (value * inverse) as f32;
+                        }
+                    }
+                    for (j, value) in coupled(i).filter(|&(j, _)| self.place[j] != NONE) {
                         add(row, k, self.place[j], value);
-                    });
+                    }
                     continue;
                 }
                 let left = self.left(b * w + k, loads[i]);

@@ -1,0 +1,147 @@
+//! How much memory there is, and how much engines take.
+//!
+//! The estimates were fitted to whole runs (docs/performance.md): a factorisation in space fills with the power 4/3 of the
+//! equations, in the plane with `n log n`, multigrid with the entries of the matrix.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Entries of a row, on average, from which on factors fill like those of solids in space.
+const MANY_ENTRIES: usize = 40;
+/// Bytes of a factorisation in space for each `n^(4/3)`.
+const FACTOR_IN_SPACE: f64 = 400.0;
+/// Bytes of a factorisation in the plane for each `n log₂ n`.
+const FACTOR_IN_PLANE: f64 = 120.0;
+/// Bytes of the levels of multigrid, while they are made, for each entry of the matrix.
+const LEVELS: u64 = 16;
+/// Bytes of incomplete factors for each entry.
+const INCOMPLETE: u64 = 12;
+/// Bytes of the vectors of an iteration for each equation, and of levels whose blocks are few.
+const VECTORS: u64 = 800;
+
+/// Whether a matrix has rows like those of solids in space.
+pub(crate) fn is_dense(equations: usize, entries: usize) -> bool {
+    entries > MANY_ENTRIES * equations
+}
+
+/// Bytes of a factorisation of a matrix of this size, beside the matrix itself.
+pub(crate) fn factor(equations: usize, entries: usize) -> u64 {
+    let n = equations as f64;
+    let bytes = if is_dense(equations, entries) {
+        FACTOR_IN_SPACE * n.powf(4.0 / 3.0)
+    } else {
+        FACTOR_IN_PLANE * n * n.max(2.0).log2()
+    };
+    bytes as u64
+}
+
+/// Bytes of a multigrid hierarchy and the iteration with it.
+pub(crate) fn multigrid(equations: usize, entries: usize) -> u64 {
+    LEVELS * entries as u64 + VECTORS * equations as u64
+}
+
+/// Bytes of incomplete factors and the iteration with them.
+pub(crate) fn incomplete(equations: usize, entries: usize) -> u64 {
+    INCOMPLETE * entries as u64 + VECTORS * equations as u64
+}
+
+/// Bytes that this process may still take: what the machine has free, within the limits of its control groups; `None` where the
+/// system does not say.
+pub fn available() -> Option<u64> {
+    let machine = fs::read_to_string("/proc/meminfo").ok().and_then(|text| free_of_machine(&text));
+    let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
+    let limits = folders(&groups).into_iter().filter_map(|folder| free_of_group(&folder));
+    machine.into_iter().chain(limits).min()
+}
+
+fn free_of_machine(meminfo: &str) -> Option<u64> {
+    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+/// The folders of the control groups that bound the memory of a process, from what /proc/self/cgroup says of it.
+fn folders(groups: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for line in groups.lines() {
+        let mut parts = line.splitn(3, ':').skip(1);
+        let (Some(controllers), Some(path)) = (parts.next(), parts.next()) else { continue };
+        let root = match controllers {
+            "" => Path::new("/sys/fs/cgroup"),
+            _ if controllers.split(',').any(|name| name == "memory") => Path::new("/sys/fs/cgroup/memory"),
+            _ => continue,
+        };
+        let own = root.join(path.trim_start_matches('/'));
+        found.extend(own.ancestors().take_while(|folder| folder.starts_with(root)).map(Path::to_path_buf));
+    }
+    found
+}
+
+/// What a control group leaves; pages of files that it can give back count as free.
+fn free_of_group(folder: &Path) -> Option<u64> {
+    let number = |names: [&str; 2]| {
+        let texts = names.into_iter().filter_map(|name| fs::read_to_string(folder.join(name)).ok());
+        texts.filter_map(|text| text.trim().parse::<u64>().ok()).next()
+    };
+    let limit = number(["memory.max", "memory.limit_in_bytes"])?;
+    let used = number(["memory.current", "memory.usage_in_bytes"])?;
+    let stat = fs::read_to_string(folder.join("memory.stat")).unwrap_or_default();
+    let files = stat.lines().find_map(|line| line.strip_prefix("inactive_file ")?.trim().parse::<u64>().ok());
+    Some((limit + files.unwrap_or(0)).saturating_sub(used))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_are_those_of_measured_runs() {
+        // Blocks of hexahedra (docs/performance.md) and squares of quadrilaterals: megabytes of the whole run, of which
+        // matrices and model are 24 an entry.
+        let measured = [
+            (21_499, 1_590_000, 316, 113),
+            (67_813, 5_200_000, 1_204, 314),
+            (218_599, 17_100_000, 5_411, 983),
+            (80_802, 1_450_000, 211, 138),
+            (246_402, 4_420_000, 664, 407),
+        ];
+        for (equations, entries, direct, multigrid) in measured {
+            let rest = 24.0 * entries as f64 / 1e6;
+            let own = [(factor(equations, entries), direct), (super::multigrid(equations, entries), multigrid)];
+            for (own, whole) in own {
+                let ratio = (own as f64 / 1e6 + rest) / f64::from(whole);
+                assert!((0.7..1.4).contains(&ratio), "{equations}: {ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn free_memory_is_read_as_the_system_writes_it() {
+        assert_eq!(free_of_machine("MemTotal: 9 kB\nMemAvailable:    2048 kB\n"), Some(2048 * 1024));
+        assert_eq!(free_of_machine("MemTotal: 9 kB\n"), None);
+        let found = folders("1:cpu:/other\n4:blkio,memory:/jobs/one\n0::/user\n");
+        let names: Vec<&str> = found.iter().filter_map(|folder| folder.to_str()).collect();
+        let expected = [
+            "/sys/fs/cgroup/memory/jobs/one",
+            "/sys/fs/cgroup/memory/jobs",
+            "/sys/fs/cgroup/memory",
+            "/sys/fs/cgroup/user",
+            "/sys/fs/cgroup",
+        ];
+        assert_eq!(names, expected);
+    }
+
+    #[test]
+    fn a_group_leaves_its_limit_less_what_it_cannot_give_back() {
+        let folder = std::env::temp_dir().join(format!("zelus-memory-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+        write("memory.max", "max\n");
+        assert_eq!(free_of_group(&folder), None);
+        write("memory.max", "1000\n");
+        write("memory.current", "700\n");
+        write("memory.stat", "anon 500\ninactive_file 150\n");
+        assert_eq!(free_of_group(&folder), Some(450));
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}
