@@ -97,17 +97,39 @@ fn check(name: &str, family: &Family, wish: Wish) {
         settings["friction_coefficients"] = json!({"0": coefficient});
         settings["frictional_law"] = json!(if wish.tresca { "Tresca" } else { "Coulomb" });
     }
-    deck["processes"].as_object_mut().expect("lists").remove("json_output_process_list");
+    deck["processes"]["json_output_process_list"] = json!([{
+        "python_module": "json_output_process", "kratos_module": "KratosMultiphysics", "Parameters": {
+            "output_file_name": "results.json", "model_part_name": "Structure", "output_variables": ["REACTION"],
+            "time_frequency": 0.0}}]);
     std::fs::write(&path, serde_json::to_string(&Value::clone(&deck)).expect("JSON")).expect("the deck");
     let output = zelus(scratch.path(), &["run", DECK]);
     let said = said(&output);
     match refusal(family, wish.wanted) {
-        None => assert!(output.status.success(), "{name} {wish:?}\n{said}"),
+        None => {
+            assert!(output.status.success(), "{name} {wish:?}\n{said}");
+            if !explicit && !wish.dynamic {
+                check_balance(scratch.path(), wish.wanted, &format!("{name} {wish:?}"));
+            }
+        }
         Some(refusal) => {
             assert_eq!(output.status.code(), Some(2), "{name} {wish:?}\n{said}");
             assert!(said.contains(refusal.reason), "{name} {wish:?}\n{said}");
         }
     }
+}
+
+/// Contact hands the whole load on to the supports: 1e6 on a top of unit width, of 1 by 0.8, or of radius 1 about the axis.
+fn check_balance(folder: &Path, wanted: Use, what: &str) {
+    let results = read_json(&folder.join("results.json")).expect("results");
+    let along = if wanted.dimension == 2 { "REACTION_Y" } else { "REACTION_Z" };
+    let load = match wanted {
+        Use { dimension: 3, .. } => 0.8e6,
+        Use { axisymmetric: true, .. } => std::f64::consts::PI * 1e6,
+        _ => 1e6,
+    };
+    let of_node = |series: &Value| series.get(along).and_then(|values| values.as_array()?.last()?.as_f64());
+    let borne: f64 = results.as_object().expect("nodes").values().filter_map(of_node).sum();
+    assert!((borne - load).abs() < 1e-6 * load, "{what}: the supports bear {borne} of {load}");
 }
 
 fn plain(dimension: usize) -> Wish {

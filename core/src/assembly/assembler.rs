@@ -64,6 +64,8 @@ pub struct Assembler {
     coupling: GroupMatrix,
     coupling_graph: Option<u64>,
     interaction_unknowns: Vec<u32>,
+    /// Of each of them, whose it is: the place among the couplings.
+    coupling_of: Vec<usize>,
     equations: Equations,
     reduced_bulk: Csr,
     reduced_coupling: Csr,
@@ -145,6 +147,14 @@ impl Assembler {
         let loads: Blocks<'_> = load_blocks(system);
         let interaction_unknowns: Vec<u32> =
             (0..system.dofs.len() as u32).filter(|&n| system.dofs.dofs()[n as usize].multiplier).collect();
+        let mut coupling_of = vec![0; interaction_unknowns.len()];
+        for (at, coupling) in couplings(system).enumerate() {
+            for (variable, nodes) in coupling.unknowns(part) {
+                let numbers = nodes.iter().filter_map(|&node| system.dofs.number_of(variable, node));
+                let places = numbers.filter_map(|number| interaction_unknowns.binary_search(&number).ok());
+                places.for_each(|place| coupling_of[place] = at);
+            }
+        }
         Self {
             element_numbers: numbers(&system.elements),
             condition_numbers: numbers(&system.conditions),
@@ -152,6 +162,7 @@ impl Assembler {
             pattern,
             lumped: lumped_mass,
             interaction_unknowns,
+            coupling_of,
             traits: Traits::of(system),
             distribution,
             ..Self::default()

@@ -113,9 +113,14 @@ impl GroupMatrix {
         self.lonely.iter().map(|&row| self.matrix.row(row as usize).1.iter().any(|v| *v != 0.0)).collect()
     }
 
-    /// Gives rows of lonely unknowns that are not in use `diagonal`.
-    pub fn set_idle_diagonal(&mut self, in_use: &[bool], diagonal: f64, is_own: impl Fn(usize) -> bool) {
-        for (&number, in_use) in self.lonely.iter().zip(in_use) {
+    /// Gives each row of a lonely unknown that is not in use its `diagonal`.
+    pub fn set_idle_diagonal(
+        &mut self,
+        in_use: &[bool],
+        diagonals: impl Iterator<Item = f64>,
+        is_own: impl Fn(usize) -> bool,
+    ) {
+        for ((&number, in_use), diagonal) in self.lonely.iter().zip(in_use).zip(diagonals) {
             let row = number as usize;
             if !in_use && is_own(row) {
                 self.matrix.add(row, row, diagonal);

@@ -9,6 +9,7 @@ use crate::assembly::assembler::inertia::{Inertia, damped_by_properties, without
 use crate::assembly::{DofTable, System};
 use crate::communication::world;
 use crate::diagnostics::Result;
+use crate::entities::Coupling;
 use crate::model::ModelPart;
 
 impl Assembler {
@@ -22,12 +23,13 @@ impl Assembler {
         let start = Instant::now();
         // Damped unknowns without rates may be on other ranks only.
         self.bulk_general = world().any(self.bulk_general);
-        let acting = couplings(system).filter(|own| !own.blocks().is_empty());
-        let diagonal = acting.map(|own| own.idle_diagonal()).fold(1.0, |_, d| d);
+        let idle = |own: &dyn Coupling| if own.blocks().is_empty() { 1.0 } else { own.idle_diagonal() };
+        let idle: Vec<f64> = couplings(system).map(idle).collect();
         let mut in_use = self.coupling.lonely_rows_in_use();
         world().any_of(&mut in_use);
         let distribution = self.distribution.as_ref();
-        self.coupling.set_idle_diagonal(&in_use, diagonal, |n| distribution.is_none_or(|d| d.is_own(n)));
+        let diagonals = self.coupling_of.iter().map(|&coupling| idle[coupling]);
+        self.coupling.set_idle_diagonal(&in_use, diagonals, |n| distribution.is_none_or(|d| d.is_own(n)));
         let coupling = &self.coupling.matrix;
         self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;
