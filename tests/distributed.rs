@@ -1,6 +1,6 @@
 //! Runs on several processes: the same answers in the same iterations as one process gives, and clean ends of failed runs.
 //!
-//! They need the feature `mpi` and mpirun; without them they say so and pass.
+//! They need the feature `mpi`, without which they are ignored, and mpirun.
 
 mod support;
 #[path = "support/vtu.rs"]
@@ -19,28 +19,21 @@ const DECK: &str = "ProjectParameters.json";
 /// Within this a failed run ends on all ranks.
 const PROMPT: Duration = Duration::from_secs(30);
 
-/// `mpirun` with what it needs to start more processes than there are cores; `None`, with a line, when tests are skipped.
-fn mpirun(folder: &Path) -> Option<Command> {
-    if !cfg!(feature = "mpi") {
-        println!("skipped: built without the feature `mpi`");
-        return None;
-    }
-    let Ok(version) = Command::new("mpirun").arg("--version").output() else {
-        println!("skipped: there is no mpirun");
-        return None;
-    };
+/// `mpirun` with what it needs to start more processes than there are cores.
+fn mpirun(folder: &Path) -> Command {
+    let version = Command::new("mpirun").arg("--version").output().expect("mpirun, which the feature `mpi` needs");
     let mut command = Command::new("mpirun");
     command.current_dir(folder).env("NO_COLOR", "1");
     if said(&version).contains("Open MPI") {
         command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1").arg("--oversubscribe");
     }
-    Some(command)
+    command
 }
 
-fn distributed(folder: &Path, ranks: usize, arguments: &[&str]) -> Option<Output> {
-    let mut command = mpirun(folder)?;
+fn distributed(folder: &Path, ranks: usize, arguments: &[&str]) -> Output {
+    let mut command = mpirun(folder);
     command.args(["-n", &ranks.to_string(), env!("CARGO_BIN_EXE_zelus")]).args(arguments);
-    Some(command.output().expect("mpirun starts"))
+    command.output().expect("mpirun starts")
 }
 
 /// All numbers below `value`, by path.
@@ -96,7 +89,7 @@ fn equals_serial(case: &str, changes: &[(&str, &str)], tolerance: f64, same_iter
     }
     for ranks in RANKS {
         let folder = scratch_copy(original.path());
-        let Some(output) = distributed(folder.path(), ranks, &arguments) else { return };
+        let output = distributed(folder.path(), ranks, &arguments);
         assert!(output.status.success(), "{case} on {ranks} ranks: {}", said(&output));
         let (found, of_ranks) = outcome(folder.path(), &before);
         assert!(
@@ -116,11 +109,12 @@ fn equals_serial(case: &str, changes: &[(&str, &str)], tolerance: f64, same_iter
 
 /// METIS leaves most facets of a sphere's small contact to few ranks: their pairs are shared out, and nothing else changes.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn pairs_of_full_ranks_are_evaluated_by_others() {
     let deck = root().join("examples/hertz_sphere");
     equals_serial(&deck.to_string_lossy(), &[], EQUAL, true);
     let folder = scratch_copy(&deck);
-    let Some(output) = distributed(folder.path(), 2, &["run", DECK]) else { return };
+    let output = distributed(folder.path(), 2, &["run", DECK]);
     assert!(said(&output).contains("pairs moved to other ranks"), "{}", said(&output));
 }
 
@@ -130,18 +124,21 @@ const EXACT: f64 = 1e-10;
 const EQUAL: f64 = 1e-9;
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn bodies_without_contact() {
     equals_serial("elements/load_patch_2D4N", &[], EXACT, true);
     equals_serial("elements/displacement_patch_3D8N", &[], EXACT, true);
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn frictionless_contact_in_the_plane() {
     equals_serial("contact_2d/nonmatching", &[], EXACT, true);
     equals_serial("contact_2d/opening", &[], EXACT, true);
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn frictionless_contact_in_space() {
     equals_serial("contact_3d/hexahedra_nonmatching", &[], EXACT, true);
     equals_serial("contact_3d/tetrahedra_on_hexahedra", &[], EXACT, true);
@@ -149,6 +146,7 @@ fn frictionless_contact_in_space() {
 
 /// Slips of sticking nodes are round-off and left out.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn frictional_contact() {
     equals_serial("contact_2d/friction_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")], EXACT, true);
     equals_serial("contact_3d/friction_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")], EXACT, true);
@@ -163,6 +161,7 @@ fn frictional_contact() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn penalty_contact() {
     let common =
         [("alm_contact_process", "penalty_contact_process"), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", "WEIGHTED_GAP")];
@@ -178,6 +177,7 @@ fn penalty_contact() {
 
 /// Points decide on contact by the traction of the slave's own element, which every rank has for each slave facet.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn contact_by_tractions_of_elements() {
     equals_serial("contact_2d/nitsche", &[], EXACT, true);
     equals_serial("contact_3d/nitsche", &[], EXACT, true);
@@ -193,6 +193,7 @@ fn contact_by_tractions_of_elements() {
 
 /// A node's traction is the penalty times its gap over all its pairs, which several ranks evaluate.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn friction_by_penalties_of_nodes() {
     equals_serial("contact_2d/friction_penalty_slide", &[], EQUAL, true);
     equals_serial("contact_3d/friction_penalty_slide", &[], EQUAL, true);
@@ -201,6 +202,7 @@ fn friction_by_penalties_of_nodes() {
 
 /// The block goes beyond the end of its ground, which then covers a twelfth of the last but one facet.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn nodes_beside_the_master() {
     let beyond = ("2.0*(t-1.0)", "2.73*(t-1.0)");
     equals_serial("contact_2d/slid_past", &[beyond], EQUAL, true);
@@ -210,6 +212,7 @@ fn nodes_beside_the_master() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn tied_meshes() {
     equals_serial("mesh_tying/triangles_on_quadrilaterals", &[], EXACT, true);
     equals_serial("mesh_tying/tetrahedra_on_hexahedra", &[], EXACT, true);
@@ -218,6 +221,7 @@ fn tied_meshes() {
 /// Systems as small as these are solved by rank 0 unless the deck asks for PETSc.
 /// Ties over a whole part, stages, dynamics, whole skins, fields that are mapped, and bodies that touch themselves.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn what_looks_beyond_a_rank() {
     equals_serial("constraints/rigid_plate", &[], EXACT, true);
     equals_serial("structural/stages_of_plastic_flow", &[], EXACT, true);
@@ -230,6 +234,7 @@ fn what_looks_beyond_a_rank() {
 
 /// κ of the system of all ranks, not of what one of them adds to it.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn condition_numbers_are_those_of_the_whole_system() {
     let folder = case("contact_2d/nonmatching");
     let asks = "\"mortar_type\": \"ALMContactFrictionless\"";
@@ -242,7 +247,7 @@ fn condition_numbers_are_those_of_the_whole_system() {
     assert!(zelus(folder.path(), &arguments).status.success());
     let alone = number(folder.path());
     for ranks in [2, 3] {
-        let Some(output) = distributed(folder.path(), ranks, &arguments) else { return };
+        let output = distributed(folder.path(), ranks, &arguments);
         assert!(output.status.success(), "{}", said(&output));
         let shared = number(folder.path());
         assert!((shared - alone).abs() <= EQUAL * alone, "{ranks} ranks: {shared}, not {alone}");
@@ -250,11 +255,8 @@ fn condition_numbers_are_those_of_the_whole_system() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "petsc"), ignore = "needs the feature `petsc`")]
 fn petsc_solves_for_all() {
-    if !cfg!(feature = "petsc") {
-        println!("skipped: built without the feature `petsc`");
-        return;
-    }
     let asks = "\"solver_type\": \"Static\", \"linear_solver_settings\": {\"petsc_engine\": \"automatic\"}";
     let asks = [("\"solver_type\": \"Static\"", asks)];
     equals_serial("contact_2d/nonmatching", &asks, EXACT, true);
@@ -269,11 +271,8 @@ fn petsc_solves_for_all() {
 /// Multigrid gets systems without multipliers; where these cannot be condensed a factorisation serves, and a warning
 /// says so.
 #[test]
+#[cfg_attr(not(feature = "petsc"), ignore = "needs the feature `petsc`")]
 fn multigrid_solves_for_all_but_multipliers() {
-    if !cfg!(feature = "petsc") {
-        println!("skipped: built without the feature `petsc`");
-        return;
-    }
     let gmres = "\"solver_type\": \"gmres\", \"petsc_engine\": \"gmres_gamg\"";
     equals_serial("contact_3d/iterative_engine", &[("\"solver_type\": \"gmres\"", gmres)], EQUAL, false);
     let asks = "\"solver_type\": \"Static\", \"linear_solver_settings\": {\"petsc_engine\": \"gmres_gamg\", \"tolerance\": 1e-11}";
@@ -282,7 +281,7 @@ fn multigrid_solves_for_all_but_multipliers() {
         let folder = case(name);
         change(folder.path(), DECK, "\"solver_type\": \"Static\"", asks);
         let arguments = ["run", DECK, "--report", "report.json"];
-        let Some(output) = distributed(folder.path(), 2, &arguments) else { return };
+        let output = distributed(folder.path(), 2, &arguments);
         assert!(output.status.success(), "{name}: {}", said(&output));
         let report = read_json(&folder.path().join("report.json")).expect("the report");
         let engine = &report["steps"][0]["iterations"][0]["engine"];
@@ -297,6 +296,7 @@ fn multigrid_solves_for_all_but_multipliers() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn contact_by_constraints() {
     equals_serial("mpc/pressed_and_opened", &[], EXACT, true);
     equals_serial("mpc/pressed_and_opened_hexahedra", &[], EXACT, true);
@@ -306,6 +306,7 @@ fn contact_by_constraints() {
 
 /// Constraints hand on forces to nodes that other ranks own.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn reactions_of_supports_that_constraints_reach() {
     let all = ("[\"DISPLACEMENT\"]", "[\"DISPLACEMENT\", \"REACTION\"]");
     equals_serial("mpc/pressed_and_opened", &[all], EQUAL, true);
@@ -319,6 +320,7 @@ fn reactions_of_supports_that_constraints_reach() {
 
 /// Rank 0 gathers the equations with the motions of bodies that multigrid coarsens by.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn multigrid_of_rank_0() {
     let asks = "\"Static\", \"linear_solver_settings\": {\"solver_type\": \"amgcl\", \"direct_below\": 0}";
     let asks = [("\"Static\"", asks)];
@@ -339,7 +341,7 @@ fn multigrid_of_rank_0() {
     };
     let alone = solves(zelus(folder.path(), &arguments));
     for ranks in [2, 3] {
-        let Some(output) = distributed(folder.path(), ranks, &arguments) else { return };
+        let output = distributed(folder.path(), ranks, &arguments);
         let shared = solves(output);
         let alike = shared.len() == alone.len() && shared.iter().zip(&alone).all(|(a, b)| (a - b).abs() <= 2.0);
         assert!(alike, "{ranks} ranks: {shared:?} iterations, not {alone:?}");
@@ -402,6 +404,7 @@ const PICTURES: &str = r#""pictures": [{"python_module": "vtu_output_process", "
     "gauss_point_variables_extrapolated_to_nodes": ["VON_MISES_STRESS"]}}], "json_output_process_list""#;
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn ranks_write_a_piece_of_the_picture_each() {
     let folder = case("contact_3d/hexahedra_nonmatching");
     change(folder.path(), DECK, "\"json_output_process_list\"", PICTURES);
@@ -409,7 +412,7 @@ fn ranks_write_a_piece_of_the_picture_each() {
     assert!(zelus(alone.path(), &["run", DECK]).status.success());
     for ranks in [2, 3, 8] {
         let shared = scratch_copy(folder.path());
-        let Some(output) = distributed(shared.path(), ranks, &["run", DECK]) else { return };
+        let output = distributed(shared.path(), ranks, &["run", DECK]);
         assert!(output.status.success(), "{}", said(&output));
         let files = shared.path().join("VTU_Output");
         let series = std::fs::read_to_string(files.join("Structure.pvd")).expect("the series");
@@ -437,7 +440,7 @@ fn ranks_write_a_piece_of_the_picture_each() {
             }
         }
         // A picture of an earlier run does not stay beside those of this one.
-        let Some(output) = distributed(shared.path(), 1, &["run", DECK]) else { return };
+        let output = distributed(shared.path(), 1, &["run", DECK]);
         assert!(output.status.success(), "{}", said(&output));
         assert!(contents(&files).keys().all(|name| name.extension().is_some_and(|e| e != "pvtu")));
     }
@@ -473,6 +476,7 @@ const FILES: &str = r#""files": [
         "output_variables": ["REACTION"], "time_frequency": 0.0}}], "json_output_process_list""#;
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn files_of_one_rank_hold_what_all_have() {
     let folder = case("contact_3d/hexahedra_nonmatching");
     change(folder.path(), DECK, "\"json_output_process_list\"", FILES);
@@ -488,7 +492,7 @@ fn files_of_one_rank_hold_what_all_have() {
     assert!(expected.len() >= 15, "{:?}", expected.keys());
     for ranks in [2, 3, 8] {
         let shared = scratch_copy(folder.path());
-        let Some(output) = distributed(shared.path(), ranks, &["run", DECK]) else { return };
+        let output = distributed(shared.path(), ranks, &["run", DECK]);
         assert!(output.status.success(), "{}", said(&output));
         let found = written(shared.path());
         assert!(found.keys().eq(expected.keys()), "{ranks} ranks: {:?}, not {:?}", found.keys(), expected.keys());
@@ -523,36 +527,35 @@ fn fails(output: &Output, code: i32, text: &str) {
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn a_bad_deck_is_said_once() {
     let folder = case("contact_2d/nonmatching");
     change(folder.path(), DECK, "\"Static\"", "\"Statik\"");
-    let Some(output) = distributed(folder.path(), 3, &["run", DECK]) else { return };
+    let output = distributed(folder.path(), 3, &["run", DECK]);
     fails(&output, 2, "error[");
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn a_step_that_does_not_converge_ends_all_ranks() {
     let folder = case("contact_2d/friction_slide");
     change(folder.path(), DECK, "\"max_iteration\": 30", "\"max_iteration\": 1, \"step_cutting\": false");
-    let Some(output) = distributed(folder.path(), 3, &["run", DECK]) else { return };
+    let output = distributed(folder.path(), 3, &["run", DECK]);
     fails(&output, 3, "error[not-converged]");
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn a_file_that_cannot_be_written_ends_all_ranks() {
     let folder = case("contact_2d/nonmatching");
     change(folder.path(), DECK, "\"output_file_name\": \"", "\"output_file_name\": \"mesh.mdpa/");
-    let Some(output) = distributed(folder.path(), 3, &["run", DECK]) else { return };
+    let output = distributed(folder.path(), 3, &["run", DECK]);
     fails(&output, 4, "error[system]");
 }
 
 /// Runs the deck on three ranks of which `rank` finds the disk full when it writes `file`.
-fn full_disk(folder: &Path, rank: usize, file: &str) -> Option<Output> {
-    if !Path::new("/dev/full").exists() {
-        println!("skipped: there is no /dev/full to play a full disk");
-        return None;
-    }
-    let mut command = mpirun(folder)?;
+fn full_disk(folder: &Path, rank: usize, file: &str) -> Output {
+    let mut command = mpirun(folder);
     let program = env!("CARGO_BIN_EXE_zelus");
     let (path, name) = file.rsplit_once('/').map_or((".", file), |(path, name)| (path, name));
     // what a rank writes first goes to the name with its process id, which exec keeps
@@ -565,35 +568,38 @@ fn full_disk(folder: &Path, rank: usize, file: &str) -> Option<Output> {
     let start = Instant::now();
     let output = command.output().expect("mpirun starts");
     assert!(start.elapsed() < PROMPT, "{}", said(&output));
-    Some(output)
+    output
 }
 
 #[test]
+#[cfg_attr(not(all(feature = "mpi", target_os = "linux")), ignore = "needs the feature `mpi` and /dev/full")]
 fn a_full_disk_of_another_rank_ends_all_ranks() {
     let folder = case("contact_2d/nonmatching");
     change(folder.path(), DECK, "\"json_output_process_list\"", PICTURES);
-    let Some(output) = full_disk(folder.path(), 1, "VTU_Output/Structure_1_1.vtu") else { return };
+    let output = full_disk(folder.path(), 1, "VTU_Output/Structure_1_1.vtu");
     fails(&output, 4, "Structure_1_1.vtu: cannot be written");
     assert!(!folder.path().join("VTU_Output/Structure_1.pvtu").exists(), "a list of what is not there");
 }
 
 #[test]
+#[cfg_attr(not(all(feature = "mpi", target_os = "linux")), ignore = "needs the feature `mpi` and /dev/full")]
 fn a_full_disk_ends_all_ranks() {
     let folder = case("contact_2d/nonmatching");
-    let Some(output) = full_disk(folder.path(), 0, "lower.json") else { return };
+    let output = full_disk(folder.path(), 0, "lower.json");
     fails(&output, 4, "lower.json: cannot be written");
     let parts = contents(folder.path()).into_keys().filter(|name| name.extension().is_some_and(|e| e == "part"));
     assert_eq!(parts.count(), 0, "half-written files stay");
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn a_body_that_nothing_holds_is_said_once() {
     for engine in ["", "mumps_lu", "none"] {
         let folder = case("contact_2d/nonmatching");
         change(folder.path(), DECK, "[true, false, false]", "[false, false, false]");
         let settings = format!("\"Static\", \"linear_solver_settings\": {{\"petsc_engine\": \"{engine}\"}}");
         change(folder.path(), DECK, "\"Static\"", &settings);
-        let Some(output) = distributed(folder.path(), 3, &["run", DECK]) else { return };
+        let output = distributed(folder.path(), 3, &["run", DECK]);
         fails(&output, 4, "error[system]");
         assert!(said(&output).contains("the system of equations is singular"), "{}", said(&output));
         assert!(said(&output).contains("DISPLACEMENT_X of node"), "{}", said(&output));
@@ -601,35 +607,38 @@ fn a_body_that_nothing_holds_is_said_once() {
 }
 
 /// Rank 0 runs the deck of one folder, rank 1 that of another.
-fn one_each(first: &Path, second: &Path) -> Option<Output> {
-    let mut command = mpirun(first)?;
+fn one_each(first: &Path, second: &Path) -> Output {
+    let mut command = mpirun(first);
     let program = env!("CARGO_BIN_EXE_zelus");
     let decks = [first, second].map(|folder| folder.join(DECK).to_string_lossy().into_owned());
     command.args(["-n", "1", program, "run", &decks[0], ":", "-n", "1", program, "run", &decks[1]]);
     let start = Instant::now();
     let output = command.output().expect("mpirun starts");
     assert!(start.elapsed() < PROMPT, "{}", said(&output));
-    Some(output)
+    output
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn a_rank_that_fails_alone_ends_all() {
     let (good, bad) = (case("contact_2d/nonmatching"), case("contact_2d/nonmatching"));
     std::fs::remove_file(bad.path().join("mesh.mdpa")).expect("a mesh");
-    let Some(output) = one_each(good.path(), bad.path()) else { return };
+    let output = one_each(good.path(), bad.path());
     fails(&output, 2, "error[missing-file]");
-    let Some(output) = one_each(bad.path(), good.path()) else { return };
+    let output = one_each(bad.path(), good.path());
     fails(&output, 2, "error[missing-file]");
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn ranks_with_different_meshes_do_not_run() {
     let (one, other) = (case("contact_2d/nonmatching"), case("contact_2d/matching"));
-    let Some(output) = one_each(one.path(), other.path()) else { return };
+    let output = one_each(one.path(), other.path());
     fails(&output, 4, "the ranks have read different meshes");
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn ranks_with_different_settings_do_not_run() {
     for (file, find, with, says) in [
         (DECK, "\"end_time\": 0.5", "\"end_time\": 5.5", "the ranks have read different decks"),
@@ -642,37 +651,40 @@ fn ranks_with_different_settings_do_not_run() {
     ] {
         let (one, other) = (case("contact_2d/nonmatching"), case("contact_2d/nonmatching"));
         change(other.path(), file, find, with);
-        let Some(output) = one_each(one.path(), other.path()) else { return };
+        let output = one_each(one.path(), other.path());
         fails(&output, 4, says);
     }
 }
 
 /// One rank alone owns the element.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn an_inverted_element_is_said_once() {
     let folder = case("contact_2d/nonmatching");
     change(folder.path(), "mesh.mdpa", "\n1 0 1 2 6 5\n", "\n1 0 1 5 6 2\n");
-    let Some(output) = distributed(folder.path(), 3, &["run", DECK]) else { return };
+    let output = distributed(folder.path(), 3, &["run", DECK]);
     fails(&output, 2, "error[");
     assert!(said(&output).contains("SmallDisplacementElement2D4N 1 "), "{}", said(&output));
 }
 
 /// Elements that a load turns inside out on some of the ranks cut the step on all of them, until there is none to cut.
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn an_element_that_fails_in_a_step_ends_all_ranks() {
     let folder = case("contact_2d/nonmatching");
     change(folder.path(), "mesh.mdpa", "SmallDisplacementElement2D4N", "TotalLagrangianElement2D4N");
     change(folder.path(), "StructuralMaterials.json", "LinearElasticPlaneStrain2DLaw", "HyperElasticPlaneStrain2DLaw");
     change(folder.path(), DECK, "\"modulus\": 1000000.0", "\"modulus\": 1e15");
-    let Some(output) = distributed(folder.path(), 2, &["run", DECK]) else { return };
+    let output = distributed(folder.path(), 2, &["run", DECK]);
     fails(&output, 3, "error[not-converged]");
 }
 
 #[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn a_killed_rank_ends_all() {
     let folder = case("contact_2d/opening");
     change(folder.path(), DECK, "\"end_time\": ", "\"end_time\": 100000");
-    let Some(mut command) = mpirun(folder.path()) else { return };
+    let mut command = mpirun(folder.path());
     let program = env!("CARGO_BIN_EXE_zelus");
     let killed = format!("{program} run {DECK} & sleep 2; kill -9 $!; wait $!");
     command.args(["-n", "1", program, "run", DECK, ":", "-n", "1", "sh", "-c", &killed]);
@@ -683,10 +695,8 @@ fn a_killed_rank_ends_all() {
 
 /// A program without MPI that is started as one of several would run the whole deck in each of them.
 #[test]
+#[cfg_attr(feature = "mpi", ignore = "of a program without the feature `mpi`")]
 fn several_processes_need_the_feature() {
-    if cfg!(feature = "mpi") {
-        return;
-    }
     let folder = case("contact_2d/nonmatching");
     let output = Command::new(env!("CARGO_BIN_EXE_zelus"))
         .args(["run", DECK])
