@@ -3,7 +3,7 @@
 //! In the order of the data: [`interface`] makes facets of a deck's parts, [`search`] finds the pairs that may touch,
 //! [`mortar`] integrates a pair to D, M and the weighted gap, [`kratos`] holds what is only Kratos', [`formulations`] state each method as the residual of one
 //! pair, [`slave_states`] are what is known of slave nodes, [`pairs`] run formulations over blocks, [`interaction`] puts all
-//! of it into the Newton loop with the active set as a stage. `families` registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside
+//! of it into the Newton loop with the active set as a stage. [`families`] registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside
 //! them.
 
 pub mod variables;
@@ -20,7 +20,7 @@ pub mod penalty_adaptation;
 pub mod pairs;
 pub mod compatibility;
 pub mod interaction;
-mod families;
+pub mod families;
 mod processes;
 pub mod criteria;
 mod solver;

@@ -1,16 +1,146 @@
-//! Coulomb friction by the augmented Lagrangian with a multiplier a direction.
+//! Friction by the augmented Lagrangian with a vector multiplier.
+//!
+//! - inactive: p = 0, b_λ = −k² (A/c) [(λ·n) n + P λ/κ], with n constant: a multiplier is to vanish at once;
+//! - slip: p = f (k λ + ε̂ g̃ n), b_λ = k g̃ n − k (A/c) (k P λ − P q) with q = b(k λ·n + ε̂ g̃) τ, b the bound of the law
+//!   of friction;
+//! - stick: p = f (k λ + ε̂ g̃ n + κ ε̂ s), b_λ = k g̃ n + k s.
+//!
+//! Over the pairs of a node g̃ and s add up to its gap and slip. So does A, the area that the pair has of the node: the
+//! equations of a node do not depend on the number of its pairs. Where pairs augment, A is the area of the node in each of
+//! them, for then their bounds hold gaps that add up to zero.
+//!
+//! Where surfaces give way (1/ε > 0), g̃ − A k λ·n/ε and s − A (k P λ − P R t°)/(κ ε) take the places of g̃ and s: what of gap and
+//! slip is not elastic. t° is the traction of the last accepted state, turned with the facet by R.
+//!
+//! In space the direction τ of sliding turns with the trial traction, which the tangent knows.
+//! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
+//! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference. In dynamics and where surfaces give way it is that of [`turned_slip`]: its
+//! rate is what the tractions do work on, so that friction makes no energy. Where pairs augment, as in Kratos, it never is. In long
+//! static steps the objective one is nearer to the closed forms: it measures the change of what faces what.
 
-use crate::pairs::FamilyEntry;
-use zelus_core::register;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{add, constant, dot, scale, sub, value};
 
-use super::shapes::{self, register_shapes};
-use crate::formulations::{AlmFrictional, Kinematics, SlaveNode, SlipHistory};
+use crate::active_set;
+use crate::formulations::{
+    Augmentation, Formulation, Kinematics, Multiplier, NodeState, PairResidual, SlaveNode, Turning,
+};
 use crate::interaction::StepParameters;
-use crate::mortar::PairGeometry;
-use crate::pairs::{Family, Friction, Multiplier, Pair, PairFormulation};
+use crate::mortar::{
+    OperatorThreshold, Operators, PairGeometry, Turn, incremental_slip, is_objective, objective_slip, tangential,
+    turned_slip,
+};
+use crate::pairs::{Family, Friction};
+use crate::register_contact_family;
 use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
 
-impl PairFormulation for AlmFrictional {
+/// Augmented Lagrangian with friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AlmFrictional {
+    /// Scale factor k of the multipliers: traction = k λ.
+    pub scale_factor: f64,
+    /// Ratio κ > 0 of tangential to normal penalty.
+    pub tangent_factor: f64,
+    /// Change of D and of M beyond which the slip is taken as objective.
+    pub operator_threshold: OperatorThreshold,
+    /// Where gap and slip augment the force.
+    pub augmentation: Augmentation,
+    /// Whether surfaces give way by the nodes' [`SlaveNode::compliance`].
+    pub compliant: bool,
+    /// Whether bodies have inertia, so that friction must make no energy.
+    pub dynamic: bool,
+}
+
+/// A pair as it was when slip began to be counted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipHistory<const NS: usize, const NM: usize> {
+    /// D° and M°, at the start of the step.
+    pub previous: Operators<f64, NS, NM>,
+    /// Slave positions from which increments count.
+    pub reference_slave: [[f64; 3]; NS],
+    /// Master positions from which increments count.
+    pub reference_master: [[f64; 3]; NM],
+}
+
+impl AlmFrictional {
+    /// Weighted slip vectors s of a pair.
+    pub fn slip<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        history: &SlipHistory<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        if self.compliant || (self.dynamic && self.augmentation == Augmentation::Node) {
+            let (slave, master) = (&history.reference_slave, &history.reference_master);
+            return turned_slip(&pair.operators, (&pair.slave, slave), (&pair.master, master), &pair.normals);
+        }
+        if is_objective(&pair.operators, &history.previous, self.operator_threshold) {
+            return objective_slip(&pair.operators, &history.previous, &pair.slave, &pair.master, &pair.normals);
+        }
+        let increment = |x: [T; 3], from: [f64; 3]| std::array::from_fn(|c| x[c] - from[c]);
+        let delta_slave = std::array::from_fn(|j| increment(pair.slave[j], history.reference_slave[j]));
+        let delta_master = std::array::from_fn(|l| increment(pair.master[l], history.reference_master[l]));
+        incremental_slip(&pair.operators, &delta_slave, &delta_master, &pair.normals)
+    }
+
+    /// Tractions P R t° that slave nodes of a pair have from the last accepted state.
+    pub fn carried<T: Real, const NS: usize, const NM: usize>(
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        let turn = Turn::of_facet(&pair.slave, &history.reference_slave);
+        std::array::from_fn(|j| tangential(turn.apply(constant(nodes[j].carried)), pair.normals[j]))
+    }
+
+    /// A times the elastic trial tractions P R t° + κ ε s/A of slave nodes whose surfaces give way.
+    pub fn trial<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+    ) -> [[T; 3]; NS] {
+        let (carried, slip) = (Self::carried(pair, nodes, history), self.slip(pair, history));
+        std::array::from_fn(|j| {
+            let elastic = scale(slip[j], T::constant(self.tangent_factor * nodes[j].penalty));
+            add(scale(carried[j], pair.area(j)), elastic)
+        })
+    }
+
+    /// Takes from gap and slip what is elastic.
+    fn take_elastic<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+        gap: &mut [T; NS],
+        slip: &mut [[T; 3]; NS],
+    ) {
+        if !self.compliant {
+            return;
+        }
+        let carried = Self::carried(pair, nodes, history);
+        for (j, node) in nodes.iter().enumerate() {
+            let traction = scale(pair.multipliers[j], T::constant(self.scale_factor));
+            let give = pair.area(j) * node.compliance;
+            gap[j] -= dot(traction, pair.normals[j]) * give;
+            let along = sub(tangential(traction, pair.normals[j]), carried[j]);
+            slip[j] = sub(slip[j], scale(along, give * self.tangent_factor.recip()));
+        }
+    }
+}
+
+/// The part across the direction of sliding of what a vector changes by: nothing but a derivative, for the direction itself
+/// is that of the present state.
+fn across<T: Real>(vector: [T; 3], node: &SlaveNode) -> [T; 3] {
+    let change = vector.map(|x| x - x.value());
+    let along = change[0] * node.tangent[0] + change[1] * node.tangent[1] + change[2] * node.tangent[2];
+    std::array::from_fn(|c| change[c] - along * node.tangent[c])
+}
+
+impl Formulation for AlmFrictional {
+    const MULTIPLIER: Multiplier = Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER);
+    type History<const NS: usize, const NM: usize> = SlipHistory<NS, NM>;
+
     fn new(parameters: &StepParameters) -> Self {
         Self {
             scale_factor: parameters.scale_factor,
@@ -22,68 +152,109 @@ impl PairFormulation for AlmFrictional {
         }
     }
 
-    fn multiplier() -> Multiplier {
-        Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER)
-    }
-
     fn history<const NS: usize, const NM: usize>(
-        pair: &Pair,
-        previous: &PairGeometry<f64, NS, NM>,
+        previous: Operators<f64, NS, NM>,
+        last: &PairGeometry<f64, NS, NM>,
     ) -> SlipHistory<NS, NM> {
-        SlipHistory {
-            previous: pair.previous.operators(),
-            reference_slave: previous.slave,
-            reference_master: previous.master,
-        }
+        SlipHistory { previous, reference_slave: last.slave, reference_master: last.master }
     }
 
-    fn slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
         history: &SlipHistory<NS, NM>,
     ) -> [[f64; 3]; NS] {
-        AlmFrictional::slip(self, pair, history)
+        self.slip(pair, history)
     }
 
-    fn trial<const NS: usize, const NM: usize>(
+    fn weighted_trial<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
         nodes: &[SlaveNode; NS],
         history: &SlipHistory<NS, NM>,
     ) -> Option<[[f64; 3]; NS]> {
-        self.compliant.then(|| AlmFrictional::trial(self, pair, nodes, history))
+        self.compliant.then(|| self.trial(pair, nodes, history))
+    }
+
+    fn residual<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        history: &SlipHistory<NS, NM>,
+    ) -> PairResidual<T, NS, NM> {
+        let k = self.scale_factor;
+        let (mut gap, mut slip) = (pair.gap(), self.slip(pair, history));
+        self.take_elastic(pair, nodes, history, &mut gap, &mut slip);
+        let mut out = PairResidual::zero();
+        for (j, node) in nodes.iter().enumerate() {
+            let (lambda, n, penalty) = (pair.multipliers[j], pair.normals[j], self.augmentation.penalty(node));
+            let lambda_n = dot(lambda, n);
+            let lambda_t = tangential(lambda, n);
+            let augmentation = gap[j] * penalty;
+            let held = match node.state {
+                NodeState::Inactive => {
+                    let n = constant::<T>(value(n));
+                    let normal = -k * k * node.area / node.stiffness;
+                    let tangent = normal / self.tangent_factor;
+                    let (lambda_n, lambda_t) = (dot(lambda, n), tangential(lambda, n));
+                    out.multipliers[j] = std::array::from_fn(|c| n[c] * lambda_n * normal + lambda_t[c] * tangent);
+                    continue;
+                }
+                NodeState::Slip => {
+                    let bound = node.friction.at(lambda_n * k + augmentation);
+                    let mut q = node.tangent.map(|t| bound * t);
+                    let mut turning = [T::zero(); 3];
+                    let Turning { by_slip, by_multiplier } = node.turning;
+                    if by_slip != 0.0 || by_multiplier != 0.0 {
+                        let by_multiplier = by_multiplier * bound.value();
+                        (0..3).for_each(|c| q[c].add_scaled(across(lambda_t, node)[c], by_multiplier));
+                        turning = tangential(across(slip[j], node).map(|s| s * by_slip), n);
+                    }
+                    let q = tangential(q, n);
+                    let softness = node.area / node.stiffness;
+                    out.multipliers[j] =
+                        std::array::from_fn(|c| (n[c] * gap[j] + turning[c] - (lambda_t[c] * k - q[c]) * softness) * k);
+                    0.0
+                }
+                NodeState::Stick => {
+                    out.multipliers[j] = std::array::from_fn(|c| (n[c] * gap[j] + slip[j][c]) * k);
+                    self.tangent_factor * penalty
+                }
+            };
+            let force = std::array::from_fn(|c| {
+                (lambda[c] * k + n[c] * augmentation + slip[j][c] * held) * node.dynamic_factor
+            });
+            out.add_nodal_force(&pair.operators, j, force);
+        }
+        out
     }
 }
 
 /// The family, with or without sticking.
-pub(super) const fn family(friction: Friction) -> Family {
+const fn family(friction: Friction) -> Family {
+    let variables = &[
+        ("NORMAL", 3),
+        ("VECTOR_LAGRANGE_MULTIPLIER", 3),
+        ("WEIGHTED_GAP", 1),
+        ("WEIGHTED_SLIP", 3),
+        ("WEIGHTED_VECTOR_RESIDUAL", 3),
+    ];
     Family {
-        condition: "ALMFrictionalMortarContactCondition",
-        multiplier: Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER),
-        variables: &[
-            ("NORMAL", 3),
-            ("VECTOR_LAGRANGE_MULTIPLIER", 3),
-            ("WEIGHTED_GAP", 1),
-            ("WEIGHTED_SLIP", 3),
-            ("WEIGHTED_VECTOR_RESIDUAL", 3),
-        ],
         friction,
-        penalty: false,
+        decide: active_set::alm_frictional,
         weighted_gaps: true,
-        compliant: false,
-        updated: false,
-        by_node: None,
-        block: shapes::block::<AlmFrictional>,
+        ..Family::of::<AlmFrictional>("ALMFrictionalMortarContactCondition", variables)
     }
 }
 
-register! { FamilyEntry "ALMContactFrictional",
+register_contact_family! { "ALMContactFrictional",
     about: "Coulomb friction, augmented Lagrangian, one multiplier a slave node and direction",
     source: "eq. 4.9, D.11, D.13",
+    conditions: ["ALMFrictionalMortarContactCondition", "ALMFrictionalAxisymMortarContactCondition2D2N"],
     build: family(Friction::Coulomb),
 }
-register_shapes!(
-    "ALMFrictionalMortarContactCondition",
-    "ALMFrictionalAxisymMortarContactCondition2D2N",
-    "pair of the families ALMContactFrictional and ALMContactFrictionalPureSlip"
-);
+register_contact_family! { "ALMContactFrictionalPureSlip",
+    about: "ALMContactFrictional without sticking: every node in contact slides",
+    source: "eq. 4.9, D.11, D.13",
+    build: family(Friction::PureSlip),
+}

@@ -3,8 +3,8 @@
 use crate::pairs::TyingFamilyEntry;
 use zelus_core::register;
 
-use super::shapes::register_shapes;
 use crate::pairs::{Multiplier, TyingFamily};
+use crate::register_pair_conditions;
 use crate::variables::{SCALAR_LAGRANGE_MULTIPLIER, VECTOR_LAGRANGE_MULTIPLIER};
 
 register! { TyingFamilyEntry "ScalarMeshTying",
@@ -21,4 +21,4 @@ register! { TyingFamilyEntry "ComponentsMeshTying",
         variables: &[("NORMAL", 3), ("VECTOR_LAGRANGE_MULTIPLIER", 3), ("WEIGHTED_VECTOR_RESIDUAL", 3)],
     },
 }
-register_shapes!("MeshTyingMortarCondition", "pair of the families ScalarMeshTying and ComponentsMeshTying");
+register_pair_conditions! { "MeshTyingMortarCondition", "pair of the families ScalarMeshTying and ComponentsMeshTying" }

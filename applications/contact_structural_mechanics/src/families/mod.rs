@@ -1,15 +1,17 @@
 //! The families of contact conditions, one file each, registered by their `mortar_type`.
+//!
+//! A file states a family's multipliers, what it remembers, its residual, the rule of its active set and its names. Another crate
+//! adds one in the same way.
 
-mod alm_frictional;
-mod alm_frictional_pure_slip;
-mod alm_frictionless;
-mod alm_frictionless_components;
+pub mod alm_frictional;
+pub mod alm_frictionless;
+pub mod alm_frictionless_components;
 mod mesh_tying;
 mod mpc;
-mod nitsche_frictional;
-mod nitsche_frictionless;
-mod penalty_frictional;
-mod penalty_frictionless;
+mod nitsche;
+pub mod penalty_by_node;
+pub mod penalty_frictional;
+pub mod penalty_frictionless;
 mod perturbed_lagrangian_frictionless;
-mod shapes;
+mod register;
 mod uzawa_frictionless;

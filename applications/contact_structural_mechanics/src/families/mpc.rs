@@ -1,5 +1,5 @@
 //! The names of conditions of contact by constraints; they add friction forces only.
 
-use super::shapes::register_shapes;
+use crate::register_pair_conditions;
 
-register_shapes!("MPCMortarContactCondition", "pair of contact by constraints");
+register_pair_conditions! { "MPCMortarContactCondition", "pair of contact by constraints" }

@@ -1,118 +1,139 @@
-//! Coulomb friction by the penalty method.
+//! Friction by the penalty method, pair by pair: an elastic slip that the law of friction limits.
+//!
+//! Trial traction q = P R t° + κ ε s: the traction t° of the last accepted state, turned with the facet by R, and the weighted
+//! slip s of the pair since then. Stick: t = q. Slip: t = b(ε g̃) τ, with b the bound of the law and τ the direction of the trial
+//! traction of all pairs of the node; in space the tangent knows how it turns. An active node has the force p = f (ε g̃ n + t),
+//! which acts through D and M.
 
-use crate::pairs::FamilyEntry;
-use zelus_core::register;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::{add, scale};
 
-use super::shapes::{self, register_shapes};
-use crate::formulations::{AlmFrictional, Kinematics, LastState, PenaltyByNode, PenaltyFrictional, SlaveNode};
+use super::alm_frictional::AlmFrictional;
+use super::penalty_by_node::PenaltyByNode;
+use crate::active_set;
+use crate::formulations::{Formulation, Kinematics, LastState, Multiplier, NodeState, PairResidual, SlaveNode};
 use crate::interaction::StepParameters;
-use crate::mortar::PairGeometry;
-use crate::pairs::{ByNode, Family, Friction, Multiplier, Pair, PairFormulation};
-use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
-use zelus_core::vector3::scale;
+use crate::mortar::{Operators, PairGeometry};
+use crate::pairs::{ByNode, Family, Friction};
+use crate::register_contact_family;
 
-impl PairFormulation for PenaltyFrictional {
-    fn new(parameters: &StepParameters) -> Self {
-        Self { tangent_factor: parameters.tangent_factor }
-    }
+/// Penalty method with friction, of weighted gaps and slips.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PenaltyFrictional {
+    /// Ratio κ of tangential to normal penalty.
+    pub tangent_factor: f64,
+}
 
-    fn multiplier() -> Multiplier {
-        Multiplier::None
-    }
-
-    fn history<const NS: usize, const NM: usize>(_: &Pair, last: &PairGeometry<f64, NS, NM>) -> LastState<NS, NM> {
-        LastState { slave: last.slave, master: last.master }
-    }
-
-    fn slip<const NS: usize, const NM: usize>(
+impl PenaltyFrictional {
+    /// Trial tractions q of the slave nodes of a pair.
+    pub fn trial<T: Real, const NS: usize, const NM: usize>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        last: &LastState<NS, NM>,
-    ) -> [[f64; 3]; NS] {
-        Self::slip(pair, last)
-    }
-
-    fn trial<const NS: usize, const NM: usize>(
-        &self,
-        pair: &Kinematics<f64, NS, NM>,
+        pair: &Kinematics<T, NS, NM>,
         nodes: &[SlaveNode; NS],
         last: &LastState<NS, NM>,
-    ) -> Option<[[f64; 3]; NS]> {
-        let trial = Self::trial(self, pair, nodes, last);
-        Some(std::array::from_fn(|j| scale(trial[j], pair.area(j))))
+    ) -> [[T; 3]; NS] {
+        let (carried, slip) = (last.carried(pair, nodes), last.slip(pair));
+        std::array::from_fn(|j| add(carried[j], scale(slip[j], T::constant(self.tangent_factor * nodes[j].penalty))))
     }
 }
 
-impl PairFormulation for PenaltyByNode {
+/// The direction τ of a sliding node; what it turns by with the trial traction of a pair is nothing but a derivative.
+fn direction<T: Real>(node: &SlaveNode, trial: [T; 3]) -> [T; 3] {
+    let change = trial.map(|q| (q - q.value()) * node.turning.by_slip);
+    let along = change[0] * node.tangent[0] + change[1] * node.tangent[1] + change[2] * node.tangent[2];
+    std::array::from_fn(|c| change[c] - along * node.tangent[c] + node.tangent[c])
+}
+
+impl Formulation for PenaltyFrictional {
+    const MULTIPLIER: Multiplier = Multiplier::None;
+    type History<const NS: usize, const NM: usize> = LastState<NS, NM>;
+
     fn new(parameters: &StepParameters) -> Self {
         Self { tangent_factor: parameters.tangent_factor }
     }
 
-    fn multiplier() -> Multiplier {
-        Multiplier::None
+    fn history<const NS: usize, const NM: usize>(
+        _: Operators<f64, NS, NM>,
+        last: &PairGeometry<f64, NS, NM>,
+    ) -> LastState<NS, NM> {
+        LastState::new(last)
     }
 
-    fn history<const NS: usize, const NM: usize>(_: &Pair, last: &PairGeometry<f64, NS, NM>) -> LastState<NS, NM> {
-        LastState { slave: last.slave, master: last.master }
-    }
-
-    fn slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
         last: &LastState<NS, NM>,
     ) -> [[f64; 3]; NS] {
-        PenaltyFrictional::slip(pair, last)
+        last.slip(pair)
     }
 
-    fn trial<const NS: usize, const NM: usize>(
+    fn weighted_trial<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
         nodes: &[SlaveNode; NS],
         last: &LastState<NS, NM>,
     ) -> Option<[[f64; 3]; NS]> {
-        Some(Self::trial(self, pair, nodes, last))
+        let trial = self.trial(pair, nodes, last);
+        Some(std::array::from_fn(|j| scale(trial[j], pair.area(j))))
+    }
+
+    fn residual<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        last: &LastState<NS, NM>,
+    ) -> PairResidual<T, NS, NM> {
+        let gap = pair.gap();
+        let trial = self.trial(pair, nodes, last);
+        let mut out = PairResidual::zero();
+        for (j, node) in nodes.iter().enumerate() {
+            let pressure = gap[j] * node.penalty;
+            let traction = match node.state {
+                NodeState::Inactive => continue,
+                NodeState::Stick => trial[j],
+                NodeState::Slip => scale(direction(node, trial[j]), node.friction.at(pressure)),
+            };
+            let force = add(scale(pair.normals[j], pressure), traction);
+            out.add_nodal_force(&pair.operators, j, force.map(|p| p * node.dynamic_factor));
+        }
+        out
     }
 }
 
 /// Pair by pair.
 const BY_PAIR: Family = Family {
-    condition: "PenaltyFrictionalMortarContactCondition",
-    multiplier: Multiplier::None,
-    variables: &[
-        ("NORMAL", 3),
-        ("VECTOR_LAGRANGE_MULTIPLIER", 3),
-        ("WEIGHTED_GAP", 1),
-        ("WEIGHTED_SLIP", 3),
-        ("FRICTION_TRACTION", 3),
-    ],
     friction: Friction::Coulomb,
-    penalty: true,
-    weighted_gaps: false,
-    compliant: false,
-    updated: false,
-    by_node: None,
-    block: shapes::block::<PenaltyFrictional>,
+    decide: active_set::penalty_frictional,
+    ..Family::of::<PenaltyFrictional>(
+        "PenaltyFrictionalMortarContactCondition",
+        &[
+            ("NORMAL", 3),
+            ("VECTOR_LAGRANGE_MULTIPLIER", 3),
+            ("WEIGHTED_GAP", 1),
+            ("WEIGHTED_SLIP", 3),
+            ("FRICTION_TRACTION", 3),
+        ],
+    )
 };
 
 /// By node, with a multiplier a node and direction.
 static IMPLICIT: Family = Family {
-    multiplier: Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER),
-    penalty: false,
+    friction: Friction::Coulomb,
+    decide: active_set::alm_frictional,
     compliant: true,
-    block: shapes::block::<AlmFrictional>,
-    ..BY_PAIR
+    ..Family::of::<AlmFrictional>(BY_PAIR.condition, BY_PAIR.variables)
 };
 
 /// By node, in explicit steps.
-static EXPLICIT: Family = Family { block: shapes::block::<PenaltyByNode>, ..BY_PAIR };
+static EXPLICIT: Family = Family {
+    friction: Friction::Coulomb,
+    decide: active_set::penalty_frictional,
+    ..Family::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables)
+};
 
-register! { FamilyEntry "PenaltyContactFrictional",
+register_contact_family! { "PenaltyContactFrictional",
     about: "Coulomb friction, penalty method",
     source: "eq. D.3",
+    conditions: ["PenaltyFrictionalMortarContactCondition", "PenaltyFrictionalAxisymMortarContactCondition2D2N"],
     build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }
-register_shapes!(
-    "PenaltyFrictionalMortarContactCondition",
-    "PenaltyFrictionalAxisymMortarContactCondition2D2N",
-    "pair of the family PenaltyContactFrictional"
-);

@@ -1,64 +1,64 @@
-//! Frictionless contact by the penalty method.
+//! Frictionless contact by the penalty method (eq. D.3d), pair by pair as in Kratos: p = f ε g̃ n on active nodes.
+//!
+//! ε g̃ holds an area: it counts the weighted gap of the pair.
 
-use crate::pairs::FamilyEntry;
-use zelus_core::analysis::NodalVariable;
-use zelus_core::register;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::scale;
 
-use super::shapes::{self, register_shapes};
-use crate::formulations::{AlmFrictionless, PenaltyByNode, PenaltyFrictionless};
+use super::alm_frictionless::AlmFrictionless;
+use super::penalty_by_node::PenaltyByNode;
+use crate::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
 use crate::interaction::StepParameters;
-use crate::mortar::PairGeometry;
-use crate::pairs::{ByNode, Family, Friction, Multiplier, Pair, PairFormulation};
-use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
+use crate::mortar::{Operators, PairGeometry};
+use crate::pairs::{ByNode, Family};
+use crate::register_contact_family;
 
-impl PairFormulation for PenaltyFrictionless {
+/// Penalty method without friction, of weighted gaps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PenaltyFrictionless;
+
+impl Formulation for PenaltyFrictionless {
+    const MULTIPLIER: Multiplier = Multiplier::None;
+    type History<const NS: usize, const NM: usize> = ();
+
     fn new(_: &StepParameters) -> Self {
         Self
     }
 
-    fn multiplier() -> Multiplier {
-        Multiplier::None
+    fn history<const NS: usize, const NM: usize>(_: Operators<f64, NS, NM>, _: &PairGeometry<f64, NS, NM>) {}
+
+    fn residual<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        (): &(),
+    ) -> PairResidual<T, NS, NM> {
+        let gap = pair.gap();
+        let mut out = PairResidual::zero();
+        for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {
+            let pressure = gap[j] * (node.penalty * node.dynamic_factor);
+            out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
+        }
+        out
     }
-
-    fn history<const NS: usize, const NM: usize>(_: &Pair, _: &PairGeometry<f64, NS, NM>) {}
 }
-
-const CONDITION: &str = "PenaltyFrictionlessMortarContactCondition";
-const VARIABLES: &[NodalVariable] = &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)];
 
 /// Pair by pair.
-const BY_PAIR: Family = Family {
-    condition: CONDITION,
-    multiplier: Multiplier::None,
-    variables: VARIABLES,
-    friction: Friction::None,
-    penalty: true,
-    weighted_gaps: false,
-    compliant: false,
-    updated: false,
-    by_node: None,
-    block: shapes::block::<PenaltyFrictionless>,
-};
+const BY_PAIR: Family = Family::of::<PenaltyFrictionless>(
+    "PenaltyFrictionlessMortarContactCondition",
+    &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],
+);
 
 /// By node, with a multiplier a node.
-static IMPLICIT: Family = Family {
-    multiplier: Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE),
-    penalty: false,
-    compliant: true,
-    block: shapes::block::<AlmFrictionless>,
-    ..BY_PAIR
-};
+static IMPLICIT: Family =
+    Family { compliant: true, ..Family::of::<AlmFrictionless>(BY_PAIR.condition, BY_PAIR.variables) };
 
 /// By node, in explicit steps.
-static EXPLICIT: Family = Family { block: shapes::block::<PenaltyByNode>, ..BY_PAIR };
+static EXPLICIT: Family = Family::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables);
 
-register! { FamilyEntry "PenaltyContactFrictionless",
+register_contact_family! { "PenaltyContactFrictionless",
     about: "frictionless contact, penalty method",
     source: "eq. D.3",
+    conditions: ["PenaltyFrictionlessMortarContactCondition", "PenaltyFrictionlessAxisymMortarContactCondition2D2N"],
     build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }
-register_shapes!(
-    "PenaltyFrictionlessMortarContactCondition",
-    "PenaltyFrictionlessAxisymMortarContactCondition2D2N",
-    "pair of the family PenaltyContactFrictionless"
-);

@@ -1,31 +1,21 @@
 //! Frictionless contact, perturbed Lagrangian, one multiplier a slave node along its normal.
 
-use crate::pairs::FamilyEntry;
-use zelus_core::register;
+use super::alm_frictionless::AlmFrictionless;
+use crate::pairs::Family;
+use crate::register_contact_family;
 
-use super::shapes::{self, register_shapes};
-use crate::formulations::AlmFrictionless;
-use crate::pairs::{Family, Friction, Multiplier};
-use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
-
-register! { FamilyEntry "PerturbedLagrangianContactFrictionless",
+register_contact_family! { "PerturbedLagrangianContactFrictionless",
     about: "frictionless contact, perturbed Lagrangian, one multiplier a slave node along its normal",
     source: "Simo, Wriggers and Taylor (1985)",
+    conditions: [
+        "PerturbedLagrangianFrictionlessMortarContactCondition",
+        "PerturbedLagrangianFrictionlessAxisymMortarContactCondition2D2N"
+    ],
     build: Family {
-        condition: "PerturbedLagrangianFrictionlessMortarContactCondition",
-        multiplier: Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE),
-        variables: &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],
-        friction: Friction::None,
-        penalty: false,
-        weighted_gaps: false,
         compliant: true,
-        updated: false,
-        by_node: None,
-        block: shapes::block::<AlmFrictionless>,
+        ..Family::of::<AlmFrictionless>(
+            "PerturbedLagrangianFrictionlessMortarContactCondition",
+            &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],
+        )
     },
 }
-register_shapes!(
-    "PerturbedLagrangianFrictionlessMortarContactCondition",
-    "PerturbedLagrangianFrictionlessAxisymMortarContactCondition2D2N",
-    "pair of the family PerturbedLagrangianContactFrictionless"
-);

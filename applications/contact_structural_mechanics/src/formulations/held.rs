@@ -8,7 +8,7 @@
 //! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
 //!   vectors, and e is at right angles to m and n.
 
-use super::{Kinematics, Multipliers, NodeState, PairResidual, SlaveNode};
+use super::{Kinematics, Multiplier, NodeState, PairResidual, SlaveNode};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, normalised, scale, sub};
 
@@ -58,7 +58,7 @@ const NO_ONE_TO_FOLLOW: f64 = 1e-6;
 /// Replaces equations of held nodes, each with the weight k² A/c of its node.
 pub fn restate<T: Real, const NS: usize, const NM: usize>(
     out: &mut PairResidual<T, NS, NM>,
-    kind: Multipliers,
+    kind: Multiplier,
     pair: &Kinematics<T, NS, NM>,
     nodes: &[SlaveNode; NS],
 ) {
@@ -68,7 +68,10 @@ pub fn restate<T: Real, const NS: usize, const NM: usize>(
             continue;
         }
         let row = out.multipliers[j];
-        if kind == Multipliers::Vector && node.state == NodeState::Slip && held.iter().any(|held| held.is_still()) {
+        if matches!(kind, Multiplier::Vector(_))
+            && node.state == NodeState::Slip
+            && held.iter().any(|held| held.is_still())
+        {
             let (n, m) = (pair.normals[j], free_normal(pair.normals[j], held));
             let tangent = along_free_tangents(row, n, held);
             let gap = dot(n, row);

@@ -16,53 +16,25 @@
 //! P = I − n⊗n, g̃ weighted gap of this pair, s weighted slip, κ tangent factor, b bound of the tangential traction, τ
 //! unit tangent. All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
 
-pub mod alm_frictional;
-pub mod alm_frictionless;
-pub mod alm_frictionless_components;
 pub mod held;
+pub mod last_state;
 pub mod mesh_tying;
+pub mod multiplier;
 pub mod nitsche;
 pub mod pair;
-pub mod penalty_by_node;
-pub mod penalty_frictional;
-pub mod penalty_frictionless;
 pub mod system;
 
-pub use alm_frictional::{AlmFrictional, SlipHistory};
-pub use alm_frictionless::AlmFrictionless;
-pub use alm_frictionless_components::AlmFrictionlessComponents;
 pub use held::Held;
+pub use last_state::LastState;
 pub use mesh_tying::MeshTying;
+pub use multiplier::Multiplier;
 pub use nitsche::{Nitsche, NitscheVariant, NodeOfPoints, PointForces, SlaveFace};
 pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
-pub use penalty_by_node::PenaltyByNode;
-pub use penalty_frictional::{LastState, PenaltyFrictional};
-pub use penalty_frictionless::PenaltyFrictionless;
 pub use system::{by_normals, local_size, residual, tangent};
 
+use crate::interaction::StepParameters;
+use crate::mortar::{Operators, PairGeometry};
 use zelus_core::scalar::Real;
-
-/// Multiplier unknowns of a slave node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Multipliers {
-    /// None: a penalty method.
-    None,
-    /// One, along the nodal normal; the first component of a nodal multiplier.
-    Normal,
-    /// One a space dimension.
-    Vector,
-}
-
-impl Multipliers {
-    /// Number a node in `dim` dimensions.
-    pub const fn count(self, dim: usize) -> usize {
-        match self {
-            Self::None => 0,
-            Self::Normal => 1,
-            Self::Vector => dim,
-        }
-    }
-}
 
 /// Where a gap augments the force of an augmented Lagrangian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
@@ -97,13 +69,25 @@ impl Augmentation {
     }
 }
 
-/// A family of contact conditions, stated by its residual.
-pub trait Formulation {
-    /// Its multiplier unknowns.
-    const MULTIPLIERS: Multipliers;
+/// The forces of a family of contact, stated by the residual of a pair.
+///
+/// A family is one file: its formulation, its [`Family`](crate::pairs::Family) and
+/// [`register_contact_family!`](crate::register_contact_family).
+pub trait Formulation: Copy + Send + Sync + 'static {
+    /// Its multipliers.
+    const MULTIPLIER: Multiplier;
 
     /// What it remembers of a pair from the start of the step.
     type History<const NS: usize, const NM: usize>;
+
+    /// The formulation with the numbers of the step.
+    fn new(parameters: &StepParameters) -> Self;
+
+    /// What a pair remembers, from its operators at the start of the step and its positions in the last accepted state.
+    fn history<const NS: usize, const NM: usize>(
+        operators: Operators<f64, NS, NM>,
+        last: &PairGeometry<f64, NS, NM>,
+    ) -> Self::History<NS, NM>;
 
     /// Right-hand side of one pair; must be affine in the multipliers for given states.
     fn residual<T: Real, const NS: usize, const NM: usize>(
@@ -112,6 +96,25 @@ pub trait Formulation {
         nodes: &[SlaveNode; NS],
         history: &Self::History<NS, NM>,
     ) -> PairResidual<T, NS, NM>;
+
+    /// Weighted slip vectors of a pair; zero without friction.
+    fn weighted_slip<const NS: usize, const NM: usize>(
+        &self,
+        _pair: &Kinematics<f64, NS, NM>,
+        _history: &Self::History<NS, NM>,
+    ) -> [[f64; 3]; NS] {
+        [[0.0; 3]; NS]
+    }
+
+    /// Areas times trial tractions of a pair, for families that carry tractions from state to state.
+    fn weighted_trial<const NS: usize, const NM: usize>(
+        &self,
+        _pair: &Kinematics<f64, NS, NM>,
+        _nodes: &[SlaveNode; NS],
+        _history: &Self::History<NS, NM>,
+    ) -> Option<[[f64; 3]; NS]> {
+        None
+    }
 }
 
 #[cfg(test)]

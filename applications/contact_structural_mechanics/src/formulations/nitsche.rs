@@ -17,11 +17,12 @@
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
 
-use super::{Formulation, Kinematics, LastState, Multipliers, PairResidual, PenaltyFrictional, SlaveNode};
+use super::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveNode};
 use crate::friction_law::Bound;
+use crate::interaction::StepParameters;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
-use crate::mortar::{PairGeometry, SegmentationSettings, Turn, shape, tangential};
+use crate::mortar::{Operators, PairGeometry, SegmentationSettings, Turn, shape, tangential};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, value};
 
@@ -231,8 +232,19 @@ fn limited<T: Real>(trial: [T; 3], pressure: T, bound: Bound, sticks: bool) -> [
 
 /// By operators there is nothing: forces are those of points.
 impl Formulation for Nitsche {
-    const MULTIPLIERS: Multipliers = Multipliers::None;
+    const MULTIPLIER: Multiplier = Multiplier::Body;
     type History<const NS: usize, const NM: usize> = LastState<NS, NM>;
+
+    fn new(parameters: &StepParameters) -> Self {
+        parameters.nitsche
+    }
+
+    fn history<const NS: usize, const NM: usize>(
+        _: Operators<f64, NS, NM>,
+        last: &PairGeometry<f64, NS, NM>,
+    ) -> LastState<NS, NM> {
+        LastState::new(last)
+    }
 
     fn residual<T: Real, const NS: usize, const NM: usize>(
         &self,
@@ -242,15 +254,12 @@ impl Formulation for Nitsche {
     ) -> PairResidual<T, NS, NM> {
         PairResidual::zero()
     }
-}
 
-impl Nitsche {
-    /// Weighted slips of a pair since its last accepted state.
-    pub fn slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
         last: &LastState<NS, NM>,
     ) -> [[f64; 3]; NS] {
-        if self.friction.is_some() { PenaltyFrictional::slip(pair, last) } else { [[0.0; 3]; NS] }
+        if self.friction.is_some() { last.slip(pair) } else { [[0.0; 3]; NS] }
     }
 }

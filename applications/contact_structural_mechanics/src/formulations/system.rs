@@ -2,7 +2,7 @@
 
 use super::held::restate;
 use super::pair::{Kinematics, PairResidual, SlaveNode};
-use super::{Formulation, Multipliers};
+use super::{Formulation, Multiplier};
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, dimension, operators};
 use zelus_core::scalar::{Dual, Real};
@@ -10,7 +10,7 @@ use zelus_core::vector3::constant;
 
 /// Number of local unknowns of a pair.
 pub const fn local_size<F: Formulation, const NS: usize, const NM: usize>() -> usize {
-    dimension(NS) * (NS + NM) + NS * F::MULTIPLIERS.count(dimension(NS))
+    dimension(NS) * (NS + NM) + NS * F::MULTIPLIER.count(dimension(NS))
 }
 
 /// Writes the right-hand side of a pair; zero without overlap. Returns its operators.
@@ -31,7 +31,7 @@ pub fn residual<F: Formulation, const NS: usize, const NM: usize>(
     let found = operators(geometry, settings);
     if let Overlap::Cells(operators) = found {
         let out = stated(formulation, &kinematics(geometry, operators, multipliers), nodes, history);
-        for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, value| rhs[row] = value);
+        for_each_row::<_, NS, NM>(&out, F::MULTIPLIER, |row, value| rhs[row] = value);
     }
     found
 }
@@ -62,7 +62,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     let Some(dual) = found else { return Overlap::None };
 
     let out = stated(formulation, &kinematics(geometry, dual, multipliers), nodes, history);
-    for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NU>| {
+    for_each_row::<_, NS, NM>(&out, F::MULTIPLIER, |row, b: Dual<NU>| {
         rhs[row] = b.value;
         for column in 0..NU {
             lhs[row * width + column] = -b.gradient[column];
@@ -72,7 +72,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
     // The residual is affine in the multipliers, so their columns need no operators with derivatives.
     let values = geometry.values();
     let plain = dual.values();
-    let count = F::MULTIPLIERS.count(dimension(NS));
+    let count = F::MULTIPLIER.count(dimension(NS));
     for c in 0..count {
         let mut pair: Kinematics<Dual<NS>, NS, NM> =
             kinematics(&values.as_constants(), plain.as_constants(), multipliers);
@@ -80,7 +80,7 @@ pub fn tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize
             pair.multipliers[j][c] = Dual::variable(multipliers[j][c], j);
         }
         let out = stated(formulation, &pair, nodes, history);
-        for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b: Dual<NS>| {
+        for_each_row::<_, NS, NM>(&out, F::MULTIPLIER, |row, b: Dual<NS>| {
             for j in 0..NS {
                 lhs[row * width + NU + count * j + c] = -b.gradient[j];
             }
@@ -108,7 +108,7 @@ pub fn by_normals<F: Formulation, const NS: usize, const NM: usize, const NN: us
     }
     let Some(operators) = operators(&seeded, settings).cells() else { return };
     let out = stated(formulation, &kinematics(&seeded, operators, multipliers), nodes, history);
-    for_each_row::<_, NS, NM>(&out, F::MULTIPLIERS, |row, b| visit(row, &b.gradient));
+    for_each_row::<_, NS, NM>(&out, F::MULTIPLIER, |row, b| visit(row, &b.gradient));
 }
 
 /// The residual of a pair, with the equations of nodes that supports hold.
@@ -119,7 +119,7 @@ fn stated<F: Formulation, T: Real, const NS: usize, const NM: usize>(
     history: &F::History<NS, NM>,
 ) -> PairResidual<T, NS, NM> {
     let mut out = formulation.residual(pair, nodes, history);
-    restate(&mut out, F::MULTIPLIERS, pair, nodes);
+    restate(&mut out, F::MULTIPLIER, pair, nodes);
     out
 }
 
@@ -141,7 +141,7 @@ fn kinematics<T: Real, const NS: usize, const NM: usize>(
 #[inline]
 fn for_each_row<T: Real, const NS: usize, const NM: usize>(
     out: &PairResidual<T, NS, NM>,
-    multipliers: Multipliers,
+    multipliers: Multiplier,
     mut visit: impl FnMut(usize, T),
 ) {
     let dim = dimension(NS);

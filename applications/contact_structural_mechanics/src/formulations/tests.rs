@@ -1,6 +1,12 @@
 //! Tangents against central differences, balance of forces, and the algebra of single families.
 
 use super::*;
+use crate::families::alm_frictional::{AlmFrictional, SlipHistory};
+use crate::families::alm_frictionless::AlmFrictionless;
+use crate::families::alm_frictionless_components::AlmFrictionlessComponents;
+use crate::families::penalty_by_node::PenaltyByNode;
+use crate::families::penalty_frictional::PenaltyFrictional;
+use crate::families::penalty_frictionless::PenaltyFrictionless;
 use crate::friction_law::Bound;
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
@@ -53,7 +59,7 @@ fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usi
 ) {
     let settings = SegmentationSettings::default();
     let n = local_size::<F, NS, NM>();
-    let count = F::MULTIPLIERS.count(dimension(NS));
+    let count = F::MULTIPLIER.count(dimension(NS));
     let mut checked = 0;
     for seed in 0..12 {
         for states in MIXES {

@@ -13,7 +13,7 @@ use crate::active_set::{self, Decision, SlaveNumbers};
 use crate::formulations::held::along_free_tangents;
 use crate::formulations::{Augmentation, Held, NodeState};
 use crate::mortar::{tangent, tangential};
-use crate::pairs::{Family, Friction, Multiplier};
+use crate::pairs::{Family, Multiplier};
 use crate::resolution::Resolution;
 use crate::slave_states::{SlaveState, SlaveStates};
 
@@ -43,12 +43,7 @@ impl Rules<'_> {
         let (mut decisions, mut before, mut pushed) = (Vec::new(), Vec::new(), Vec::new());
         for (node, state) in states.iter() {
             let numbers = self.numbers(nodes, node, state);
-            let mut decision = match (self.family.friction, self.family.penalty) {
-                _ if matches!(self.family.multiplier, Multiplier::Body) => active_set::of_points(&numbers),
-                (Friction::None, _) => active_set::frictionless(&numbers),
-                (_, false) => active_set::alm_frictional(&numbers, rule),
-                (_, true) => active_set::penalty_frictional(&numbers, rule),
-            };
+            let mut decision = (self.family.decide)(&numbers, rule);
             if state.isolated {
                 decision = active_set::inactive(&numbers, decision.pressure);
             }

@@ -34,6 +34,7 @@ mod segmentation_2d;
 mod segmentation_3d;
 pub mod settings;
 pub mod shape;
+pub(crate) mod shapes;
 pub mod slip;
 pub mod turn;
 

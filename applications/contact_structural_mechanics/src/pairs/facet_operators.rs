@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use zelus_core::geometry::Shape;
 use zelus_core::model::{ModelPart, variables::NORMAL};
 
 use super::pair::PairKey;
 use crate::interface::{Facet, Interface, centre_normal, positions};
 use crate::mortar::operators::SLIVER;
 use crate::mortar::shape;
+use crate::mortar::shapes::for_shapes;
 use crate::mortar::{Choices, Overlap, PairGeometry, SegmentationSettings, operators};
 use crate::search::{Candidate, SearchSettings, candidates};
 
@@ -69,14 +69,12 @@ pub fn facet_operators(
     master: &Facet,
     settings: &SegmentationSettings,
 ) -> Option<FacetOperators> {
-    match (slave.shape, master.shape) {
-        (Shape::Line2, Shape::Line2) => of_shapes::<2, 2>(part, slave, master, settings),
-        (Shape::Tri3, Shape::Tri3) => of_shapes::<3, 3>(part, slave, master, settings),
-        (Shape::Tri3, Shape::Quad4) => of_shapes::<3, 4>(part, slave, master, settings),
-        (Shape::Quad4, Shape::Tri3) => of_shapes::<4, 3>(part, slave, master, settings),
-        (Shape::Quad4, Shape::Quad4) => of_shapes::<4, 4>(part, slave, master, settings),
-        _ => None,
+    macro_rules! make {
+        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
+            of_shapes::<$ns, $nm>(part, slave, master, settings)
+        };
     }
+    for_shapes!(slave.shape, master.shape, make)?
 }
 
 fn of_shapes<const NS: usize, const NM: usize>(

@@ -7,74 +7,19 @@ use zelus_core::Result;
 use zelus_core::analysis::NodalVariable;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_core::geometry::Shape;
-use zelus_core::model::{Nodes, ScalarVariable, Variable};
+use zelus_core::model::Variable;
 use zelus_core::registered_kind;
 use zelus_core::registry;
-use zelus_core::vector3::scale;
 
 use super::contact_block::ContactBlock;
 use super::pair::Pair;
+use super::pair_block::pair_block;
+use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
+use crate::formulations::{Formulation, Multiplier};
 use crate::interaction::StepParameters;
 use crate::interface::{Bodies, NormalPatches};
 use crate::slave_states::{Columns, SlaveStates};
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
-
-/// The multipliers of a family.
-#[derive(Clone, Copy)]
-pub enum Multiplier {
-    /// None: the penalty method.
-    None,
-    /// One a slave node, along its normal.
-    Scalar(&'static Variable<f64>),
-    /// One a slave node and direction.
-    Vector(&'static Variable<[f64; 3]>),
-    /// None: tractions of the slave's own elements serve, and integration points decide on contact, by Nitsche's method.
-    Body,
-}
-
-impl Multiplier {
-    /// Whether it is solved for.
-    pub fn is_unknown(self) -> bool {
-        matches!(self, Self::Scalar(_) | Self::Vector(_))
-    }
-
-    /// Its value at a node, a scalar one in the first component; zero without.
-    pub fn value(self, nodes: &Nodes, node: u32) -> [f64; 3] {
-        let at = node as usize;
-        match self {
-            Self::None | Self::Body => [0.0; 3],
-            Self::Scalar(variable) => [nodes.history.values(variable, 0)[at], 0.0, 0.0],
-            Self::Vector(variable) => nodes.history.get(variable.name()).map_or([0.0; 3], |field| field.vector(0, at)),
-        }
-    }
-
-    /// Its value at a node as a vector, a scalar one along the normal.
-    pub fn vector(self, nodes: &Nodes, node: u32, normal: [f64; 3]) -> [f64; 3] {
-        let value = self.value(nodes, node);
-        if matches!(self, Self::Scalar(_)) { scale(normal, value[0]) } else { value }
-    }
-
-    /// Sets its value at a node, a scalar one from the first component.
-    pub fn set(self, nodes: &mut Nodes, node: u32, value: [f64; 3]) {
-        let at = node as usize;
-        match self {
-            Self::None | Self::Body => {}
-            Self::Scalar(variable) => nodes.history.values_mut(variable, 0)[at] = value[0],
-            Self::Vector(variable) => {
-                nodes.history.values_mut(variable, 0)[3 * at..3 * at + 3].copy_from_slice(&value);
-            }
-        }
-    }
-
-    /// The unknowns in `dimension` dimensions.
-    pub fn unknowns(self, dimension: usize) -> Vec<ScalarVariable> {
-        match self {
-            Self::None | Self::Body => Vec::new(),
-            Self::Scalar(variable) => vec![variable.scalar()],
-            Self::Vector(variable) => (0..dimension as u8).map(|c| variable.component(c)).collect(),
-        }
-    }
-}
 
 /// What a family does about friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -140,8 +85,8 @@ pub struct Family {
     pub variables: &'static [NodalVariable],
     /// Its friction.
     pub friction: Friction,
-    /// Whether its nodes have their tractions from a penalty alone.
-    pub penalty: bool,
+    /// The rule by which its slave nodes enter and leave contact, stick and slide.
+    pub decide: fn(&SlaveNumbers, SlipRule) -> Decision,
     /// Whether its penalty counts weighted gaps, and is a stress by length and area; otherwise gaps.
     pub weighted_gaps: bool,
     /// Whether its surfaces give way by traction over penalty, the traction being a multiplier.
@@ -155,6 +100,22 @@ pub struct Family {
 }
 
 impl Family {
+    /// A family without friction whose forces are those of a formulation, and whose conditions begin with a name.
+    pub const fn of<F: Formulation>(condition: &'static str, variables: &'static [NodalVariable]) -> Self {
+        Self {
+            condition,
+            multiplier: F::MULTIPLIER,
+            variables,
+            friction: Friction::None,
+            decide: |node, _| active_set::frictionless(node),
+            weighted_gaps: false,
+            compliant: false,
+            updated: false,
+            by_node: None,
+            block: pair_block::<F>,
+        }
+    }
+
     /// Whether it has friction, sliding or sticking.
     pub fn frictional(&self) -> bool {
         self.friction != Friction::None

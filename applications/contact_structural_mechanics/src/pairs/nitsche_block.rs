@@ -6,6 +6,7 @@ use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::Shape;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, dot};
 
@@ -15,14 +16,30 @@ use super::pair::{Integral, Pair};
 use super::pair_block::PairBlock;
 use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
 use crate::interface::{Bodies, Tractions};
+use crate::mortar::shapes::for_shapes;
 use crate::mortar::{PairGeometry, dimension};
 use crate::slave_states::SlaveStates;
+
+/// The block of Nitsche's method for a pair of shapes (slave, master); `None` for shapes that carry no contact.
+pub fn nitsche_block(
+    slave: Shape,
+    master: Shape,
+    request: PairRequest,
+    friction: bool,
+) -> Option<Box<dyn ContactBlock>> {
+    macro_rules! make {
+        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
+            NitscheBlock::<$ns, $nm, $nu, $nn, $nv>::boxed(request, friction)
+        };
+    }
+    for_shapes!(slave, master, make)
+}
 
 /// Pairs with `NS` slave and `NM` master nodes, `NU` displacement unknowns of the facets, `NN` components of nodal normals,
 /// and `NV` = `NU` + 2 `NN` variables: displacements, normals, and tractions at the inner points of the slave.
 ///
 /// Other nodes of the slave's element are among those around the pair.
-pub struct NitscheBlock<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> {
+struct NitscheBlock<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> {
     pairs: PairBlock<Nitsche, NS, NM, NU, NN>,
     bodies: Arc<Bodies>,
 }
@@ -31,7 +48,7 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
     NitscheBlock<NS, NM, NU, NN, NV>
 {
     /// The block of a request, with friction or without.
-    pub fn boxed(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
+    fn boxed(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
         const { assert!(NV == NU + 2 * NN && NN == dimension(NS) * NS, "a variable for each unknown of the formula") };
         let (bodies, parameters) = (request.bodies.clone(), request.parameters.clone());
         let friction = friction.then_some(parameters.tangent_factor);

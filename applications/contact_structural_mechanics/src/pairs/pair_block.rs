@@ -6,52 +6,34 @@ use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::Shape;
 use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{add, cross, normalised, scale, sub};
 
 use super::contact_block::{ContactBlock, Present};
-use super::family::{Multiplier, PairRequest};
+use super::family::PairRequest;
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{self, Augmentation, Formulation, Kinematics, SlaveNode};
 use crate::interaction::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::kratos::FirstIterateTangent;
+use crate::mortar::shapes::for_shapes;
 use crate::mortar::{Choices, Overlap, PairGeometry, choices_of, dimension, operators, weighted_gap};
 use crate::slave_states::SlaveStates;
 
-/// A formulation as the blocks use it.
-pub trait PairFormulation: Formulation + Send + Sync + Sized + 'static {
-    /// The formulation with the numbers of the step.
-    fn new(parameters: &StepParameters) -> Self;
-
-    /// The nodal variable of its multipliers.
-    fn multiplier() -> Multiplier;
-
-    /// What a pair remembers, from its state and the positions at the previous step.
-    fn history<const NS: usize, const NM: usize>(
-        pair: &Pair,
-        previous: &PairGeometry<f64, NS, NM>,
-    ) -> Self::History<NS, NM>;
-
-    /// Weighted slip vectors of a pair; zero without friction.
-    fn slip<const NS: usize, const NM: usize>(
-        &self,
-        _pair: &Kinematics<f64, NS, NM>,
-        _history: &Self::History<NS, NM>,
-    ) -> [[f64; 3]; NS] {
-        [[0.0; 3]; NS]
+/// The block of a formulation for a pair of shapes (slave, master); `None` for shapes that carry no contact.
+pub(super) fn pair_block<F: Formulation>(
+    slave: Shape,
+    master: Shape,
+    request: PairRequest,
+) -> Option<Box<dyn ContactBlock>> {
+    macro_rules! make {
+        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
+            PairBlock::<F, $ns, $nm, $nu, $nn>::boxed(request)
+        };
     }
-
-    /// Areas times trial tractions of a pair, for families that carry tractions from state to state.
-    fn trial<const NS: usize, const NM: usize>(
-        &self,
-        _pair: &Kinematics<f64, NS, NM>,
-        _nodes: &[SlaveNode; NS],
-        _history: &Self::History<NS, NM>,
-    ) -> Option<[[f64; 3]; NS]> {
-        None
-    }
+    for_shapes!(slave, master, make)
 }
 
 /// Pairs with `NS` slave and `NM` master nodes, `NU` displacement unknowns and `NN` components of nodal normals.
@@ -69,9 +51,7 @@ pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize, const
     unknowns: Vec<LocalUnknown>,
 }
 
-impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize>
-    PairBlock<F, NS, NM, NU, NN>
-{
+impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> PairBlock<F, NS, NM, NU, NN> {
     /// The block of a request.
     pub fn boxed(request: PairRequest) -> Box<dyn ContactBlock> {
         let formulation = F::new(&request.parameters);
@@ -88,7 +68,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             })
         };
         let mut unknowns: Vec<LocalUnknown> = displacements(around..around + NM + NS).collect();
-        let multipliers: Vec<ScalarVariable> = F::multiplier().unknowns(dim);
+        let multipliers: Vec<ScalarVariable> = F::MULTIPLIER.unknowns(dim);
         for node in around + NM..around + NM + NS {
             unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
         }
@@ -256,7 +236,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
     }
 
     fn multipliers(&self, at: usize, view: &StepView<'_>) -> [[f64; 3]; NS] {
-        self.slaves(at).map(|n| F::multiplier().value(view.nodes, n))
+        self.slaves(at).map(|n| F::MULTIPLIER.value(view.nodes, n))
     }
 }
 
@@ -280,7 +260,7 @@ fn facet_normal<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
     }
 }
 
-impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> EntityBlock
+impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> EntityBlock
     for PairBlock<F, NS, NM, NU, NN>
 {
     fn entry(&self) -> &'static EntityKind {
@@ -326,7 +306,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
             let geometry = self.geometry(at, view, &self.states);
             let nodes = self.slave_constants(at, &self.states);
             let multipliers = self.multipliers(at, view);
-            let history = F::history(&self.pairs[at], &self.previous(at, view, &self.states));
+            let history = F::history(self.pairs[at].previous.operators(), &self.previous(at, view, &self.states));
             let settings = &self.parameters.segmentation;
             let (width, rows) = (out.size, out.size - dimension(NS) * self.around);
             let (lhs, rhs) = out.entity(slot);
@@ -356,7 +336,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
     }
 }
 
-impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> ContactBlock
+impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> ContactBlock
     for PairBlock<F, NS, NM, NU, NN>
 {
     fn pairs(&self) -> &[Pair] {
@@ -391,7 +371,7 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                 if let Overlap::Cells(operators) = found {
                     out.overlapping = true;
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
-                    let history = F::history(&self.pairs[at], &self.previous(at, view, states));
+                    let history = F::history(self.pairs[at].previous.operators(), &self.previous(at, view, states));
                     let pair = Kinematics {
                         operators,
                         slave: geometry.slave,
@@ -399,8 +379,8 @@ impl<F: PairFormulation, const NS: usize, const NM: usize, const NU: usize, cons
                         normals: geometry.nodal_normals,
                         multipliers: [[0.0; 3]; NS],
                     };
-                    let slip = self.formulation.slip(&pair, &history);
-                    let trial = self.formulation.trial(&pair, &self.slave_constants(at, states), &history);
+                    let slip = self.formulation.weighted_slip(&pair, &history);
+                    let trial = self.formulation.weighted_trial(&pair, &self.slave_constants(at, states), &history);
                     for j in 0..NS {
                         out.area[j] = operators.d[j].iter().sum();
                         out.gap[j] = gaps[j];

@@ -9,7 +9,8 @@ use zelus_core::model::ScalarVariable;
 
 use super::facet_operators::FacetPair;
 use crate::formulations::MeshTying;
-use crate::mortar::Operators;
+use crate::mortar::shapes::for_shapes;
+use crate::mortar::{Operators, dimension};
 
 /// What a block of ties is made from.
 pub struct TyingRequest {
@@ -29,19 +30,16 @@ pub struct TyingRequest {
 
 /// The block of a pair of shapes (slave, master) and any number of tied components; `None` for shapes without ties.
 pub fn tying_block(slave: Shape, master: Shape, request: TyingRequest) -> Option<Box<dyn EntityBlock>> {
-    Some(match (slave, master, request.tied.len()) {
-        (Shape::Line2, Shape::Line2, 1) => TyingBlock::<2, 2, 1>::boxed(request),
-        (Shape::Line2, Shape::Line2, 2) => TyingBlock::<2, 2, 2>::boxed(request),
-        (Shape::Tri3, Shape::Tri3, 1) => TyingBlock::<3, 3, 1>::boxed(request),
-        (Shape::Tri3, Shape::Tri3, 3) => TyingBlock::<3, 3, 3>::boxed(request),
-        (Shape::Tri3, Shape::Quad4, 1) => TyingBlock::<3, 4, 1>::boxed(request),
-        (Shape::Tri3, Shape::Quad4, 3) => TyingBlock::<3, 4, 3>::boxed(request),
-        (Shape::Quad4, Shape::Tri3, 1) => TyingBlock::<4, 3, 1>::boxed(request),
-        (Shape::Quad4, Shape::Tri3, 3) => TyingBlock::<4, 3, 3>::boxed(request),
-        (Shape::Quad4, Shape::Quad4, 1) => TyingBlock::<4, 4, 1>::boxed(request),
-        (Shape::Quad4, Shape::Quad4, 3) => TyingBlock::<4, 4, 3>::boxed(request),
-        _ => return None,
-    })
+    macro_rules! make {
+        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
+            match request.tied.len() {
+                1 => Some(TyingBlock::<$ns, $nm, 1>::boxed(request)),
+                count if count == dimension($ns) => Some(TyingBlock::<$ns, $nm, { dimension($ns) }>::boxed(request)),
+                _ => None,
+            }
+        };
+    }
+    for_shapes!(slave, master, make)?
 }
 
 /// Pairs with `NS` slave and `NM` master nodes and `C` tied numbers a node.

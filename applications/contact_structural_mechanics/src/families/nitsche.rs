@@ -1,0 +1,31 @@
+//! Contact by Nitsche's method, without friction and with it; its forces are stated in [`crate::formulations::nitsche`].
+
+use crate::active_set;
+use crate::formulations::Nitsche;
+use crate::pairs::{Family, Friction, nitsche_block};
+use crate::register_contact_family;
+
+register_contact_family! { "NitscheContactFrictionless",
+    about: "frictionless contact by Nitsche's method: tractions of the slave's elements, no multipliers",
+    source: "Chouly, Hild and Renard (2015)",
+    conditions: ["NitscheFrictionlessMortarContactCondition", "NitscheFrictionlessAxisymMortarContactCondition2D2N"],
+    build: Family {
+        decide: |node, _| active_set::of_points(node),
+        block: |slave, master, request| nitsche_block(slave, master, request, false),
+        ..Family::of::<Nitsche>("NitscheFrictionlessMortarContactCondition", &[("NORMAL", 3), ("WEIGHTED_GAP", 1)])
+    },
+}
+register_contact_family! { "NitscheContactFrictional",
+    about: "Coulomb friction by Nitsche's method: tractions of the slave's elements, no multipliers",
+    source: "Chouly, Hild and Renard (2015)",
+    conditions: ["NitscheFrictionalMortarContactCondition", "NitscheFrictionalAxisymMortarContactCondition2D2N"],
+    build: Family {
+        friction: Friction::Coulomb,
+        decide: |node, _| active_set::of_points(node),
+        block: |slave, master, request| nitsche_block(slave, master, request, true),
+        ..Family::of::<Nitsche>(
+            "NitscheFrictionalMortarContactCondition",
+            &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3), ("CARRIED_TRACTION", 3)],
+        )
+    },
+}
