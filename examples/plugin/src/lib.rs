@@ -2,4 +2,5 @@
 
 mod elastic_foundation_condition;
 mod energy_criterion;
+mod hardening_contact;
 mod scale_load_process;

@@ -1,0 +1,142 @@
+//! The loops around Newton's iteration: what a converged state of contact is asked, and what goes on from there.
+
+use zelus_core::Result;
+use zelus_core::entities::Outer;
+use zelus_core::model::ModelPart;
+
+use super::contact_state::ContactState;
+use super::friction_ramp::FrictionRamp;
+use super::impact::coarse_impact;
+use super::penalty_ramp::PenaltyRamp;
+use super::set_stage::SetStage;
+use super::step_search::StepSearch;
+use super::uzawa::Uzawa;
+use super::work::ContactWork;
+use crate::pairs::Multiplier;
+use crate::solver::ENSURE_CONTACT;
+use crate::variables::WEIGHTED_GAP;
+
+/// The loops of a step.
+#[derive(Default)]
+pub(super) struct OuterLoops {
+    /// Searches within the step.
+    pub step_search: StepSearch,
+    /// Updates of multipliers.
+    pub uzawa: Uzawa,
+    /// How much of the penalty acts, where it is all there is.
+    penalty_ramp: PenaltyRamp,
+    /// Whether friction waits for contact.
+    friction_ramp: FrictionRamp,
+    /// Weighted gaps at the start of the step.
+    start_gaps: Vec<f64>,
+    /// What the last attempt at the step made of the energy of motion, where that was too much.
+    impact_error: f64,
+    work: ContactWork,
+}
+
+impl OuterLoops {
+    /// Step start, before contact is searched.
+    pub(super) fn begin_step(&mut self, part: &mut ModelPart, contact: &mut ContactState) {
+        self.step_search.begin_step();
+        self.uzawa = Uzawa::default();
+        if contact.setup.ramps_penalty() {
+            self.penalty_ramp.begin_step(&part.info, &mut contact.states);
+        }
+        if contact.setup.ramps_friction() {
+            self.friction_ramp.begin_step(part, contact.setup.settings.friction.law);
+        }
+    }
+
+    /// Step start, once gaps are in their columns.
+    pub(super) fn keep_start(&mut self, part: &ModelPart) {
+        part.nodes.history.values(&WEIGHTED_GAP, 0).clone_into(&mut self.start_gaps);
+    }
+
+    /// What follows in a converged state, in the order in which one needs the other.
+    ///
+    /// # Errors
+    /// Those of making blocks; contact that a deck asks for and that is not there.
+    pub(super) fn judge(
+        &mut self,
+        part: &mut ModelPart,
+        contact: &mut ContactState,
+        set: &mut SetStage,
+    ) -> Result<Outer> {
+        let (family, scale_factor) = (contact.setup.settings.family, contact.setup.parameters.scale_factor);
+        if family.updated {
+            let outer = self.uzawa.update(&part.nodes, &mut contact.states, scale_factor, contact.setup.settings.uzawa);
+            if outer != Outer::Done {
+                return Ok(outer);
+            }
+        }
+        if contact.setup.ramps_penalty()
+            && self.penalty_ramp.after_convergence(&part.info, &mut contact.states) == Outer::Again
+        {
+            return Ok(Outer::Again);
+        }
+        let settled = set.settle(part, &mut contact.states, &contact.setup);
+        if settled != Outer::Done {
+            return Ok(settled);
+        }
+        let (pairs, searched) = ((&contact.pairing, &contact.states), contact.is_searched());
+        let (missed, outer) = self.step_search.in_converged_state(part, pairs, &contact.setup, searched)?;
+        if !missed.is_empty() {
+            set.forget_sets();
+            contact.take_in(part, missed)?;
+            set.update(part, &mut contact.states, &contact.setup);
+            set.find_tangents(part, &mut contact.states, &contact.setup);
+        }
+        if outer != Outer::Done {
+            return Ok(outer);
+        }
+        let (law, resolution) = (contact.setup.settings.friction.law, contact.setup.resolution);
+        if self.friction_ramp.after_convergence(part, &mut contact.states, law, resolution) == Outer::Again {
+            set.forget_sets();
+            set.find_tangents(part, &mut contact.states, &contact.setup);
+            return Ok(Outer::Again);
+        }
+        // Points in the master press in every state that has converged.
+        if !contact.setup.by_points()
+            && let Some(why) = contact.setup.rules().passed_through(&part.nodes, &contact.states)
+        {
+            return Ok(Outer::Failed(why));
+        }
+        if part.info.is(ENSURE_CONTACT) && contact.states.count_active() == 0 {
+            return Err(zelus_core::Error::NotConverged(
+                "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
+            ));
+        }
+        self.friction_ramp.solve();
+        if contact.setup.parameters.dynamic {
+            self.work.of_step(part, &contact.pairing.as_entities())?;
+            if let Some(why) = self.work.too_much(part) {
+                return Ok(Outer::Failed(why));
+            }
+        }
+        let slaves = contact.states.slaves();
+        Ok(coarse_impact(part, &slaves, family, scale_factor, &self.start_gaps, &mut self.impact_error))
+    }
+
+    /// The step is accepted.
+    pub(super) fn accept(&mut self, part: &mut ModelPart, contact: &ContactState) {
+        self.impact_error = 0.0;
+        if contact.setup.parameters.dynamic {
+            let family = contact.setup.settings.family;
+            let stores = family.compliant || matches!(family.multiplier, Multiplier::None);
+            let conserves = !stores && !family.frictional();
+            part.messages.extend(self.work.accept(part, conserves));
+        }
+        self.friction_ramp.accept();
+    }
+
+    /// The step is tried again.
+    pub(super) fn retry(&mut self) {
+        self.penalty_ramp.retry();
+        self.friction_ramp.retry();
+    }
+
+    /// Whether the next attempt of a step that fails once more goes another way.
+    pub(super) fn has_alternative(&self, contact: &ContactState) -> bool {
+        contact.setup.ramps_friction() && self.friction_ramp.comes_next()
+    }
+}

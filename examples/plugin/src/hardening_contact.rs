@@ -1,0 +1,55 @@
+//! Frictionless contact by a penalty that stiffens with depth, pair by pair: p = ε g̃ (1 + g²/A) n on active nodes.
+//!
+//! g = g̃/A is the gap of the pair (length), negative in penetration, and A its area; √A stands for the size of a facet, so
+//! that the pressure is twice that of the linear penalty where it is as deep as a facet is long.
+
+use zelus::contact_structural_mechanics::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
+use zelus::contact_structural_mechanics::interaction::StepParameters;
+use zelus::contact_structural_mechanics::mortar::{Operators, PairGeometry};
+use zelus::contact_structural_mechanics::pairs::Family;
+use zelus::contact_structural_mechanics::register_contact_family;
+use zelus_core::scalar::Real;
+use zelus_core::vector3::scale;
+
+#[derive(Debug, Clone, Copy)]
+struct HardeningPenalty;
+
+impl Formulation for HardeningPenalty {
+    const MULTIPLIER: Multiplier = Multiplier::None;
+    type History<const NS: usize, const NM: usize> = ();
+
+    fn new(_: &StepParameters) -> Self {
+        Self
+    }
+
+    fn history<const NS: usize, const NM: usize>(_: Operators<f64, NS, NM>, _: &PairGeometry<f64, NS, NM>) {}
+
+    fn residual<T: Real, const NS: usize, const NM: usize>(
+        &self,
+        pair: &Kinematics<T, NS, NM>,
+        nodes: &[SlaveNode; NS],
+        (): &(),
+    ) -> PairResidual<T, NS, NM> {
+        let gap = pair.gap();
+        let mut out = PairResidual::zero();
+        for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {
+            let depth = gap[j] / node.area;
+            let pressure = gap[j] * (depth * depth / node.area + 1.0) * (node.penalty * node.dynamic_factor);
+            out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
+        }
+        out
+    }
+}
+
+register_contact_family! { "HardeningPenaltyContactFrictionless",
+    about: "frictionless contact by a penalty that stiffens with depth",
+    source: "a cubic spring",
+    conditions: [
+        "HardeningPenaltyFrictionlessMortarContactCondition",
+        "HardeningPenaltyFrictionlessAxisymMortarContactCondition2D2N"
+    ],
+    build: Family::of::<HardeningPenalty>(
+        "HardeningPenaltyFrictionlessMortarContactCondition",
+        &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
+    ),
+}
