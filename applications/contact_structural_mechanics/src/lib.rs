@@ -1,10 +1,10 @@
 //! Mortar contact: from the surfaces of a deck to the equations of the bodies that touch.
 //!
 //! In the order of the data: [`interface`] makes facets of a deck's parts, [`search`] finds the pairs that may touch,
-//! [`mortar`] integrates a pair to D, M and the weighted gap, [`kratos`] holds what is only Kratos', [`formulations`] state each method as the residual of one
-//! pair, [`slave_states`] are what is known of slave nodes, [`pairs`] run formulations over blocks, [`interaction`] puts all
-//! of it into the Newton loop with the active set as a stage. [`families`] registers the methods by their `mortar_type`, `processes` and `criteria` what decks name beside
-//! them.
+//! [`mortar`] integrates a pair to D, M and the weighted gap, [`kratos`] holds what is only Kratos', [`formulations`] say what
+//! the residual of a pair is made of, [`slave_states`] are what is known of slave nodes, [`pairs`] run formulations over blocks,
+//! [`interaction`] puts all of it into the Newton loop with the active set as a stage. [`families`] state the methods, one a
+//! file, by their `mortar_type`; `processes` and `criteria` are what decks name beside them.
 
 pub mod variables;
 pub mod interface;

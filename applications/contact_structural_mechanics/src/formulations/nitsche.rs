@@ -26,7 +26,7 @@ use crate::mortar::{Operators, PairGeometry, SegmentationSettings, Turn, shape, 
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, value};
 
-/// Share of a facet's nodes that takes hold of a point.
+/// Weight of held nodes above which a point is held in contact.
 const HELD: f64 = 0.5;
 
 /// Which consistent term Nitsche's method has.

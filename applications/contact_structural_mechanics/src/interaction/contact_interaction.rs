@@ -26,7 +26,7 @@ use crate::penalty_adaptation::Growth;
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, KEEP_MASS};
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
-/// Iterations after which pairs go on as they integrate: most steps have converged by then, as in the reference program.
+/// Iterations after which the choices of the integration are frozen: most steps have converged by then, as in Kratos.
 const SETTLED: usize = 5;
 /// Share of the weight k² A/c of multipliers that makes redundant ones regular.
 const RELAXATION: f64 = 1e-5;
@@ -40,7 +40,7 @@ pub struct ContactInteraction {
     /// How explicit steps stiffen the penalty.
     growth: Option<Growth>,
     bearable: BearablePenalty,
-    /// What open interfaces have taken hold of in this step because a body was free to move.
+    /// Nodes of interfaces without contact that this step has activated because a body was free to move.
     reach: Reach,
     warned_of_friction: bool,
     /// Nodes that contact is near to.

@@ -63,8 +63,8 @@ impl Rules<'_> {
         (decisions, before)
     }
 
-    /// Why a converged state is none: slave nodes that face the master are in it without contact, by more than where no set
-    /// fulfils all conditions. Rules that decide otherwise have lost sight of what is small.
+    /// Why a converged state is not accepted: slave nodes penetrate the master without being in contact, by more than
+    /// [`ALLOWED`] of the largest pressure.
     pub(super) fn passed_through(self, nodes: &Nodes, states: &SlaveStates) -> Option<String> {
         let facing = states.iter().filter(|(_, state)| !state.isolated);
         let facing: Vec<(u32, SlaveNumbers)> = facing.map(|(n, state)| (n, self.numbers(nodes, n, state))).collect();

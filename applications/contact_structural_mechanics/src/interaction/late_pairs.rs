@@ -52,7 +52,7 @@ pub(super) struct Late {
     pub missed: Vec<Pair>,
 }
 
-/// Facets that face each other now and are no pair, where that matters: at nodes in contact, and at nodes that they show to
+/// Facets that face each other now without being a pair, where that matters: at nodes in contact, and at nodes that they show to
 /// be in a master.
 ///
 /// They are those that a search would find now and, however deep, those that crossed in the step. The states

@@ -1,4 +1,4 @@
-//! The loops around Newton's iteration: what a converged state of contact is asked, and what goes on from there.
+//! The loops around Newton's iteration: the checks of a converged state, and what each changes before the next iteration.
 
 use zelus_core::Result;
 use zelus_core::entities::Outer;

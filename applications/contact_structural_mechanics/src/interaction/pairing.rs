@@ -30,7 +30,7 @@ use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touchi
 use crate::slave_states::SlaveStates;
 use crate::solver::AVERAGED_EDGES;
 
-/// Cosine of the angle at which facets look past each other, 84°.
+/// Cosine of the angle between normals beyond which facets do not face each other, 84°.
 const FACING: f64 = 0.1;
 
 /// Pairs of facets and the blocks that evaluate them.
@@ -215,8 +215,8 @@ impl Pairing {
         all
     }
 
-    /// Whether the facets look at each other: those across an edge of the slave look past the master, and what they integrate
-    /// of it is no surface.
+    /// Whether the facets face each other. A facet across an edge of the slave is at right angles to the master: its overlap is
+    /// that of a projection, not of a surface.
     fn meet(&self, part: &ModelPart, key: PairKey) -> bool {
         dot(normal(part, self.slave(key)), normal(part, self.master(key))) < -FACING
     }
@@ -324,7 +324,7 @@ impl Pairing {
         self.blocks.iter_mut().for_each(|block| block.keep_operators(present));
     }
 
-    /// Lets pairs go on as they integrate now, until the step ends.
+    /// Freezes the choices of the integration of all pairs until the step ends.
     pub(super) fn freeze_choices(&mut self, part: &ModelPart, states: &SlaveStates) {
         let own = |nodes: &[u32]| part.evaluates_pair(nodes);
         let present = Present { view: &part.view(), states, own: &own };

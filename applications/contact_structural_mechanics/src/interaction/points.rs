@@ -1,4 +1,4 @@
-//! Integration points that decide on contact by their own pressure and traction: how they are taken hold of for one solve.
+//! Integration points that decide on contact by their own pressure and traction: how they are held in contact for one solve.
 //!
 //! Between bodies that only touch no point presses, and nothing would keep them apart in the first solve of a step. Points that
 //! slide may come beyond the opposite bound in one solve, and back in the next.
@@ -13,7 +13,7 @@ use crate::interface::{Interface, Roles};
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
 
-/// Step start: takes hold of the active slave nodes of interfaces where nothing presses.
+/// Step start: holds the active slave nodes of interfaces without pressure in contact.
 pub(super) fn hold_open_interfaces(states: &mut SlaveStates, interfaces: &[Interface], resolution: Resolution) {
     release(states);
     for interface in interfaces {
@@ -25,12 +25,12 @@ pub(super) fn hold_open_interfaces(states: &mut SlaveStates, interfaces: &[Inter
     }
 }
 
-/// Takes hold of the points around these nodes until the next solve.
+/// Holds the points around these nodes in contact until the next solve.
 pub(super) fn hold(states: &mut SlaveStates, nodes: &BTreeSet<u32>) {
     nodes.iter().for_each(|&node| states[node].pressed = true);
 }
 
-/// Takes hold of the points around active nodes; `false` where all of them are held already, or there are none.
+/// Holds the points around active nodes in contact; `false` where no node is active or all of them are held already.
 pub(super) fn hold_active(states: &mut SlaveStates) -> bool {
     let mut any = false;
     states.for_each(|_, state| {

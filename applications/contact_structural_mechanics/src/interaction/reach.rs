@@ -1,4 +1,4 @@
-//! How far interfaces without contact reach out for the other body.
+//! Contact that a step activates because a body is free to move.
 
 use std::collections::BTreeSet;
 
@@ -8,11 +8,11 @@ use super::activation;
 use crate::interface::Interface;
 use crate::slave_states::SlaveStates;
 
-/// How much farther than the nearest node of an open interface others are taken hold of with it, in mesh sizes: the first
-/// time that a body is free to move, the second, the third.
+/// How much farther from the master than the nearest node of an open interface a node may be to be activated with it, in mesh
+/// sizes: the first time that a body is free to move, the second, the third.
 const REACHES: [f64; 3] = [0.01, 0.5, f64::INFINITY];
 
-/// What interfaces have taken hold of in a step.
+/// What a step has activated so.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Reach {
     reached: usize,
@@ -20,7 +20,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// The slave nodes that take hold next; none where there are no more.
+    /// The slave nodes to activate next; empty where no more are left.
     pub(super) fn next(&mut self, nodes: &Nodes, states: &SlaveStates, interfaces: &[Interface]) -> BTreeSet<u32> {
         let mut near = BTreeSet::new();
         while near.is_empty() && self.reached < REACHES.len() {

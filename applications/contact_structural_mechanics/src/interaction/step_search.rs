@@ -28,7 +28,7 @@ impl StepSearch {
         self.searches = 0;
     }
 
-    /// Facets that matter now and are no pair; `searched` says whether the step began with a search.
+    /// Facets that should be pairs now and are not; `searched` says whether the step began with a search.
     ///
     /// # Errors
     /// Those of making blocks.
@@ -50,8 +50,7 @@ impl StepSearch {
         late_pairs(part, (pairing, states), setup, wanted)
     }
 
-    /// In the first iterations: what bodies have come to face on their way, so that the iteration need not begin again for it at
-    /// its end.
+    /// In the first iterations: pairs that the motion has made, so that the iteration need not be repeated for them at its end.
     ///
     /// # Errors
     /// Those of making blocks.
@@ -66,7 +65,7 @@ impl StepSearch {
         if looks { Ok(self.late_pairs(part, contact, setup, searched)?.missed) } else { Ok(Vec::new()) }
     }
 
-    /// In a converged state: what nodes have come to face without a pair, and what follows from it.
+    /// In a converged state: pairs that the motion has made, and what the step does about them.
     ///
     /// # Errors
     /// Those of making blocks.

@@ -18,7 +18,7 @@ pub struct PairGeometry<T, const NS: usize, const NM: usize> {
     pub slave_normal: [T; 3],
     /// Unit normal of the plane of the master onto which points are projected; it may lag behind the master facet.
     pub master_normal: [T; 3],
-    /// What the pair did before and goes on doing.
+    /// Choices of the integration that the pair has frozen.
     pub choices: Choices,
 }
 

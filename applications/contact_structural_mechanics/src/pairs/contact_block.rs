@@ -38,7 +38,7 @@ pub trait ContactBlock: EntityBlock {
     /// Step start: keeps the operators of the pairs of this rank against which slip is measured.
     fn keep_operators(&mut self, present: Present<'_>);
 
-    /// Lets the pairs of this rank go on as they integrate now.
+    /// Freezes the choices of the integration of this rank's pairs.
     fn freeze_choices(&mut self, present: Present<'_>);
 
     /// The same block for the assembly.

@@ -47,7 +47,7 @@ pub struct Pair {
     pub area: [f64; 4],
     /// Operators at the start of the step.
     pub previous: Previous,
-    /// What it goes on doing until the step ends.
+    /// Choices of the integration that are frozen until the step ends.
     pub choices: Choices,
 }
 
