@@ -23,11 +23,11 @@ use zelus::contact_structural_mechanics::pairs::{
 };
 use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
+use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::require_kind;
 use zelus_core::entities::{LocalSystems, Want};
 use zelus_core::geometry::Shape;
 use zelus_core::model::Role;
-use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue};
 use zelus_core::vector3::{add, cross, norm, sub};
 
@@ -180,7 +180,7 @@ impl Contact {
         for (level, u) in [now, before].into_iter().enumerate() {
             self.part.nodes.history.values_mut(&DISPLACEMENT, level).copy_from_slice(u.as_flattened());
         }
-        self.part.move_mesh();
+        self.part.nodes.move_all();
         self.patches.write(&mut self.part);
         self.states.read_normals(&self.part.nodes);
         self.block.set_states(Arc::new(self.states.clone()));

@@ -11,13 +11,13 @@ pub mod vector3;
 pub mod geometry;
 pub mod registry;
 pub mod model;
-pub mod partition;
 pub mod entities;
 pub mod io;
 pub mod assembly;
 pub mod strategies;
 pub mod processes;
 pub mod modelers;
+pub mod partition;
 pub mod analysis;
 
 pub use diagnostics::{Error, Result};

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
+use zelus::contact_structural_mechanics::flags::SLIP;
 use zelus::contact_structural_mechanics::formulations::{Augmentation, Nitsche};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
@@ -14,10 +15,10 @@ use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
+use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::{EntityBlock, LocalSystems, Want, block_kinds, find_kind};
 use zelus_core::geometry::Shape;
-use zelus_core::model::flags::{ACTIVE, SLIP};
-use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
+use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::registry::all;
 use zelus_core::vector3::{add, cross, dot, normalised, scale, sub};
@@ -223,7 +224,7 @@ impl Setting {
         let block = (family.block)(slave, master, request);
         assert_eq!(block.is_some(), entry.is_some(), "{name}: the name is registered for the shapes with a block");
         let mut block = block?;
-        part.move_mesh();
+        part.nodes.move_all();
         let here = part.nodes.current.clone();
         part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));
         block.keep_operators(Present { view: &part.view(), states: &states, own: &|_| true });
@@ -321,7 +322,7 @@ fn tangents_of_pairs_are_derivatives() {
                 let value = get(&part, block, column);
                 let mut at = |h: f64| {
                     set(&mut part, block, column, value + h);
-                    part.move_mesh();
+                    part.nodes.move_all();
                     system(&part, block, Want::Residual).rhs
                 };
                 let h = 1e-6;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Tangent, Want, block_factory};
 use zelus_core::geometry::Shape;
-use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::model::{
     EntityKind, ModelPart, Nodes, Properties, PropertyValue, Role, ScalarVariable, VariableKind, variables,
 };
@@ -158,7 +158,7 @@ impl Specimen {
             field.levels[0][node as usize * field.components + variable.offset()] = *value;
         }
         if self.moves() {
-            self.part.move_mesh();
+            self.part.nodes.move_all();
         }
     }
 

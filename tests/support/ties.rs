@@ -4,9 +4,9 @@ use zelus::contact_structural_mechanics::pairs::{
     FacetOperators, FacetPair, Multiplier, PairKey, TyingFamily, TyingFamilyEntry, TyingRequest, condition_name,
     tying_block,
 };
+use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::entities::{EntityBlock, Want, block_kinds, find_kind};
 use zelus_core::geometry::Shape;
-use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::registry::all;
 

@@ -6,6 +6,7 @@
 //! [`interaction`] puts all of it into the Newton loop with the active set as a stage. [`families`] state the methods, one a
 //! file, by their `mortar_type`; `processes` and `criteria` are what decks name beside them.
 
+pub mod flags;
 pub mod variables;
 pub mod interface;
 pub mod search;

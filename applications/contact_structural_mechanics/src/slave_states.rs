@@ -7,10 +7,11 @@
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
 
-use zelus_core::model::flags::{ACTIVE, ISOLATED, SLIP};
-use zelus_core::model::variables::NORMAL;
+use crate::flags::{ISOLATED, SLIP};
+use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Variable};
 use zelus_core::vector3::cross;
+use zelus_structural_mechanics::variables::NORMAL;
 
 use crate::formulations::{Held, NodeState, Turning};
 use crate::friction_law::{Bound, FrictionLaw};

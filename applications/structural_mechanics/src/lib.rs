@@ -6,6 +6,7 @@
 pub mod conditions;
 pub mod elements;
 pub mod laws;
+mod processes;
 mod solvers;
 pub mod tensor;
 #[cfg(test)]

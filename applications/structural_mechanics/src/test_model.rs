@@ -1,9 +1,9 @@
 //! A model part with one entity of one kind, and what tests ask of it.
 
+use crate::variables::DISPLACEMENT;
 use zelus_core::entities::{BlockRequest, EntityBlock, Gauss, LocalSystems, Want, block_factory, find_kind};
 use zelus_core::geometry::Shape;
 use zelus_core::model::Role;
-use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Variable};
 
 pub(crate) type Vec3 = [f64; 3];
@@ -104,7 +104,7 @@ impl Single {
     /// Sets DISPLACEMENT and moves the mesh.
     pub(crate) fn displace(&mut self, u: &[Vec3]) {
         self.set_nodal(&DISPLACEMENT, u);
-        self.part.move_mesh();
+        self.part.nodes.move_all();
     }
 
     /// Prepares the block again, after its data have changed.
@@ -173,7 +173,7 @@ impl Single {
                 moved[column / space][column % space] += step;
                 self.set_nodal(&DISPLACEMENT, &moved);
                 if move_mesh {
-                    self.part.move_mesh();
+                    self.part.nodes.move_all();
                 }
                 self.residual()
             };

@@ -1,8 +1,15 @@
 //! The variables of structural mechanics.
 
-use zelus_core::register_variable;
+use zelus_core::{register_rates, register_variable};
 
 register_variable! {
+    pub DISPLACEMENT: [f64; 3] = "Displacement from the initial position (length).";
+    pub VELOCITY: [f64; 3] = "Velocity (length per time).";
+    pub ACCELERATION: [f64; 3] = "Acceleration (length per time squared).";
+    pub REACTION: [f64; 3] = "Force of the supports on the node, of constraints where it is free: minus the residual (force).";
+    pub NORMAL: [f64; 3] = "Outward unit normal of the surface at the node.";
+    pub MIDDLE_VELOCITY: [f64; 3] = "Velocity half a step after VELOCITY, in explicit integration (length per time).";
+    pub FORCE_RESIDUAL: [f64; 3] = "External minus internal forces that explicit integration accelerates (force).";
     pub POINT_LOAD: [f64; 3] = "Force on a point (force).";
     pub LINE_LOAD: [f64; 3] = "Force per present length of a line (force per length).";
     pub SURFACE_LOAD: [f64; 3] = "Force per present area of a surface (force per area).";
@@ -15,7 +22,7 @@ register_variable! {
         "Pushes a line to its left and a surface along t1 × t2: on faces whose normals point out of the body, positive \
          values press in the plane and pull in space (force per area).";
     pub VOLUMETRIC_STRAIN: f64 = "Change of volume per volume, an unknown of the nodes of mixed elements.";
-    pub NODAL_MASS: f64 = "Mass at a node.";
+    pub NODAL_MASS: f64 = "Mass at a node; in explicit integration all of it, lumped (mass).";
     pub NODAL_DISPLACEMENT_STIFFNESS: [f64; 3] = "Stiffness of a spring in each direction (force per length).";
     pub NODAL_DAMPING_RATIO: [f64; 3] = "Viscosity of a damper in each direction (force per velocity).";
     pub NODAL_INITIAL_DISPLACEMENT: [f64; 3] = "Displacement at which a spring to the ground is at rest (length).";
@@ -86,4 +93,15 @@ register_variable! {
     kind VON_MISES_STRESS: Scalar = "Equivalent stress of von Mises (force per area).";
     kind STRAIN_ENERGY: Scalar = "Stored energy per initial volume.";
     kind INTEGRATION_WEIGHT: Scalar = "Part of the initial volume that a Gauss point stands for.";
+}
+
+register_rates! { "DISPLACEMENT",
+    first: "VELOCITY",
+    second: Some("ACCELERATION"),
+    middle: Some("MIDDLE_VELOCITY"),
+    reaction: Some("REACTION"),
+    out_of_balance: Some("FORCE_RESIDUAL"),
+    mass: Some("NODAL_MASS"),
+    rayleigh: Some(["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"]),
+    moves_mesh: true,
 }

@@ -4,8 +4,7 @@ use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::find_kind;
-use crate::model::variables::ACCELERATION;
-use crate::model::{EntityKind, ModelPart, Role};
+use crate::model::{EntityKind, ModelPart, Rates, Role};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
 use crate::registry::{self, Registered};
@@ -357,7 +356,8 @@ pub(super) fn solver_entry(user: &Node) -> Result<&'static SolverEntry> {
 pub(super) fn has_inertia(deck: &Node) -> bool {
     let Some(settings) = deck.get("solver_settings") else { return false };
     solver_entry(settings).is_ok_and(|entry| {
-        !entry.build.explicit && entry.build.variables.iter().any(|(name, _)| *name == ACCELERATION.name())
+        let moves = |name: &str| Rates::all().any(|rates| rates.second == Some(name));
+        !entry.build.explicit && entry.build.variables.iter().any(|(name, _)| moves(name))
     })
 }
 

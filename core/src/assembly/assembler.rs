@@ -23,7 +23,7 @@ use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use super::near_null_space::{Place, near_null_space};
 use super::numbering::Numbering;
-use super::reach::{is_displacement, reach};
+use super::reach::reach;
 use super::redistribution::Redistribution;
 use super::system::System;
 use crate::communication::world;
@@ -342,7 +342,7 @@ impl Assembler {
             .enumerate()
             .map(|(n, dof)| match values[n].abs() {
                 value if dof.multiplier => [0.0, 0.0, value, 0.0],
-                value if is_displacement(dof) => {
+                value if dof.moves_mesh() => {
                     let (node, c) = (dof.node as usize, dof.variable.offset());
                     let held = value.min(before[n].abs() + reach);
                     let farthest = part.nodes.initial[node][c].abs() + held;

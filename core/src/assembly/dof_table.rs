@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{Nodes, ScalarVariable};
+use crate::model::{ColumnOf, Fields, Nodes, Rates, ScalarVariable};
 
 /// "Not an unknown of the system" in the table of numbers.
 pub const NONE: u32 = u32::MAX;
@@ -16,6 +16,18 @@ pub struct Dof {
     pub variable: ScalarVariable,
     /// Whether it is a Lagrange multiplier.
     pub multiplier: bool,
+}
+
+impl Dof {
+    /// The columns that go with it, where it has derivatives by time.
+    pub fn rates(&self) -> Option<&'static Rates> {
+        Rates::of(self.variable.column)
+    }
+
+    /// Whether it moves its node.
+    pub fn moves_mesh(&self) -> bool {
+        self.rates().is_some_and(|rates| rates.moves_mesh)
+    }
 }
 
 /// All unknowns, numbered by node first so that those of a node stand together.
@@ -107,6 +119,33 @@ impl DofTable {
             let (components, offset) = (field.components, variable.offset());
             for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != NONE) {
                 field.levels[0][node * components + offset] += increment[number as usize];
+            }
+        }
+    }
+
+    /// One of the columns that go with unknowns at a time level (0 the present), a number an unknown; 0 where there is none.
+    pub fn column(&self, fields: &Fields, column: ColumnOf, level: usize) -> Vec<f64> {
+        let mut out = vec![0.0; self.dofs.len()];
+        for (variable, numbers) in &self.numbers {
+            let Some(field) = Rates::of(variable.column).and_then(column).and_then(|name| fields.get(name)) else {
+                continue;
+            };
+            let (values, offset) = (&field.levels[level], variable.offset());
+            for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != NONE) {
+                out[number as usize] = values[node * field.components + offset];
+            }
+        }
+        out
+    }
+
+    /// Writes what [`DofTable::column`] gives; other entries of the columns stay.
+    pub fn write_column(&self, fields: &mut Fields, column: ColumnOf, level: usize, values: &[f64]) {
+        for (variable, numbers) in &self.numbers {
+            let name = Rates::of(variable.column).and_then(column);
+            let Some(field) = name.and_then(|name| fields.get_mut(name)) else { continue };
+            let (components, offset) = (field.components, variable.offset());
+            for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != NONE) {
+                field.levels[level][node * components + offset] = values[number as usize];
             }
         }
     }

@@ -328,7 +328,7 @@ pub fn impose_constraints(nodes: &mut Nodes, constraints: &[MasterSlaveConstrain
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{ModelPart, variables::DISPLACEMENT};
+    use crate::model::{ModelPart, test_variables::DISPLACEMENT};
 
     /// Three nodes on a line, some of them fixed; the last follows the others by halves and passes its force on as `forces` say.
     fn equations(fixed: &[u32], forces: Option<Vec<f64>>) -> Equations {

@@ -20,5 +20,5 @@ pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};
 pub use near_null_space::{Place, near_null_space};
 pub use numbering::Numbering;
-pub use reach::{is_displacement, reach};
+pub use reach::reach;
 pub use system::System;

@@ -50,7 +50,7 @@ pub fn near_null_space(places: &[Place]) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::variables::DISPLACEMENT;
+    use crate::model::test_variables::DISPLACEMENT;
 
     #[test]
     fn a_vector_field_translates_and_rotates() {

@@ -12,7 +12,7 @@ const FAR: f64 = 1e3;
 /// Farthest motion of a held body within a step: a thousand times the diagonal of the box around all nodes and the largest
 /// prescribed value (length); infinite for models without extent, which are no bodies. Collective.
 pub fn reach(nodes: &Nodes, dofs: &DofTable, equations: &Equations) -> f64 {
-    let prescribed = dofs.dofs().iter().enumerate().filter(|(n, dof)| is_displacement(dof) && equations.is_fixed(*n));
+    let prescribed = dofs.dofs().iter().enumerate().filter(|(n, dof)| dof.moves_mesh() && equations.is_fixed(*n));
     let prescribed = prescribed.filter_map(|(_, dof)| nodes.history.scalar(dof.variable, dof.node as usize));
     let prescribed = prescribed.fold(0.0, |most: f64, u| most.max(u.abs()));
     let side = |c: usize| {
@@ -25,9 +25,4 @@ pub fn reach(nodes: &Nodes, dofs: &DofTable, equations: &Equations) -> f64 {
     let least = |at: usize| all.iter().map(|of_rank| of_rank[at]).fold(own[at], f64::min);
     let diagonal = norm([0, 1, 2].map(|c| -least(c + 3) - least(c)));
     if diagonal.is_finite() && diagonal > 0.0 { FAR * (diagonal - least(6)) } else { f64::INFINITY }
-}
-
-/// Whether an unknown is a displacement along an axis.
-pub fn is_displacement(dof: &super::dof_table::Dof) -> bool {
-    dof.variable.component.is_some() && !dof.multiplier
 }

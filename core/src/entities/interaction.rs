@@ -91,6 +91,11 @@ pub trait Interaction: Send + Sync {
         0
     }
 
+    /// Factor of the length of explicit steps while it acts, at most 1.
+    fn step_factor(&self, _part: &ModelPart) -> f64 {
+        1.0
+    }
+
     /// Numbers chosen once for the run, by name: printed at its start and kept in its report.
     fn parameters(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
         Vec::new()
@@ -167,7 +172,7 @@ pub trait ActiveSet {
         Ok(())
     }
 
-    /// Whether [`ActiveSet::after_update`] reads REACTION, which is then that of the updated state.
+    /// Whether [`ActiveSet::after_update`] reads reactions, which are then those of the updated state.
     fn needs_reactions(&self) -> bool {
         false
     }

@@ -14,7 +14,7 @@ use super::variables::{kind_of, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::entities::{find_kind, kind_names, require_kind};
 use crate::geometry::Shape;
-use crate::model::flags::{FLAGS, flag};
+use crate::model::flags::flag;
 use crate::model::{
     EntityTable, Fields, Flags, ModelPart, Named, Nodes, Properties, PropertyValue, ScalarVariable, SubPart, Table,
     VariableKind, named,
@@ -30,7 +30,7 @@ pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
         let entry = find_kind(Role::Element, name).or_else(|| find_kind(Role::Condition, name));
         entry.map(|entry| entry.nodes()).or_else(|| geometry(name).map(|(cell, _)| cell.nodes()))
     };
-    let names = EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| FLAGS.contains(&name) };
+    let names = EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| flag(name).is_ok() };
     let (document, mut warnings) = mdpa::read(path, &names)?;
     warnings.extend(import(&document, part)?);
     Ok(warnings)

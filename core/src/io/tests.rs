@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::*;
 use crate::diagnostics::Error;
-use crate::model::variables::DISPLACEMENT;
+use crate::model::test_variables::DISPLACEMENT;
 use crate::model::{ModelPart, PropertyValue};
 use crate::parameters::Document;
 use crate::{register, register_variable};

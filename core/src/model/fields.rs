@@ -139,7 +139,19 @@ impl Fields {
 
     /// Numbers of a column at a time level (0 the present); empty when the column is absent.
     pub fn values<T: ColumnType>(&self, variable: &Variable<T>, level: usize) -> &[f64] {
-        self.columns.get(variable.name()).map_or(&[], |field| &field.levels[level])
+        self.level(variable.name(), level)
+    }
+
+    /// As [`Fields::values`], by name.
+    pub fn level(&self, name: &str, level: usize) -> &[f64] {
+        self.columns.get(name).map_or(&[], |field| &field.levels[level])
+    }
+
+    /// Puts numbers into a level of a column that is there.
+    pub fn write_level(&mut self, name: &str, level: usize, values: &[f64]) {
+        if let Some(field) = self.columns.get_mut(name) {
+            field.levels[level].copy_from_slice(values);
+        }
     }
 
     /// Numbers of a column at a time level, to change; the column is added when absent.

@@ -1,80 +1,54 @@
 //! Flags: named marks of nodes and entities that can be set, unset or undefined.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
 use crate::diagnostics::did_you_mean;
 
-/// Names of flags; Kratos' own.
-pub const FLAGS: &[&str] = &[
-    ACTIVE,
-    SLAVE,
-    MASTER,
-    INTERFACE,
-    SLIP,
-    ISOLATED,
-    CONTACT,
-    MARKER,
-    BOUNDARY,
-    VISITED,
-    TO_ERASE,
-    SELECTED,
-    BLOCKED,
-    RIGID,
-    MODIFIED,
-    STRUCTURE,
-    FLUID,
-    INTERACTION,
-    INLET,
-    OUTLET,
-];
-/// Takes part in the computation; undefined counts as set.
-pub const ACTIVE: &str = "ACTIVE";
-/// On the side of a contact pair that carries the multipliers.
-pub const SLAVE: &str = "SLAVE";
-/// On the other side of a contact pair.
-pub const MASTER: &str = "MASTER";
-/// On a surface that may come into contact.
-pub const INTERFACE: &str = "INTERFACE";
-/// Slides.
-pub const SLIP: &str = "SLIP";
-/// A contact pair whose sides do not overlap.
-pub const ISOLATED: &str = "ISOLATED";
-/// Part of a contact problem.
-pub const CONTACT: &str = "CONTACT";
-/// Free mark.
-pub const MARKER: &str = "MARKER";
-/// On the boundary.
-pub const BOUNDARY: &str = "BOUNDARY";
-/// Free mark.
-pub const VISITED: &str = "VISITED";
-/// To be removed.
-pub const TO_ERASE: &str = "TO_ERASE";
-/// Free mark.
-pub const SELECTED: &str = "SELECTED";
-/// Held back.
-pub const BLOCKED: &str = "BLOCKED";
-/// Rigid; in MPC contact, tied for good.
-pub const RIGID: &str = "RIGID";
-/// Changed.
-pub const MODIFIED: &str = "MODIFIED";
-/// Part of a structure.
-pub const STRUCTURE: &str = "STRUCTURE";
-/// Part of a fluid.
-pub const FLUID: &str = "FLUID";
-/// Interacts.
-pub const INTERACTION: &str = "INTERACTION";
-/// On an inlet.
-pub const INLET: &str = "INLET";
-/// On an outlet.
-pub const OUTLET: &str = "OUTLET";
+/// The registered name of a mark.
+pub struct FlagEntry(pub &'static str);
+
+inventory::collect!(FlagEntry);
+
+static FLAGS: LazyLock<BTreeSet<&'static str>> =
+    LazyLock::new(|| inventory::iter::<FlagEntry>().map(|entry| entry.0).collect());
+
+/// Makes flags known by name: `register_flags! { pub SLAVE = "…about…"; }`.
+#[macro_export]
+macro_rules! register_flags {
+    ($($vis:vis $name:ident = $about:literal;)*) => { $(
+        #[doc = $about]
+        $vis const $name: &str = stringify!($name);
+        $crate::inventory::submit! { $crate::model::flags::FlagEntry(stringify!($name)) }
+    )* };
+}
+
+register_flags! {
+    pub ACTIVE = "Takes part in the computation; undefined counts as set.";
+    pub INTERFACE = "On a surface that may come into contact.";
+    pub MARKER = "Free mark.";
+    pub BOUNDARY = "On the boundary.";
+    pub VISITED = "Free mark.";
+    pub TO_ERASE = "To be removed.";
+    pub SELECTED = "Free mark.";
+    pub BLOCKED = "Held back.";
+    pub RIGID = "Rigid.";
+    pub MODIFIED = "Changed.";
+    pub STRUCTURE = "Part of a structure.";
+    pub FLUID = "Part of a fluid.";
+    pub INTERACTION = "Interacts.";
+    pub INLET = "On an inlet.";
+    pub OUTLET = "On an outlet.";
+}
 
 /// The registered spelling of a flag, or the words that suggest one.
 ///
 /// # Errors
 /// The text of a "did you mean" when the name is not known.
 pub fn flag(name: &str) -> Result<&'static str, String> {
-    FLAGS.iter().copied().find(|known| *known == name).ok_or_else(|| {
-        did_you_mean(name, FLAGS.iter().copied()).unwrap_or_else(|| format!("known flags: {}", FLAGS.join(", ")))
+    FLAGS.get(name).copied().ok_or_else(|| {
+        let known: Vec<&str> = FLAGS.iter().copied().collect();
+        did_you_mean(name, known.iter().copied()).unwrap_or_else(|| format!("known flags: {}", known.join(", ")))
     })
 }
 

@@ -16,9 +16,12 @@ mod model_part;
 mod nodes;
 mod process_info;
 mod properties;
+mod rates;
 mod share;
 mod sub_part;
 mod table;
+#[cfg(test)]
+pub mod test_variables;
 mod variable;
 pub mod variables;
 
@@ -36,6 +39,7 @@ pub use model_part::ModelPart;
 pub use nodes::Nodes;
 pub use process_info::ProcessInfo;
 pub use properties::{Properties, PropertyValue};
+pub use rates::{ColumnOf, FIRST, Rates, SECOND, UNKNOWN};
 pub use share::{MeshSizes, Share};
 pub use sub_part::SubPart;
 pub use table::Table;

@@ -169,12 +169,6 @@ impl ModelPart {
         }
     }
 
-    /// Moves the nodes to their initial position plus DISPLACEMENT.
-    pub fn move_mesh(&mut self) {
-        let displacement = self.nodes.history.values_mut(&super::variables::DISPLACEMENT, 0).to_vec();
-        self.nodes.move_to(&displacement);
-    }
-
     /// A new time step: fields move back one level, time and step advance.
     pub fn clone_time_step(&mut self, time: f64) {
         self.nodes.history.advance();

@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use super::fields::Fields;
 use super::fixities::Fixities;
 use super::flags::Flags;
+use super::rates::Rates;
 use super::variable::ScalarVariable;
 
 /// All nodes of a model part; an index counts them by ascending id.
@@ -88,15 +89,19 @@ impl Nodes {
         self.fixities.holds(variable, node)
     }
 
-    /// Moves one node to its initial position plus DISPLACEMENT.
+    /// Moves one node to its initial position plus the unknown that moves the mesh.
     pub fn follow(&mut self, node: usize) {
-        let u = self.history.values(&super::variables::DISPLACEMENT, 0);
-        self.current[node] = std::array::from_fn(|c| self.initial[node][c] + u[3 * node + c]);
+        if let Some(moving) = Rates::moving(&self.history) {
+            let u = self.history.level(moving, 0);
+            self.current[node] = std::array::from_fn(|c| self.initial[node][c] + u[3 * node + c]);
+        }
     }
 
-    /// Moves every node to its initial position plus `displacement` (three numbers a node).
-    pub fn move_to(&mut self, displacement: &[f64]) {
-        for ((current, initial), u) in self.current.iter_mut().zip(&self.initial).zip(displacement.chunks_exact(3)) {
+    /// Moves every node as [`Nodes::follow`] does.
+    pub fn move_all(&mut self) {
+        let Some(moving) = Rates::moving(&self.history) else { return };
+        let displacement = self.history.level(moving, 0).chunks_exact(3);
+        for ((current, initial), u) in self.current.iter_mut().zip(&self.initial).zip(displacement) {
             *current = [initial[0] + u[0], initial[1] + u[1], initial[2] + u[2]];
         }
     }

@@ -2,7 +2,8 @@
 //!
 //! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind
 //! facets that face each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Every
-//! rank can compute it for itself and gets the same. [`surfaces`] finds the facets' surfaces in a deck, and [`Counts`]
+//! rank can compute it for itself and gets the same. [`surfaces`] asks the processes of a deck
+//! for the facets' surfaces, and [`Counts`]
 //! says what a partition costs. [`keep_share`] then cuts the mesh of a rank down to its [`Share`](crate::model::Share), and
 //! [`Share::balance_pairs`](crate::model::Share::balance_pairs) shares out pairs anew once they are known.
 

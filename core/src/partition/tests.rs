@@ -6,7 +6,9 @@ use super::share::Kept;
 use super::{Counts, Partition, Repeats, Surface, Traffic, common_nodes, partition, surfaces};
 use crate::geometry::Shape;
 use crate::model::{ModelPart, Nodes, SubPart};
-use crate::parameters::Document;
+use crate::parameters::{Document, Node};
+use crate::processes::{NamedSurface, ProcessEntry};
+use crate::register;
 use crate::registry::Entry;
 
 static HEXAHEDRON: EntityKind = EntityKind {
@@ -64,10 +66,25 @@ pub(super) fn two_blocks(n: usize) -> ModelPart {
     part
 }
 
+register! { ProcessEntry "partition_test_process",
+    about: "names surfaces and nodes for the tests",
+    common: &["model_part_name", "master_node_id"],
+    surfaces: named,
+    build: |_| unreachable!("it is only asked for its surfaces"),
+}
+/// The surfaces that the settings of the process of the tests name.
+fn named(parameters: Option<&Node>) -> Vec<NamedSurface> {
+    let name = |key| parameters?.get(key)?.as_str().map(str::to_owned);
+    match (name("both"), name("slave")) {
+        (Some(both), Some(slave)) => vec![NamedSurface::Parts { both: vec![both], slaves: vec![slave] }],
+        _ => vec![NamedSurface::WholeSkin],
+    }
+}
+
 /// The surfaces of [`two_blocks`], as a deck names them.
 pub(super) fn its_surfaces(part: &ModelPart) -> Vec<Surface> {
-    let deck = r#"{"processes": {"contact": [{"Parameters": {"contact_model_part": {"0": ["Contact"]},
-        "assume_master_slave": {"0": ["Structure.Slave"]}}}]}}"#;
+    let deck = r#"{"processes": {"contact": [{"python_module": "partition_test_process",
+        "Parameters": {"both": "Contact", "slave": "Structure.Slave"}}]}}"#;
     surfaces(&Document::from_str(deck, "deck.json").unwrap().root, part)
 }
 
@@ -135,7 +152,7 @@ fn facets_that_face_each_other_tend_to_share_a_rank() {
 #[test]
 fn a_deck_without_parts_of_contact_means_the_whole_skin() {
     let part = two_blocks(2);
-    let deck = r#"{"processes": {"contact": [{"Parameters": {"contact_model_part": {"0": []}}}]}}"#;
+    let deck = r#"{"processes": {"contact": [{"python_module": "partition_test_process"}]}}"#;
     let found = surfaces(&Document::from_str(deck, "deck.json").unwrap().root, &part);
     assert_eq!(found, [Surface { whole_skin: true, ..Surface::default() }]);
     assert_eq!(partition(&part, &found, 2).unwrap().facets.len(), 48);
@@ -233,7 +250,7 @@ fn ranks_keep_their_elements_and_the_interface() {
 #[test]
 fn processes_say_what_every_rank_keeps() {
     let part = two_blocks(3);
-    let text = r#"{"processes": {"list": [{"python_module": "impose_rigid_movement_process",
+    let text = r#"{"processes": {"list": [{"python_module": "partition_test_process",
         "Parameters": {"model_part_name": "Slave", "master_node_id": 1}}]}}"#;
     let deck = Document::from_str(text, "deck.json").unwrap().root;
     let common = common_nodes(&part, &[], &deck);

@@ -10,7 +10,7 @@ use super::scalar_value::ScalarValue;
 use super::target::Target;
 use crate::assembly::{DofTable, System};
 use crate::diagnostics::{Diagnostic, Report, Result};
-use crate::model::{Model, ModelPart, ScalarVariable};
+use crate::model::{Model, ModelPart, Rates, ScalarVariable};
 use crate::parameters::SpaceTime;
 
 /// What is prescribed for one unknown.
@@ -93,8 +93,7 @@ impl AssignToNodes {
 
     /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.
     fn fixed_in_vain(&self, dofs: &DofTable) -> Option<Diagnostic> {
-        let solved =
-            |column: &str| MOTION.contains(&column) || dofs.variables().any(|variable| variable.column == column);
+        let solved = |column: &str| moves(column) || dofs.variables().any(|variable| variable.column == column);
         let component = self.components.iter().find(|c| c.fixed && !solved(c.variable.column))?;
         let Target { process, place, .. } = &self.target;
         let fact = format!("{process} fixes {}, which is not an unknown: it gives a value only", component.variable);
@@ -103,8 +102,10 @@ impl AssignToNodes {
     }
 }
 
-/// Unknowns of every structural stage, in its system or not: dynamics prescribes displacements through the last two.
-const MOTION: [&str; 3] = ["DISPLACEMENT", "VELOCITY", "ACCELERATION"];
+/// Whether a variable is an unknown that moves or one of its derivatives, through which dynamics prescribes it.
+fn moves(column: &str) -> bool {
+    Rates::all().any(|rates| [Some(rates.unknown), Some(rates.first), rates.second].contains(&Some(column)))
+}
 
 impl Process for AssignToNodes {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {

@@ -24,8 +24,6 @@ mod assign_vector_by_direction_to_entity_process;
 mod assign_flag_process;
 mod check_nodes_process;
 mod comparison;
-mod impose_rigid_movement_process;
-mod sprism_process;
 #[cfg(test)]
 mod tests;
 
@@ -33,6 +31,6 @@ pub use assign_to_entities::{AssignToEntities, Container, EntityComponent};
 pub use assign_to_nodes::{AssignToNodes, NodalComponent};
 pub use local_axes::LocalAxes;
 pub use output::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};
-pub use process::{Process, ProcessEntry, ProcessFactory, ProcessRequest};
+pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
 pub use target::Target;

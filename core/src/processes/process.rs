@@ -138,11 +138,27 @@ impl ProcessRequest<'_> {
 /// Makes a process.
 pub type ProcessFactory = fn(&mut ProcessRequest<'_>) -> Result<Box<dyn Process>>;
 
+/// Surfaces of one pair by the names of their parts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NamedSurface {
+    /// Everything outside.
+    WholeSkin,
+    /// The parts of both sides, and those where pairs are evaluated; none of the latter when that is not known.
+    Parts {
+        /// Both sides.
+        both: Vec<String>,
+        /// The side where pairs are evaluated.
+        slaves: Vec<String>,
+    },
+}
+
 registered_kind! {
     /// A process that decks name.
     pub struct ProcessEntry("process", "unknown-process") {
         build: ProcessFactory;
         /// Keys whose parts, or nodes by id, every rank must have whole where several share a mesh.
         common: &'static [&'static str] = &[],
+        /// The surfaces that may touch by its doing, as its `Parameters` name them where the deck gives them.
+        surfaces: fn(Option<&Node>) -> Vec<NamedSurface> = |_| Vec::new(),
     }
 }

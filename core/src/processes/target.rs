@@ -113,7 +113,7 @@ pub(super) fn vector_variable(settings: &Settings) -> Result<[ScalarVariable; 3]
         Some(_) => {
             let problem =
                 settings.error("variable_name", "unknown-variable", format!("{name} is not a vector of three"));
-            Err(problem.remedy("name a vector variable, e.g. \"DISPLACEMENT\"").into())
+            Err(problem.remedy("name a variable of three components").into())
         }
         None => Err(unknown_variable(settings, name, "vector variable").into()),
     }

@@ -5,11 +5,10 @@
 //! steps, which have no such past, are of the order that theirs allows. Orders 1 and 2 are stable for every step; 3 to
 //! 5 are not for motion without damping.
 
-use super::scheme::{Scheme, SchemeFactory, gather, predict_ballistic};
+use super::scheme::{Scheme, SchemeFactory, predict_ballistic};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
-use crate::model::ModelPart;
-use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
+use crate::model::{FIRST, ModelPart, Rates, SECOND};
 use crate::register;
 use crate::strategies::SchemeEntry;
 
@@ -45,9 +44,12 @@ impl BdfScheme {
 }
 
 impl Scheme for BdfScheme {
+    fn takes_first_order(&self) -> bool {
+        true
+    }
+
     fn prepare(&self, part: &mut ModelPart) {
-        part.nodes.history.add(&VELOCITY);
-        part.nodes.history.add(&ACCELERATION);
+        Rates::add(&mut part.nodes.history, &[FIRST, SECOND]);
         let levels = part.nodes.history.levels().max(self.order + 1);
         part.nodes.history.set_levels(levels);
     }
@@ -71,24 +73,27 @@ impl Scheme for BdfScheme {
 
     fn update(&self, part: &mut ModelPart) {
         let history = &mut part.nodes.history;
-        for (from, to) in [(&DISPLACEMENT, &VELOCITY), (&VELOCITY, &ACCELERATION)] {
-            let mut rate = vec![0.0; history.values(from, 0).len()];
-            for (level, weight) in self.weights.iter().enumerate() {
-                rate.iter_mut().zip(history.values(from, level)).for_each(|(sum, value)| *sum += weight * value);
+        for (rates, _) in Rates::within(history) {
+            let seconds = rates.second.map(|second| (rates.first, second));
+            for (from, to) in [Some((rates.unknown, rates.first)), seconds].into_iter().flatten() {
+                let mut rate = vec![0.0; history.level(from, 0).len()];
+                for (level, weight) in self.weights.iter().enumerate() {
+                    rate.iter_mut().zip(history.level(from, level)).for_each(|(sum, value)| *sum += weight * value);
+                }
+                history.write_level(to, 0, &rate);
             }
-            history.values_mut(to, 0).copy_from_slice(&rate);
         }
     }
 
     fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
-        let present = |variable| gather(dofs, |i| part.nodes.history.values(variable, 0)[i]);
+        let present = |column| dofs.column(&part.nodes.history, column, 0);
         Some(Inertia {
             mass_factor: self.weights[0].powi(2),
             damping_factor: self.weights[0],
             alpha: self.rayleigh[0],
             beta: self.rayleigh[1],
-            acceleration: present(&ACCELERATION),
-            velocity: present(&VELOCITY),
+            acceleration: present(SECOND),
+            velocity: present(FIRST),
             carried: Vec::new(),
         })
     }

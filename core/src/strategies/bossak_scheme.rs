@@ -3,11 +3,10 @@
 //! M ((1 − α_m) a_{n+1} + α_m a_n) + C v_{n+1} + f_int(u_{n+1}) = f_ext, with Newmark's relations between u, v and a;
 //! α_m in [−1/2, 0]. β = (1 − α_m)² β₀ and γ = 1/2 − α_m keep second order and damp high frequencies.
 
-use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
+use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
-use crate::model::ModelPart;
-use crate::model::variables::{ACCELERATION, VELOCITY};
+use crate::model::{FIRST, ModelPart, Rates, SECOND};
 use crate::register;
 
 /// Parameters of the scheme and of Rayleigh's damping.
@@ -42,8 +41,7 @@ impl BossakScheme {
 
 impl Scheme for BossakScheme {
     fn prepare(&self, part: &mut ModelPart) {
-        part.nodes.history.add(&VELOCITY);
-        part.nodes.history.add(&ACCELERATION);
+        Rates::add(&mut part.nodes.history, &[FIRST, SECOND]);
     }
 
     fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
@@ -58,15 +56,14 @@ impl Scheme for BossakScheme {
     fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
         let dt = part.info.delta_time;
         let history = &part.nodes.history;
-        let (a, a_old) = (history.values(&ACCELERATION, 0), history.values(&ACCELERATION, 1));
-        let v = history.values(&VELOCITY, 0);
+        let [a, a_old] = [0, 1].map(|level| dofs.column(history, SECOND, level));
         Some(Inertia {
             mass_factor: (1.0 - self.alpha_m) / (self.beta * dt * dt),
             damping_factor: self.gamma / (self.beta * dt),
             alpha: self.rayleigh[0],
             beta: self.rayleigh[1],
-            acceleration: gather(dofs, |i| (1.0 - self.alpha_m) * a[i] + self.alpha_m * a_old[i]),
-            velocity: gather(dofs, |i| v[i]),
+            acceleration: a.iter().zip(&a_old).map(|(a, old)| (1.0 - self.alpha_m) * a + self.alpha_m * old).collect(),
+            velocity: dofs.column(history, FIRST, 0),
             carried: Vec::new(),
         })
     }

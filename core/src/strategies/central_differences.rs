@@ -1,14 +1,16 @@
 //! Central differences, explicit in time with a diagonal mass.
 //!
 //! a_n = M⁻¹ (f_ext(t_{n+1}) − f_int(u_n) − C v_{n−1}), v_n = v_{n−½} + Δt_n/2 a_n, v_{n+½} = v_n + Δt_{n+1}/2 a_n,
-//! u_{n+1} = u_n + Δt_{n+1} v_{n+½}. In the first step v_n is the initial velocity. VELOCITY and ACCELERATION are those of
-//! t_n, one step behind DISPLACEMENT. Stable while Δt < 2/ω of the highest frequency ω.
+//! u_{n+1} = u_n + Δt_{n+1} v_{n+½}. In the first step v_n is the initial velocity. The columns of v and a are those of
+//! t_n, one step behind that of u. Stable while Δt < 2/ω of the highest frequency ω.
 
 use super::scheme::{SchemeEntry, SchemeFactory};
 use crate::assembly::DofTable;
-use crate::model::variables::{ACCELERATION, DISPLACEMENT, MIDDLE_VELOCITY, VELOCITY};
-use crate::model::{Fields, ModelPart};
+use crate::model::{ColumnOf, FIRST, Fields, ModelPart, Rates, SECOND, UNKNOWN};
 use crate::register;
+
+/// The first derivative half a step later.
+const MIDDLE: ColumnOf = |rates| rates.middle;
 
 /// The update of central differences, and the half step it carries over.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -21,9 +23,7 @@ pub struct CentralDifferences {
 impl CentralDifferences {
     /// Variables with history it needs on the nodes.
     pub fn prepare(&self, part: &mut ModelPart) {
-        for variable in [&VELOCITY, &ACCELERATION, &MIDDLE_VELOCITY] {
-            part.nodes.history.add(variable);
-        }
+        Rates::add(&mut part.nodes.history, &[FIRST, SECOND, MIDDLE]);
     }
 
     /// Moves the unknowns by a step of `delta_time` under `acceleration` (one number an unknown).
@@ -38,39 +38,37 @@ impl CentralDifferences {
         target: impl Fn(usize) -> Option<f64>,
     ) {
         if !self.begun {
-            let initial = fields.values(&VELOCITY, 0).to_vec();
-            fields.values_mut(&MIDDLE_VELOCITY, 0).copy_from_slice(&initial);
+            for (rates, _) in Rates::within(fields) {
+                let initial = fields.level(rates.first, 0).to_vec();
+                rates.middle.into_iter().for_each(|middle| fields.write_level(middle, 0, &initial));
+            }
             self.begun = true;
         }
         let half = 0.5 * delta_time;
-        let at = |number: usize| {
-            let dof = &dofs.dofs()[number];
-            3 * dof.node as usize + dof.variable.offset()
-        };
-        let numbers = || (0..dofs.len()).filter(|&n| dofs.dofs()[n].variable.column == DISPLACEMENT.name());
-        let before = fields.values(&MIDDLE_VELOCITY, 0).to_vec();
-        let u = fields.values_mut(&DISPLACEMENT, 0);
-        let mut rates = vec![[0.0; 3]; dofs.len()];
-        for n in numbers() {
-            let middle = before[at(n)];
-            rates[n] = match target(n) {
+        let before = dofs.column(fields, MIDDLE, 0);
+        let mut u = dofs.column(fields, UNKNOWN, 0);
+        let mut rates = [FIRST, SECOND, MIDDLE].map(|_| vec![0.0; dofs.len()]);
+        for n in 0..dofs.len() {
+            let middle = before[n];
+            let new = match target(n) {
                 Some(value) => {
-                    let next = (value - u[at(n)]) / delta_time;
-                    u[at(n)] = value;
+                    let next = (value - u[n]) / delta_time;
+                    u[n] = value;
                     let acceleration = (next - middle) / (self.half_before + half);
-                    [acceleration, middle + self.half_before * acceleration, next]
+                    [middle + self.half_before * acceleration, acceleration, next]
                 }
                 None => {
                     let velocity = middle + self.half_before * acceleration[n];
                     let next = velocity + half * acceleration[n];
-                    u[at(n)] += delta_time * next;
-                    [acceleration[n], velocity, next]
+                    u[n] += delta_time * next;
+                    [velocity, acceleration[n], next]
                 }
             };
+            rates.iter_mut().zip(new).for_each(|(column, value)| column[n] = value);
         }
-        for (k, variable) in [&ACCELERATION, &VELOCITY, &MIDDLE_VELOCITY].into_iter().enumerate() {
-            let column = fields.values_mut(variable, 0);
-            numbers().for_each(|n| column[at(n)] = rates[n][k]);
+        dofs.write_column(fields, UNKNOWN, 0, &u);
+        for (column, values) in [FIRST, SECOND, MIDDLE].into_iter().zip(&rates) {
+            dofs.write_column(fields, column, 0, values);
         }
         self.half_before = half;
     }

@@ -1,26 +1,26 @@
 //! Explicit integration: no iteration, one residual a step, a diagonal mass.
 //!
 //! Contact takes part as in Newton's iteration, but once a step and at the old positions: `begin_step`, `after_prediction`
-//! and `after_update` of each interaction, then its blocks in the residual. An interaction that shortens the steps while
-//! it acts sets the mark CONTACT and the value DELTA_TIME_FACTOR_FOR_CONTACT of [`crate::model::ProcessInfo`]. One that adds
-//! stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
+//! and `after_update` of each interaction, then its blocks in the residual. An interaction may shorten the steps while it acts
+//! ([`crate::entities::Interaction::step_factor`]). One that adds stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
 
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
 use super::meaning::Meaning;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::scheme::gather;
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, Inertia, System, damped_by_properties, impose_constraints, strongest_damping};
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::model::ModelPart;
-use crate::model::variables::{ACCELERATION, DISPLACEMENT, FORCE_RESIDUAL, NODAL_MASS, VELOCITY};
+use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND};
 use crate::parameters::Settings;
 
 /// Longest stable step of the bodies without contact, estimated last (time).
 pub const CRITICAL_STEP: &str = "CRITICAL_STEP";
+
+/// The residual that is accelerated.
+const OUT_OF_BALANCE: ColumnOf = |rates| rates.out_of_balance;
 
 /// Part of the critical step that a predicted step takes.
 const SAFETY: f64 = 0.8;
@@ -40,11 +40,11 @@ pub struct ExplicitSettings {
     pub rayleigh: [f64; 2],
     /// Whether prescribed unknowns move to the values they are given.
     pub follow_prescribed: bool,
-    /// Whether REACTION is computed.
+    /// Whether reactions are computed.
     pub compute_reactions: bool,
-    /// Whether REACTION of supports holds what constraints hand on to them.
+    /// Whether reactions of supports hold what constraints hand on to them.
     pub reactions_of_constraints: bool,
-    /// Whether nodes follow DISPLACEMENT.
+    /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
 }
 
@@ -96,14 +96,17 @@ impl ExplicitStrategy {
         system: &mut System,
     ) -> Result<Self> {
         let mut assembler = Assembler::new(part, system, true);
-        world().agree(only_displacements(system))?;
+        world().agree(only_with_mass(system))?;
         scheme.prepare(part);
-        part.nodes.history.add(&FORCE_RESIDUAL);
+        Rates::add(&mut part.nodes.history, &[OUT_OF_BALANCE]);
         let mass = assembler.lumped_mass(part, system)?;
         let mut worst: Option<(usize, f64)> = None;
-        let column = part.nodes.values.values_mut(&NODAL_MASS, 0);
         for (dof, &m) in system.dofs.dofs().iter().zip(&mass) {
-            column[dof.node as usize] = m;
+            if let Some(column) = dof.rates().and_then(|rates| rates.mass) {
+                part.nodes.values.add_named(column, 1);
+                let field = part.nodes.values.get_mut(column).expect("added above");
+                field.levels[0][dof.node as usize] = m;
+            }
             if worst.is_none_or(|(_, smallest)| m < smallest) {
                 worst = Some((part.nodes.ids[dof.node as usize], m));
             }
@@ -111,7 +114,8 @@ impl ExplicitStrategy {
         let massless = worst.filter(|(_, m)| *m <= 0.0).map(|(node, m)| format!("of node {node} is {m}"));
         if let Some(massless) = world().first_to_say(massless) {
             let fact = format!("the lumped mass {massless}, explicit integration needs a positive one");
-            let remedy = "give a DENSITY, or elements whose lumped mass is positive (e.g. 2D4N instead of 2D8N)";
+            let remedy =
+                "give a positive density, or elements whose lumped mass is positive (e.g. 2D4N instead of 2D8N)";
             return Err(Diagnostic::error("lumped-mass", fact).remedy(remedy).into());
         }
         Ok(Self { settings, scheme, assembler, mass, predicted: None, warned: false })
@@ -174,7 +178,7 @@ impl ExplicitStrategy {
             write_reactions(part, &system.dofs, &unbalanced, handed_on);
         }
         if self.settings.move_mesh {
-            part.move_mesh();
+            part.nodes.move_all();
         }
         if !self.settings.follow_prescribed && !self.warned {
             self.warn_of_motion(part, system, moved);
@@ -204,24 +208,19 @@ impl ExplicitStrategy {
             alpha: self.settings.rayleigh[0],
             beta: self.settings.rayleigh[1],
             acceleration: vec![0.0; system.dofs.len()],
-            velocity: gather(&system.dofs, |i| part.nodes.history.values(&VELOCITY, 0)[i]),
+            velocity: system.dofs.column(&part.nodes.history, FIRST, 0),
             ..Inertia::default()
         })
     }
 
     /// What supports and constraints must carry: the residual less the inertia.
     fn unbalanced(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Vec<f64> {
-        let acceleration = gather(&system.dofs, |i| part.nodes.history.values(&ACCELERATION, 0)[i]);
+        let acceleration = system.dofs.column(&part.nodes.history, SECOND, 0);
         residual.iter().zip(acceleration).zip(&self.mass).map(|((r, a), m)| r - m * a).collect()
     }
 
     fn write_residual(&self, part: &mut ModelPart, system: &System, residual: &[f64]) {
-        let column = part.nodes.history.values_mut(&FORCE_RESIDUAL, 0);
-        for (dof, r) in system.dofs.dofs().iter().zip(residual) {
-            if dof.variable.column == DISPLACEMENT.name() {
-                column[3 * dof.node as usize + dof.variable.offset()] = *r;
-            }
-        }
+        system.dofs.write_column(&mut part.nodes.history, OUT_OF_BALANCE, 0, residual);
     }
 
     /// Warns, once, of a fixed unknown on any rank that is given another value; collective.
@@ -243,13 +242,13 @@ impl ExplicitStrategy {
 
 /// # Errors
 /// Unknowns that central differences cannot move.
-fn only_displacements(system: &System) -> Result<()> {
+fn only_with_mass(system: &System) -> Result<()> {
     if let Some(dof) = system.dofs.dofs().iter().find(|dof| dof.multiplier) {
         let fact = format!("explicit integration cannot carry the Lagrange multipliers {}", dof.variable.column);
         let remedy = "use contact by penalty, \"mortar_type\": \"PenaltyContactFrictionless\"";
         return Err(Diagnostic::error("explicit-multipliers", fact).remedy(remedy).into());
     }
-    if let Some(dof) = system.dofs.dofs().iter().find(|dof| dof.variable.column != DISPLACEMENT.name()) {
+    if let Some(dof) = system.dofs.dofs().iter().find(|dof| dof.rates().is_none_or(|rates| rates.second.is_none())) {
         let fact = format!("explicit integration cannot carry {}, which has no mass", dof.variable.column);
         let remedy = "use elements of displacements only, e.g. SmallDisplacementBbarElement2D4N or 3D8N";
         return Err(Diagnostic::error("explicit-unknowns", fact).remedy(remedy).into());
@@ -281,10 +280,8 @@ impl SolutionStrategy for ExplicitStrategy {
                 length = *predicted;
             }
         }
-        if part.info.is("CONTACT") {
-            length *= part.info.value_or("DELTA_TIME_FACTOR_FOR_CONTACT", 1.0);
-        }
-        Ok(length)
+        let factors = system.interactions.iter().map(|interaction| interaction.step_factor(part));
+        Ok(length * factors.fold(1.0, f64::min))
     }
 
     fn can_retry(&self) -> bool {

@@ -5,11 +5,10 @@
 //! Newmark's relations hold with γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4. The code divides by 1 − α_f, so that the
 //! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
 
-use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, gather, predict_ballistic, update_newmark};
+use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
-use crate::model::ModelPart;
-use crate::model::variables::{ACCELERATION, VELOCITY};
+use crate::model::{FIRST, ModelPart, Rates, SECOND};
 use crate::register;
 
 /// Parameters of the scheme and the forces of the last accepted step.
@@ -44,8 +43,7 @@ impl GeneralizedAlphaScheme {
 
 impl Scheme for GeneralizedAlphaScheme {
     fn prepare(&self, part: &mut ModelPart) {
-        part.nodes.history.add(&VELOCITY);
-        part.nodes.history.add(&ACCELERATION);
+        Rates::add(&mut part.nodes.history, &[FIRST, SECOND]);
     }
 
     fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
@@ -60,8 +58,8 @@ impl Scheme for GeneralizedAlphaScheme {
     fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
         let dt = part.info.delta_time;
         let history = &part.nodes.history;
-        let (a, a_old) = (history.values(&ACCELERATION, 0), history.values(&ACCELERATION, 1));
-        let (v, v_old) = (history.values(&VELOCITY, 0), history.values(&VELOCITY, 1));
+        let [a, a_old] = [0, 1].map(|level| dofs.column(history, SECOND, level));
+        let [v, v_old] = [0, 1].map(|level| dofs.column(history, FIRST, level));
         let (m, f) = (self.alpha_m, self.alpha_f);
         let scale = 1.0 / (1.0 - f);
         Some(Inertia {
@@ -69,20 +67,20 @@ impl Scheme for GeneralizedAlphaScheme {
             damping_factor: self.gamma / (self.beta * dt),
             alpha: self.rayleigh[0],
             beta: self.rayleigh[1],
-            acceleration: gather(dofs, |i| scale * ((1.0 - m) * a[i] + m * a_old[i])),
-            velocity: gather(dofs, |i| v[i] + scale * f * v_old[i]),
+            acceleration: a.iter().zip(&a_old).map(|(a, old)| scale * ((1.0 - m) * a + m * old)).collect(),
+            velocity: v.iter().zip(&v_old).map(|(v, old)| v + scale * f * old).collect(),
             carried: self.forces.iter().flatten().map(|force| scale * f * force).collect(),
         })
     }
 
     fn past_inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
-        let old = |variable| gather(dofs, |i| part.nodes.history.values(variable, 1)[i]);
+        let old = |column| dofs.column(&part.nodes.history, column, 1);
         let [alpha, beta] = self.rayleigh;
         self.forces.is_none().then(|| Inertia {
             alpha,
             beta,
-            acceleration: old(&ACCELERATION),
-            velocity: old(&VELOCITY),
+            acceleration: old(SECOND),
+            velocity: old(FIRST),
             ..Inertia::default()
         })
     }

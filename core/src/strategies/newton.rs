@@ -44,11 +44,11 @@ pub struct NewtonSettings {
     pub continue_if_converging: bool,
     /// One linear solve and no check (`analysis_type` "linear").
     pub linear: bool,
-    /// Whether REACTION is computed.
+    /// Whether reactions are computed.
     pub compute_reactions: bool,
-    /// Whether REACTION of supports holds what constraints hand on to them.
+    /// Whether reactions of supports hold what constraints hand on to them.
     pub reactions_of_constraints: bool,
-    /// Whether nodes follow DISPLACEMENT.
+    /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
     /// How much of an increment is taken; all of it when `None`.
     pub line_search: Option<LineSearch>,
@@ -238,7 +238,7 @@ impl NewtonRaphson {
         }
         self.scheme.update(part);
         if self.settings.move_mesh {
-            part.move_mesh();
+            part.nodes.move_all();
         }
     }
 

@@ -13,7 +13,7 @@ use super::owned_condensation::{Held, OwnedCondensation};
 use crate::assembly::{Assembler, DofTable, Numbering};
 use crate::communication::{petsc, world};
 use crate::diagnostics::Result;
-use crate::model::{Nodes, variables::DISPLACEMENT};
+use crate::model::Nodes;
 
 /// The rows of this rank and the solver over all of them.
 pub(super) struct OwnedRows {
@@ -77,10 +77,7 @@ impl Here<'_> {
     /// Positions and directions of equations, for rigid motions; collective.
     fn modes(&self, equations: &[u32]) -> RigidModes {
         let of = |e: &u32| &self.dofs.dofs()[self.unknowns[*e as usize] as usize];
-        let component = |e: &u32| {
-            let variable = of(e).variable;
-            if variable.column == DISPLACEMENT.name() { variable.component.unwrap_or(u8::MAX) } else { u8::MAX }
-        };
+        let component = |e: &u32| of(e).variable.component.filter(|_| of(e).moves_mesh()).unwrap_or(u8::MAX);
         let components: Vec<u8> = equations.iter().map(component).collect();
         let dimension = if world().any(components.contains(&2)) { 3 } else { 2 };
         let coordinates = equations.iter().map(|e| self.nodes.initial[of(e).node as usize]).collect();

@@ -1,19 +1,17 @@
 //! The forces of the supports.
 
 use crate::assembly::{DofTable, Equations};
-use crate::model::{ModelPart, variables};
+use crate::model::{ColumnOf, ModelPart, Rates};
 
-/// REACTION of every displacement: minus the out-of-balance force, which supports and constraints carry.
+/// The reactions of all unknowns that have one: minus the out-of-balance force, which supports and constraints carry.
 ///
 /// With the equations, supports also bear what constraints hand on to them, so that their forces balance the loads. Free nodes
 /// have the force of their constraints.
 pub(super) fn write_reactions(part: &mut ModelPart, dofs: &DofTable, residual: &[f64], handed_on: Option<&Equations>) {
     let supported = handed_on.map(|equations| equations.supported(residual));
     let residual = supported.as_deref().unwrap_or(residual);
-    let reaction = part.nodes.history.values_mut(&variables::REACTION, 0);
-    for (dof, r) in dofs.dofs().iter().zip(residual) {
-        if dof.variable.column == variables::DISPLACEMENT.name() {
-            reaction[3 * dof.node as usize + dof.variable.offset()] = -r;
-        }
-    }
+    const REACTION: ColumnOf = |rates| rates.reaction;
+    let minus: Vec<f64> = residual.iter().map(|r| -r).collect();
+    Rates::add(&mut part.nodes.history, &[REACTION]);
+    dofs.write_column(&mut part.nodes.history, REACTION, 0, &minus);
 }

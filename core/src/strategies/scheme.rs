@@ -3,8 +3,7 @@
 use super::central_differences::CentralDifferences;
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
-use crate::model::ModelPart;
-use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
+use crate::model::{FIRST, ModelPart, Rates, SECOND, UNKNOWN};
 use crate::parameters::Settings;
 use crate::{register, registered_kind};
 
@@ -28,6 +27,11 @@ pub trait Scheme: Send {
         !self.is_static()
     }
 
+    /// Whether it moves unknowns too that have a first derivative by time and no second.
+    fn takes_first_order(&self) -> bool {
+        self.is_static()
+    }
+
     /// Step start: first guess of the unknowns that are free.
     ///
     /// # Errors
@@ -36,7 +40,7 @@ pub trait Scheme: Send {
         Ok(())
     }
 
-    /// Rates from the present displacements.
+    /// Derivatives from the present unknowns.
     fn update(&self, _part: &mut ModelPart) {}
 
     /// What inertia and damping add in the present state; `None` when the problem is static.
@@ -65,42 +69,40 @@ pub trait Scheme: Send {
     }
 }
 
-/// One number an unknown: `value` at the place of its component in a vector column, 0 for all but displacements.
-pub(super) fn gather(dofs: &DofTable, value: impl Fn(usize) -> f64) -> Vec<f64> {
-    let displacement = |dof: &crate::assembly::Dof| dof.variable.column == DISPLACEMENT.name();
-    let all = dofs.dofs().iter();
-    all.map(|dof| if displacement(dof) { value(3 * dof.node as usize + dof.variable.offset()) } else { 0.0 }).collect()
-}
-
-/// Moves free displacements to u + Δt v + Δt²/2 a of the last step.
+/// Moves free unknowns with rates to u + Δt v + Δt²/2 a of the last step.
 pub(super) fn predict_ballistic(part: &mut ModelPart, dofs: &DofTable) {
     let dt = part.info.delta_time;
-    for dof in dofs.dofs() {
-        let at = 3 * dof.node as usize + dof.variable.offset();
-        if dof.variable.column == DISPLACEMENT.name() && !part.nodes.is_fixed(dof.variable, dof.node) {
-            let old = |variable| part.nodes.history.values(variable, 1)[at];
-            let guess = old(&DISPLACEMENT) + dt * old(&VELOCITY) + 0.5 * dt * dt * old(&ACCELERATION);
-            part.nodes.history.values_mut(&DISPLACEMENT, 0)[at] = guess;
-        }
-    }
+    let history = &part.nodes.history;
+    let [u, v, a] = [UNKNOWN, FIRST, SECOND].map(|column| dofs.column(history, column, 1));
+    predict(part, dofs, |n| u[n] + dt * v[n] + 0.5 * dt * dt * a[n]);
 }
 
-/// Newmark's relations: VELOCITY and ACCELERATION from DISPLACEMENT and the last step, at every node.
+/// Moves free unknowns with rates to what is guessed of each.
+pub(super) fn predict(part: &mut ModelPart, dofs: &DofTable, guess: impl Fn(usize) -> f64) {
+    let mut values = dofs.column(&part.nodes.history, UNKNOWN, 0);
+    for (number, dof) in dofs.dofs().iter().enumerate() {
+        if !part.nodes.is_fixed(dof.variable, dof.node) {
+            values[number] = guess(number);
+        }
+    }
+    dofs.write_column(&mut part.nodes.history, UNKNOWN, 0, &values);
+}
+
+/// Newmark's relations: first and second derivatives from unknowns and the last step, at every node.
 pub(super) fn update_newmark(part: &mut ModelPart, beta: f64, gamma: f64) {
     let dt = part.info.delta_time;
     let history = &mut part.nodes.history;
-    let u = history.values(&DISPLACEMENT, 0).to_vec();
-    let old = [history.values(&DISPLACEMENT, 1), history.values(&VELOCITY, 1), history.values(&ACCELERATION, 1)]
-        .map(<[f64]>::to_vec);
-    let [u_old, v_old, a_old] = &old;
-    let a: Vec<f64> = (0..u.len())
-        .map(|i| (u[i] - u_old[i]) / (beta * dt * dt) - v_old[i] / (beta * dt) - (0.5 / beta - 1.0) * a_old[i])
-        .collect();
-    let velocity = history.values_mut(&VELOCITY, 0);
-    for i in 0..u.len() {
-        velocity[i] = v_old[i] + dt * ((1.0 - gamma) * a_old[i] + gamma * a[i]);
+    for (rates, _) in Rates::within(history) {
+        let Some(second) = rates.second else { continue };
+        let u = history.level(rates.unknown, 0);
+        let [u_old, v_old, a_old] = [rates.unknown, rates.first, second].map(|column| history.level(column, 1));
+        let a: Vec<f64> = (0..u.len())
+            .map(|i| (u[i] - u_old[i]) / (beta * dt * dt) - v_old[i] / (beta * dt) - (0.5 / beta - 1.0) * a_old[i])
+            .collect();
+        let v: Vec<f64> = (0..u.len()).map(|i| v_old[i] + dt * ((1.0 - gamma) * a_old[i] + gamma * a[i])).collect();
+        history.write_level(rates.first, 0, &v);
+        history.write_level(second, 0, &a);
     }
-    history.values_mut(&ACCELERATION, 0).copy_from_slice(&a);
 }
 
 /// No inertia: time only orders the loads.

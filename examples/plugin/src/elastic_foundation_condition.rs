@@ -3,12 +3,13 @@
 //! f_i = −∫ N_i c u dξ with u = Σ N_j u_j, over the initial line; so K_ij = ∫ N_i c N_j dξ, constant and symmetric.
 //! c = FOUNDATION_STIFFNESS > 0 is a force per area and displacement, for a body of unit thickness.
 
+use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::Result;
 use zelus_core::entities::Build;
 use zelus_core::entities::ConditionEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
-use zelus_core::model::variables::DISPLACEMENT;
+
 use zelus_core::vector3::{norm, sub};
 use zelus_core::{register, register_variable};
 

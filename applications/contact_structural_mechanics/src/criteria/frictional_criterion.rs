@@ -5,11 +5,11 @@
 //! sliding nodes state tractions, and are measured by these besides.
 
 use zelus_core::Result;
-use zelus_core::model::variables::NORMAL;
 use zelus_core::strategies::{
     Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_last_digit, is_round_off,
 };
 use zelus_core::vector3::{dot, sub};
+use zelus_structural_mechanics::variables::NORMAL;
 
 use super::measure::{Form, Tolerance, check};
 use crate::formulations::NodeState;

@@ -1,9 +1,10 @@
 //! What a formulation sees of a pair, and what it returns.
 
 use super::Held;
+use crate::flags::SLIP;
 use crate::friction_law::Bound;
 use crate::mortar::{Operators, weighted_gap};
-use zelus_core::model::flags::{ACTIVE, Flags, SLIP};
+use zelus_core::model::flags::{ACTIVE, Flags};
 use zelus_core::scalar::Real;
 
 /// Whether a slave node is in contact, and how.

@@ -7,8 +7,8 @@
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::mapping::domain_size;
 use zelus_core::model::ModelPart;
-use zelus_core::model::variables::{DISPLACEMENT, NODAL_MASS};
 use zelus_core::strategies::CRITICAL_STEP;
+use zelus_structural_mechanics::variables::{DISPLACEMENT, NODAL_MASS};
 
 use crate::interface::{Interface, positions};
 use crate::slave_states::SlaveStates;

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use crate::flags::CONTACT;
 use zelus_core::Result;
 use zelus_core::entities::{
     ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, Outer, Retry, SetChange,
 };
-use zelus_core::model::flags::CONTACT;
-use zelus_core::model::{ModelPart, ScalarVariable, variables::NORMAL, variables::VELOCITY};
+use zelus_core::model::{ModelPart, ScalarVariable};
+use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
 use super::activation::Start;
 use super::bearable_penalty::BearablePenalty;
@@ -23,7 +24,7 @@ use super::step_parameters::StepParameters;
 use crate::interface::{Bodies, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
 use crate::penalty_adaptation::Growth;
-use crate::solver::{COMPUTE_DYNAMIC_FACTOR, KEEP_MASS};
+use crate::solver::{COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, KEEP_MASS};
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
 /// Iterations after which the choices of the integration are frozen: most steps have converged by then, as in Kratos.
@@ -70,6 +71,10 @@ impl ContactInteraction {
 impl Interaction for ContactInteraction {
     fn name(&self) -> &str {
         "contact"
+    }
+
+    fn step_factor(&self, part: &ModelPart) -> f64 {
+        if part.info.is(CONTACT) { part.info.value_or(DELTA_TIME_FACTOR, 1.0) } else { 1.0 }
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {

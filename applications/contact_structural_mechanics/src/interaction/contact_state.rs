@@ -1,8 +1,8 @@
 //! What contact is at a moment: interfaces with their pairs, slave nodes with their states, and the numbers of the run.
 
+use crate::flags::{MASTER, SLAVE};
 use zelus_core::Result;
 use zelus_core::model::ModelPart;
-use zelus_core::model::flags::{MASTER, SLAVE};
 
 use super::activation::{self, Start};
 use super::contact_settings::ContactSettings;

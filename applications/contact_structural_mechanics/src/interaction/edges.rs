@@ -6,8 +6,9 @@
 use std::collections::BTreeMap;
 
 use zelus_core::geometry::mapping::unit_normal;
-use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
+use zelus_structural_mechanics::variables::NORMAL;
 
 use super::pairing::Pairing;
 use crate::interface::{Facet, centre_normal, positions};

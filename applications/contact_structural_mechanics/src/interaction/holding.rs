@@ -6,8 +6,8 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::geometry::shape_functions;
 use zelus_core::model::ModelPart;
-use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::vector3::{add, dot, norm, scale, sub};
+use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use crate::formulations::Held;
 use crate::formulations::held::free_normal;

@@ -6,9 +6,10 @@
 use std::collections::BTreeSet;
 
 use zelus_core::entities::Outer;
-use zelus_core::model::{ModelPart, variables::VELOCITY};
+use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
 use zelus_core::vector3::norm;
+use zelus_structural_mechanics::variables::VELOCITY;
 
 use super::pairing::Pairing;
 use crate::pairs::{Family, Multiplier};

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use zelus_core::Result;
 use zelus_core::communication::world;
-use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, sub};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::nodal_sums::NodalSums;
 use super::pairing::{Pairing, integrals, searching};

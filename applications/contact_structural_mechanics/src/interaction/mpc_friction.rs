@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use zelus_core::entities::SetChange;
-use zelus_core::model::{EntityKind, ModelPart, variables::REACTION};
+use zelus_core::model::{EntityKind, ModelPart};
 use zelus_core::vector3::{dot, norm, scale, sub};
+use zelus_structural_mechanics::variables::REACTION;
 
 use super::decision::resolved_length;
 use super::mpc_relation::NodeRelation;

@@ -7,12 +7,13 @@
 
 use std::collections::BTreeSet;
 
+use crate::flags::{CONTACT, MASTER, SLAVE};
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, require_kind};
-use zelus_core::model::flags::{CONTACT, MASTER, SLAVE};
-use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role, variables::NORMAL, variables::REACTION};
+use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role};
 use zelus_core::vector3::{dot, scale};
+use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::activation::{self, Start};
 use super::decision::resolved_length;

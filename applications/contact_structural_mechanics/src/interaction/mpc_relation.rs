@@ -13,8 +13,9 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::model::{MasterSlaveConstraint, ModelPart, variables::DISPLACEMENT, variables::NORMAL};
+use zelus_core::model::{MasterSlaveConstraint, ModelPart};
 use zelus_core::vector3::{dot, normalised, sub};
+use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use crate::interface::{Interface, Roles};
 use crate::pairs::{FacetOperators, FacetPair};

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, norm, sub};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::mpc_relation::{NodeRelation, PairRelation, node_relations};
 use super::mpc_settings::MpcSettings;

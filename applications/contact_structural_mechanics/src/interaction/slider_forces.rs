@@ -10,8 +10,9 @@ use std::ops::Range;
 use zelus_core::model::EntityKind;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::model::variables::DISPLACEMENT;
+
 use zelus_core::vector3::{norm, scale};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 /// A sliding node with its masters.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use zelus_core::entities::require_kind;
 use zelus_core::model::Role;
 
+use crate::flags::SLIP;
 use zelus_core::entities::{LocalSystems, LocalUnknown, Want};
 use zelus_core::geometry::Shape;
-use zelus_core::model::flags::{ACTIVE, SLIP};
-use zelus_core::model::variables::{DISPLACEMENT, NORMAL};
+use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes};
 use zelus_core::vector3::add;
+use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use super::decision::Rules;
 use super::sliding::find_tangents;
@@ -93,7 +94,7 @@ impl Contact {
             |size: f64| -> [f64; 3] { std::array::from_fn(|c| if c < space { size * noise.next() } else { 0.0 }) };
         let start: Vec<[f64; 3]> = (0..count).map(|_| vector(0.05)).collect();
         part.nodes.history.values_mut(&DISPLACEMENT, 1).copy_from_slice(start.as_flattened());
-        part.move_mesh();
+        part.nodes.move_all();
         let patches = Arc::new(NormalPatches::new(count, std::slice::from_ref(&interface), NodalNormals::ByEdges));
         patches.write(&mut part);
         part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(20.0);
@@ -212,7 +213,7 @@ impl Contact {
 
     /// Positions, normals and directions of sliding after displacements.
     fn follow(&mut self) {
-        self.part.move_mesh();
+        self.part.nodes.move_all();
         self.patches.write(&mut self.part);
         self.states.read_normals(&self.part.nodes);
         for pair in self.blocks.iter_mut().flat_map(|block| block.pairs_mut()) {

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use zelus_core::entities::require_kind;
 use zelus_core::model::Role;
 
+use crate::flags::CONTACT;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction};
-use zelus_core::model::flags::{ACTIVE, CONTACT};
-use zelus_core::model::{MasterSlaveConstraint, ModelPart, ScalarVariable, variables::DISPLACEMENT};
+use zelus_core::model::flags::ACTIVE;
+use zelus_core::model::{MasterSlaveConstraint, ModelPart, ScalarVariable};
 use zelus_core::parameters::Interval;
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::holding::Holding;
 use crate::interface::{

@@ -7,8 +7,9 @@ use zelus_core::Result;
 use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, LocalSystems, Want};
-use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
+use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use crate::solver::{KEEP_MASS, LARGEST_ENERGY_GAIN};
 

@@ -6,8 +6,9 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{BlockRequest, EntityBlock, EntityError, FacePoint, StepView, Tangent, block_factory};
 use zelus_core::geometry::mapping::domain_size;
 use zelus_core::model::EntityKind;
-use zelus_core::model::{ModelPart, variables::DISPLACEMENT};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, sub};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::facets::{Facet, Interface, Roles};
 use crate::formulations::SlaveFace;

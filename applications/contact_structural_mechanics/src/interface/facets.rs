@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use crate::flags::{MASTER, SLAVE};
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
-use zelus_core::model::flags::{INTERFACE, MASTER, SLAVE};
+use zelus_core::model::flags::INTERFACE;
 use zelus_core::model::{ModelPart, SubPart};
 use zelus_core::vector3::{dot, sub};
 

@@ -17,8 +17,9 @@ use std::collections::BTreeMap;
 
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
-use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{cross, dot, norm, scale, sub};
+use zelus_structural_mechanics::variables::NORMAL;
 
 use super::facets::{Facet, Interface, Roles};
 use super::supports::Fixed;

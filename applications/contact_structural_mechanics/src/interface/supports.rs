@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use zelus_core::model::ModelPart;
 use zelus_core::model::NodeUnknown;
-use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::vector3::norm;
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::facets::Interface;
 use super::normals::{NodalNormals, NormalPatches};

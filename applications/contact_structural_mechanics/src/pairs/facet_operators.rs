@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
-use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::model::ModelPart;
+use zelus_structural_mechanics::variables::NORMAL;
 
 use super::pair::PairKey;
 use crate::interface::{Facet, Interface, centre_normal, positions};

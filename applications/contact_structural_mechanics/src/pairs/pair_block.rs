@@ -7,9 +7,10 @@ use zelus_core::model::EntityKind;
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
-use zelus_core::model::{ScalarVariable, variables::DISPLACEMENT};
+use zelus_core::model::ScalarVariable;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{add, cross, normalised, scale, sub};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;

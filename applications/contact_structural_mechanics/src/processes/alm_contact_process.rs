@@ -350,4 +350,5 @@ register! { ProcessEntry "alm_contact_process",
     defaults: include_str!("../../../../configs/processes/alm_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/alm_contact_process.json"))],
     build: |request| of_families(request, &AUGMENTED),
+    surfaces: super::touching::contact,
 }

@@ -106,4 +106,5 @@ register! { ProcessEntry "mesh_tying_process",
     defaults: include_str!("../../../../configs/processes/mesh_tying_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mesh_tying_process.json"))],
     build: build,
+    surfaces: super::touching::ties,
 }

@@ -11,4 +11,5 @@ mod simple_mortar_mapper_process;
 mod nitsche_contact_process;
 mod penalty_contact_process;
 mod perturbed_lagrangian_contact_process;
+mod touching;
 mod uzawa_contact_process;

@@ -13,4 +13,5 @@ register! { ProcessEntry "nitsche_contact_process",
     source: "Chouly, Hild and Renard (2015)",
     defaults: include_str!("../../../../configs/processes/nitsche_contact_process.json"),
     build: |request| of_families(request, &NITSCHE),
+    surfaces: super::touching::contact,
 }

@@ -15,4 +15,5 @@ register! { ProcessEntry "penalty_contact_process",
     defaults: include_str!("../../../../configs/processes/penalty_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/penalty_contact_process.json"))],
     build: |request| of_families(request, &PENALTY),
+    surfaces: super::touching::contact,
 }

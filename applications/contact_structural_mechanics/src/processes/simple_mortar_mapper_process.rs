@@ -5,10 +5,11 @@ use zelus_core::processes::ProcessEntry;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::{Field, Model, ModelPart, Named, named, variables::NORMAL};
+use zelus_core::model::{Field, Model, ModelPart, Named, named};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
+use zelus_structural_mechanics::variables::NORMAL;
 
 use super::interface_settings::{check_positive, segmentation};
 use crate::interface::{Interface, interfaces, nodal_normals};
@@ -196,4 +197,5 @@ register! { ProcessEntry "simple_mortar_mapper_process",
     about: "maps a nodal variable between two surfaces that face each other, by dual mortar",
     defaults: include_str!("../../../../configs/processes/simple_mortar_mapper_process.json"),
     build: build,
+    surfaces: super::touching::mapping,
 }

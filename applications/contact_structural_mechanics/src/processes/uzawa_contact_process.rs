@@ -14,4 +14,5 @@ register! { ProcessEntry "uzawa_contact_process",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/uzawa_contact_process.json"))],
     build: |request| of_families(request, &FAMILIES),
+    surfaces: super::touching::contact,
 }

@@ -1,8 +1,9 @@
 //! The direct check of a pair: which slave nodes touch the master facet itself.
 
 use zelus_core::geometry::mapping::local_coordinates;
-use zelus_core::model::{ModelPart, variables::NORMAL};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, scale, sub};
+use zelus_structural_mechanics::variables::NORMAL;
 
 use super::candidates::facet_normal;
 use crate::interface::{Facet, positions};

@@ -1,7 +1,7 @@
 //! Where nodes are looked for when a search is dynamic.
 
-use zelus_core::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
 use zelus_core::model::{ModelPart, Nodes, Variable};
+use zelus_structural_mechanics::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
 
 /// Moves the nodes of a dynamic search to x + Δt/4 (v + v₁) + Δt²/8 a₁, with v₁ and a₁ of the step before; fixed components
 /// stay. Gives the positions they had, `None` when nothing is predicted.

@@ -2,11 +2,11 @@
 
 use std::marker::PhantomData;
 
+use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::model::Variable;
-use zelus_core::model::variables::DISPLACEMENT;
 
 use crate::variables::{NEGATIVE_FACE_PRESSURE, POSITIVE_FACE_PRESSURE, PRESSURE};
 

@@ -7,10 +7,10 @@
 
 use std::marker::PhantomData;
 
+use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
-use zelus_core::model::variables::DISPLACEMENT;
 
 use super::gradients::{nodal_vectors, physical_gradients};
 use super::material::Material;

@@ -4,12 +4,12 @@
 //! NODAL_DAMPING_RATIO (force per velocity), u_0 NODAL_INITIAL_DISPLACEMENT of the element and g VOLUME_ACCELERATION of
 //! the node. Constants of the properties go before those of the element.
 
+use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Build;
 use zelus_core::entities::ElementEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
-use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::register;
 
 use super::gradients::nodal_vectors;

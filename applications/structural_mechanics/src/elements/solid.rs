@@ -11,10 +11,10 @@ mod traction;
 use std::f64::consts::PI;
 use std::marker::PhantomData;
 
+use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, FacePoint, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
-use zelus_core::model::variables::DISPLACEMENT;
 
 use self::kinematics::{Motion, radius};
 use super::formulation::Formulation;

@@ -3,12 +3,12 @@
 //! Force on the first node k (u_2 − u_1) + c (v_2 − v_1), on the second the opposite; k NODAL_DISPLACEMENT_STIFFNESS, c
 //! NODAL_DAMPING_RATIO (force per velocity) of the properties or of the element. Its springs on rotations are not there.
 
+use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Build;
 use zelus_core::entities::ElementEntry;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::Shape;
-use zelus_core::model::variables::DISPLACEMENT;
 use zelus_core::register;
 
 use super::gradients::nodal_vectors;

@@ -6,13 +6,12 @@ use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
 use crate::model::Role;
-use crate::model::variables::DISPLACEMENT;
-use crate::model::{ModelPart, Nodes};
+use crate::model::{ModelPart, Nodes, Rates};
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///
-/// Damping is Rayleigh's, C = alpha M + beta K; RAYLEIGH_ALPHA and RAYLEIGH_BETA of an element's properties go before. It acts
-/// on the velocities of displacements; other unknowns of elements have no rate.
+/// Damping is Rayleigh's, C = alpha M + beta K; factors of an element's properties ([`Rates::rayleigh`]) go before. It acts on
+/// first derivatives; unknowns without an entry of [`Rates`] have none.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Inertia {
     /// Factor of M in the tangent, 1/time².
@@ -174,14 +173,15 @@ fn undeformed(part: &ModelPart) -> Nodes {
 /// Whether the properties of an element give Rayleigh's factors, which then go before those of the solver, or some elements
 /// are dampers.
 pub fn damped_by_properties(part: &ModelPart, system: &System) -> bool {
-    let names = ["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"];
-    part.properties.values().any(|p| names.iter().any(|name| p.number(name).is_some()))
+    part.properties
+        .values()
+        .any(|p| Rates::all().filter_map(|r| r.rayleigh).flatten().any(|name| p.number(name).is_some()))
         || system.elements.iter().any(|block| block.has_damping())
 }
 
-/// Which unknowns have no velocity for damping to act on, all but displacements; empty when elements have none of them.
+/// Which unknowns have no rate for damping to act on; empty when elements have none of them.
 pub(super) fn without_rates(system: &System) -> Vec<bool> {
-    let rateless = |dof: &Dof| dof.variable.column != DISPLACEMENT.name();
+    let rateless = |dof: &Dof| dof.rates().is_none();
     let dofs = system.dofs.dofs();
     if dofs.iter().any(|dof| !dof.multiplier && rateless(dof)) {
         dofs.iter().map(rateless).collect()
@@ -192,16 +192,20 @@ pub(super) fn without_rates(system: &System) -> Vec<bool> {
 
 /// The largest of Rayleigh's factors, those of the solver and of all properties.
 pub fn strongest_damping(part: &ModelPart, [alpha, beta]: [f64; 2]) -> [f64; 2] {
-    part.properties.values().fold([alpha, beta], |[alpha, beta], properties| {
+    let names = Rates::all().filter_map(|rates| rates.rayleigh);
+    let all = names.flat_map(|names| part.properties.values().map(move |properties| (names, properties)));
+    all.fold([alpha, beta], |[alpha, beta], ([of_mass, of_stiffness], properties)| {
         let own = |name: &str, other: f64| properties.number(name).map_or(other, |own| own.max(other));
-        [own("RAYLEIGH_ALPHA", alpha), own("RAYLEIGH_BETA", beta)]
+        [own(of_mass, alpha), own(of_stiffness, beta)]
     })
 }
 
-/// Rayleigh's factors of a block, whose entities share their properties.
+/// Rayleigh's factors of a block, whose entities share their properties; none for unknowns that do not know them.
 fn rayleigh_of(part: &ModelPart, block: &dyn EntityBlock, [alpha, beta]: [f64; 2]) -> [f64; 2] {
+    let names = block.unknowns().iter().find_map(|unknown| Rates::of(unknown.variable.column)?.rayleigh);
+    let Some([of_mass, of_stiffness]) = names else { return [0.0; 2] };
     let first = block.members().first().map(|&member| part.elements.properties[member as usize]);
     let properties = first.and_then(|id| part.properties.get(&id));
     let own = |name: &str, default: f64| properties.and_then(|p| p.number(name)).unwrap_or(default);
-    [own("RAYLEIGH_ALPHA", alpha), own("RAYLEIGH_BETA", beta)]
+    [own(of_mass, alpha), own(of_stiffness, beta)]
 }

@@ -1,14 +1,13 @@
 //! Nodes without mass: the system takes them on, and velocities and accelerations follow.
 
 use super::{Assembler, bulk_pattern};
+use crate::assembly::System;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::assembly::redistribution::diagonal;
-use crate::assembly::{Dof, System};
 use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{MasslessNodes, Want};
-use crate::model::variables::{ACCELERATION, DISPLACEMENT, VELOCITY};
-use crate::model::{ModelPart, Variable};
+use crate::model::{ColumnOf, FIRST, ModelPart, SECOND};
 
 /// Iterations after which the projection stops.
 const MOST_ITERATIONS: usize = 500;
@@ -33,9 +32,9 @@ impl Assembler {
             (self.mass, self.tangent_key) = (None, None);
         }
         if !self.redistribution.is_empty() {
-            for variable in [&VELOCITY, &ACCELERATION] {
+            for column in [FIRST, SECOND] {
                 for level in 1..part.nodes.history.levels() {
-                    self.project(part, system, variable, level)?;
+                    self.project(part, system, column, level)?;
                 }
             }
         }
@@ -52,7 +51,7 @@ impl Assembler {
     }
 
     fn own_energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
-        let (u, v) = (self.values(part, system), rates(part, system, &VELOCITY, 0));
+        let (u, v) = (self.values(part, system), system.dofs.column(&part.nodes.history, FIRST, 0));
         self.mass(part, system)?;
         let mut forces = vec![0.0; u.len()];
         for (block, numbers) in system.elements.iter().zip(&self.element_numbers) {
@@ -69,10 +68,10 @@ impl Assembler {
         if self.redistribution.is_empty() {
             return;
         }
-        for variable in [&VELOCITY, &ACCELERATION] {
-            let mut values = rates(part, system, variable, 0);
+        for column in [FIRST, SECOND] {
+            let mut values = system.dofs.column(&part.nodes.history, column, 0);
             self.redistribution.extrapolate(&mut values);
-            write(part, system, variable, 0, &values);
+            system.dofs.write_column(&mut part.nodes.history, column, 0, &values);
         }
     }
 
@@ -82,14 +81,8 @@ impl Assembler {
     }
 
     /// The nearest motion that the masses can have: P w with M_r (w − v) = Pᵀ M (v − P v), by conjugate gradients.
-    fn project(
-        &mut self,
-        part: &mut ModelPart,
-        system: &System,
-        variable: &Variable<[f64; 3]>,
-        level: usize,
-    ) -> Result<()> {
-        let mut values = rates(part, system, variable, level);
+    fn project(&mut self, part: &mut ModelPart, system: &System, column: ColumnOf, level: usize) -> Result<()> {
+        let mut values = system.dofs.column(&part.nodes.history, column, level);
         self.mass(part, system)?;
         let mut residual = self.redistribution.excess(&values);
         if !world().any(residual.iter().any(|r| *r != 0.0)) {
@@ -131,25 +124,7 @@ impl Assembler {
             error = next;
         }
         self.redistribution.extrapolate(&mut values);
-        write(part, system, variable, level, &values);
+        system.dofs.write_column(&mut part.nodes.history, column, level, &values);
         Ok(())
-    }
-}
-
-/// A rate of displacements, a number an unknown, 0 for all others.
-fn rates(part: &ModelPart, system: &System, variable: &Variable<[f64; 3]>, level: usize) -> Vec<f64> {
-    let column = part.nodes.history.values(variable, level);
-    let displacement = |dof: &Dof| dof.variable.column == DISPLACEMENT.name();
-    let dofs = system.dofs.dofs().iter();
-    dofs.map(|dof| if displacement(dof) { column[3 * dof.node as usize + dof.variable.offset()] } else { 0.0 })
-        .collect()
-}
-
-fn write(part: &mut ModelPart, system: &System, variable: &Variable<[f64; 3]>, level: usize, values: &[f64]) {
-    let column = part.nodes.history.values_mut(variable, level);
-    for (dof, value) in system.dofs.dofs().iter().zip(values) {
-        if dof.variable.column == DISPLACEMENT.name() {
-            column[3 * dof.node as usize + dof.variable.offset()] = *value;
-        }
     }
 }

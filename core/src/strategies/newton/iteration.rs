@@ -422,7 +422,7 @@ impl NewtonRaphson {
         self.assembler.residual(part, system, inertia.as_ref())
     }
 
-    /// Writes REACTION, if the settings ask for it.
+    /// Writes reactions, if the settings ask for it.
     pub(in crate::strategies) fn keep_reactions(&self, part: &mut ModelPart, system: &System, residual: &[f64]) {
         if self.settings.compute_reactions {
             let handed_on = self.settings.reactions_of_constraints.then(|| self.assembler.equations());

@@ -1,7 +1,7 @@
 //! States that balance nothing: a body that nothing holds has gone out of all proportion to the model.
 
 use super::NewtonRaphson;
-use crate::assembly::{System, is_displacement, reach};
+use crate::assembly::{System, reach};
 use crate::communication::world;
 use crate::model::{ModelPart, SubPart};
 
@@ -16,7 +16,7 @@ impl NewtonRaphson {
         }
         let reach = reach(&part.nodes, &system.dofs, self.assembler.equations());
         let now = self.assembler.values(part, system);
-        let gone = system.dofs.dofs().iter().enumerate().filter(|(_, dof)| is_displacement(dof));
+        let gone = system.dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.moves_mesh());
         let gone = gone.map(|(n, dof)| ((now[n] - begin[n]).abs(), dof.node)).filter(|(motion, _)| *motion > reach);
         let farthest = gone.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let said = farthest.map(|(motion, node)| {

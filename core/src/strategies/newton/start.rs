@@ -62,7 +62,7 @@ impl NewtonRaphson {
         let increment = self.followed(part, system, &increment);
         self.scheme.update(part);
         if self.settings.move_mesh {
-            part.move_mesh();
+            part.nodes.move_all();
         }
         Ok(increment)
     }
@@ -75,7 +75,7 @@ impl NewtonRaphson {
         system.dofs.scatter_add(&back, &mut part.nodes);
         self.scheme.update(part);
         if self.settings.move_mesh {
-            part.move_mesh();
+            part.nodes.move_all();
         }
     }
 

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
+use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{Gather, StepView};
 use zelus_core::geometry::ShapeTable;
-use zelus_core::model::variables::DISPLACEMENT;
 
 use super::Solid;
 use crate::elements::formulation::Formulation;

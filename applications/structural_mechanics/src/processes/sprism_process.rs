@@ -1,16 +1,15 @@
 //! Accepted for decks that name it; solid-shell prisms are not part of the element library.
 
-use super::process::{Process, ProcessRequest};
-use crate::diagnostics::{Diagnostic, Result};
-use crate::processes::ProcessEntry;
-use crate::register;
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
+use zelus_core::register;
 
 struct Sprism;
 
 impl Process for Sprism {}
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
-    let settings = request.settings_with(crate::parameters::Defaults::lenient)?;
+    let settings = request.settings_with(zelus_core::parameters::Defaults::lenient)?;
     let fact = "sprism_process does nothing here: it prepares solid-shell prisms and writes their THICKNESS";
     request.report.push(
         Diagnostic::warning("sprism-process", fact)
@@ -23,6 +22,6 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
 register! { ProcessEntry "sprism_process",
     aliases: &["SPRISMProcess"],
     about: "accepted without effect: prepares solid-shell prisms",
-    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/sprism_process.json")),
+    defaults: include_str!("../../../../configs/processes/sprism_process.json"),
     build: build,
 }

@@ -2,15 +2,14 @@
 //!
 //! One constraint a node and component; the constraints hold in steps whose TIME is in the interval.
 
-use crate::processes::ProcessEntry;
 use std::ops::Range;
 
-use super::process::{Process, ProcessRequest};
-use crate::assembly::System;
-use crate::diagnostics::{Diagnostic, Place, Report, Result};
-use crate::model::{MasterSlaveConstraint, Model, Named, ScalarVariable, SubPart, VariableKind, named};
-use crate::parameters::{Interval, Settings};
-use crate::register;
+use zelus_core::assembly::System;
+use zelus_core::diagnostics::{Diagnostic, Place, Report, Result};
+use zelus_core::model::{MasterSlaveConstraint, Model, Named, ScalarVariable, SubPart, VariableKind, named};
+use zelus_core::parameters::{Interval, Settings};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
+use zelus_core::register;
 
 struct ImposeRigidMovement {
     root: String,
@@ -145,6 +144,6 @@ register! { ProcessEntry "impose_rigid_movement_process",
     about: "ties the nodes of a part to one of them by linear constraints",
     source: "eqs. D.12a–e",
     common: &["model_part_name", "master_node_id"],
-    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/impose_rigid_movement_process.json")),
+    defaults: include_str!("../../../../configs/processes/impose_rigid_movement_process.json"),
     build: build,
 }

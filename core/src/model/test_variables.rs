@@ -1,0 +1,19 @@
+//! What tests of the framework solve for, as an application would register it.
+
+use crate::{register_flags, register_rates, register_variable};
+
+register_variable! {
+    pub DISPLACEMENT: [f64; 3] = "Displacement of the tests.";
+    pub VELOCITY: [f64; 3] = "Velocity of the tests.";
+    pub ACCELERATION: [f64; 3] = "Acceleration of the tests.";
+    pub REACTION: [f64; 3] = "Reaction of the tests.";
+}
+register_flags! {
+    pub SLAVE = "A mark of the tests.";
+}
+register_rates! { "DISPLACEMENT",
+    first: "VELOCITY",
+    second: Some("ACCELERATION"),
+    reaction: Some("REACTION"),
+    moves_mesh: true,
+}
