@@ -11,9 +11,10 @@ use support::{change, root, said, scratch_copy, zelus};
 
 use specimen::{Random, Vec3, difference, size};
 use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
-use zelus::contact_structural_mechanics::formulations::{Augmentation, Nitsche, NitscheVariant};
+use zelus::contact_structural_mechanics::formulations::{
+    Augmentation, Nitsche, NitscheVariant, NormalVariation, StepParameters,
+};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
-use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles, centre_normal,
 };

@@ -11,7 +11,7 @@ use crate::csr::Csr;
 use crate::dense::{subtract_from_vector, view};
 use crate::dense_lu::{self, Pivots};
 use crate::equilibrate;
-use crate::krylov::gmres;
+use crate::iterations::gmres;
 use crate::multifrontal::Scaling;
 
 /// Pivots of the equilibrated matrix below this are replaced and reported.

@@ -1,50 +1,49 @@
 //! Sparse linear algebra: matrices, orderings and solvers; knows nothing of finite elements.
 //!
-//! A [`System`] is a [`Csr`] matrix in two parts, the bulk and the coupling of an interface, with stamps that tell
-//! what changed; [`create`] makes a [`LinearSolver`] for it. Every answer has passed a check of its true residual,
-//! and none depends on the number of threads.
+//! A module uses only those above it in the list below. A [`System`] is a [`Csr`] matrix in two parts, the bulk and the
+//! coupling of an interface, with stamps that tell what changed; [`create`] makes a [`LinearSolver`] for it. Every answer has
+//! passed a check of its true residual, and none depends on the number of threads.
 
 mod csr;
-mod system;
 pub mod vector;
+mod system;
 
+mod dense;
+mod dense_lu;
+
+mod condensation;
 mod solver;
-
 mod check;
-mod equilibrate;
 
 mod ordering;
 mod partition;
 
 mod symbolic;
-
-mod dense;
-mod dense_lu;
 mod multifrontal;
-
-mod direct;
-mod interface;
+mod equilibrate;
 mod lu;
 
-mod condensation;
+mod precondition;
+pub mod memory;
+
+mod iterations;
+mod interface;
+mod direct;
+
 mod krylov;
 mod multigrid;
-mod precondition;
 
 mod condition;
 mod rank;
-
-pub mod memory;
 
 pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
 pub use partition::{WeightedGraph, partition_graph};
-pub use precondition::{Precondition, PreconditionerFactory};
 pub use rank::rank;
 pub use solver::{
-    DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Preconditioner, SolveError,
-    SolveReport,
+    DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Precondition, Preconditioner,
+    PreconditionerFactory, SolveError, SolveReport,
 };
 pub use system::{Layout, Symmetry, System};
 

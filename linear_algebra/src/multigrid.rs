@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::check;
 use crate::csr::Runs;
 use crate::direct::DirectSolver;
-use crate::krylov::{Answers, Progress, conjugate_gradient, gmres};
+use crate::iterations::{Answers, Progress, conjugate_gradient, gmres};
 use crate::memory;
 use crate::precondition::{Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};

@@ -1,8 +1,8 @@
 //! The one interface of all solvers, what they report and how they fail.
 
 use crate::condensation::{CondensationSettings, NotCondensable};
-use crate::precondition::PreconditionerFactory;
-use crate::system::System;
+use crate::csr::Csr;
+use crate::system::{Layout, System};
 
 /// What one solve did.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,6 +185,15 @@ pub enum Multipliers {
     /// It iterates on the system without them and recovers them.
     Condense(CondensationSettings),
 }
+
+/// An approximate inverse.
+pub trait Precondition: Send + Sync {
+    /// Replaces `x` by an approximation of `A⁻¹ x`.
+    fn apply(&self, x: &mut [f64]);
+}
+
+/// Makes an approximate inverse of a matrix whose equations have a layout.
+pub type PreconditionerFactory = fn(&Csr, &Layout) -> Box<dyn Precondition>;
 
 /// Approximate inverses that speed up a Krylov engine.
 #[derive(Debug, Clone, Copy, Default)]

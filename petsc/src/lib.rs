@@ -7,8 +7,8 @@
 
 mod engine;
 mod ffi;
-mod matrix;
 mod session;
+mod matrix;
 mod solver;
 
 pub use engine::{PetscEngine, SMALL};

@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::flags::SLIP;
-use zelus::contact_structural_mechanics::formulations::{Augmentation, Nitsche};
+use zelus::contact_structural_mechanics::formulations::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
-use zelus::contact_structural_mechanics::interaction::{NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::mortar::{Choices, IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, Previous, condition_name,

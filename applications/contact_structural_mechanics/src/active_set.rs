@@ -7,9 +7,9 @@
 //! again when its slip has turned against its traction: then q̂ is below the bound, however small κ c s is. So the states of a
 //! solution do not depend on κ. What is too small to decide on, [`crate::resolution`] says.
 
-use crate::formulations::NodeState;
 use crate::friction_law::Bound;
 use crate::mortar::tangential;
+use crate::node_state::NodeState;
 use crate::resolution::{Resolution, is_more};
 use zelus_core::vector3::{add, dot, norm, scale};
 

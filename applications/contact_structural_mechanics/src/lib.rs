@@ -1,6 +1,6 @@
 //! Mortar contact: from the surfaces of a deck to the equations of the bodies that touch.
 //!
-//! In the order of the data: [`interface`] makes facets of a deck's parts, [`search`] finds the pairs that may touch,
+//! A module uses only those above it in the list below. [`interface`] makes facets of a deck's parts, [`search`] finds the pairs that may touch,
 //! [`mortar`] integrates a pair to D, M and the weighted gap, [`kratos`] holds what is only Kratos', [`formulations`] say what
 //! the residual of a pair is made of, [`slave_states`] are what is known of slave nodes, [`pairs`] run formulations over blocks,
 //! [`interaction`] puts all of it into the Newton loop with the active set as a stage. [`families`] state the methods, one a
@@ -8,20 +8,21 @@
 
 pub mod flags;
 pub mod variables;
-pub mod interface;
-pub mod search;
+pub mod node_state;
 pub mod mortar;
 pub mod kratos;
-pub mod formulations;
 pub mod friction_law;
 pub mod resolution;
 pub mod slave_states;
 pub mod active_set;
+pub mod formulations;
+pub mod interface;
+pub mod search;
 pub mod penalty_adaptation;
 pub mod pairs;
 pub mod compatibility;
-pub mod interaction;
 pub mod families;
-mod processes;
 pub mod criteria;
 mod solver;
+pub mod interaction;
+mod processes;

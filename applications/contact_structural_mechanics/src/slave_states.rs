@@ -13,8 +13,8 @@ use zelus_core::model::{ModelPart, Nodes, Variable};
 use zelus_core::vector3::cross;
 use zelus_structural_mechanics::variables::NORMAL;
 
-use crate::formulations::{Held, NodeState, Turning};
 use crate::friction_law::{Bound, FrictionLaw};
+use crate::node_state::{Held, NodeState, Turning};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY,
     KEPT_CONTACT_PRESSURE, MULTIPLIER_WEIGHT, NODAL_AREA, NORMAL_GAP, TANGENT_ETA, TANGENT_XI, TRIAL_TRACTION,

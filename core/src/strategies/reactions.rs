@@ -10,8 +10,8 @@ use crate::model::{ColumnOf, ModelPart, Rates};
 pub(super) fn write_reactions(part: &mut ModelPart, dofs: &DofTable, residual: &[f64], handed_on: Option<&Equations>) {
     let supported = handed_on.map(|equations| equations.supported(residual));
     let residual = supported.as_deref().unwrap_or(residual);
-    const REACTION: ColumnOf = |rates| rates.reaction;
+    const TAKEN_UP: ColumnOf = |rates| rates.reaction;
     let minus: Vec<f64> = residual.iter().map(|r| -r).collect();
-    Rates::add(&mut part.nodes.history, &[REACTION]);
-    dofs.write_column(&mut part.nodes.history, REACTION, 0, &minus);
+    Rates::add(&mut part.nodes.history, &[TAKEN_UP]);
+    dofs.write_column(&mut part.nodes.history, TAKEN_UP, 0, &minus);
 }

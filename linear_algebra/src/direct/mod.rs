@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use crate::check::{self, NAMED_EQUATIONS, Refined};
 use crate::interface::Interface;
-use crate::krylov::gmres;
+use crate::iterations::gmres;
 use crate::lu::SparseLu;
 use crate::memory;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};

@@ -22,10 +22,10 @@ use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, scale, sub, value};
 
 use crate::active_set;
+use crate::formulations::StepParameters;
 use crate::formulations::{
     Augmentation, Formulation, Kinematics, Multiplier, NodeState, PairResidual, SlaveNode, Turning,
 };
-use crate::interaction::StepParameters;
 use crate::mortar::{
     OperatorThreshold, Operators, PairGeometry, Turn, incremental_slip, is_objective, objective_slip, tangential,
     turned_slip,

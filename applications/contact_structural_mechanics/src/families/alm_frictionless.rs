@@ -9,8 +9,8 @@
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
+use crate::formulations::StepParameters;
 use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
-use crate::interaction::StepParameters;
 use crate::mortar::{Operators, PairGeometry};
 use crate::pairs::Family;
 use crate::register_contact_family;

@@ -5,8 +5,8 @@
 
 use zelus_core::scalar::Real;
 
+use crate::formulations::StepParameters;
 use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
-use crate::interaction::StepParameters;
 use crate::mortar::{Operators, PairGeometry, tangential};
 use crate::pairs::Family;
 use crate::register_contact_family;

@@ -6,8 +6,8 @@
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, scale};
 
+use crate::formulations::StepParameters;
 use crate::formulations::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveNode};
-use crate::interaction::StepParameters;
 use crate::mortar::{Operators, PairGeometry};
 
 /// Penalty method by node, with or without friction. Its tangent is that of given tractions.

@@ -7,8 +7,8 @@ use zelus_core::vector3::scale;
 
 use super::alm_frictionless::AlmFrictionless;
 use super::penalty_by_node::PenaltyByNode;
+use crate::formulations::StepParameters;
 use crate::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
-use crate::interaction::StepParameters;
 use crate::mortar::{Operators, PairGeometry};
 use crate::pairs::{ByNode, Family};
 use crate::register_contact_family;

@@ -8,30 +8,10 @@
 //! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
 //!   vectors, and e is at right angles to m and n.
 
-use super::{Kinematics, Multiplier, NodeState, PairResidual, SlaveNode};
+use super::{Kinematics, Multiplier, PairResidual, SlaveNode};
+use crate::node_state::{Held, NodeState};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, normalised, scale, sub};
-
-/// What becomes of a component of a multiplier.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Held {
-    /// It has an equation of its own.
-    #[default]
-    Free,
-    /// It keeps its value.
-    Kept,
-    /// It is the mean of those of the facet's nodes that are in contact and free.
-    Follows,
-    /// It keeps its value while the node sticks: supports move what it faces.
-    KeptInStick,
-}
-
-impl Held {
-    /// Whether both sides stand still along it.
-    pub fn is_still(self) -> bool {
-        matches!(self, Self::Kept | Self::Follows)
-    }
-}
 
 /// Square of the free part of a normal below which nothing can move along it.
 const LEAST_FREE: f64 = 1e-2;

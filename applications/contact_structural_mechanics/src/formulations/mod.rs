@@ -22,17 +22,18 @@ pub mod mesh_tying;
 pub mod multiplier;
 pub mod nitsche;
 pub mod pair;
+pub(crate) mod step_parameters;
 pub mod system;
 
-pub use held::Held;
+pub use crate::node_state::{Held, NodeState, Turning};
 pub use last_state::LastState;
 pub use mesh_tying::MeshTying;
 pub use multiplier::Multiplier;
 pub use nitsche::{Nitsche, NitscheVariant, NodeOfPoints, PointForces, SlaveFace};
-pub use pair::{Kinematics, NodeState, PairResidual, SlaveNode, Turning};
+pub use pair::{Kinematics, PairResidual, SlaveNode};
+pub use step_parameters::{NormalVariation, StepParameters};
 pub use system::{by_normals, local_size, residual, tangent};
 
-use crate::interaction::StepParameters;
 use crate::mortar::{Operators, PairGeometry};
 use zelus_core::scalar::Real;
 

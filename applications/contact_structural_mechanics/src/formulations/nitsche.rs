@@ -17,9 +17,9 @@
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
 
+use super::StepParameters;
 use super::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveNode};
 use crate::friction_law::Bound;
-use crate::interaction::StepParameters;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
 use crate::mortar::{Operators, PairGeometry, SegmentationSettings, Turn, shape, tangential};

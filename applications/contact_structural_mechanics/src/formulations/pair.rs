@@ -1,41 +1,9 @@
 //! What a formulation sees of a pair, and what it returns.
 
-use super::Held;
-use crate::flags::SLIP;
 use crate::friction_law::Bound;
 use crate::mortar::{Operators, weighted_gap};
-use zelus_core::model::flags::{ACTIVE, Flags};
+use crate::node_state::{Held, NodeState, Turning};
 use zelus_core::scalar::Real;
-
-/// Whether a slave node is in contact, and how.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum NodeState {
-    /// Not in contact.
-    #[default]
-    Inactive,
-    /// In contact and held in the tangential direction.
-    Stick,
-    /// In contact and sliding; the active state of frictionless contact.
-    Slip,
-}
-
-impl NodeState {
-    /// The state that the flags ACTIVE and SLIP of a node say.
-    #[inline]
-    pub fn of_flags(flags: &Flags, node: usize) -> Self {
-        match (flags.is(ACTIVE, node), flags.is(SLIP, node)) {
-            (false, _) => Self::Inactive,
-            (true, false) => Self::Stick,
-            (true, true) => Self::Slip,
-        }
-    }
-
-    /// Whether the node is in contact.
-    #[inline]
-    pub fn is_active(self) -> bool {
-        self != Self::Inactive
-    }
-}
 
 /// Constants of a slave node during an assembly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,19 +36,6 @@ pub struct SlaveNode {
     pub carried: [f64; 3],
     /// Traction of all pairs of the node, where a family has it before its pairs are looked at (force per area).
     pub traction: [f64; 3],
-}
-
-/// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ c WS/A, τ = q̂/|q̂|.
-///
-/// Zero where the direction is a sign, as in the plane. It enters the tangent only; without it a body that slides is free
-/// across its direction.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Turning {
-    /// κ b/|q̂|, with the sum b of the bounds that the pairs of the node state: slip across τ, in shares of the slip that stick
-    /// would forbid. By the penalty method 1/|q|: turning by trial traction.
-    pub by_slip: f64,
-    /// k/|q̂|: traction by multiplier across τ, in shares of the bound.
-    pub by_multiplier: f64,
 }
 
 /// Operators, positions, normals and multipliers of a pair in one scalar.

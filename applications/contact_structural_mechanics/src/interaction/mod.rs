@@ -32,7 +32,6 @@ mod set_stage;
 mod setup;
 mod slider_forces;
 mod sliding;
-mod step_parameters;
 mod step_search;
 #[cfg(test)]
 mod tangent_tests;
@@ -40,6 +39,7 @@ mod tying_interaction;
 mod uzawa;
 mod work;
 
+use crate::formulations::step_parameters;
 pub use adaptation::{AdaptationSettings, ExplicitPenalty};
 pub use contact_interaction::ContactInteraction;
 pub use contact_settings::ContactSettings;
@@ -47,6 +47,5 @@ pub use friction::FrictionSettings;
 pub use mpc_interaction::MpcInteraction;
 pub use mpc_relation::Weights;
 pub use mpc_settings::{MpcKind, MpcSettings};
-pub use step_parameters::{NormalVariation, StepParameters};
 pub use tying_interaction::{TyingInteraction, TyingSettings};
 pub use uzawa::UzawaSettings;

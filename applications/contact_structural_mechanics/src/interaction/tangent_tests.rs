@@ -15,9 +15,9 @@ use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use super::decision::Rules;
 use super::sliding::find_tangents;
-use super::{NormalVariation, StepParameters};
 use crate::active_set::{Margin, SlipRule};
 use crate::formulations::{Augmentation, Nitsche};
+use crate::formulations::{NormalVariation, StepParameters};
 use crate::friction_law::COULOMB;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles, centre_normal};
 use crate::mortar::tests::Noise;

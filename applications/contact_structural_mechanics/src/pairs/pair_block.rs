@@ -16,7 +16,7 @@ use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{self, Augmentation, Formulation, Kinematics, SlaveNode};
-use crate::interaction::{NormalVariation, StepParameters};
+use crate::formulations::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::shapes::for_shapes;

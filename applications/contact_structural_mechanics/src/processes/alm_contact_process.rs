@@ -17,10 +17,9 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search, segmentation, without_computing_part};
 use crate::active_set::Margin;
 use crate::compatibility::{Refusal, Use, refusal};
-use crate::formulations::{Augmentation, Nitsche, NitscheVariant};
+use crate::formulations::{Augmentation, Nitsche, NitscheVariant, NormalVariation};
 use crate::interaction::{
-    AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, NormalVariation,
-    UzawaSettings,
+    AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, UzawaSettings,
 };
 use crate::interface::{AlmParameters, NodalNormals};
 use crate::mortar::OperatorThreshold;

@@ -1,34 +1,18 @@
 //! Krylov engines: conjugate gradients and restarted GMRES with a preconditioner, on systems whose multipliers are
 //! condensed.
 
-mod answers;
-mod conjugate_gradient;
-mod gmres;
-
 use std::time::Instant;
-
-pub(crate) use answers::Answers;
-pub(crate) use conjugate_gradient::conjugate_gradient;
-pub(crate) use gmres::gmres;
 
 use crate::check;
 use crate::condensation::{Condensation, CondensationSettings, NotCondensable};
 use crate::csr::Csr;
 use crate::direct::DirectSolver;
+use crate::iterations::{Progress, conjugate_gradient, gmres};
 use crate::memory;
 use crate::precondition::{self, Precondition};
 use crate::solver::{DirectSettings, KrylovSettings, LinearSolver, Multipliers, SolveError, SolveReport};
 use crate::system::{Stamps, System};
 use crate::vector;
-
-/// How far an iteration came.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Progress {
-    pub(crate) iterations: usize,
-    /// Relative residual of the first guess.
-    pub(crate) start: f64,
-    pub(crate) relative_residual: f64,
-}
 
 /// Which iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,181 @@
+//! The order of the code: a module uses only those above it in the list of its crate, and the framework names no physics.
+
+use std::path::{Path, PathBuf};
+
+/// Crates whose `lib.rs` lists its modules from what is used to what uses.
+const CRATES: [&str; 7] = [
+    "core/src",
+    "linear_algebra/src",
+    "petsc/src",
+    "applications/structural_mechanics/src",
+    "applications/contact_structural_mechanics/src",
+    "applications/constrained_optimization/src",
+    "src",
+];
+
+/// Variables, flags and keys of applications.
+const PHYSICS: [&str; 24] = [
+    "DISPLACEMENT",
+    "VELOCITY",
+    "ACCELERATION",
+    "REACTION",
+    "ROTATION",
+    "TEMPERATURE",
+    "PRESSURE",
+    "VOLUME_ACCELERATION",
+    "MIDDLE_VELOCITY",
+    "FORCE_RESIDUAL",
+    "NODAL_MASS",
+    "NORMAL",
+    "RAYLEIGH_ALPHA",
+    "RAYLEIGH_BETA",
+    "DENSITY",
+    "YOUNG_MODULUS",
+    "THICKNESS",
+    "CONTACT",
+    "SLAVE",
+    "MASTER",
+    "SLIP",
+    "contact_model_part",
+    "mesh_tying_model_part",
+    "assume_master_slave",
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The code of a file without comments and without its tests; nothing of files that are tests.
+fn code(path: &Path) -> String {
+    let name = path.file_name().unwrap().to_string_lossy();
+    if name.contains("test") {
+        return String::new();
+    }
+    let text = std::fs::read_to_string(path).unwrap();
+    let text = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+    text.lines().filter(|line| !line.trim_start().starts_with("//")).map(|line| format!("{line}\n")).collect()
+}
+
+fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, out);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// The modules that `lib.rs` lists.
+fn listed(folder: &Path) -> Vec<String> {
+    let lib = std::fs::read_to_string(folder.join("lib.rs")).unwrap();
+    let module = |line: &str| {
+        let line = line.trim();
+        let line = line.strip_prefix("pub(crate) ").or(line.strip_prefix("pub ")).unwrap_or(line);
+        line.strip_prefix("mod ")?.strip_suffix(';').map(str::to_owned)
+    };
+    lib.lines().filter_map(module).collect()
+}
+
+fn word_at(text: &str) -> &str {
+    &text[..text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len())]
+}
+
+/// Names after `prefix`, those of `prefix{a::b, c}` too.
+fn names_after<'t>(text: &'t str, prefix: &str) -> Vec<&'t str> {
+    let mut out = Vec::new();
+    for (at, _) in text.match_indices(prefix) {
+        let is_word = text[..at].chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '$');
+        if is_word {
+            continue;
+        }
+        let rest = &text[at + prefix.len()..];
+        let Some(list) = rest.strip_prefix('{') else {
+            out.push(word_at(rest));
+            continue;
+        };
+        let mut depth = 1;
+        let mut begins = true;
+        for (i, c) in list.char_indices() {
+            match c {
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                ',' if depth == 1 => begins = true,
+                _ if begins && !c.is_whitespace() => {
+                    out.push(word_at(&list[i..]));
+                    begins = false;
+                }
+                _ => {}
+            }
+            if depth == 0 {
+                break;
+            }
+        }
+    }
+    out
+}
+
+/// What a file uses of the crate it is in: names of modules at its top.
+fn used(text: &str, is_at_top: bool) -> Vec<&str> {
+    let mut out = names_after(text, "crate::");
+    if is_at_top {
+        out.extend(names_after(text, "super::"));
+    }
+    out
+}
+
+/// What uses a module below itself, as "module uses module (file)".
+fn reaching_forward(folder: &Path) -> Vec<String> {
+    let modules = listed(folder);
+    let mut files = Vec::new();
+    sources(folder, &mut files);
+    let mut out = Vec::new();
+    for file in files {
+        let inside = file.strip_prefix(folder).unwrap();
+        let top = inside.iter().next().unwrap().to_string_lossy();
+        let Some(own) = modules.iter().position(|module| *module == top.trim_end_matches(".rs")) else { continue };
+        let text = code(&file);
+        for name in used(&text, inside.iter().count() == 1) {
+            if modules.iter().position(|module| module == name).is_some_and(|at| at > own) {
+                out.push(format!("{} uses {name} ({})", modules[own], inside.display()));
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn a_module_uses_only_those_above_it() {
+    let mut wrong = Vec::new();
+    for name in CRATES {
+        let folder = root().join(name);
+        assert!(!listed(&folder).is_empty(), "{name} lists no modules");
+        wrong.extend(reaching_forward(&folder).into_iter().map(|what| format!("{name}: {what}")));
+    }
+    assert!(wrong.is_empty(), "used before they are listed:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_way_of_naming_a_module_is_seen() {
+    let text =
+        "use crate::a::B;\nuse crate::{c::D, e::{F, G}, h};\nlet x = crate::i::j();\n$crate::k::l();\nuse super::m::N;";
+    assert_eq!(used(text, true), ["a", "c", "e", "h", "i", "m"]);
+    assert_eq!(used(text, false), ["a", "c", "e", "h", "i"]);
+}
+
+#[test]
+fn the_framework_names_no_physics() {
+    let mut files = Vec::new();
+    sources(&root().join("core/src"), &mut files);
+    let mut wrong = Vec::new();
+    for file in files {
+        let text = code(&file);
+        let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        let named: Vec<&str> = words.filter(|word| PHYSICS.contains(word)).collect();
+        if !named.is_empty() {
+            wrong.push(format!("{}: {}", file.strip_prefix(root()).unwrap().display(), named.join(", ")));
+        }
+    }
+    assert!(wrong.is_empty(), "variables, flags or keys of applications:\n{}", wrong.join("\n"));
+}
