@@ -2,6 +2,7 @@
 
 use super::cutting::Cutting;
 use crate::assembly::System;
+use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::find_kind;
 use crate::model::{EntityKind, ModelPart, Rates, Role};
@@ -308,6 +309,13 @@ impl SolverSettings {
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
             line_search: None,
         };
+        if !scheme.takes_first_order()
+            && let Some(column) = world().first_to_say(first_order(system))
+        {
+            let fact = format!("{column} has no second derivative by time, which the scheme integrates");
+            let remedy = "use a scheme for rates of the first order: \"bdf1\" to \"bdf5\", \"pseudo_static\"";
+            return Err(self.settings.error("scheme_type", "first-order", fact).remedy(remedy).into());
+        }
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
         let empty = Node::from_json(&serde_json::json!({}), &self.settings.place())?;
@@ -359,6 +367,13 @@ pub(super) fn has_inertia(deck: &Node) -> bool {
         let moves = |name: &str| Rates::all().any(|rates| rates.second == Some(name));
         !entry.build.explicit && entry.build.variables.iter().any(|(name, _)| moves(name))
     })
+}
+
+/// An unknown of blocks of this rank that changes by its first derivative alone.
+fn first_order(system: &System) -> Option<String> {
+    let unknowns = system.elements.iter().chain(&system.conditions).flat_map(|block| block.unknowns());
+    let mut columns = unknowns.map(|unknown| unknown.variable.column);
+    columns.find(|column| Rates::of(column).is_some_and(|rates| rates.second.is_none())).map(str::to_owned)
 }
 
 /// Replaces points and bars of space by those of the plane in a plane problem, where they are the same.
