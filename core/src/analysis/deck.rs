@@ -11,11 +11,10 @@ use crate::parameters::{Document, Node, Settings, Value};
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::registry;
 
-/// The parsed deck and its folder.
-pub(super) fn open(path: &Path) -> Result<(Node, PathBuf)> {
-    let document = Document::read(path)?;
+/// The parsed deck, and its folder.
+pub(super) fn open(path: &Path) -> Result<(Document, PathBuf)> {
     let folder = path.parent().map(Path::to_owned).unwrap_or_default();
-    Ok((document.root.clone(), folder))
+    Ok((Document::read(path)?, folder))
 }
 
 /// What a deck says of one stage.

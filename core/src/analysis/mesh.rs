@@ -28,9 +28,11 @@ pub struct DeckMesh {
 /// A deck or mesh that cannot be read.
 pub fn read_deck_mesh(path: &Path) -> Result<DeckMesh> {
     let (deck, folder) = open(path)?;
-    let all = stages(&deck, &mut RunReport::default())?;
+    let all = stages(&deck.root, &mut RunReport::default())?;
     let stage = all.first().ok_or_else(|| {
-        Error::from(Diagnostic::error("no-stage", "the deck has no stage").at(deck.place()).remedy("list one to run"))
+        Error::from(
+            Diagnostic::error("no-stage", "the deck has no stage").at(deck.root.place()).remedy("list one to run"),
+        )
     })?;
     let mut problems = Report::new();
     let mut settings = modernise(&stage.settings, &mut problems);

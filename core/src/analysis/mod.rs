@@ -17,6 +17,7 @@ mod simulation;
 mod solver;
 mod stage;
 mod time_stepping;
+mod unheeded;
 
 pub use cutting::Cutting;
 pub use mesh::{DeckMesh, read_deck_mesh};

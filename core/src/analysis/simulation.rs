@@ -45,7 +45,8 @@ pub struct Simulation {
     more: Vec<Box<dyn Process>>,
     pool: Arc<rayon::ThreadPool>,
     report: RunReport,
-    checkpoints: Option<Diagnostic>,
+    /// Warnings of the deck as a whole, which no monitor has heard of.
+    untold: Vec<Diagnostic>,
 }
 
 impl Simulation {
@@ -55,7 +56,9 @@ impl Simulation {
     /// A file that cannot be read or is no JSON; stages that are not there; threads that cannot be started.
     pub fn open(path: &Path, options: &RunOptions) -> Result<Self> {
         let (deck, folder) = open(path)?;
-        Self::new(&deck, folder, options)
+        let mut simulation = Self::new(&deck.root, folder, options)?;
+        simulation.untold.splice(..0, deck.warnings);
+        Ok(simulation)
     }
 
     /// A deck that is in memory; `folder` is where paths in it begin.
@@ -84,7 +87,7 @@ impl Simulation {
             more: Vec::new(),
             pool: Arc::new(pool),
             report,
-            checkpoints: warning_of_checkpoints(deck),
+            untold: warning_of_checkpoints(deck).into_iter().collect(),
         })
     }
 
@@ -205,7 +208,7 @@ impl Simulation {
         if self.stage.is_some() || self.over == self.stages.len() {
             return Ok(());
         }
-        if let Some(warning) = self.checkpoints.take() {
+        for warning in std::mem::take(&mut self.untold) {
             self.report.warnings.push(warning.to_string());
             monitor.warn(&warning);
         }

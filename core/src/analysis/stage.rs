@@ -13,6 +13,7 @@ use super::saved::Saved;
 use super::sharing::{distribute, read_the_same};
 use super::solver::{SolverSettings, check_dimensions};
 use super::time_stepping::TimeStepping;
+use super::unheeded::{check_tolerances, warn_of_extensions, warn_of_unheeded};
 use crate::assembly::System;
 use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
@@ -101,6 +102,8 @@ impl Stage {
             }
             start.zip(end)
         });
+        warn_of_unheeded(&mut deck, times, &mut problems);
+        deck.get("solver_settings").into_iter().for_each(|solver| check_tolerances(solver, &mut problems));
         let user = problems.absorb(deck.require("solver_settings").cloned());
         let solver = user.and_then(|user| {
             let solver = SolverSettings::new(&user, &mut problems);
@@ -160,6 +163,7 @@ impl Stage {
         problems.absorb(system.make_blocks(part));
         problems = problems_of_all(problems)?;
         warn_of_lonely_nodes(part, &system, &mut problems);
+        warn_of_extensions(deck.require("solver_settings")?, &system, &mut problems);
         for interaction in &mut system.interactions {
             problems.absorb(interaction.initialize(part));
         }

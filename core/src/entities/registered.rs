@@ -49,6 +49,12 @@ macro_rules! entity_entry {
                 self
             }
 
+            /// Variables of its data by which it loads the model.
+            pub const fn loads(mut self, loads: &'static [&'static str]) -> Self {
+                self.kind.loads = Some(loads);
+                self
+            }
+
             /// Variables with history that its nodes have: name and number of components.
             pub const fn nodal(mut self, nodal: &'static [(&'static str, usize)]) -> Self {
                 self.kind.nodal = nodal;

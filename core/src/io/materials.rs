@@ -1,9 +1,10 @@
 //! The materials file: properties, laws and tables, given to the entities of model parts.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::variables::{composed_law, kind_of, last_of_path, law_name, unknown_variable, without_effect};
-use crate::diagnostics::{Diagnostic, Error, Report, Result};
+use crate::diagnostics::{Diagnostic, Error, Place, Report, Result};
 use crate::model::{ModelPart, Properties, PropertyValue, Table, VariableKind};
 use crate::parameters::{Document, Node};
 
@@ -26,6 +27,7 @@ pub fn read_materials(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnosti
 pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
     let mut report = Report::new();
     let mut seen: Vec<String> = Vec::new();
+    let mut ids: BTreeMap<usize, Place> = BTreeMap::new();
     for item in root.require("properties")?.array()? {
         let Some((mut name, id)) = report.absorb(head(item)) else { continue };
         if !is_part_of(&name, &part.name)
@@ -36,6 +38,14 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
         }
         if let Some(problem) = misplaced(&name, &seen, part) {
             report.push(problem.at(item.key_place("model_part_name")));
+        }
+        if let Some(first) = ids.insert(id, item.place()) {
+            let fact =
+                format!("properties {id} are given twice, first at {first}: the later ones would rule both parts");
+            let remedy = "give each material a \"properties_id\" of its own";
+            report.push(
+                Diagnostic::error("repeated-properties", fact).at(item.key_place("properties_id")).remedy(remedy),
+            );
         }
         seen.push(name.clone());
         let mut properties = part.properties.remove(&id).unwrap_or_else(|| Properties::new(id));

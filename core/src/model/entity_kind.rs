@@ -36,12 +36,14 @@ pub struct EntityKind {
     pub space: usize,
     /// Variables with history that its nodes have: name and number of components.
     pub nodal: &'static [(&'static str, usize)],
+    /// Variables of its data by which it loads the model; `None` where that is not stated.
+    pub loads: Option<&'static [&'static str]>,
 }
 
 impl EntityKind {
     /// A kind on no cell.
     pub const fn new(role: Role, entry: Entry) -> Self {
-        Self { entry, role, cell: None, space: 0, nodal: &[] }
+        Self { entry, role, cell: None, space: 0, nodal: &[], loads: None }
     }
 
     /// Number of its nodes; 0 without a cell.

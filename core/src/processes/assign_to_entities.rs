@@ -7,9 +7,12 @@ use super::local_axes::LocalAxes;
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
-use crate::diagnostics::{Result, did_you_mean};
+use crate::assembly::System;
+use crate::diagnostics::{Diagnostic, Report, Result, did_you_mean};
+use crate::entities::ConditionEntry;
 use crate::model::{EntityTable, Fields, Model, ModelPart, Nodes, ScalarVariable};
 use crate::parameters::{Settings, SpaceTime};
+use crate::registry;
 
 /// What a model part holds that can carry data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,7 +144,59 @@ pub(super) fn centre(nodes: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
     crate::vector3::scale(sum, 1.0 / nodes.len() as f64)
 }
 
+impl AssignToEntities {
+    /// Why nothing acts by what is set on conditions, where that is so.
+    fn idle(&self, part: &ModelPart) -> Result<Option<String>> {
+        if self.containers != [Container::Conditions] {
+            return Ok(None);
+        }
+        let selection = self.target.selection(&part.tree)?;
+        let (table, path) = (&part.conditions, &self.target.path);
+        let mut names: Vec<&str> = self.components.iter().map(|c| c.variable.column).collect();
+        names.dedup();
+        let names = names.join(", ");
+        if selection.conditions.is_empty() && part.share.is_none() {
+            return Ok(Some(format!("{path} has no conditions that {names} could act on")));
+        }
+        let takes = |at: &u32| {
+            table.kinds[*at as usize]
+                .loads
+                .is_none_or(|loads| self.components.iter().any(|component| loads.contains(&component.variable.column)))
+        };
+        if let Some(first) = selection.conditions.first()
+            && !selection.conditions.iter().any(takes)
+            && self.components.iter().all(|component| is_load(component.variable.column))
+        {
+            let kind = table.kinds[*first as usize].name;
+            return Ok(Some(format!("no condition of {path} takes {names}; the first is a {kind}")));
+        }
+        let is_idle = |c: &EntityComponent| matches!(c.value, ScalarValue::Number(number) if number == 0.0);
+        let out_of_plane = |c: &EntityComponent| c.variable.component == Some(2) && part.info.domain_size == 2;
+        let acts = self.components.iter().filter(|c| !is_idle(c));
+        if acts.clone().count() > 0 && acts.clone().all(out_of_plane) {
+            return Ok(Some(format!("{names} of {path} has a component out of the plane only")));
+        }
+        Ok(None)
+    }
+}
+
+/// Whether conditions of any kind are loaded by that variable.
+fn is_load(name: &str) -> bool {
+    let kinds = registry::all::<ConditionEntry>();
+    kinds.iter().any(|kind| kind.loads.is_some_and(|loads| loads.contains(&name)))
+}
+
 impl Process for AssignToEntities {
+    fn check(&self, model: &Model, _system: &System, warnings: &mut Report) -> Result<()> {
+        if let Some(fact) = self.idle(model.root(&self.target.path)?)? {
+            warnings.push(
+                Diagnostic::warning("acts-on-nothing", fact)
+                    .remedy("name the part that holds the conditions to load, and the variable they take: `zelus describe` of a condition says it"),
+            );
+        }
+        Ok(())
+    }
+
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {
         self.apply(model.root_mut(&self.target.path)?)
     }

@@ -1,5 +1,6 @@
 //! Penalty, scale factor and reach of the search, from the bodies behind the interfaces and what the deck says.
 
+use zelus_core::Result;
 use zelus_core::model::ModelPart;
 
 use super::contact_settings::ContactSettings;
@@ -22,12 +23,15 @@ pub(super) fn limit(settings: &ContactSettings, threshold: f64) -> f64 {
 
 /// Writes penalty and scale factor into the part; gives the gap below which nodes and facets count as near, before factors
 /// (length), and what pairs share, with what of `before` does not come from the bodies.
+///
+/// # Errors
+/// A coefficient of friction below zero.
 pub(super) fn calibrate(
     part: &mut ModelPart,
     interfaces: &[Interface],
     settings: &ContactSettings,
     before: &StepParameters,
-) -> (f64, StepParameters) {
+) -> Result<(f64, StepParameters)> {
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
     let unit = PenaltyUnit::of(&part.nodes.initial, part.info.domain_size == 2 && !settings.axisymmetric);
     // Only penalties of weighted gaps hold an area.
@@ -68,10 +72,10 @@ pub(super) fn calibrate(
             ..settings.operator_threshold
         },
         stiffness: of_bodies,
-        slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction),
+        slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction)?,
         ..before.clone()
     };
-    (threshold, parameters)
+    Ok((threshold, parameters))
 }
 
 /// Mean of NODAL_H over the nodes of a side; of an open interface over all its nodes.

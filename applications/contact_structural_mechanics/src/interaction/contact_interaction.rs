@@ -95,7 +95,7 @@ impl Interaction for ContactInteraction {
         self.contact.setup.settings.adaptation.dynamic_factor = (explicit.is_some()
             && self.contact.setup.settings.weighted_penalty)
             || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
-        self.contact.setup.calibrate(part, &self.contact.pairing.interfaces);
+        self.contact.setup.calibrate(part, &self.contact.pairing.interfaces)?;
         self.growth = explicit.map(|explicit| explicit.growth(part));
         if self.contact.setup.by_points() {
             let thickness = self.contact.setup.parameters.segmentation.axisymmetric;

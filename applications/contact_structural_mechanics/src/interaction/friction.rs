@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{ModelPart, Nodes};
 use zelus_core::vector3::{add, dot, norm, scale};
@@ -44,25 +45,37 @@ impl Default for FrictionSettings {
 
 /// Writes the number of the law, the mean over the facets of a node, and says how stick and slip are told apart.
 /// Facets whose properties have none count with the pair's coefficient where the law takes one, else with what the node
-/// has. Without a number anywhere, contact always slides.
+/// has. Without a number anywhere, contact always slides, and a warning says so.
+///
+/// # Errors
+/// A number below zero.
 pub(super) fn prepare(
     part: &mut ModelPart,
     interfaces: &[Interface],
     settings: &FrictionSettings,
     friction: Friction,
-) -> SlipRule {
+) -> Result<SlipRule> {
     let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
     let mut largest = 0.0_f64;
+    let mut is_given = false;
     let law = settings.law;
     let written = part.nodes.values.values(law.variable, 0);
     for interface in interfaces {
-        let given = settings.coefficients.get(&interface.key).copied().filter(|c| law.by_coefficients && *c > 0.0);
+        let listed = settings.coefficients.get(&interface.key).copied().filter(|_| law.by_coefficients);
+        is_given |= listed.is_some();
+        let given = listed.filter(|coefficient| *coefficient > 0.0);
         for facet in &interface.facets {
             let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable.name()));
             for &node in &facet.nodes {
                 let nodal = written.get(node as usize).copied().filter(|number| *number > 0.0);
                 let coefficient = own.or(given).or(nodal).unwrap_or(0.0);
                 largest = largest.max(coefficient);
+                is_given |= own.is_some() || nodal.is_some();
+                if coefficient < 0.0 {
+                    let (name, id) = (law.variable.name(), facet.properties);
+                    let fact = format!("{name} of properties {id} is {coefficient}, it must be 0 or more");
+                    return Err(Diagnostic::error("negative-friction", fact).remedy("write a number from 0").into());
+                }
                 let (sum, count) = &mut sums[node as usize];
                 *sum += coefficient;
                 *count += 1;
@@ -73,7 +86,16 @@ pub(super) fn prepare(
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {
         *slot = sum / count.max(1) as f64;
     }
-    if friction == Friction::PureSlip || largest <= 0.0 { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) }
+    if friction == Friction::Coulomb && !is_given {
+        let name = law.variable.name();
+        let fact = format!("contact with friction has no {name}: everything slides freely");
+        let remedy = format!(
+            "give {name} in the materials of the contact surfaces, or \"friction_coefficients\" of the process"
+        );
+        part.messages.push(Diagnostic::warning("no-friction", fact).remedy(remedy));
+    }
+    let pure = friction == Friction::PureSlip || largest <= 0.0;
+    Ok(if pure { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) })
 }
 
 /// Step start: every so many steps the nodes with friction begin in stick.

@@ -248,7 +248,7 @@ impl Interaction for MpcInteraction {
         if self.settings.kind == MpcKind::Frictional {
             part.nodes.history.add(&WEIGHTED_SLIP);
             let friction = if self.settings.pure_slip { Friction::PureSlip } else { Friction::Coulomb };
-            self.friction.rule = friction::prepare(part, &self.interfaces, &self.settings.friction, friction);
+            self.friction.rule = friction::prepare(part, &self.interfaces, &self.settings.friction, friction)?;
             let facet = &self.interfaces[0].facets[0];
             let name = condition_name("MPCMortarContactCondition", facet.shape, facet.shape);
             self.friction.entry = Some(require_kind(Role::Condition, &name)?);

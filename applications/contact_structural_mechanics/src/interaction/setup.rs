@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use zelus_core::Result;
 use zelus_core::communication::world;
 use zelus_core::model::ModelPart;
 
@@ -53,10 +54,14 @@ impl Setup {
     }
 
     /// Finds penalty, scale factor and reach from the bodies behind the interfaces.
-    pub(super) fn calibrate(&mut self, part: &mut ModelPart, interfaces: &[Interface]) {
+    ///
+    /// # Errors
+    /// A coefficient of friction below zero.
+    pub(super) fn calibrate(&mut self, part: &mut ModelPart, interfaces: &[Interface]) -> Result<()> {
         self.adapt_search(part);
-        let (threshold, parameters) = calibrate(part, interfaces, &self.settings, &self.parameters);
+        let (threshold, parameters) = calibrate(part, interfaces, &self.settings, &self.parameters)?;
         (self.threshold, self.parameters) = (threshold, Arc::new(parameters));
+        Ok(())
     }
 
     /// Meshes of very different sizes need a longer reach: both factors grow with the ratio of the sizes.

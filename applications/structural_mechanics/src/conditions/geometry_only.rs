@@ -40,30 +40,30 @@ impl<const NODES: usize> Kernel<NODES, 0> for GeometryOnly {
     }
 }
 
-register_conditions! { "PointCondition", 0, "A point of the boundary without load", "geometry only";
+register_conditions! { "PointCondition", 0, "A point of the boundary without load", "geometry only", &[];
 "2D1N": GeometryOnly, 1, 0;
 "3D1N": GeometryOnly, 1, 0 }
 
-register_conditions! { "LineCondition", 1, "A line of the boundary without load", "geometry only";
+register_conditions! { "LineCondition", 1, "A line of the boundary without load", "geometry only", &[];
 "2D2N": GeometryOnly, 2, 0;
 "2D3N": GeometryOnly, 3, 0;
 "3D2N": GeometryOnly, 2, 0;
 "3D3N": GeometryOnly, 3, 0 }
 
-register_conditions! { "SurfaceCondition", 2, "A surface of the boundary without load", "geometry only";
+register_conditions! { "SurfaceCondition", 2, "A surface of the boundary without load", "geometry only", &[];
 "3D3N": GeometryOnly, 3, 0;
 "3D4N": GeometryOnly, 4, 0;
 "3D6N": GeometryOnly, 6, 0;
 "3D8N": GeometryOnly, 8, 0;
 "3D9N": GeometryOnly, 9, 0 }
 
-register_conditions! { "Condition", 1, "A line of the boundary without load, as decks of earlier versions name it", "geometry only";
+register_conditions! { "Condition", 1, "A line of the boundary without load, as decks of earlier versions name it", "geometry only", &[];
 "2D": GeometryOnly, 2, 0;
 "2D2N": GeometryOnly, 2, 0;
 "2D3N": GeometryOnly, 3, 0 }
 
 register_conditions! { "Condition", 2, "A surface of the boundary without load, as decks of earlier versions name it",
-"geometry only";
+"geometry only", &[];
 "3D": GeometryOnly, 3, 0;
 "3D3N": GeometryOnly, 3, 0;
 "3D4N": GeometryOnly, 4, 0 }

@@ -122,7 +122,7 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Spa
 
 register_conditions! { "LineLoadCondition", 1,
 "Force per length (LINE_LOAD) and pressure on a line: NEGATIVE_FACE_PRESSURE presses a body on its left",
-"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ";
+"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ", &super::load::loads("LINE_LOAD");
 "2D2N": Following<LineLoad<false>>, 2, 4;
 "2D3N": Following<LineLoad<false>>, 3, 6;
 "3D2N": Following<SpatialLineLoad>, 2, 6;
@@ -130,13 +130,13 @@ register_conditions! { "LineLoadCondition", 1,
 
 register_conditions! { "AxisymLineLoadCondition", 1,
 "Force per area (LINE_LOAD) and pressure on a surface of revolution: NEGATIVE_FACE_PRESSURE presses a body on its left",
-"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ";
+"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) 2πr/THICKNESS dξ", &super::load::loads("LINE_LOAD");
 "2D2N": Following<LineLoad<true>>, 2, 4;
 "2D3N": Following<LineLoad<true>>, 3, 6 }
 
 register_conditions! { "SmallDisplacementLineLoadCondition", 1,
 "Force per length (LINE_LOAD) and pressure on a line where it was at the start",
-"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ with t of the initial positions";
+"f_i = ∫ N_i (q |t| − p (t_y, −t_x)) dξ with t of the initial positions", &super::load::loads("LINE_LOAD");
 "2D2N": AtStart<LineLoad<false>>, 2, 4;
 "2D3N": AtStart<LineLoad<false>>, 3, 6;
 "3D2N": AtStart<SpatialLineLoad>, 2, 6;

@@ -138,12 +138,18 @@ pub(super) fn interpolate<const NODES: usize>(n: &[f64; NODES], values: &[[f64; 
     out
 }
 
-/// Registers a condition for shapes: name, local dimension, texts; then suffix, kernel, nodes and unknowns of each.
+/// Variables by which a distributed load acts: the vector `own` and pressures.
+pub(super) const fn loads(own: &'static str) -> [&'static str; 4] {
+    [own, "PRESSURE", "NEGATIVE_FACE_PRESSURE", "POSITIVE_FACE_PRESSURE"]
+}
+
+/// Registers a condition for shapes: name, local dimension, texts, variables of its load; then suffix, kernel, nodes and unknowns of each.
 macro_rules! register_conditions {
-    ($name:literal, $dim:literal, $about:literal, $source:literal; $($suffix:literal: $kernel:ty, $nodes:literal, $size:literal);+) => {
+    ($name:literal, $dim:literal, $about:literal, $source:literal, $loads:expr; $($suffix:literal: $kernel:ty, $nodes:literal, $size:literal);+) => {
         $(const _: () = { use zelus_core::entities::ConditionEntry; zelus_core::register! { ConditionEntry concat!($name, $suffix),
             about: $about,
             source: $source,
+            loads: $loads,
             cell: zelus_core::geometry::Shape::of($dim, $nodes),
             space: ($suffix.as_bytes()[0] - b'0') as usize,
             build: zelus_core::entities::Build::Block(

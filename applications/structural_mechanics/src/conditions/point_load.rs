@@ -46,10 +46,10 @@ impl<const AXISYMMETRIC: bool, const SIZE: usize> Kernel<1, SIZE> for PointLoad<
     }
 }
 
-register_conditions! { "PointLoadCondition", 0, "Force on a node: POINT_LOAD", "f = POINT_LOAD";
+register_conditions! { "PointLoadCondition", 0, "Force on a node: POINT_LOAD", "f = POINT_LOAD", &["POINT_LOAD"];
 "2D1N": PointLoad<false>, 1, 2;
 "3D1N": PointLoad<false>, 1, 3 }
 
 register_conditions! { "AxisymPointLoadCondition", 0, "Force on a circle: POINT_LOAD per length",
-"f = POINT_LOAD 2πr/THICKNESS";
+"f = POINT_LOAD 2πr/THICKNESS", &["POINT_LOAD"];
 "2D1N": PointLoad<true>, 1, 2 }

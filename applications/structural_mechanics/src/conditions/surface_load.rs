@@ -71,7 +71,7 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Sur
 
 register_conditions! { "SurfaceLoadCondition", 2,
 "Force per area (SURFACE_LOAD) and pressure on a surface: POSITIVE_FACE_PRESSURE presses a body its normal points out of",
-"f_i = ∫ N_i (q |n| + p n) dξ dη, n = t_1 × t_2";
+"f_i = ∫ N_i (q |n| + p n) dξ dη, n = t_1 × t_2", &super::load::loads("SURFACE_LOAD");
 "3D3N": Following<SurfaceLoad>, 3, 9;
 "3D4N": Following<SurfaceLoad>, 4, 12;
 "3D6N": Following<SurfaceLoad>, 6, 18;
@@ -80,7 +80,7 @@ register_conditions! { "SurfaceLoadCondition", 2,
 
 register_conditions! { "SmallDisplacementSurfaceLoadCondition", 2,
 "Force per area (SURFACE_LOAD) and pressure on a surface where it was at the start",
-"f_i = ∫ N_i (q |n| + p n) dξ dη with n of the initial positions";
+"f_i = ∫ N_i (q |n| + p n) dξ dη with n of the initial positions", &super::load::loads("SURFACE_LOAD");
 "3D3N": AtStart<SurfaceLoad>, 3, 9;
 "3D4N": AtStart<SurfaceLoad>, 4, 12;
 "3D6N": AtStart<SurfaceLoad>, 6, 18;

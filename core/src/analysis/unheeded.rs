@@ -1,0 +1,175 @@
+//! Warnings of what a deck says and nothing heeds: keys that nothing reads, processes that never act, settings without a user.
+
+use super::older_decks::for_each_process;
+use super::solver::SolverExtensionEntry;
+use crate::assembly::System;
+use crate::diagnostics::{Diagnostic, Report, did_you_mean};
+use crate::parameters::{Interval, Node};
+use crate::registry;
+
+/// Objects of a deck that no registered settings check, with the keys that are read there, or that need no word.
+const OBJECTS: [(&str, &[&str]); 4] = [
+    (
+        "problem_data",
+        &[
+            "problem_name",
+            "parallel_type",
+            "echo_level",
+            "start_time",
+            "end_time",
+            "like",
+            "time_step",
+            "domain_size",
+            "model_part_name",
+            "solver_type",
+        ],
+    ),
+    (
+        "solver_settings.model_import_settings",
+        &[
+            "input_type",
+            "input_filename",
+            "input_file_label",
+            "name",
+            "skip_timer",
+            "partition_in_memory",
+            "ignore_variables_not_in_solution_step_data",
+            "reorder",
+            "reorder_consecutive",
+            "perform_partitioning",
+        ],
+    ),
+    ("solver_settings.material_import_settings", &["materials_filename"]),
+    (
+        "solver_settings.linear_solver_settings",
+        &[
+            "solver_type",
+            "tolerance",
+            "max_iteration",
+            "scaling",
+            "verbosity",
+            "preconditioner_type",
+            "smoother_type",
+            "krylov_type",
+            "gmres_krylov_space_dimension",
+            "coarsening_type",
+            "coarse_enough",
+            "block_size",
+            "use_block_matrices_if_possible",
+            "max_levels",
+            "provide_coordinates",
+            "pre_sweeps",
+            "post_sweeps",
+            "max_neighbours",
+            "reform_preconditioner_at_each_step",
+            "linear_solver_settings",
+            "inner_solver_settings",
+            "direct_below",
+            "petsc_engine",
+            "petsc_options",
+        ],
+    ),
+];
+
+/// Keys of a listed process beside its parameters; others that begin with an underscore or "comment" are words to readers.
+const OF_PROCESS: [&str; 9] = [
+    "python_module",
+    "kratos_module",
+    "process_name",
+    "Parameters",
+    "help",
+    "check",
+    "name",
+    "implemented_in_file",
+    "implemented_in_module",
+];
+
+/// Keys that nothing reads, and intervals outside the times of the run.
+pub(super) fn warn_of_unheeded(deck: &mut Node, times: Option<(f64, f64)>, report: &mut Report) {
+    for (path, known) in OBJECTS {
+        let Some(object) = deck.get_path(path) else { continue };
+        warn_of_keys(object, path, known, report);
+    }
+    warn_of_entries(deck, report);
+    let Some((start, end)) = times else { return };
+    for_each_process(deck, |_, parameters| {
+        let Some(node) = parameters.get("interval") else { return };
+        let Ok(Interval { begin, end: last }) = Interval::from_node(node) else { return };
+        let problem = if last < begin {
+            let fact = format!("the interval {node} ends before it begins: the process never acts");
+            Diagnostic::warning("interval-reversed", fact).remedy("write the earlier time first")
+        } else if begin > end || last < start {
+            let fact = format!("the interval {node} is outside of the run, {start} to {end}: the process never acts");
+            Diagnostic::note("interval-outside", fact)
+                .remedy("nothing to do where a run is shorter than its deck is for")
+        } else {
+            return;
+        };
+        report.push(problem.at(node.place()));
+    });
+}
+
+fn warn_of_keys(object: &Node, name: &str, known: &[&str], report: &mut Report) {
+    let own = object.as_object().into_iter().flat_map(|object| object.iter());
+    for member in own.filter(|member| !known.contains(&member.key.as_str()) && !is_remark(&member.key)) {
+        let fact = format!("nothing reads {:?} of {name}", member.key);
+        let near = did_you_mean(&member.key, known.iter().copied());
+        let remedy = near.unwrap_or_else(|| format!("remove it; read are {}", known.join(", ")));
+        report.push(Diagnostic::warning("unknown-key-ignored", fact).at(object.key_place(&member.key)).remedy(remedy));
+    }
+}
+
+fn is_remark(key: &str) -> bool {
+    key.starts_with('_') || key.to_ascii_lowercase().starts_with("comment")
+}
+
+/// Warns of keys beside the parameters of processes.
+fn warn_of_entries(deck: &Node, report: &mut Report) {
+    fn walk(node: &Node, report: &mut Report) {
+        if node.get("python_module").is_some() {
+            warn_of_keys(node, "a process", &OF_PROCESS, report);
+        } else if let Some(items) = node.as_array() {
+            items.iter().for_each(|item| walk(item, report));
+        } else if let Some(object) = node.as_object() {
+            object.iter().for_each(|member| walk(&member.node, report));
+        }
+    }
+    ["processes", "output_processes"]
+        .iter()
+        .filter_map(|section| deck.get(section))
+        .for_each(|lists| walk(lists, report));
+}
+
+/// Tolerances that nothing could meet, or that everything meets.
+pub(super) fn check_tolerances(solver: &Node, report: &mut Report) {
+    for member in solver.as_object().into_iter().flat_map(|object| object.iter()) {
+        check_tolerances(&member.node, report);
+        let (key, Some(value)) = (&member.key, member.node.as_f64()) else { continue };
+        if !key.ends_with("_tolerance") {
+            continue;
+        }
+        let why = match value {
+            _ if value < 0.0 => "nothing is below it",
+            _ if value >= 1.0 && key.ends_with("relative_tolerance") => "every first iterate meets it",
+            _ => continue,
+        };
+        let fact = format!("{key:?} is {value}: {why}");
+        let problem = Diagnostic::error("invalid-tolerance", fact).at(solver.key_place(key));
+        report.push(problem.remedy("write a number between 0 and 1, e.g. 1e-4"));
+    }
+}
+
+/// Settings of an application in the solver that nothing makes use of, since no process has brought an interaction.
+pub(super) fn warn_of_extensions(solver: &Node, system: &System, report: &mut Report) {
+    if !system.interactions.is_empty() {
+        return;
+    }
+    for entry in registry::all::<SolverExtensionEntry>() {
+        if solver.get(entry.name).is_some_and(Node::is_given) {
+            let fact = format!("{:?} is given, and no process of the deck makes use of it", entry.name);
+            let remedy = "list the process that makes bodies act on each other, or remove the settings";
+            let problem = Diagnostic::warning("settings-without-process", fact).at(solver.key_place(entry.name));
+            report.push(problem.remedy(remedy));
+        }
+    }
+}
