@@ -38,7 +38,10 @@ import os, sys
 import KratosMultiphysics as KM
 KM.Logger.GetDefaultOutput().SetSeverity(KM.Logger.Severity.WARNING)
 import KratosMultiphysics.LinearSolversApplication
-import KratosMultiphysics.ConstitutiveLawsApplication
+try:
+    import KratosMultiphysics.ConstitutiveLawsApplication
+except ImportError:
+    pass
 import KratosMultiphysics.ContactStructuralMechanicsApplication
 from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis import StructuralMechanicsAnalysis
 parameters = KM.Parameters(open(sys.argv[1]).read())

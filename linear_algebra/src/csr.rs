@@ -234,27 +234,30 @@ impl Csr {
             let mut row = task * ROWS_PER_TASK;
             for &length in runs.of_task(task) {
                 let (now, rest) = out.split_at_mut(length as usize);
-                match length {
-                    1 => self.run_product::<1>(row, x, now),
-                    2 => self.run_product::<2>(row, x, now),
-                    _ => self.run_product::<LONGEST_RUN>(row, x, now),
-                }
+                self.run_product(row, x, now);
                 row += length as usize;
                 out = rest;
             }
         });
     }
 
-    /// The product of `N` rows with the columns of the first.
-    fn run_product<const N: usize>(&self, row: usize, x: &[f64], out: &mut [f64]) {
-        let columns = self.row(row).0;
-        let values: [&[f64]; N] = std::array::from_fn(|k| &self.row(row + k).1[..columns.len()]);
-        let mut sums = [0.0; N];
-        for (at, &j) in columns.iter().enumerate() {
-            let x = x[j as usize];
-            (0..N).for_each(|k| sums[k] += values[k][at] * x);
+    /// The product of as many rows as `out` has, with the columns of the first.
+    fn run_product(&self, row: usize, x: &[f64], out: &mut [f64]) {
+        let (columns, first) = self.row(row);
+        let values = |k: usize| self.row(row + k).1;
+        let columns = columns.iter().map(|&j| x[j as usize]).zip(first);
+        match out {
+            [a, b, c] => {
+                [*a, *b, *c] = columns
+                    .zip(values(1))
+                    .zip(values(2))
+                    .fold([0.0; 3], |[a, b, c], (((x, p), q), r)| [a + p * x, b + q * x, c + r * x]);
+            }
+            [a, b] => {
+                [*a, *b] = columns.zip(values(1)).fold([0.0; 2], |[a, b], ((x, p), q)| [a + p * x, b + q * x]);
+            }
+            rows => rows[0] = columns.fold(0.0, |sum, (x, p)| sum + p * x),
         }
-        out.copy_from_slice(&sums);
     }
 
     /// The transposed matrix.

@@ -73,6 +73,41 @@ impl BlockRow {
     }
 }
 
+/// A sparse sum of numbers under way, by places, of which it holds few.
+pub(super) struct Sums {
+    at: Vec<u32>,
+    places: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl Sums {
+    /// No number yet at any of `places`.
+    pub(super) fn new(places: usize) -> Self {
+        Self { at: vec![u32::MAX; places], places: Vec::new(), values: Vec::new() }
+    }
+
+    /// Adds a number at a place.
+    pub(super) fn add(&mut self, place: usize, value: f64) {
+        let at = &mut self.at[place];
+        if *at == u32::MAX {
+            *at = self.places.len() as u32;
+            self.places.push(place as u32);
+            self.values.push(0.0);
+        }
+        self.values[*at as usize] += value;
+    }
+
+    /// Hands on the sums by ascending places; none is left then.
+    pub(super) fn drain(&mut self, mut each: impl FnMut(u32, f64)) {
+        self.places.sort_unstable();
+        for &place in &self.places {
+            each(place, self.values[std::mem::replace(&mut self.at[place as usize], u32::MAX) as usize]);
+        }
+        self.places.clear();
+        self.values.clear();
+    }
+}
+
 /// What a product does to what stands where it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Into {
@@ -84,20 +119,26 @@ pub(super) enum Into {
 
 impl BlockMatrix {
     /// The matrix of these `rows × columns` blocks of `height × width` entries, whose rows `fill` writes.
-    pub(super) fn from_rows(
+    pub(super) fn from_rows(shape: [usize; 2], block: [usize; 2], fill: impl Fn(usize, &mut BlockRow) + Sync) -> Self {
+        Self::from_rows_with(shape, block, || (), |i, row, ()| fill(i, row))
+    }
+
+    /// The same with what `fill` works in, made once for many rows.
+    pub(super) fn from_rows_with<T>(
         [rows, columns]: [usize; 2],
         [height, width]: [usize; 2],
-        fill: impl Fn(usize, &mut BlockRow) + Sync,
+        scratch: impl Fn() -> T + Sync,
+        fill: impl Fn(usize, &mut BlockRow, &mut T) + Sync,
     ) -> Self {
         let tasks = rows.div_ceil(ROWS_PER_TASK);
         let parts: Vec<(Vec<usize>, Vec<u32>, Vec<f32>)> = (0..tasks)
             .into_par_iter()
             .map_init(
-                || BlockRow::new(columns, height * width),
-                |row, task| {
+                || (BlockRow::new(columns, height * width), scratch()),
+                |(row, scratch), task| {
                     let (mut counts, mut indices, mut values) = (Vec::new(), Vec::new(), Vec::new());
                     for i in task * ROWS_PER_TASK..((task + 1) * ROWS_PER_TASK).min(rows) {
-                        fill(i, row);
+                        fill(i, row, scratch);
                         let before = indices.len();
                         row.take(&mut indices, &mut values);
                         counts.push(indices.len() - before);

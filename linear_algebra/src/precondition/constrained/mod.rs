@@ -11,7 +11,7 @@
 
 mod group;
 
-use super::block_matrix::{BlockMatrix, BlockRow};
+use super::block_matrix::{BlockMatrix, BlockRow, Sums};
 use super::multigrid::Multigrid;
 use crate::system::System;
 use group::GroupElimination;
@@ -343,7 +343,7 @@ impl Constrained {
         let add = |row: &mut BlockRow, k: usize, place: u32, value: f64| {
             row.block(place / w as u32)[place as usize % w * w + k] += (value * inverse) as f32;
         };
-        let fill = |b: usize, row: &mut BlockRow| {
+        let fill = |b: usize, row: &mut BlockRow, sums: &mut Sums| {
             row.block(b as u32);
             // One bit for each unknown that the node does not have or whose motion is prescribed.
             let mut idle = 0_u64;
@@ -374,16 +374,16 @@ impl Constrained {
                 }
                 let left = self.left(b * w + k, loads[i]);
                 idle |= u64::from(left.is_empty()) << k;
-                let columns = left
-                    .into_iter()
-                    .flat_map(|(e, factor)| system.row(e as usize).map(move |(j, value)| (j as u32, factor * value)));
-                for (j, value) in summed(columns.collect()) {
+                for (e, factor) in left {
+                    system.row(e as usize).for_each(|(j, value)| sums.add(j, factor * value));
+                }
+                sums.drain(|j, value| {
                     if self.group_of[j as usize] != NONE {
                         self.right(j).into_iter().for_each(|(place, weight)| add(row, k, place, value * weight));
                     } else if self.place[j as usize] != NONE {
                         add(row, k, self.place[j as usize], value);
                     }
-                }
+                });
             }
             let own = row.block(b as u32);
             let diagonal = (0..w).fold(0.0_f32, |m, k| m.max(own[k * w + k].abs()));
@@ -392,7 +392,8 @@ impl Constrained {
             }
         };
         let blocks = self.equation.len() / w;
-        (BlockMatrix::from_rows([blocks; 2], [w; 2], fill), largest)
+        let sums = || Sums::new(system.equations());
+        (BlockMatrix::from_rows_with([blocks; 2], [w; 2], sums, fill), largest)
     }
 
     /// The near-null space of the layout on the blocks; translations where it has none.
