@@ -4,7 +4,7 @@ mod support;
 
 use std::collections::BTreeSet;
 use std::path::Path;
-use support::root;
+use support::{root, zelus};
 use zelus as _;
 use zelus_core::parameters::{Defaults, Document, Settings};
 use zelus_core::registry::{duplicates, entries, require_of};
@@ -89,4 +89,50 @@ fn known_names_that_are_not_there_say_what_to_use_instead() {
         let said = require_of(kind, name).expect_err(name).to_string();
         assert!(said.contains(words), "{name}: no {words:?} in {said}");
     }
+}
+
+/// Names that users of the reference program ask for are answered: by the object, or by where its work is done.
+#[test]
+fn names_of_the_reference_program_are_answered() {
+    let text = std::fs::read_to_string(root().join("configs/kratos_names.json")).expect("the names");
+    let listed = Document::from_str(&text, Path::new("kratos_names.json")).expect("JSON").root;
+    let listed: Vec<(String, String)> = listed
+        .as_object()
+        .expect("an object")
+        .iter()
+        .map(|member| (member.key.clone(), member.node.as_str().expect("a sentence").to_owned()))
+        .collect();
+    assert!(listed.len() > 80, "hardly any names are listed");
+    let known: BTreeSet<&str> = entries().iter().flat_map(|(_, entry)| entry.names()).collect();
+    let mut problems = Vec::new();
+    for (name, sentence) in &listed {
+        if known.contains(name.as_str()) {
+            problems.push(format!("{name} is registered: it needs no sentence"));
+        }
+        for quoted in sentence.split('`').skip(1).step_by(2) {
+            let is_path = quoted.contains('/') && !quoted.contains(' ');
+            if is_path && !root().join(quoted).exists() {
+                problems.push(format!("{name}: there is no {quoted}"));
+            }
+        }
+    }
+    let asked = [
+        "MeshTyingMortarCondition",
+        "MPCMortarContactCondition",
+        "LinearMasterSlaveConstraint",
+        "SmallDisplacementElement",
+        "AdvancedContactSearchProcess3D4N3N",
+        "CoulombFrictionalLaw3D3NNV",
+        "ShellThinElement3D3N",
+        "SimpleMortarMapperProcess",
+        "ALMFrictionlessMortarContactCondition",
+        "ALMContactProcess",
+    ];
+    for name in listed.iter().map(|(name, _)| name.as_str()).chain(asked) {
+        let output = zelus(&root(), &["describe", name]);
+        if !output.status.success() {
+            problems.push(format!("{name} is not answered"));
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
 }

@@ -7,6 +7,7 @@ use zelus_core::model::Role;
 use zelus_core::model::{VariableKind, variables};
 use zelus_core::registry::{self, Entry, Kind};
 
+use super::kratos_names::{done_here, without_shape};
 use super::say::say;
 
 /// Prints the names of one kind, or of all.
@@ -82,9 +83,33 @@ pub(super) fn describe(name: &str) -> Result<()> {
         return Ok(());
     }
     let registered = registry::kinds().into_iter().flat_map(Kind::names);
+    if answered(name)? {
+        return Ok(());
+    }
     let names: Vec<&str> = registered.chain(variables().keys().copied()).collect();
     let remedy = did_you_mean(name, names).unwrap_or_else(|| "`zelus list` shows every name".to_owned());
     Err(Diagnostic::error("unknown-name", format!("nothing is registered as {name:?}")).remedy(remedy).into())
+}
+
+/// Says where the work of a known name is done, its shapes, or what to use instead; whether there was anything.
+fn answered(name: &str) -> Result<bool> {
+    let done = done_here(name)?;
+    if let Some(sentence) = &done {
+        say(&format!("{name}: {sentence}"));
+    }
+    let mut found = done.is_some();
+    for kind in registry::kinds() {
+        let of_name = |known: &&str| *known != name && without_shape(known) == name;
+        let several: Vec<&str> = kind.names().into_iter().filter(of_name).collect();
+        if !several.is_empty() {
+            say(&format!("{} {name}…: {}", kind.word, several.join(", ")));
+            found = true;
+        } else if let Some(remedy) = registry::instead_of(kind.word, name) {
+            say(&format!("{} {name}: not there; {remedy}", kind.word));
+            found = true;
+        }
+    }
+    Ok(found)
 }
 
 fn kind_word(kind: VariableKind) -> &'static str {

@@ -1,6 +1,7 @@
 //! The program: `zelus run`, `check`, `partition`, `list`, `describe`.
 
 mod catalogue;
+mod kratos_names;
 mod partition;
 mod say;
 mod terminal;

@@ -174,6 +174,18 @@ pub const BAD_DECKS: &[BadDeck] = &[
         &[MESH, "SubModelPart"],
     ),
     mesh("unknown block", "Begin Nodes", "Begin Nodez", &["Nodez", "Nodes", "mesh.mdpa:7"]),
+    mesh(
+        "unknown constraint",
+        "Begin NodalData",
+        "Begin Constraints LinearMasterSlaveConstrain DISPLACEMENT_X\n1 0.0 [1.0] 9 10\nEnd Constraints\n\nBegin NodalData",
+        &["unknown-constraint", "LinearMasterSlaveConstraint"],
+    ),
+    mesh(
+        "pairs in the mesh",
+        "Begin Conditions LineLoadCondition2D2N",
+        "Begin Conditions ALMFrictionlessMortarContactCondition2D2N",
+        &["pair-in-mesh", "take these conditions out"],
+    ),
     mesh("block ended by another name", "End Elements", "End Conditions", &["mesh.mdpa:24", "Elements"]),
     mesh("letter in a coordinate", "2 1.0 0.0 0.0", "2 l.0 0.0 0.0", &["mesh.mdpa:9", "l.0"]),
     mesh("coordinate missing", "10 0.0 2.0 0.0", "10 0.0 2.0", &["mesh.mdpa"]),

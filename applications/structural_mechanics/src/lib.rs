@@ -9,6 +9,6 @@ pub mod laws;
 pub mod elements;
 pub mod conditions;
 mod processes;
-mod solvers;
+pub mod solvers;
 #[cfg(test)]
 mod test_model;

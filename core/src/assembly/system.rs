@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::dof_table::DofTable;
-use crate::diagnostics::{Report, Result};
+use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::{BlockRequest, EntityBlock, Interaction, block_factory};
 use crate::model::{EntityKind, EntityTable, ModelPart, Role};
 
@@ -33,7 +33,17 @@ impl System {
         for (blocks, (role, table)) in both.iter_mut().zip(tables) {
             let is_own = |at: usize| part.evaluates(role, at);
             for (entry, members) in groups(table, is_own) {
-                let Some(make) = block_factory(entry) else { continue };
+                let Some(make) = block_factory(entry) else {
+                    let fact = format!(
+                        "{} {} of the mesh is a pair, which a search makes",
+                        entry.name, table.ids[members[0] as usize]
+                    );
+                    let problem = Diagnostic::error("pair-in-mesh", fact);
+                    report.push(
+                        problem.remedy("take these conditions out: processes of contact find their pairs themselves"),
+                    );
+                    continue;
+                };
                 let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
                 if let Some(block) = report.absorb(make(&request)) {
                     blocks.push(block);

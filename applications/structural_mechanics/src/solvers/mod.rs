@@ -7,8 +7,11 @@ mod static_solver;
 use zelus_core::analysis::NodalVariable;
 use zelus_core::parameters::{Defaults, Node, Value};
 
+/// Settings of static solvers with their defaults.
+pub const STATIC_DEFAULTS: &str = include_str!("../../../../configs/solvers/static.json");
+
 /// Variables that every structural node has.
-const VARIABLES: [NodalVariable; 8] = [
+pub const VARIABLES: [NodalVariable; 8] = [
     ("DISPLACEMENT", 3),
     ("REACTION", 3),
     ("POSITIVE_FACE_PRESSURE", 1),
@@ -20,7 +23,7 @@ const VARIABLES: [NodalVariable; 8] = [
 ];
 
 /// Names the spellings of older decks.
-fn adapt(defaults: Defaults) -> Defaults {
+pub fn adapt(defaults: Defaults) -> Defaults {
     const WHOLE: &str = "the whole root part is computed";
     const BUILDER: &str = "every builder gives the same answer";
     defaults

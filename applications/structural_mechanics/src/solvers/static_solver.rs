@@ -7,7 +7,7 @@ use zelus_core::register;
 register! { SolverEntry "Static",
     aliases: &["static"],
     about: "equilibrium at each time; time only orders the loads",
-    defaults: include_str!("../../../../configs/solvers/static.json"),
+    defaults: super::STATIC_DEFAULTS,
     like: &[("kratos", include_str!("../../../../configs/like_kratos/static.json"))],
     build: SolverDefinition {
         variant: |_| None,

@@ -1,0 +1,45 @@
+//! A static scheme whose steps begin where the last one would have led, and a solver that takes it.
+
+use zelus_core::Result;
+use zelus_core::analysis::{SolverDefinition, SolverEntry};
+use zelus_core::assembly::DofTable;
+use zelus_core::model::ModelPart;
+use zelus_core::register;
+use zelus_core::strategies::{Scheme, SchemeEntry, SchemeFactory};
+
+struct Continued {
+    /// What the unknowns were when the last step began.
+    before: Vec<f64>,
+}
+
+impl Scheme for Continued {
+    fn is_static(&self) -> bool {
+        true
+    }
+
+    fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
+        let now = dofs.gather(&part.nodes, 0);
+        let guess = |at: usize| if self.before.len() == now.len() { now[at] - self.before[at] } else { 0.0 };
+        let free = |at: usize| !part.nodes.is_fixed(dofs.dofs()[at].variable, dofs.dofs()[at].node);
+        let more: Vec<f64> = (0..now.len()).map(|at| if free(at) { guess(at) } else { 0.0 }).collect();
+        dofs.scatter_add(&more, &mut part.nodes);
+        self.before = now;
+        Ok(())
+    }
+}
+
+register! { SchemeEntry "continued",
+    about: "no inertia; a step begins with the increment of the last one",
+    build: SchemeFactory::Implicit(|_| Ok(Box::new(Continued { before: Vec::new() }))),
+}
+register! { SolverEntry "Continued",
+    about: "equilibrium at each time, by the scheme \"continued\"",
+    defaults: zelus::structural_mechanics::solvers::STATIC_DEFAULTS,
+    build: SolverDefinition {
+        variant: |_| None,
+        variables: &zelus::structural_mechanics::solvers::VARIABLES,
+        explicit: false,
+        scheme: |_| Ok("continued".to_owned()),
+        adapt: zelus::structural_mechanics::solvers::adapt,
+    },
+}

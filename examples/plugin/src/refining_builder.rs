@@ -1,0 +1,31 @@
+//! A builder-and-solver that corrects each answer once by what it leaves.
+
+use zelus_core::register;
+use zelus_core::strategies::{Builder, BuilderEntry};
+use zelus_linear_algebra::{LinearSolver, SolveError, SolveReport, System};
+
+struct Refining(Box<dyn LinearSolver>);
+
+impl LinearSolver for Refining {
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
+    fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
+        let mut report = self.0.solve(system, rhs, x)?;
+        let (mut left, mut correction) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
+        let size = system.residual(rhs, x, &mut left);
+        if size > 0.0 {
+            let again = self.0.solve(system, &left, &mut correction)?;
+            report.add_effort(&again);
+            x.iter_mut().zip(&correction).for_each(|(x, more)| *x += more);
+        }
+        Ok(report)
+    }
+}
+
+register! { BuilderEntry "refining",
+    about: "each answer is corrected once by what it leaves",
+    source: "x ← x + A⁻¹ (b − A x)",
+    build: Builder::Around(|_settings, solver| Ok(Box::new(Refining(solver)))),
+}
