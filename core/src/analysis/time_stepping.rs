@@ -185,6 +185,6 @@ mod tests {
         let mut warnings = Report::new();
         TimeStepping::from_node(&deck, &mut warnings).expect("steps");
         let warning = warnings.finish().expect("no errors").remove(0).to_string();
-        assert!(warning.contains("time_stepp") && warning.contains("deck.json:1:20"), "{warning}");
+        assert!(warning.contains("time_stepp") && warning.contains("deck.json:1:21"), "{warning}");
     }
 }

@@ -153,9 +153,9 @@ fn problems_of_a_materials_file_are_gathered_with_places() {
     let text = r#"{"properties": [
         {"model_part_name": "Structure.Outer.Inner", "properties_id": 1,
          "Material": {"constitutive_law": {"name": "IoTestLow"}, "Variables": {"IO_TEST_MODULUS": "5"}}},
-        {"model_part_name": "Structure.Outer", "properties_id": 1},
-        {"model_part_name": "Outside", "properties_id": 1},
-        {"model_part_name": "Structure.Outer", "properties_id": 1, "Material": {"Variables": {"NOPE": 1}}},
+        {"model_part_name": "Structure.Outer", "properties_id": 2},
+        {"model_part_name": "Outside", "properties_id": 3},
+        {"model_part_name": "Structure.Outer", "properties_id": 2, "Material": {"Variables": {"NOPE": 1}}},
         {"properties_id": 1}]}"#;
     let found = codes(materials(text, &mut part));
     let wanted = [
@@ -164,6 +164,7 @@ fn problems_of_a_materials_file_are_gathered_with_places() {
         (4, "material-order"),
         (5, "unknown-model-part"),
         (6, "repeated-material"),
+        (6, "repeated-properties"),
         (6, "unknown-variable"),
         (7, "missing-key"),
     ];

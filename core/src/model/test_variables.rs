@@ -6,6 +6,7 @@ register_variable! {
     pub DISPLACEMENT: [f64; 3] = "Displacement of the tests.";
     pub VELOCITY: [f64; 3] = "Velocity of the tests.";
     pub ACCELERATION: [f64; 3] = "Acceleration of the tests.";
+    pub NORMAL: [f64; 3] = "Normal of the tests.";
     pub REACTION: [f64; 3] = "Reaction of the tests.";
 }
 register_flags! {
