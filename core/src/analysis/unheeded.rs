@@ -91,7 +91,7 @@ pub(super) fn warn_of_unheeded(deck: &mut Node, times: Option<(f64, f64)>, repor
         warn_of_keys(object, path, known, report);
     }
     warn_of_entries(deck, report);
-    let Some((start, end)) = times else { return };
+    let Some((start, end)) = times.filter(|(start, end)| end > start) else { return };
     for_each_process(deck, |_, parameters| {
         let Some(node) = parameters.get("interval") else { return };
         let Ok(Interval { begin, end: last }) = Interval::from_node(node) else { return };
