@@ -17,8 +17,8 @@ use crate::friction_law::{Bound, FrictionLaw};
 use crate::node_state::{Held, NodeState, Turning};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY,
-    KEPT_CONTACT_PRESSURE, MULTIPLIER_WEIGHT, NODAL_AREA, NORMAL_GAP, TANGENT_ETA, TANGENT_XI, TRIAL_TRACTION,
-    WEIGHTED_GAP, WEIGHTED_SLIP,
+    KEPT_CONTACT_PRESSURE, MULTIPLIER_WEIGHT, NODAL_AREA, NORMAL_GAP, TANGENT_ETA, TANGENT_XI, WEIGHTED_GAP,
+    WEIGHTED_SLIP,
 };
 
 /// One slave node.
@@ -110,8 +110,6 @@ pub struct Columns {
     pub tractions: bool,
     /// Whether directions, slips and tractions of friction do.
     pub friction: bool,
-    /// Whether mean tractions of integration points do.
-    pub points: bool,
     /// The column of tractions that are carried from step to step, in families that do.
     pub carried: Option<&'static Variable<[f64; 3]>>,
 }
@@ -257,9 +255,6 @@ impl SlaveStates {
             self.put(values.values_mut(&TANGENT_ETA, 0), |state| cross(state.normal, state.tangent));
             self.put(values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0), |state| state.traction);
         }
-        if self.columns.friction || self.columns.points {
-            self.put(values.values_mut(&TRIAL_TRACTION, 0), |state| state.trial);
-        }
     }
 
     fn put<const C: usize>(&self, column: &mut [f64], of: impl Fn(&SlaveState) -> [f64; C]) {
@@ -286,7 +281,6 @@ fn imported(nodes: &Nodes, at: usize, columns: Columns) -> SlaveState {
         area: scalar(&NODAL_AREA),
         weighted_gap: past(WEIGHTED_GAP.name()),
         weighted_slip: vector_of(WEIGHTED_SLIP.name(), 0),
-        trial: vector(values.values(&TRIAL_TRACTION, 0)),
         carried: carried(0),
         kept_pressure: past(KEPT_CONTACT_PRESSURE.name()),
         penalty: scalar(&INITIAL_PENALTY),

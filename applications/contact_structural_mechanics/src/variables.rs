@@ -12,7 +12,6 @@ register_variable! {
     pub WEIGHTED_SCALAR_RESIDUAL: f64 = "Residual of a tied scalar, integrated with dual shape functions.";
     pub WEIGHTED_VECTOR_RESIDUAL: [f64; 3] = "Residual of a tied vector, integrated with dual shape functions.";
     pub FRICTION_TRACTION: [f64; 3] = "Tangential traction on a slave node by the penalty method, carried from step to step (force per area).";
-    pub TRIAL_TRACTION: [f64; 3] = "Tangential traction on a slave node before the law of friction limits it (force per area).";
     pub CARRIED_TRACTION: [f64; 3] = "Tangential traction of contact less that of the slave's body by Nitsche's method, carried from step to step (force per area).";
     pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";

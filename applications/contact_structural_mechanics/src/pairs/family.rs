@@ -127,7 +127,6 @@ impl Family {
         Columns {
             tractions: true,
             friction: self.frictional(),
-            points: matches!(self.multiplier, Multiplier::Body),
             carried: [&FRICTION_TRACTION, &CARRIED_TRACTION].into_iter().find(carries),
         }
     }
