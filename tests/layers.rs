@@ -1,4 +1,5 @@
-//! The order of the code: a module uses only those above it in the list of its crate, and the framework names no physics.
+//! The order of the code: a module uses only those above it in the list of its crate, the framework names no physics, and nothing of
+//! a run is global.
 
 use std::path::{Path, PathBuf};
 
@@ -40,6 +41,13 @@ const PHYSICS: [&str; 24] = [
     "mesh_tying_model_part",
     "assume_master_slave",
 ];
+
+/// What a global that changes is made of.
+const CHANGEABLE: [&str; 6] = ["Mutex", "RwLock", "Cell<", "Lock<", "Atomic", "static mut"];
+
+/// Globals that hold no state of a run: what is read or computed once and never changes, and the lock of a library that
+/// takes one caller at a time.
+const CONSTANT: [&str; 7] = ["VARIABLES", "FLAGS", "RATES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -178,4 +186,31 @@ fn the_framework_names_no_physics() {
         }
     }
     assert!(wrong.is_empty(), "variables, flags or keys of applications:\n{}", wrong.join("\n"));
+}
+
+/// Runs that stand beside each other in one program, over ranks or alone, know nothing of each other.
+#[test]
+fn nothing_of_a_run_is_global() {
+    let mut wrong = Vec::new();
+    for name in CRATES {
+        let mut files = Vec::new();
+        sources(&root().join(name), &mut files);
+        for file in files {
+            let text = code(&file);
+            let statics = text.lines().filter_map(|line| {
+                let line = line.trim_start();
+                let at = line.find("static ").filter(|&at| at == 0 || line.starts_with("pub"))?;
+                let is_changeable = CHANGEABLE.iter().any(|word| line.contains(word));
+                let name = word_at(&line[at + "static ".len()..]);
+                (is_changeable && !CONSTANT.contains(&name)).then_some(line)
+            });
+            let threads = text.lines().filter(|line| line.contains("thread_local!"));
+            // MPI's own world is named in one file.
+            let worlds = text.lines().filter(|line| line.contains("world()") && !file.ends_with("mpi_world.rs"));
+            let worlds = worlds.filter(|_| name != "petsc/src");
+            let place = file.strip_prefix(root()).unwrap().display();
+            wrong.extend(statics.chain(threads).chain(worlds).map(|line| format!("{place}: {line}")));
+        }
+    }
+    assert!(wrong.is_empty(), "global state:\n{}", wrong.join("\n"));
 }

@@ -27,7 +27,7 @@ fn deck(steps: usize, share: f64) -> Value {
 }
 
 fn simulation(steps: usize, share: f64) -> Simulation {
-    let options = RunOptions { threads: Some(1), like: None };
+    let options = RunOptions { threads: Some(1), ..RunOptions::default() };
     Simulation::of_value(&deck(steps, share), &folder(), &options).expect("a deck")
 }
 

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use zelus_core::analysis::{RunOptions, RunReport, Simulation};
-use zelus_core::communication::{self, world};
+use zelus_core::communication::{self, Ranks};
 use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
@@ -74,19 +74,19 @@ enum Command {
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let processes = match communication::start() {
-        Ok(processes) => processes,
+    let ranks = match communication::join() {
+        Ok(ranks) => ranks,
         Err(error) => {
             eprintln!("{}", explain(&error));
             return ExitCode::from(error.exit_code());
         }
     };
-    match execute(arguments.command) {
+    match execute(arguments.command, &ranks) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let _ = std::io::stdout().flush();
-            if processes.are_many() {
-                communication::end_after_failure(&explain(&error), error.exit_code());
+            if ranks.size() > 1 {
+                ranks.end_after_failure(&explain(&error), error.exit_code());
             }
             let _ = writeln!(std::io::stderr(), "{}", explain(&error));
             ExitCode::from(error.exit_code())
@@ -94,15 +94,15 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn execute(command: Command) -> Result<()> {
+fn execute(command: Command, ranks: &Ranks) -> Result<()> {
     match command {
         Command::Run { file, threads, report, like } => {
             if let Some(path) = &report {
                 check_writable(path)?;
             }
-            let options = RunOptions { threads, like };
+            let options = RunOptions { threads, like, ranks: ranks.clone() };
             let opened = Simulation::open(&file, &options);
-            if !world().is_root() {
+            if !ranks.is_root() {
                 return opened?.run(&mut Silent);
             }
             let mut terminal = Terminal::new();
@@ -115,12 +115,12 @@ fn execute(command: Command) -> Result<()> {
             result.and(written)
         }
         Command::Check { file, like } => {
-            let options = RunOptions { like, ..RunOptions::default() };
+            let options = RunOptions { like, ranks: ranks.clone(), ..RunOptions::default() };
             let mut monitor: Box<dyn Monitor> =
-                if world().is_root() { Box::new(Terminal::new()) } else { Box::new(Silent) };
+                if ranks.is_root() { Box::new(Terminal::new()) } else { Box::new(Silent) };
             let mut simulation = Simulation::open(&file, &options)?;
             simulation.check(monitor.as_mut())?;
-            if !world().is_root() {
+            if !ranks.is_root() {
                 return Ok(());
             }
             let report = simulation.report();
@@ -166,6 +166,5 @@ fn check_writable(path: &Path) -> Result<()> {
 
 fn write_report(path: &Path, report: &RunReport) -> Result<()> {
     let text = serde_json::to_string_pretty(report).map_err(|e| Error::System(format!("report: {e}")))?;
-    zelus_core::io::replace_file(path, |file| file.write_all(text.as_bytes()))?;
-    communication::deferred()
+    zelus_core::io::replace_own_file(path, |file| file.write_all(text.as_bytes()))
 }

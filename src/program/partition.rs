@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use serde_json::json;
 use zelus_core::analysis::{DeckMesh, read_deck_mesh};
-use zelus_core::io::replace_file;
-use zelus_core::io::results::{Cells, Column, Dataset, write_vtu};
+use zelus_core::io::replace_own_file;
+use zelus_core::io::results::{Cells, Column, Dataset, write_piece};
 use zelus_core::model::ModelPart;
 use zelus_core::partition::{Counts, Partition, RankCounts, Repeats, Traffic, partition};
 use zelus_core::{Error, Result};
@@ -51,11 +51,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     if let Some(path) = &arguments.json {
         let text = serde_json::to_string(&document(&part, &cut, &counts, repeats))
             .map_err(|error| Error::System(format!("partition: {error}")))?;
-        replace_file(path, |file| file.write_all(text.as_bytes()))?;
+        replace_own_file(path, |file| file.write_all(text.as_bytes()))?;
         say(&format!("partition: {}", path.display()));
     }
     if let Some(path) = &arguments.vtu {
-        write_vtu(path, &picture(&part, &cut))?;
+        write_piece(path, &picture(&part, &cut))?;
         say(&format!("picture: {}", path.display()));
     }
     Ok(())

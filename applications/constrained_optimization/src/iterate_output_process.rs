@@ -85,10 +85,10 @@ impl Process for IterateOutput {
         Ok(Some((self.root.clone(), Box::new(Watch { columns, table: Arc::clone(&self.table) }))))
     }
 
-    fn finalize(&mut self, _model: &mut Model) -> Result<()> {
+    fn finalize(&mut self, model: &mut Model) -> Result<()> {
         let table = self.table.lock().unwrap_or_else(PoisonError::into_inner);
         let names: Vec<&str> = self.columns.iter().map(|column| column.name.as_str()).collect();
-        replace_file(&self.file, |out| {
+        replace_file(&model.ranks, &self.file, |out| {
             writeln!(out, "{{\n\"columns\": {},\n\"iterates\": [", serde_json::json!(names))?;
             for (at, row) in table.iter().enumerate() {
                 let row_text = serde_json::json!({

@@ -178,7 +178,7 @@ pub(super) fn import(
             solver.prepare(&mut part)?;
             let path = folder.join(name.str()?);
             io::read_mesh_of(&path, &name.place(), &mut part)?.into_iter().for_each(|w| warnings.push(w));
-            model.parts.insert(root.to_owned(), part);
+            model.add(part);
         }
         other => {
             return Err(Diagnostic::error("input-type", format!("\"input_type\" is {other:?}"))

@@ -3,7 +3,6 @@
 use std::hash::{Hash, Hasher};
 
 use super::solver::has_inertia;
-use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::{ModelPart, Properties, Share};
 use crate::parameters::Node;
@@ -16,7 +15,7 @@ use crate::strategies::Monitor;
 /// # Errors
 /// Ranks that have read different files; a mesh that cannot be cut.
 pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, monitor: &mut dyn Monitor) -> Result<()> {
-    let ranks = world().size();
+    let ranks = part.ranks.size();
     if ranks == 1 {
         return Ok(());
     }
@@ -48,7 +47,7 @@ pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, mo
     }
     keep_share(part, &cut, &common);
     let whole = part.sizes().nodes;
-    let most = world().gather_numbers(&[part.nodes.len() as f64]).concat().into_iter().fold(0.0, f64::max);
+    let most = part.ranks.gather_numbers(&[part.nodes.len() as f64]).concat().into_iter().fold(0.0, f64::max);
     note.push_str(&format!("; the fullest has {most} of {whole} nodes"));
     monitor.note(&note);
     Ok(())
@@ -63,11 +62,10 @@ pub(super) fn common_of_stage(part: &ModelPart, surfaces: &[Surface], deck: &Nod
 
 /// The partition, which rank 0 makes for all; without facets on the others. Collective.
 fn cut_on_rank_0(part: &ModelPart, deck: &Node, ranks: usize) -> Result<Partition> {
-    let world = world();
-    let made = if world.is_root() { partition(part, &surfaces(deck, part), ranks).map(Some) } else { Ok(None) };
-    let made = world.agree(made)?;
+    let made = if part.ranks.is_root() { partition(part, &surfaces(deck, part), ranks).map(Some) } else { Ok(None) };
+    let made = part.ranks.agree(made)?;
     let owners = made.iter().flat_map(|cut| [&cut.elements, &cut.conditions, &cut.nodes]).flatten().copied().collect();
-    let owners = world.exchange_indices(&vec![owners; ranks]).swap_remove(0);
+    let owners = part.ranks.exchange_indices(&vec![owners; ranks]).swap_remove(0);
     Ok(made.unwrap_or_else(|| {
         let (elements, others) = owners.split_at(part.elements.len());
         let (conditions, nodes) = others.split_at(part.conditions.len());
@@ -81,7 +79,7 @@ pub(super) fn read_the_same(part: &ModelPart, deck: &Node) -> Result<()> {
     // Once a mesh is shared out, ranks have different parts of it.
     let mesh = if part.share.is_none() { of_mesh(part) } else { 0 };
     for (what, number) in [("meshes", mesh), ("materials", of_materials(part)), ("decks", of_deck(deck))] {
-        if !world().is_same(number) {
+        if !part.ranks.is_same(number) {
             return Err(Error::System(format!(
                 "the ranks have read different {what}\n    give all of them the same files, e.g. in a shared folder"
             )));

@@ -8,7 +8,7 @@ use super::deck::{StageDeck, open, stages};
 use super::report::RunReport;
 use super::stage::{Stage, Systems};
 use crate::assembly::System;
-use crate::communication::fair_threads;
+use crate::communication::{Ranks, fair_threads};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::{Model, ModelPart};
 use crate::parameters::{Node, Value};
@@ -22,6 +22,9 @@ pub struct RunOptions {
     pub threads: Option<usize>,
     /// Program whose defaults hold where the deck names nothing, e.g. `kratos`; `None` for what the deck says, else our own.
     pub like: Option<String>,
+    /// The processes that run the deck together, as [`communication::join`](crate::communication::join) gives them; this one
+    /// alone by default.
+    pub ranks: Ranks,
 }
 
 /// A deck with its model and the stage under way.
@@ -82,7 +85,7 @@ impl Simulation {
             root: String::new(),
             folder,
             like: options.like.clone(),
-            model: Model::default(),
+            model: Model::new(options.ranks.clone()),
             systems: Systems::new(),
             more: Vec::new(),
             pool: Arc::new(pool),

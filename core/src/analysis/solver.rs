@@ -2,7 +2,6 @@
 
 use super::cutting::Cutting;
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::find_kind;
 use crate::model::{EntityKind, ModelPart, Rates, Role};
@@ -310,7 +309,7 @@ impl SolverSettings {
             line_search: None,
         };
         if !scheme.takes_first_order()
-            && let Some(column) = world().first_to_say(first_order(system))
+            && let Some(column) = part.ranks.first_to_say(first_order(system))
         {
             let fact = format!("{column} has no second derivative by time, which the scheme integrates");
             let remedy = "use a scheme for rates of the first order: \"bdf1\" to \"bdf5\", \"pseudo_static\"";

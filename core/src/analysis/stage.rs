@@ -15,7 +15,7 @@ use super::solver::{SolverSettings, check_dimensions};
 use super::time_stepping::TimeStepping;
 use super::unheeded::{check_tolerances, warn_of_extensions, warn_of_unheeded};
 use crate::assembly::System;
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
 use crate::entities::Interaction;
 use crate::model::{Model, ModelPart};
@@ -142,13 +142,14 @@ impl Stage {
             decks.push(deck);
         }
         let changes = later.iter().any(|later| !later.modelers.is_empty());
-        if world().size() > 1 {
+        if model.ranks.size() > 1 {
             read_the_same(model.root(&root)?, &deck)?;
         }
         distribute(model.root_mut(&root)?, &decks, changes, monitor)?;
+        let ranks = model.ranks.clone();
         let mut processes = make_processes(&deck, folder, model, &mut problems);
         processes.extend(more);
-        problems = problems_of_all(problems)?;
+        problems = problems_of_all(&ranks, problems)?;
         let mut system = systems.remove(&root).unwrap_or_default();
         for process in &mut processes {
             let initialized = process.initialize(model).and_then(|()| process.interaction(model));
@@ -158,16 +159,16 @@ impl Stage {
                 false => problems.push(other_root(interaction.as_ref(), &of, &root)),
             }
         }
-        problems = problems_of_all(problems)?;
+        problems = problems_of_all(&ranks, problems)?;
         let part = model.root_mut(&root)?;
         problems.absorb(system.make_blocks(part));
-        problems = problems_of_all(problems)?;
+        problems = problems_of_all(&ranks, problems)?;
         warn_of_lonely_nodes(part, &system, &mut problems);
         warn_of_extensions(deck.require("solver_settings")?, &system, &mut problems);
         for interaction in &mut system.interactions {
             problems.absorb(interaction.initialize(part));
         }
-        problems = problems_of_all(problems)?;
+        problems = problems_of_all(&ranks, problems)?;
         report.parameters = tell_parameters(part, &system, monitor);
         let (strategy, says) = solver.strategy(part, &mut system, &mut problems)?;
         monitor.note(&says);
@@ -184,7 +185,7 @@ impl Stage {
             let checked = process.check(model, &system, &mut problems);
             problems.absorb(checked);
         }
-        for warning in problems_of_all(problems)?.finish()? {
+        for warning in problems_of_all(&ranks, problems)?.finish()? {
             report.warnings.push(warning.to_string());
             monitor.warn(&warning);
         }
@@ -219,7 +220,7 @@ impl Stage {
         self.begun = true;
         report.stages.push(self.name.clone());
         for process in &mut self.processes {
-            world().agree(process.before_loop(model))?;
+            model.ranks.clone().agree(process.before_loop(model))?;
         }
         model.root_mut(&self.root)?.info.time = self.start_time;
         Ok(())
@@ -264,12 +265,12 @@ impl Stage {
         report: &mut RunReport,
     ) -> Result<()> {
         if result.is_err() {
-            world().announce_failure();
+            model.ranks.announce_failure();
         }
         let mut finals = Report::new();
         for process in &mut self.processes {
             let finalized = process.finalize(model);
-            finals.absorb(if result.is_ok() { world().agree(finalized) } else { finalized });
+            finals.absorb(if result.is_ok() { model.ranks.agree(finalized) } else { finalized });
             report.outputs.extend(process.outputs());
         }
         for (phase, seconds) in self.strategy.phases().iter() {
@@ -361,8 +362,9 @@ impl Stage {
         if announced {
             monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
         }
+        let ranks = model.ranks.clone();
         for process in &mut self.processes {
-            world().agree(process.begin_step(model))?;
+            ranks.agree(process.begin_step(model))?;
         }
         let start = Instant::now();
         let record = self.strategy.solve_step(model.root_mut(&self.root)?, &mut self.system, monitor)?;
@@ -378,8 +380,9 @@ impl Stage {
     fn accept(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
         self.strategy.accept_step(model.root_mut(&self.root)?, &mut self.system)?;
         let start = Instant::now();
+        let ranks = model.ranks.clone();
         for process in &mut self.processes {
-            world().agree(process.end_step(model, &self.system))?;
+            ranks.agree(process.end_step(model, &self.system))?;
         }
         let mut writers = Vec::new();
         for (at, process) in self.processes.iter_mut().enumerate() {
@@ -389,10 +392,10 @@ impl Stage {
         }
         if !writers.is_empty() {
             for process in &mut self.processes {
-                world().agree(process.before_output(model, &self.system))?;
+                ranks.agree(process.before_output(model, &self.system))?;
             }
             for at in writers {
-                world().agree(self.processes[at].print_output(model, &self.system))?;
+                ranks.agree(self.processes[at].print_output(model, &self.system))?;
             }
         }
         report.add_seconds("output", start.elapsed().as_secs_f64());
@@ -402,7 +405,7 @@ impl Stage {
     /// Hands notes and warnings met by processes and interactions to the monitor and the report.
     fn pass_on_messages(&self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
         let own = std::mem::take(&mut model.root_mut(&self.root)?.messages);
-        for warning in world().problems_of_all(own) {
+        for warning in model.ranks.problems_of_all(own) {
             let list = if warning.severity == Severity::Note { &mut report.notes } else { &mut report.warnings };
             list.push(warning.to_string());
             monitor.warn(&warning);
@@ -422,10 +425,10 @@ fn finish(mut problems: Report) -> Error {
 ///
 /// # Errors
 /// All of them, when one on any rank is an error.
-fn problems_of_all(problems: Report) -> Result<Report> {
+fn problems_of_all(ranks: &Ranks, problems: Report) -> Result<Report> {
     let (Ok(own) | Err(Error::Input(own))) = problems.finish() else { unreachable!("problems are of the input") };
     let mut all = Report::new();
-    world().problems_of_all(own).into_iter().for_each(|problem| all.push(problem));
+    ranks.problems_of_all(own).into_iter().for_each(|problem| all.push(problem));
     if all.has_errors() { Err(finish(all)) } else { Ok(all) }
 }
 
@@ -461,7 +464,7 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
         share.halo.sum(&mut used);
     }
     let lonely = (0..used.len()).filter(|&n| used[n] == 0.0 && part.owns_node(n)).map(|n| part.nodes.ids[n] as f64);
-    let mut lonely = world().gather_numbers(&lonely.collect::<Vec<f64>>()).concat();
+    let mut lonely = part.ranks.gather_numbers(&lonely.collect::<Vec<f64>>()).concat();
     lonely.sort_by(f64::total_cmp);
     if let Some(first) = lonely.first() {
         problems.push(

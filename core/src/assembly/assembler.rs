@@ -26,7 +26,7 @@ use super::numbering::Numbering;
 use super::reach::reach;
 use super::redistribution::Redistribution;
 use super::system::System;
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::entities::{Coupling, EntityBlock, LocalSystems, Tangent, Want};
 use crate::model::ModelPart;
@@ -76,6 +76,7 @@ pub struct Assembler {
     damping: Option<([f64; 2], Vec<f64>)>,
     redistribution: Redistribution,
     traits: Traits,
+    ranks: Ranks,
     distribution: Option<Distribution>,
     numbering: Option<Numbering>,
     /// Seconds spent so far.
@@ -104,7 +105,7 @@ struct Traits {
 }
 
 impl Traits {
-    fn of(system: &System) -> Self {
+    fn of(part: &ModelPart, system: &System) -> Self {
         let variable_elements = system.elements.iter().any(|b| is_variable(b.as_ref()));
         let mut flags = [
             variable_elements,
@@ -112,7 +113,7 @@ impl Traits {
             // Follower loads are not symmetric and have a matrix of their own.
             variable_elements || system.conditions.iter().any(|b| b.tangent() == Tangent::Symmetric),
         ];
-        world().any_of(&mut flags);
+        part.ranks.any_of(&mut flags);
         let [variable_elements, general_elements, variable_bulk] = flags;
         Self { variable_elements, general_elements, variable_bulk }
     }
@@ -163,7 +164,8 @@ impl Assembler {
             lumped: lumped_mass,
             interaction_unknowns,
             coupling_of,
-            traits: Traits::of(system),
+            traits: Traits::of(part, system),
+            ranks: part.ranks.clone(),
             distribution,
             ..Self::default()
         }
@@ -190,9 +192,9 @@ impl Assembler {
     /// # Errors
     /// Constraints that contradict each other.
     pub fn begin_step(&mut self, part: &ModelPart, system: &System) -> Result<()> {
-        let equations = world().agree(Equations::new(&system.dofs, &part.nodes, &part.constraints))?;
+        let equations = part.ranks.agree(Equations::new(&system.dofs, &part.nodes, &part.constraints))?;
         let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
-        if world().any(changed) {
+        if part.ranks.any(changed) {
             self.equations = equations;
             if self.distribution.is_none() {
                 let place = |&number: &u32| {
@@ -234,7 +236,7 @@ impl Assembler {
     pub fn residual(&mut self, part: &ModelPart, system: &System, inertia: Option<&Inertia>) -> Result<Vec<f64>> {
         let own = self.own_residual(part, system, inertia);
         let start = Instant::now();
-        let mut rhs = world().agree(own)?;
+        let mut rhs = part.ranks.agree(own)?;
         self.add_up(&mut rhs);
         self.seconds.residual += start.elapsed().as_secs_f64();
         Ok(rhs)
@@ -275,7 +277,7 @@ impl Assembler {
     /// # Errors
     /// An entity that cannot be computed.
     pub fn loads(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
-        let mut out = world().agree(self.own_loads(part, system))?;
+        let mut out = part.ranks.agree(self.own_loads(part, system))?;
         self.add_up(&mut out);
         Ok(out)
     }
@@ -331,7 +333,7 @@ impl Assembler {
     /// Terms of constant blocks scale with displacements, those of all others with positions. No term is larger than
     /// stiffness times [`reach`]: bodies that have gone farther, and multipliers that push farther, measure no accuracy.
     pub fn round_off(&self, part: &ModelPart, system: &System) -> Vec<f64> {
-        let reach = reach(&part.nodes, &system.dofs, &self.equations);
+        let reach = reach(&part.ranks, &part.nodes, &system.dofs, &self.equations);
         let before = system.dofs.gather(&part.nodes, 1);
         let values = self.values(part, system);
         // Of every unknown: its displacement, its position, its size as a multiplier, and how far it may go.

@@ -1,6 +1,6 @@
 //! Vectors over the unknowns of several ranks: each has those of its nodes, and sums pass through the owners.
 
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::model::{Halo, ModelPart};
 
 use super::dof_table::DofTable;
@@ -26,9 +26,14 @@ impl Distribution {
         Some(Self { owners: of_nodes(&share.owners), halo, places: of_nodes(&share.places) })
     }
 
+    /// The ranks that share the unknowns.
+    pub fn ranks(&self) -> &Ranks {
+        &self.halo.ranks
+    }
+
     /// Whether this rank owns an unknown.
     pub fn is_own(&self, number: usize) -> bool {
-        self.owners[number] as usize == world().rank()
+        self.owners[number] as usize == self.halo.ranks.rank()
     }
 
     /// Place in the whole mesh of the node of an unknown.

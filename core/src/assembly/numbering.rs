@@ -2,7 +2,6 @@
 
 use super::distribution::Distribution;
 use super::equations::Equations;
-use crate::communication::world;
 
 /// Numbers over all ranks of the equations this rank has.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -22,10 +21,10 @@ impl Numbering {
         let is_own = |&e: &u32| distribution.is_own(unknowns[e as usize] as usize);
         let own: Vec<u32> = (0..unknowns.len() as u32).filter(is_own).collect();
         let mut starts = vec![0];
-        for count in world().gather_numbers(&[own.len() as f64]) {
+        for count in distribution.ranks().gather_numbers(&[own.len() as f64]) {
             starts.push(starts[starts.len() - 1] + count[0] as usize);
         }
-        let first = starts[world().rank()];
+        let first = starts[distribution.ranks().rank()];
         // Numbers below 2^32 are exact in floating point.
         let mut of_unknowns = vec![0.0; equations.unknown_count()];
         own.iter().enumerate().for_each(|(at, &e)| of_unknowns[unknowns[e as usize] as usize] = (first + at) as f64);

@@ -2,7 +2,7 @@
 
 use super::dof_table::DofTable;
 use super::equations::Equations;
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::model::Nodes;
 use crate::vector3::norm;
 
@@ -11,7 +11,7 @@ const FAR: f64 = 1e3;
 
 /// Farthest motion of a held body within a step: a thousand times the diagonal of the box around all nodes and the largest
 /// prescribed value (length); infinite for models without extent, which are no bodies. Collective.
-pub fn reach(nodes: &Nodes, dofs: &DofTable, equations: &Equations) -> f64 {
+pub fn reach(ranks: &Ranks, nodes: &Nodes, dofs: &DofTable, equations: &Equations) -> f64 {
     let prescribed = dofs.dofs().iter().enumerate().filter(|(n, dof)| dof.moves_mesh() && equations.is_fixed(*n));
     let prescribed = prescribed.filter_map(|(_, dof)| nodes.history.scalar(dof.variable, dof.node as usize));
     let prescribed = prescribed.fold(0.0, |most: f64, u| most.max(u.abs()));
@@ -21,7 +21,7 @@ pub fn reach(nodes: &Nodes, dofs: &DofTable, equations: &Equations) -> f64 {
     };
     let sides = [0, 1, 2].map(side);
     let own = [sides[0].0, sides[1].0, sides[2].0, -sides[0].1, -sides[1].1, -sides[2].1, -prescribed];
-    let all = world().gather_numbers(&own);
+    let all = ranks.gather_numbers(&own);
     let least = |at: usize| all.iter().map(|of_rank| of_rank[at]).fold(own[at], f64::min);
     let diagonal = norm([0, 1, 2].map(|c| -least(c + 3) - least(c)));
     if diagonal.is_finite() && diagonal > 0.0 { FAR * (diagonal - least(6)) } else { f64::INFINITY }

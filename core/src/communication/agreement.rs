@@ -1,14 +1,14 @@
 //! Errors that all ranks know of before any of them stops.
 //!
-//! Work that a rank does alone may fail there alone; `agree` makes it fail everywhere. Errors
-//! of what every rank does alike need no agreement. Whatever is left ends all processes, see [`end_after_failure`].
+//! Work that a rank does alone may fail there alone; [`Ranks::agree`] makes it fail everywhere. Errors
+//! of what every rank does alike need no agreement. Whatever is left ends all processes, see [`Ranks::end_after_failure`].
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use super::{Communicator, world};
+use super::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result, Severity};
 
 /// How long a failed rank waits to hear that rank 0 has failed too, before it speaks for itself.
@@ -16,25 +16,39 @@ const PATIENCE: Duration = Duration::from_secs(3);
 /// How long it then waits for rank 0 to close its files and end the run.
 const CLOSING: Duration = Duration::from_secs(600);
 
-static DEFERRED: Mutex<Option<Error>> = Mutex::new(None);
-
-/// Keeps an error of this rank for the next `agree`, so that it goes on up to there.
-pub fn defer(error: Error) {
-    DEFERRED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-}
-
-/// The error that was kept, if any; no later agreement knows of it.
-///
-/// # Errors
-/// What [`defer`] was given.
-pub fn deferred() -> Result<()> {
-    DEFERRED.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
-}
-
-impl dyn Communicator + '_ {
+impl Ranks {
     /// Whether this rank writes files and speaks to the user.
     pub fn is_root(&self) -> bool {
         self.rank() == 0
+    }
+
+    /// Keeps an error of this rank for the next [`Ranks::agree`], so that it goes on up to there.
+    pub fn defer(&self, error: Error) {
+        self.deferred_error().lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+
+    /// The error that was kept, if any; no later agreement knows of it.
+    ///
+    /// # Errors
+    /// What [`Ranks::defer`] was given.
+    pub fn deferred(&self) -> Result<()> {
+        self.deferred_error().lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
+    }
+
+    /// Does on rank 0 what only one rank may do, such as writing a file.
+    ///
+    /// # Errors
+    /// As `act`; with several ranks the error is kept until they next agree.
+    pub fn on_root(&self, act: impl FnOnce() -> Result<()>) -> Result<()> {
+        if !self.is_root() {
+            return Ok(());
+        }
+        let done = act();
+        if self.size() > 1 {
+            done.err().into_iter().for_each(|error| self.defer(error));
+            return Ok(());
+        }
+        done
     }
 
     /// The result, or the error of any rank; collective.
@@ -45,7 +59,7 @@ impl dyn Communicator + '_ {
         if self.size() == 1 {
             return result;
         }
-        let result = result.and_then(|value| deferred().map(|()| value));
+        let result = result.and_then(|value| self.deferred().map(|()| value));
         if !self.any(result.is_err()) {
             return result;
         }
@@ -98,14 +112,18 @@ impl dyn Communicator + '_ {
         sum[0]
     }
 
+    /// What to exchange so that rank 0 gets a list, and the others nothing.
+    pub fn for_root<T>(&self, own: Vec<T>) -> Vec<Vec<T>> {
+        let others = (1..self.size()).map(|_| Vec::new());
+        std::iter::once(own).chain(others).collect()
+    }
+
     /// What every rank gives, by rank, on rank 0; nothing on the others. Collective.
     pub fn to_root(&self, own: Vec<f64>) -> Vec<Vec<f64>> {
         if self.size() == 1 {
             return vec![own];
         }
-        let mut parts = vec![Vec::new(); self.size()];
-        parts[0] = own;
-        let received = self.exchange_numbers(&parts);
+        let received = self.exchange_numbers(&self.for_root(own));
         if self.is_root() { received } else { Vec::new() }
     }
 
@@ -151,6 +169,34 @@ impl dyn Communicator + '_ {
     pub fn is_same(&self, number: u64) -> bool {
         let own = number.to_le_bytes();
         self.size() == 1 || self.gather_equal_bytes(&own).chunks_exact(own.len()).all(|other| *other == own)
+    }
+
+    /// The last act of a failed run on several processes: rank 0 says `message`, and all end with `code`.
+    ///
+    /// Another rank speaks only when rank 0 does not know of the failure.
+    pub fn end_after_failure(&self, message: &str, code: u8) -> ! {
+        if self.is_root() {
+            self.announce_failure();
+            eprintln!("{message}");
+            self.abort(code);
+        }
+        if self.hears_of_failure() {
+            std::thread::sleep(CLOSING);
+        }
+        eprintln!("rank {}: {message}", self.rank());
+        self.abort(code)
+    }
+
+    /// Whether rank 0 says in time that the run has failed.
+    fn hears_of_failure(&self) -> bool {
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            if self.failure_is_announced() {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        false
     }
 }
 
@@ -202,33 +248,6 @@ fn known_code(code: String) -> &'static str {
     }
     codes.push(Box::leak(code.into_boxed_str()));
     codes[codes.len() - 1]
-}
-
-/// The last act of a failed run on several processes: rank 0 says `message`, and all end with `code`.
-///
-/// Another rank speaks only when rank 0 does not know of the failure.
-pub fn end_after_failure(message: &str, code: u8) -> ! {
-    let world = world();
-    if world.is_root() {
-        world.announce_failure();
-        eprintln!("{message}");
-        world.abort(code);
-    }
-    let heard = |patience: Duration| {
-        let start = Instant::now();
-        while start.elapsed() < patience {
-            if world.failure_is_announced() {
-                return true;
-            }
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        false
-    };
-    if heard(PATIENCE) {
-        std::thread::sleep(CLOSING);
-    }
-    eprintln!("rank {}: {message}", world.rank());
-    world.abort(code)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What processes can do together, and the process that is alone.
 
-/// The processes of a run, as one of them sees them.
+/// How the processes of a run reach each other: MPI, or another way that a program brings.
 ///
 /// `gather…`, `exchange…` and `or` are collective: every rank calls them, in the same order.
 pub trait Communicator: Send + Sync {
@@ -42,11 +42,17 @@ pub trait Communicator: Send + Sync {
 
     /// Ends all processes at once with this exit code; not collective.
     fn abort(&self, code: u8) -> !;
+
+    /// These processes as PETSc sees them, which is started when it is not running; `None` where they are not those of
+    /// MPI. Collective.
+    #[cfg(feature = "petsc")]
+    fn petsc(&self) -> Option<crate::diagnostics::Result<zelus_petsc::Communicator>> {
+        None
+    }
 }
 
 /// One process alone.
-#[derive(Debug, Clone, Copy)]
-pub struct Serial;
+pub(super) struct Serial;
 
 impl Communicator for Serial {
     fn rank(&self) -> usize {

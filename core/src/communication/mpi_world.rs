@@ -1,5 +1,7 @@
 //! The communicator of MPI, through the crate `mpi`; the only file that names it.
 
+#[cfg(feature = "petsc")]
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -12,7 +14,7 @@ use mpi::traits::{Communicator as _, CommunicatorCollectives, Destination, Equiv
 use super::Communicator;
 use crate::diagnostics::{Error, Result};
 
-pub(super) use mpi::environment::Universe;
+use mpi::environment::Universe;
 
 /// Tag of the message that the run has failed.
 const FAILED: i32 = 4711;
@@ -21,28 +23,38 @@ const BUSY: Duration = Duration::from_micros(50);
 /// The longest it then sleeps at a time.
 const NAP: Duration = Duration::from_millis(1);
 
-/// All processes that mpirun has started.
+/// All processes that mpirun has started; dropped, this one leaves them.
 pub(super) struct MpiWorld {
     rank: usize,
     size: usize,
     announced: AtomicBool,
+    /// PETSc, once something needs it; it ends before MPI does.
+    #[cfg(feature = "petsc")]
+    petsc: Mutex<Option<zelus_petsc::Session>>,
+    _universe: Universe,
 }
 
 /// Starts MPI; a panic on one rank ends all of them.
-pub(super) fn start() -> Result<(Universe, MpiWorld)> {
+pub(super) fn start() -> Result<MpiWorld> {
     let (universe, threading) = mpi::initialize_with_threading(Threading::Serialized)
         .ok_or_else(|| Error::System("MPI is in use already".to_owned()))?;
     if !matches!(threading, Threading::Serialized | Threading::Multiple) {
         return Err(Error::System(format!("this MPI library offers only {threading:?} threads, not serialised ones")));
     }
     let all = SimpleCommunicator::world();
-    let world = MpiWorld { rank: all.rank() as usize, size: all.size() as usize, announced: AtomicBool::new(false) };
     let say = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         say(panic);
         SimpleCommunicator::world().abort(101);
     }));
-    Ok((universe, world))
+    Ok(MpiWorld {
+        rank: all.rank() as usize,
+        size: all.size() as usize,
+        announced: AtomicBool::new(false),
+        #[cfg(feature = "petsc")]
+        petsc: Mutex::default(),
+        _universe: universe,
+    })
 }
 
 fn counts(lengths: impl Iterator<Item = usize>) -> (Vec<i32>, Vec<i32>) {
@@ -183,5 +195,17 @@ impl Communicator for MpiWorld {
 
     fn abort(&self, code: u8) -> ! {
         SimpleCommunicator::world().abort(i32::from(code))
+    }
+
+    #[cfg(feature = "petsc")]
+    fn petsc(&self) -> Option<Result<zelus_petsc::Communicator>> {
+        let mut session = self.petsc.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if session.is_none() {
+            match zelus_petsc::Session::start() {
+                Ok(started) => *session = Some(started),
+                Err(error) => return Some(Err(Error::System(error.to_string()))),
+            }
+        }
+        session.as_ref().map(|session| Ok(session.world()))
     }
 }

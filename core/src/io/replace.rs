@@ -1,6 +1,6 @@
 //! Files that are whole or not there, written beside their name and renamed onto it, and files that grow.
 
-use crate::communication::{defer, world};
+use crate::communication::Ranks;
 use crate::diagnostics::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -13,8 +13,12 @@ use std::path::Path;
 /// # Errors
 /// [`Error::System`] when the disk refuses; the old content is then untouched. With several ranks the error is kept until
 /// they next agree.
-pub fn replace_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
-    on_one_rank(|| replace(path, fill))
+pub fn replace_file(
+    ranks: &Ranks,
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<()> {
+    ranks.on_root(|| replace_own_file(path, fill))
 }
 
 /// As [`replace_file`], for a file that is this rank's own.
@@ -22,26 +26,6 @@ pub fn replace_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::
 /// # Errors
 /// As [`replace_file`], but at once: other ranks know of it when they agree.
 pub fn replace_own_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
-    replace(path, fill)
-}
-
-/// Does what only one rank may do.
-///
-/// # Errors
-/// As `act`; with several ranks the error is kept until they next agree.
-pub fn on_one_rank(act: impl FnOnce() -> Result<()>) -> Result<()> {
-    if !world().is_root() {
-        return Ok(());
-    }
-    let done = act();
-    if world().size() > 1 {
-        done.err().into_iter().for_each(defer);
-        return Ok(());
-    }
-    done
-}
-
-fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
     let failed = |what: &str, e: io::Error| Error::System(format!("{}: cannot {what}: {e}", path.display()));
     if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs::create_dir_all(folder).map_err(|e| failed("make its folder", e))?;
@@ -64,8 +48,12 @@ fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()
 ///
 /// # Errors
 /// [`Error::System`] when the disk refuses.
-pub fn append_to_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
-    on_one_rank(|| append(path, fill))
+pub fn append_to_file(
+    ranks: &Ranks,
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<()> {
+    ranks.on_root(|| append(path, fill))
 }
 
 fn append(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
@@ -85,8 +73,8 @@ mod tests {
     fn a_failed_writing_keeps_the_old_content() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a/b.txt");
-        replace_file(&path, |w| w.write_all(b"old")).unwrap();
-        let error = replace_file(&path, |w| {
+        replace_own_file(&path, |w| w.write_all(b"old")).unwrap();
+        let error = replace_own_file(&path, |w| {
             w.write_all(b"half")?;
             Err(io::Error::other("full"))
         })

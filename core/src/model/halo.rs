@@ -1,12 +1,14 @@
 //! Copies that ranks have of each other's items, nodes or unknowns, and how values travel between them.
 
-use crate::communication::world;
+use crate::communication::Ranks;
 
 /// Items that this rank owns and others have copies of, and items of others that it has copies of.
 ///
 /// Both sides of a pair of ranks list the same items in the same order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Halo {
+    /// The ranks that exchange values.
+    pub ranks: Ranks,
     /// Own items that each rank has copies of, and not all ranks have.
     pub copied: Vec<Vec<u32>>,
     /// Items of each rank that are here as copies, and not on all ranks.
@@ -33,12 +35,12 @@ impl Halo {
     /// Gives all copies the value of the owner; collective.
     pub fn spread(&self, values: &mut [f64]) {
         let sent: Vec<Vec<f64>> = self.copied.iter().map(|list| pick(list, values)).collect();
-        for (list, received) in self.copies.iter().zip(world().exchange_numbers(&sent)) {
+        for (list, received) in self.copies.iter().zip(self.ranks.exchange_numbers(&sent)) {
             list.iter().zip(received).for_each(|(&at, value)| values[at as usize] = value);
         }
         if self.everywhere.iter().any(|list| !list.is_empty()) {
             let counts: Vec<usize> = self.everywhere.iter().map(Vec::len).collect();
-            let all = world().gather_counted(&pick(&self.everywhere[world().rank()], values), &counts);
+            let all = self.ranks.gather_counted(&pick(&self.everywhere[self.ranks.rank()], values), &counts);
             self.everywhere.iter().flatten().zip(all).for_each(|(&at, value)| values[at as usize] = value);
         }
     }
@@ -47,7 +49,7 @@ impl Halo {
     ///
     /// Few ranks have something for an item that all have, so that only those speak.
     fn collect(&self, values: &mut [f64], nothing: f64, join: impl Fn(f64, f64) -> f64) {
-        let rank = world().rank();
+        let rank = self.ranks.rank();
         let message = |owner: usize| -> Vec<f64> {
             let mut message = pick(&self.copies[owner], values);
             if owner != rank {
@@ -61,7 +63,7 @@ impl Halo {
             message
         };
         let sent: Vec<Vec<f64>> = (0..self.copies.len()).map(message).collect();
-        for (list, received) in self.copied.iter().zip(world().exchange_numbers(&sent)) {
+        for (list, received) in self.copied.iter().zip(self.ranks.exchange_numbers(&sent)) {
             let (of_list, of_all) = received.split_at(list.len());
             let places = of_all.chunks_exact(2).map(|pair| (self.everywhere[rank][pair[0] as usize], pair[1]));
             for (at, value) in list.iter().copied().zip(of_list.iter().copied()).chain(places) {
@@ -86,7 +88,12 @@ impl Halo {
 
     fn each_list(&self, change: impl Fn(&[u32]) -> Vec<u32>) -> Self {
         let change = |lists: &[Vec<u32>]| -> Vec<Vec<u32>> { lists.iter().map(|list| change(list)).collect() };
-        Self { copied: change(&self.copied), copies: change(&self.copies), everywhere: change(&self.everywhere) }
+        Self {
+            ranks: self.ranks.clone(),
+            copied: change(&self.copied),
+            copies: change(&self.copies),
+            everywhere: change(&self.everywhere),
+        }
     }
 }
 

@@ -45,16 +45,30 @@ pub use sub_part::SubPart;
 pub use table::Table;
 pub use variable::{ColumnType, Named, ScalarVariable, Variable, VariableEntry, VariableKind, named, variables};
 
+use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result};
 
 /// All root model parts of a run by name; stages share it.
 #[derive(Default)]
 pub struct Model {
+    /// The processes of the run.
+    pub ranks: Ranks,
     /// Root parts by name.
     pub parts: BTreeMap<String, ModelPart>,
 }
 
 impl Model {
+    /// No parts yet; those that are added belong to `ranks`.
+    pub fn new(ranks: Ranks) -> Self {
+        Self { ranks, parts: BTreeMap::new() }
+    }
+
+    /// Adds a root part, in place of one of the same name.
+    pub fn add(&mut self, mut part: ModelPart) {
+        part.ranks = self.ranks.clone();
+        self.parts.insert(part.name.clone(), part);
+    }
+
     /// The root part that a dotted path begins with.
     ///
     /// # Errors

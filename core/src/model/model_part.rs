@@ -12,7 +12,7 @@ use super::properties::{Properties, PropertyValue};
 use super::share::{MeshSizes, Share};
 use super::sub_part::SubPart;
 use super::table::Table;
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
 
 /// A root model part; sub parts select from it by index.
@@ -40,6 +40,8 @@ pub struct ModelPart {
     pub tree: SubPart,
     /// Linear relations between unknowns.
     pub constraints: Vec<MasterSlaveConstraint>,
+    /// The processes that have this part, in whole or in shares.
+    pub ranks: Ranks,
     /// What this rank has of a mesh that several share; `None` when this process computes everything.
     pub share: Option<Share>,
     /// Warnings met while running; the stage passes them on after each step.
@@ -120,7 +122,7 @@ impl ModelPart {
     /// is one of the slave's.
     pub fn evaluates_pair(&self, nodes: &[u32]) -> bool {
         let rank = |share: &Share| nodes.last().map_or(0, |&node| share.pairs[node as usize]);
-        self.share.as_ref().is_none_or(|share| rank(share) as usize == world().rank())
+        self.share.as_ref().is_none_or(|share| rank(share) as usize == self.ranks.rank())
     }
 
     /// Whether this rank owns a node with its unknowns.
@@ -132,7 +134,7 @@ impl ModelPart {
     pub fn evaluates(&self, role: Role, at: usize) -> bool {
         self.share.as_ref().is_none_or(|share| {
             let owners = if role == Role::Element { &share.elements } else { &share.conditions };
-            owners[at] as usize == world().rank()
+            owners[at] as usize == self.ranks.rank()
         })
     }
 

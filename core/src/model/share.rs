@@ -1,7 +1,6 @@
 //! What this process has of a mesh that several ranks share.
 
 use super::halo::Halo;
-use crate::communication::world;
 
 /// Numbers of the whole mesh.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -17,8 +16,6 @@ pub struct MeshSizes {
 /// What this rank has of the mesh; indices count what it has, in the order of the whole mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Share {
-    /// Number of ranks.
-    pub ranks: usize,
     /// Rank that evaluates each element.
     pub elements: Vec<u32>,
     /// Rank that evaluates each condition.
@@ -40,6 +37,6 @@ pub struct Share {
 impl Share {
     /// Whether this rank owns a node with its unknowns.
     pub fn owns(&self, node: usize) -> bool {
-        self.owners[node] as usize == world().rank()
+        self.owners[node] as usize == self.halo.ranks.rank()
     }
 }

@@ -34,7 +34,7 @@ impl Modeler for ImportMdpa {
         }
         let mut part = ModelPart::new(self.part.clone());
         read_mesh_of(&self.path, &self.place, &mut part)?.into_iter().for_each(|warning| report.push(warning));
-        model.parts.insert(self.part.clone(), part);
+        model.add(part);
         Ok(())
     }
 }

@@ -16,9 +16,9 @@ impl Share {
         self.pairs.clone_from(&self.owners);
         let mut count = vec![0_u32; self.owners.len()];
         last_nodes.for_each(|node| count[node as usize] += 1);
-        let mut load = vec![0_u32; self.ranks];
+        let mut load = vec![0_u32; self.halo.copied.len()];
         count.iter().zip(&self.owners).for_each(|(count, &rank)| load[rank as usize] += count);
-        let mean = f64::from(load.iter().sum::<u32>()) / self.ranks as f64;
+        let mean = f64::from(load.iter().sum::<u32>()) / load.len() as f64;
         let target = mean.ceil() as u32;
         let fullest = load.iter().copied().max().unwrap_or(0);
         if f64::from(fullest) <= IMBALANCE * mean || fullest < target + LEAST {
@@ -29,7 +29,7 @@ impl Share {
         let mut moved = 0;
         for node in 0..count.len() {
             let (pairs, from) = (count[node], self.owners[node] as usize);
-            let to = (0..self.ranks).min_by_key(|&rank| load[rank]).unwrap_or(from);
+            let to = (0..load.len()).min_by_key(|&rank| load[rank]).unwrap_or(from);
             if pairs > 0 && gives[from] && load[from] > target && load[to] + pairs < load[from] {
                 self.pairs[node] = to as u32;
                 load[from] -= pairs;

@@ -4,7 +4,6 @@
 //! constraints are then decided everywhere alike. They grow with the surface of the bodies; the rest is shared out.
 
 use super::Partition;
-use crate::communication::world;
 use crate::model::{Halo, MeshSizes, ModelPart, Share};
 
 /// Indices of a whole mesh that a rank keeps, ascending.
@@ -35,7 +34,7 @@ impl Kept {
     pub(super) fn new(part: &ModelPart, partition: &Partition, common: &[bool], rank: usize) -> Self {
         let mut kept = vec![false; part.nodes.len()];
         let lists = || vec![Vec::new(); partition.ranks];
-        let mut halo = Halo { copied: lists(), copies: lists(), everywhere: lists() };
+        let mut halo = Halo { ranks: part.ranks.clone(), copied: lists(), copies: lists(), everywhere: lists() };
         let everywhere = everywhere(part, common);
         let mut elements = Vec::new();
         let mut conditions = Vec::new();
@@ -82,7 +81,6 @@ impl Kept {
         let pick = |list: &[u32], kept: &[u32]| -> Vec<u32> { kept.iter().map(|&at| list[at as usize]).collect() };
         let owners = pick(&partition.nodes, &self.nodes);
         Share {
-            ranks: partition.ranks,
             elements: pick(&partition.elements, &self.elements),
             conditions: pick(&partition.conditions, &self.conditions),
             pairs: owners.clone(),
@@ -98,7 +96,7 @@ impl Kept {
 /// Cuts `part` down to what this rank keeps of it where all keep the `common` nodes, and notes in it who has what.
 pub fn keep_share(part: &mut ModelPart, partition: &Partition, common: &[bool]) {
     let whole = MeshSizes { nodes: part.nodes.len(), elements: part.elements.len(), conditions: part.conditions.len() };
-    let kept = Kept::new(part, partition, common, world().rank());
+    let kept = Kept::new(part, partition, common, part.ranks.rank());
     if kept.nodes.len() < whole.nodes
         || kept.elements.len() < whole.elements
         || kept.conditions.len() < whole.conditions

@@ -10,7 +10,6 @@ use std::path::Path;
 use super::assign_to_entities::{Container, centre};
 use super::process::{Process, ProcessRequest};
 use super::target::{Target, read_text, scalar_variable};
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::model::{Fields, Model, ModelPart, ScalarVariable, SubPart, Table};
 use crate::parameters::{Document, Node, Settings};
@@ -155,7 +154,7 @@ impl AssignScalarInput {
                 Site::Id(id) => {
                     // Each rank knows its own part of the mesh.
                     let here = of_id(*id).map_or(Vec::new(), |at| position(at).to_vec());
-                    let anywhere = world().gather_numbers(&here).into_iter().find_map(|x| x.try_into().ok());
+                    let anywhere = part.ranks.gather_numbers(&here).into_iter().find_map(|x| x.try_into().ok());
                     anywhere.ok_or_else(|| {
                         let fact = format!("the file names {id}, which the mesh does not have");
                         Diagnostic::error("unknown-id", fact).at(self.file.clone())

@@ -8,7 +8,6 @@ use super::process::{Process, ProcessRequest};
 use super::scalar_value::ScalarValue;
 use super::target::{Target, scalar_variable, vector_variable};
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::{Error, Result};
 use crate::model::{Model, ScalarVariable};
 use crate::parameters::{Settings, SpaceTime};
@@ -92,7 +91,7 @@ impl Process for CheckNodes {
                 }
             }
         }
-        let found = world().lines_of_all(found);
+        let found = part.ranks.lines_of_all(found);
         if found.is_empty() {
             return Ok(());
         }

@@ -34,7 +34,9 @@ fn model() -> Model {
     part.tree.nodes = vec![0, 1, 2];
     part.tree.conditions = vec![0, 1];
     part.tree.children.insert("Edge".into(), edge);
-    Model { parts: [("Structure".to_owned(), part)].into() }
+    let mut model = Model::default();
+    model.add(part);
+    model
 }
 
 /// The displacements of [`model`] are unknowns.

@@ -12,7 +12,6 @@ use super::strategy::{
     SolutionStrategy, StrategyEntry, accept, after_prediction, recorded, relaxation, update_interactions,
 };
 use crate::assembly::{Assembler, System};
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Settings};
@@ -151,7 +150,8 @@ impl ArcLength {
             interaction.begin_step(part)?;
         }
         self.newton.assembler.begin_step(part, system)?;
-        if world().any(self.newton.start(part, system, None)?.iter().any(|d| *d != 0.0)) {
+        let prescribed = self.newton.start(part, system, None)?;
+        if part.ranks.any(prescribed.iter().any(|d| *d != 0.0)) {
             let fact = "arc length scales loads, but a prescribed displacement changes";
             return Err(Diagnostic::error("arc-length", fact)
                 .remedy("keep it constant, or use \"newton_raphson\"")

@@ -1,7 +1,6 @@
 //! Convergence criteria: what they may look at, and what they say.
 
 use crate::assembly::{Distribution, Dof, DofTable, Equations};
-use crate::communication::world;
 use crate::diagnostics::{Report, Result};
 use crate::model::Nodes;
 use crate::parameters::{Node, Settings};
@@ -63,7 +62,9 @@ impl Measures<'_> {
         let counts = |n: &usize| block.holds(&dofs[*n]) && self.distribution.is_none_or(|d| d.is_own(*n));
         let own = self.equations.unknowns().iter().map(|&n| n as usize).filter(counts);
         let mut sums = own.fold([0.0; 2], |[sum, count], n| [sum + a[n] * b[n], count + 1.0]);
-        world().sum(&mut sums);
+        if let Some(distribution) = self.distribution {
+            distribution.ranks().sum(&mut sums);
+        }
         (sums[0], sums[1] as usize)
     }
 

@@ -1,7 +1,6 @@
 //! The longest stable step of explicit integration.
 
 use crate::assembly::{Assembler, DofTable};
-use crate::communication::world;
 
 /// Products with the tangent at most.
 const PRODUCTS: usize = 100;
@@ -27,7 +26,7 @@ pub(super) fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64]
     let counts = |at: usize| assembler.counts(equations.unknowns()[at] as usize);
     let weighted = |x: &[f64]| {
         let own = (0..x.len()).filter(|&at| counts(at)).map(|at| mass[at] * x[at] * x[at]);
-        world().total(own.sum()).sqrt()
+        assembler.total(own.sum()).sqrt()
     };
     let mut square = 0.0;
     for _ in 0..PRODUCTS {

@@ -11,7 +11,6 @@ use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{Assembler, Inertia, System, damped_by_properties, impose_constraints, strongest_damping};
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND};
 use crate::parameters::Settings;
@@ -96,7 +95,7 @@ impl ExplicitStrategy {
         system: &mut System,
     ) -> Result<Self> {
         let mut assembler = Assembler::new(part, system, true);
-        world().agree(only_with_mass(system))?;
+        part.ranks.agree(only_with_mass(system))?;
         scheme.prepare(part);
         Rates::add(&mut part.nodes.history, &[OUT_OF_BALANCE]);
         let mass = assembler.lumped_mass(part, system)?;
@@ -112,7 +111,7 @@ impl ExplicitStrategy {
             }
         }
         let massless = worst.filter(|(_, m)| *m <= 0.0).map(|(node, m)| format!("of node {node} is {m}"));
-        if let Some(massless) = world().first_to_say(massless) {
+        if let Some(massless) = part.ranks.first_to_say(massless) {
             let fact = format!("the lumped mass {massless}, explicit integration needs a positive one");
             let remedy =
                 "give a positive density, or elements whose lumped mass is positive (e.g. 2D4N instead of 2D8N)";
@@ -184,7 +183,7 @@ impl ExplicitStrategy {
             self.warn_of_motion(part, system, moved);
         }
         let broken = self.assembler.values(part, system).iter().position(|v| !v.is_finite());
-        Ok((Vec::new(), world().first_to_say(broken.map(|number| self.explain(part, system, number)))))
+        Ok((Vec::new(), part.ranks.first_to_say(broken.map(|number| self.explain(part, system, number)))))
     }
 
     /// Puts prescribed unknowns back to where they are now: forces are those of the step's start.
@@ -226,7 +225,7 @@ impl ExplicitStrategy {
     /// Warns, once, of a fixed unknown on any rank that is given another value; collective.
     fn warn_of_motion(&mut self, part: &mut ModelPart, system: &System, moved: Option<usize>) {
         let moved = moved.map(|number| Meaning::of(&system.dofs, &part.nodes, number as u32).to_string());
-        if let Some(moved) = world().first_to_say(moved) {
+        if let Some(moved) = part.ranks.first_to_say(moved) {
             let fact = format!("{moved} is fixed and given another value: it stays where it is");
             let remedy = "\"follow_prescribed_motion\" of the solver settings is false: true moves fixed unknowns";
             part.messages.push(Diagnostic::warning("prescribed-motion", fact).remedy(remedy));

@@ -9,7 +9,7 @@ use zelus_linear_algebra::{Csr, Layout, NotCondensable, System};
 
 use super::meaning::Meaning;
 use crate::assembly::{Assembler, DofTable, Numbering, Place, near_null_space};
-use crate::communication::{threads_while_others_wait, world};
+use crate::communication::{Ranks, threads_while_others_wait};
 use crate::model::Nodes;
 
 /// The three matrices of a system on rank 0; empty on the others.
@@ -53,7 +53,7 @@ impl Whole {
         };
         let own: Vec<f64> = numbering.own.iter().flat_map(row).collect();
         let counts: Vec<usize> = numbering.counts().iter().map(|count| NUMBERS * count).collect();
-        let rows = world().gather_to_root(&own, &counts);
+        let rows = assembler.ranks().gather_to_root(&own, &counts);
         let rows: Vec<&[f64]> = rows.chunks_exact(NUMBERS).collect();
         let mut order: Vec<u32> = (0..rows.len() as u32).collect();
         // Equations of a node stand together already, in their order.
@@ -76,7 +76,7 @@ impl Whole {
 impl Gathered {
     /// Brings rank 0 up to date with what the ranks have, as far as its stamps have changed; collective.
     pub(super) fn update(&mut self, assembler: &Assembler, loads: Option<&Csr>, dofs: &DofTable, nodes: &Nodes) {
-        let own = assembler.system();
+        let (ranks, own) = (assembler.ranks(), assembler.system());
         let Some(numbering) = assembler.numbering() else { return };
         if self.whole.graph != Some(own.bulk_graph) {
             self.whole.lay_out(assembler, numbering, dofs, nodes);
@@ -84,35 +84,35 @@ impl Gathered {
             (self.bulk, self.coupling, self.loads) = Default::default();
         }
         let places = &self.whole.places;
-        self.bulk.update(own.bulk, numbering, places, own.bulk_graph, own.bulk_values);
+        self.bulk.update(ranks, own.bulk, numbering, places, own.bulk_graph, own.bulk_values);
         let none = Csr::empty(own.equations());
         let coupling = own.coupling.unwrap_or(&none);
-        self.coupling.update(coupling, numbering, places, own.coupling_graph, own.coupling_values);
+        self.coupling.update(ranks, coupling, numbering, places, own.coupling_graph, own.coupling_values);
         self.solves += 1;
-        if world().any(loads.is_some()) {
+        if ranks.any(loads.is_some()) {
             // Which follower loads act may change at any time.
-            self.loads.update(loads.unwrap_or(&none), numbering, places, self.solves, self.solves);
+            self.loads.update(ranks, loads.unwrap_or(&none), numbering, places, self.solves, self.solves);
         } else {
             self.loads = GatheredMatrix::default();
         }
     }
 
     /// The vector of all equations on rank 0, from one over those of each rank; collective.
-    pub(super) fn gather(&self, own: &[f64], numbering: &Numbering) -> Vec<f64> {
-        let all = world().gather_to_root(&numbering.own_of(own), &numbering.counts());
+    pub(super) fn gather(&self, ranks: &Ranks, own: &[f64], numbering: &Numbering) -> Vec<f64> {
+        let all = ranks.gather_to_root(&numbering.own_of(own), &numbering.counts());
         let mut out = vec![0.0; all.len()];
         self.whole.places.iter().zip(all).for_each(|(&place, value)| out[place as usize] = value);
         out
     }
 
     /// Gives every rank what it owns of a vector that rank 0 has; collective.
-    pub(super) fn scatter(&self, whole: &[f64], numbering: &Numbering) -> Vec<f64> {
+    pub(super) fn scatter(&self, ranks: &Ranks, whole: &[f64], numbering: &Numbering) -> Vec<f64> {
         let of = |number: usize| whole[self.whole.places[number] as usize];
-        let parts: Vec<Vec<f64>> = match world().is_root() {
+        let parts: Vec<Vec<f64>> = match ranks.is_root() {
             true => numbering.starts.windows(2).map(|range| (range[0]..range[1]).map(of).collect()).collect(),
-            false => vec![Vec::new(); world().size()],
+            false => vec![Vec::new(); ranks.size()],
         };
-        world().exchange_numbers(&parts).swap_remove(0)
+        ranks.exchange_numbers(&parts).swap_remove(0)
     }
 
     /// Does what the other ranks wait for, with the threads of those on this machine.
@@ -171,26 +171,25 @@ struct GatheredMatrix {
 
 impl GatheredMatrix {
     /// `places` says where each equation is on rank 0, by its number.
-    fn update(&mut self, own: &Csr, numbering: &Numbering, places: &[u32], graph: u64, values: u64) {
+    fn update(&mut self, ranks: &Ranks, own: &Csr, numbering: &Numbering, places: &[u32], graph: u64, values: u64) {
         let new_graph = self.graph != Some(graph);
         if !new_graph && self.values == Some(values) {
             return;
         }
-        let world = world();
         if new_graph {
             // Each row with entries: its number and how many it has.
             let counts = own.row_starts.windows(2).map(|pair| (pair[1] - pair[0]) as u32);
             let rows = numbering.numbers.iter().zip(counts).filter(|(_, count)| *count > 0);
             let rows: Vec<u32> = rows.flat_map(|(&number, count)| [number, count]).collect();
             let columns: Vec<u32> = own.columns.iter().map(|&column| numbering.numbers[column as usize]).collect();
-            let rows = world.exchange_indices(&to_root(rows));
-            let columns = world.exchange_indices(&to_root(columns));
-            if world.is_root() {
+            let rows = ranks.exchange_indices(&ranks.for_root(rows));
+            let columns = ranks.exchange_indices(&ranks.for_root(columns));
+            if ranks.is_root() {
                 self.join(&rows, &columns, places);
             }
         }
         let counts: Vec<usize> = self.places.iter().map(Vec::len).collect();
-        let of_ranks = world.gather_to_root(&own.values, &counts);
+        let of_ranks = ranks.gather_to_root(&own.values, &counts);
         self.sum.zero();
         let entries = self.places.iter().flatten();
         entries.zip(of_ranks).for_each(|(&entry, value)| self.sum.values[entry as usize] += value);
@@ -237,12 +236,6 @@ impl GatheredMatrix {
         }
         self.sum = Csr::from_sorted_pattern(row_starts, joined);
     }
-}
-
-fn to_root<T>(list: Vec<T>) -> Vec<Vec<T>> {
-    let mut parts: Vec<Vec<T>> = (0..world().size()).map(|_| Vec::new()).collect();
-    parts[0] = list;
-    parts
 }
 
 #[cfg(test)]

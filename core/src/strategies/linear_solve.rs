@@ -6,7 +6,6 @@ use super::condensing;
 use super::gathered::Gathered;
 use super::meaning::{Meaning, Meanings};
 use crate::assembly::{Assembler, DofTable};
-use crate::communication::world;
 use crate::diagnostics::Error;
 use crate::model::Nodes;
 
@@ -80,9 +79,10 @@ pub(super) fn solve(
         return solved.map_err(|error| explain(&error, None, &|equation| rows.meaning(equation)));
     }
     gathered.update(assembler, loads.as_ref(), dofs, nodes);
-    let rhs = gathered.gather(rhs, numbering);
+    let ranks = assembler.ranks();
+    let rhs = gathered.gather(ranks, rhs, numbering);
     let (whole, loads) = gathered.system(&system);
-    let solved = if world().is_root() {
+    let solved = if ranks.is_root() {
         let stamps = assembler.merged_stamps();
         let meanings = gathered.meanings();
         gathered.while_others_wait(|| {
@@ -91,8 +91,8 @@ pub(super) fn solve(
     } else {
         Ok((Vec::new(), elsewhere()))
     };
-    let (increment, report) = world().agree(solved.map_err(Error::from))?;
-    Ok((assembler.complete(&gathered.scatter(&increment, numbering)), report))
+    let (increment, report) = ranks.agree(solved.map_err(Error::from))?;
+    Ok((assembler.complete(&gathered.scatter(ranks, &increment, numbering)), report))
 }
 
 /// What a rank knows of a solve that rank 0 did.

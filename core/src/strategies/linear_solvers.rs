@@ -5,7 +5,6 @@ use zelus_linear_algebra::{
 };
 
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 use crate::parameters::{Node, Settings};
@@ -86,7 +85,7 @@ const FACTORISED: usize = 500_000;
 /// Unknowns of all ranks; collective.
 pub(crate) fn unknowns_of_all(part: &ModelPart, system: &System) -> usize {
     let own = system.dofs.dofs().iter().filter(|dof| part.owns_node(dof.node as usize)).count();
-    if part.share.is_some() { world().total(own as f64) as usize } else { own }
+    if part.share.is_some() { part.ranks.total(own as f64) as usize } else { own }
 }
 
 /// What PETSc solves with on several ranks, and a sentence saying so; `None` where rank 0 shall solve for all.

@@ -6,7 +6,7 @@
 
 use zelus_linear_algebra::{LinearSolver, memory};
 
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::parameters::Settings;
 
@@ -32,6 +32,7 @@ impl Size {
 /// # Errors
 /// Neither fits, or a limit that is no number above zero.
 pub(super) fn fitting(
+    ranks: &Ranks,
     solver: Box<dyn LinearSolver>,
     frugal: Option<Box<dyn LinearSolver>>,
     size: Size,
@@ -48,7 +49,7 @@ pub(super) fn fitting(
             }
         },
     };
-    if world().size() > 1 {
+    if ranks.size() > 1 {
         return Ok((solver, None));
     }
     let Some(free) = limit.into_iter().chain(memory::available()).min() else { return Ok((solver, None)) };

@@ -24,7 +24,6 @@ use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded};
 use crate::assembly::{Assembler, System, impose_constraints};
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::ModelPart;
 use crate::register;
@@ -149,9 +148,15 @@ impl NewtonRaphson {
 
     /// Lets PETSc solve the equations of all ranks, each with its own rows, in place of rank 0.
     #[cfg(feature = "petsc")]
-    pub fn solve_by_petsc(&mut self, settings: zelus_petsc::PetscSettings, multipliers: Multipliers) {
+    pub fn solve_by_petsc(
+        &mut self,
+        communicator: zelus_petsc::Communicator,
+        settings: zelus_petsc::PetscSettings,
+        multipliers: Multipliers,
+    ) {
         let condensing = if let Multipliers::Condense(settings) = multipliers { Some(settings) } else { None };
-        self.gathered.petsc = Some(super::owned_rows::OwnedRows::new(settings, condensing));
+        self.gathered.petsc =
+            Some(super::owned_rows::OwnedRows::new(self.assembler.ranks(), communicator, settings, condensing));
     }
 
     /// Notes the energy of the present state where it is the largest so far.
@@ -166,7 +171,7 @@ impl NewtonRaphson {
     /// # Errors
     /// A singular matrix or a solver that fails, naming nodes.
     pub(super) fn solve(&mut self, part: &mut ModelPart, system: &System, rhs: &[f64]) -> Result<Solved, Failed> {
-        if !world().any(rhs.iter().any(|v| *v != 0.0)) {
+        if !part.ranks.any(rhs.iter().any(|v| *v != 0.0)) {
             let engine = "none: nothing out of balance".to_owned();
             let increment = vec![0.0; rhs.len()];
             return Ok(Solved { increment, relative_residual: 0.0, iterations: 0, engine, fallback: None });
@@ -227,7 +232,7 @@ impl NewtonRaphson {
         let broken = (0..values.len() as u32)
             .find(|&n| !(residual[n as usize].is_finite() && values[n as usize].is_finite()))
             .map(|n| format!("{} or its residual is no longer finite", Meaning::of(&system.dofs, &part.nodes, n)));
-        world().first_to_say(broken)
+        part.ranks.first_to_say(broken)
     }
 
     /// Adds an increment to the unknowns; rates and positions follow.
@@ -296,7 +301,7 @@ impl NewtonRaphson {
             self.gathered.update(&self.assembler, None, &system.dofs, &part.nodes);
             matrices = self.gathered.system(&matrices).0;
         }
-        if !world().is_root() {
+        if !part.ranks.is_root() {
             return None;
         }
         match zelus_linear_algebra::condition_number(&matrices) {
@@ -313,12 +318,12 @@ impl NewtonRaphson {
         let size = |n: u32| balanced[n as usize].abs();
         let unknowns = self.assembler.equations().unknowns().iter().copied();
         let worst = unknowns.max_by(|&a, &b| size(a).total_cmp(&size(b)));
-        let largest = world().gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
+        let largest = part.ranks.gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
         let said = worst.filter(|&n| size(n) >= largest).map(|n| {
             let value = balanced[n as usize];
             format!("; largest residual {value:.3e} at {}", Meaning::of(&system.dofs, &part.nodes, n))
         });
-        world().first_to_say(said)
+        part.ranks.first_to_say(said)
     }
 
     pub(super) fn explain(

@@ -6,7 +6,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use zelus_linear_algebra::{Condensation, CondensationSettings, Csr, Layout, NotCondensable, Symmetry, System};
 
 use crate::assembly::Numbering;
-use crate::communication::world;
+use crate::communication::Ranks;
 
 /// Largest share of a multiplier on other slave nodes: nothing corrects here for what the condensation leaves out.
 const OFF_NODE: f64 = 1e-14;
@@ -39,18 +39,18 @@ impl OwnedCondensation {
     /// # Errors
     /// The same on all ranks: why the multipliers cannot be condensed, by numbers over all ranks.
     pub(super) fn new<'r>(
+        ranks: &Ranks,
         rows: impl Iterator<Item = (u32, &'r [u64], &'r [f64])>,
         held: &Held,
         numbering: &Numbering,
         multiplier: &[bool],
         settings: &CondensationSettings,
     ) -> Result<Self, NotCondensable> {
-        let world = world();
         // Multipliers are on every rank.
         let of_here = numbering.numbers.iter().zip(multiplier).filter(|(_, multiplier)| **multiplier);
         let mut multipliers: Vec<u32> = of_here.map(|(&number, _)| number).collect();
         multipliers.sort_unstable();
-        let (known, entries) = Self::rows_of_all(rows, held, &multipliers);
+        let (known, entries) = Self::rows_of_all(ranks, rows, held, &multipliers);
         let mut seen: Vec<u32> = known.keys().copied().collect();
         seen.sort_unstable();
         let at = |number: u32| seen.partition_point(|&other| other < number);
@@ -67,7 +67,7 @@ impl OwnedCondensation {
         let settings = CondensationSettings { off_node: settings.off_node.min(OFF_NODE), ..*settings };
         let condensed = Condensation::new(&System::bulk(&layout, &matrix, Symmetry::General), &settings, 0);
         let refused = condensed.as_ref().err().map_or_else(Vec::new, |refused| encode(refused, &seen));
-        if let Some(refused) = world.gather_numbers(&refused).iter().find(|refused| !refused.is_empty()) {
+        if let Some(refused) = ranks.gather_numbers(&refused).iter().find(|refused| !refused.is_empty()) {
             return Err(decode(refused));
         }
         let condensation = condensed?;
@@ -86,7 +86,7 @@ impl OwnedCondensation {
             values.extend(entries.iter().map(|(_, value)| *value));
             row_starts.push(columns.len());
         }
-        let first = left_before(numbering.starts[world.rank()] as u32);
+        let first = left_before(numbering.starts[ranks.rank()] as u32);
         let equations: FxHashMap<u32, u32> =
             numbering.numbers.iter().enumerate().map(|(equation, &number)| (number, equation as u32)).collect();
         let here = seen.iter().map(|number| equations.get(number).copied()).collect();
@@ -96,6 +96,7 @@ impl OwnedCondensation {
     /// The rows of this rank and those of all nodes with multipliers as (row, column, value), and the equations in them;
     /// collective.
     fn rows_of_all<'r>(
+        ranks: &Ranks,
         rows: impl Iterator<Item = (u32, &'r [u64], &'r [f64])>,
         held: &Held,
         multipliers: &[u32],
@@ -125,7 +126,7 @@ impl OwnedCondensation {
                 }
             }
         }
-        for entry in world().gather_numbers(&shared).iter().flat_map(|list| list.chunks_exact(7)) {
+        for entry in ranks.gather_numbers(&shared).iter().flat_map(|list| list.chunks_exact(7)) {
             for equation in [&entry[..3], &entry[3..6]] {
                 known.insert(equation[0] as u32, (equation[1] as u32, equation[2] != 0.0));
             }

@@ -6,19 +6,18 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 use zelus_linear_algebra::{CondensationSettings, Csr, NotCondensable, SolveError, SolveReport, Symmetry, System};
-use zelus_petsc::{DistributedMatrix, DistributedSolver, PetscSettings, RigidModes};
+use zelus_petsc::{Communicator, DistributedMatrix, DistributedSolver, PetscSettings, RigidModes};
 
 use super::meaning::Meaning;
 use super::owned_condensation::{Held, OwnedCondensation};
 use crate::assembly::{Assembler, DofTable, Numbering};
-use crate::communication::{petsc, world};
+use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::model::Nodes;
 
 /// The rows of this rank and the solver over all of them.
 pub(super) struct OwnedRows {
-    settings: PetscSettings,
-    solver: Option<DistributedSolver>,
+    solver: DistributedSolver,
     /// Stamps of what the pattern and the values were made of.
     made_of: Option<[u64; 4]>,
     graph: u64,
@@ -39,6 +38,8 @@ pub(super) struct OwnedRows {
     condensed: Option<(Result<OwnedCondensation, NotCondensable>, u64)>,
     /// What the equations stand for that are to blame for something.
     meanings: BTreeMap<usize, Meaning>,
+    /// PETSc runs as long as they do, and the solver needs it to the end.
+    _ranks: Ranks,
 }
 
 /// The equations of this rank and what they stand for.
@@ -52,7 +53,11 @@ struct Here<'a> {
     nodes: &'a Nodes,
 }
 
-impl Here<'_> {
+impl<'a> Here<'a> {
+    fn ranks(&self) -> &'a Ranks {
+        self.assembler.ranks()
+    }
+
     /// Node of an equation in the whole mesh and whether it is a multiplier, in one word.
     fn word(&self, equation: u32) -> u32 {
         let number = self.unknowns[equation as usize] as usize;
@@ -62,14 +67,14 @@ impl Here<'_> {
 
     /// The meanings of a few equations of all ranks, by their numbers over all ranks; collective.
     fn meanings(&self, wanted: &[usize]) -> BTreeMap<usize, Meaning> {
-        let first = self.numbering.starts[world().rank()];
+        let first = self.numbering.starts[self.ranks().rank()];
         let own = |number: usize| number.checked_sub(first).and_then(|at| self.numbering.own.get(at));
         let packed = |&number: &usize| match own(number) {
             Some(&equation) => Meaning::of(self.dofs, self.nodes, self.unknowns[equation as usize]).pack(self.dofs),
             None => [0.0; 3],
         };
         let mut packed: Vec<f64> = wanted.iter().flat_map(packed).collect();
-        world().sum(&mut packed);
+        self.ranks().sum(&mut packed);
         let meaning = |(&number, packed)| Some((number, Meaning::unpack(packed, self.dofs)?));
         wanted.iter().zip(packed.chunks_exact(3)).filter_map(meaning).collect()
     }
@@ -79,23 +84,27 @@ impl Here<'_> {
         let of = |e: &u32| &self.dofs.dofs()[self.unknowns[*e as usize] as usize];
         let component = |e: &u32| of(e).variable.component.filter(|_| of(e).moves_mesh()).unwrap_or(u8::MAX);
         let components: Vec<u8> = equations.iter().map(component).collect();
-        let dimension = if world().any(components.contains(&2)) { 3 } else { 2 };
+        let dimension = if self.ranks().any(components.contains(&2)) { 3 } else { 2 };
         let coordinates = equations.iter().map(|e| self.nodes.initial[of(e).node as usize]).collect();
         RigidModes { dimension, coordinates, components }
     }
 }
 
 impl OwnedRows {
-    /// Nothing yet; multigrid gets the system without multipliers as `condensing` says.
-    pub(super) fn new(settings: PetscSettings, condensing: Option<CondensationSettings>) -> Self {
+    /// Nothing yet, for `ranks` that PETSc knows by `communicator`; multigrid gets the system without multipliers as `condensing` says.
+    pub(super) fn new(
+        ranks: &Ranks,
+        communicator: Communicator,
+        settings: PetscSettings,
+        condensing: Option<CondensationSettings>,
+    ) -> Self {
         let is_multigrid = settings.engine.is_some_and(|engine| !engine.is_direct());
         Self {
             condensing: condensing.filter(|_| is_multigrid),
             held: FxHashMap::default(),
             condensed: None,
             meanings: BTreeMap::new(),
-            settings,
-            solver: None,
+            solver: DistributedSolver::new(communicator, settings),
             made_of: None,
             graph: 0,
             stamp: 0,
@@ -105,6 +114,7 @@ impl OwnedRows {
             sent: Vec::new(),
             places: Vec::new(),
             modes: RigidModes::default(),
+            _ranks: ranks.clone(),
         }
     }
 
@@ -135,10 +145,10 @@ impl OwnedRows {
             }
             _ => None,
         };
-        let has_coupling = world().any(system.coupling.is_some() || loads.is_some());
+        let has_coupling = assembler.ranks().any(system.coupling.is_some() || loads.is_some());
         let modes = left.map(|left| here.modes(&left.own));
         let matrix = DistributedMatrix {
-            first_row: left.map_or(numbering.starts[world().rank()], |left| left.first) as u64,
+            first_row: left.map_or(numbering.starts[assembler.ranks().rank()], |left| left.first) as u64,
             row_starts: left.map_or(&self.row_starts, |left| &left.row_starts),
             columns: left.map_or(&self.columns, |left| &left.columns),
             values: left.map_or(&self.values, |left| &left.values),
@@ -151,11 +161,7 @@ impl OwnedRows {
         };
         let rhs_owned = left.map_or_else(|| numbering.own_of(rhs), |left| left.reduce(rhs));
         let mut x_owned = vec![0.0; rhs_owned.len()];
-        let solver = match &mut self.solver {
-            Some(solver) => solver,
-            none => none.insert(DistributedSolver::new(petsc()?, self.settings.clone())),
-        };
-        let report = match solver.solve(&matrix, &rhs_owned, &mut x_owned) {
+        let report = match self.solver.solve(&matrix, &rhs_owned, &mut x_owned) {
             Ok(report) => report,
             Err(SolveError::Singular { mut equations, rank_deficiency }) => {
                 if let Some(left) = left {
@@ -191,13 +197,13 @@ impl OwnedRows {
         if self.condensed.as_ref().is_some_and(|(_, stamp)| *stamp == self.stamp) {
             return;
         }
-        let first = here.numbering.starts[world().rank()];
+        let first = here.numbering.starts[here.ranks().rank()];
         let row = |at: usize| {
             let range = self.row_starts[at]..self.row_starts[at + 1];
             ((first + at) as u32, &self.columns[range.clone()], &self.values[range])
         };
         let rows = (0..here.numbering.own.len()).map(row);
-        let made = OwnedCondensation::new(rows, &self.held, here.numbering, multiplier, &settings);
+        let made = OwnedCondensation::new(here.ranks(), rows, &self.held, here.numbering, multiplier, &settings);
         if let Err(refused) = &made {
             self.meanings = here.meanings(&match *refused {
                 NotCondensable::OffNode { multiplier, equation, .. } => vec![multiplier, equation],
@@ -208,7 +214,7 @@ impl OwnedRows {
     }
 
     fn update(&mut self, here: Here<'_>, loads: Option<&Csr>) {
-        let has_loads = world().any(loads.is_some());
+        let has_loads = here.ranks().any(loads.is_some());
         let system = here.system;
         let stamps = [system.bulk_graph, system.coupling_graph, system.bulk_values, system.coupling_values];
         if !has_loads && self.made_of == Some(stamps) {
@@ -225,7 +231,7 @@ impl OwnedRows {
         let sent: Vec<Vec<f64>> =
             self.sent.iter().map(|list| list.iter().map(|&at| sum.values[at as usize]).collect()).collect();
         self.values.fill(0.0);
-        for (places, values) in self.places.iter().zip(world().exchange_numbers(&sent)) {
+        for (places, values) in self.places.iter().zip(here.ranks().exchange_numbers(&sent)) {
             places.iter().zip(values).for_each(|(&place, value)| self.values[place as usize] += value);
         }
         self.stamp += 1;
@@ -234,9 +240,9 @@ impl OwnedRows {
 
     /// Finds the owners of the rows of `sum`, and the pattern of the rows of this rank.
     fn lay_out(&mut self, here: Here<'_>, sum: &Csr) {
-        let (world, numbering) = (world(), here.numbering);
-        self.sent = vec![Vec::new(); world.size()];
-        let (mut rows, mut columns) = (vec![Vec::new(); world.size()], vec![Vec::new(); world.size()]);
+        let (ranks, numbering) = (here.ranks(), here.numbering);
+        self.sent = vec![Vec::new(); ranks.size()];
+        let (mut rows, mut columns) = (vec![Vec::new(); ranks.size()], vec![Vec::new(); ranks.size()]);
         for e in 0..sum.rows {
             let rank = numbering.owner(numbering.numbers[e]);
             for at in sum.row_starts[e]..sum.row_starts[e + 1] {
@@ -247,16 +253,16 @@ impl OwnedRows {
         }
         let words = |list: &Vec<u32>| list.iter().map(|&at| here.word(sum.columns[at as usize])).collect();
         let words: Vec<Vec<u32>> = match self.condensing {
-            Some(_) => world.exchange_indices(&self.sent.iter().map(words).collect::<Vec<_>>()),
+            Some(_) => ranks.exchange_indices(&self.sent.iter().map(words).collect::<Vec<_>>()),
             None => Vec::new(),
         };
-        let (rows, columns) = (world.exchange_indices(&rows), world.exchange_indices(&columns));
+        let (rows, columns) = (ranks.exchange_indices(&rows), ranks.exchange_indices(&columns));
         if self.condensing.is_some() {
             let of_rows = columns.iter().flatten().copied().zip(words.into_iter().flatten());
             let of_here = (0..here.unknowns.len() as u32).map(|e| (numbering.numbers[e as usize], here.word(e)));
             self.held = of_rows.chain(of_here).map(|(number, word)| (number, (word / 2, word % 2 == 1))).collect();
         }
-        let first = numbering.starts[world.rank()] as u32;
+        let first = numbering.starts[ranks.rank()] as u32;
         let mut lists: Vec<Vec<u32>> = vec![Vec::new(); numbering.own.len()];
         for (&row, &column) in rows.iter().flatten().zip(columns.iter().flatten()) {
             lists[(row - first) as usize].push(column);

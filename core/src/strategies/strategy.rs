@@ -13,7 +13,6 @@ use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use crate::assembly::{Assembler, System};
-use crate::communication::world;
 use crate::diagnostics::{Error, Report, Result};
 use crate::entities::{Interaction, SetChange};
 use crate::model::ModelPart;
@@ -111,7 +110,7 @@ impl StrategyRequest<'_> {
         let named = self.settings.sub("linear_solver_settings")?;
         let assembler = Assembler::new(self.part, self.system, self.scheme.lumped_mass());
         let size = Size { unknowns: self.system.dofs.len(), entries: assembler.entries() };
-        let (solver, warning) = memory::fitting(self.solver, self.frugal, size, &named)?;
+        let (solver, warning) = memory::fitting(&self.part.ranks, self.solver, self.frugal, size, &named)?;
         if let Some(warning) = warning {
             *self.says = format!("linear solver: {} serves, which fits in memory", solver.name());
             self.report.push(warning);
@@ -122,8 +121,10 @@ impl StrategyRequest<'_> {
         if self.part.share.is_some() && self.replaceable {
             let unknowns = linear_solvers::unknowns_of_all(self.part, self.system);
             let has_multipliers = self.system.dofs.dofs().iter().any(|dof| dof.multiplier);
-            if let Some((petsc, by_petsc)) = linear_solvers::petsc(&named, unknowns, has_multipliers)? {
-                newton.solve_by_petsc(petsc, multipliers(&self.part.info));
+            if let Some((petsc, by_petsc)) = linear_solvers::petsc(&named, unknowns, has_multipliers)?
+                && let Some(communicator) = self.part.ranks.petsc()
+            {
+                newton.solve_by_petsc(communicator?, petsc, multipliers(&self.part.info));
                 *self.says = by_petsc;
             }
         }
@@ -149,7 +150,7 @@ registered_kind! {
 /// An entity that cannot be computed.
 pub(super) fn accept(part: &mut ModelPart, system: &mut System) -> Result<()> {
     let result = system.elements.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
-    world().agree(result.map_err(Error::from))?;
+    part.ranks.agree(result.map_err(Error::from))?;
     system.interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part))
 }
 

@@ -11,9 +11,9 @@ struct Csv;
 
 impl OutputFormat for Csv {
     fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
-        let data = shown.data.gathered();
+        let data = shown.data.gathered(&shown.part.ranks);
         let path = shown.folder.join(format!("{}_{}.csv", shown.series, shown.label));
-        replace_file(&path, |file| {
+        replace_file(&shown.part.ranks, &path, |file| {
             write!(file, "id,x,y,z")?;
             for column in &data.point_data {
                 (0..column.components).try_for_each(|c| write!(file, ",{}_{c}", column.name))?;

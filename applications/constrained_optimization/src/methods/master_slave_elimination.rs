@@ -5,7 +5,6 @@
 //! twice: the price of having no further unknowns.
 
 use zelus_core::assembly::System;
-use zelus_core::communication::world;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{ActiveSet, Interaction, LocalSystems, Retry, SetChange, StepView, Want};
 use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart};
@@ -37,8 +36,8 @@ struct EliminationInteraction {
 
 /// −f′ at a node: what the elements exert on its position; collective.
 fn force(springs: &System, part: &ModelPart, node: u32) -> Result<f64> {
-    let own = world().agree(own_force(springs, &part.view(), node))?;
-    Ok(if part.share.is_some() { world().total(own) } else { own })
+    let own = part.ranks.agree(own_force(springs, &part.view(), node))?;
+    Ok(if part.share.is_some() { part.ranks.total(own) } else { own })
 }
 
 /// What the elements of this rank exert.

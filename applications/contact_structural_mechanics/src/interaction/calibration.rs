@@ -33,7 +33,7 @@ pub(super) fn calibrate(
     before: &StepParameters,
 ) -> Result<(f64, StepParameters)> {
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
-    let unit = PenaltyUnit::of(&part.nodes.initial, part.info.domain_size == 2 && !settings.axisymmetric);
+    let unit = PenaltyUnit::of(&part.ranks, &part.nodes.initial, part.info.domain_size == 2 && !settings.axisymmetric);
     // Only penalties of weighted gaps hold an area.
     let pairwise = settings.family.weighted_gaps && settings.augmentation == Augmentation::Pair;
     let weighted = pairwise || settings.weighted_penalty;

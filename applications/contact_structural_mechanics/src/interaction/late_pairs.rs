@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use zelus_core::Result;
-use zelus_core::communication::world;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
@@ -112,7 +111,7 @@ pub(super) fn late_pairs(
         }
     }
     if part.share.is_some() {
-        world().any_of(&mut missed);
+        part.ranks.any_of(&mut missed);
     }
     let missed = pairs.into_iter().zip(missed).filter(|(_, missed)| *missed).map(|(pair, _)| pair.clone());
     Ok(Late { missed: missed.collect(), nodes: nodes.into_iter().collect() })

@@ -7,7 +7,6 @@ use zelus_core::entities::require_kind;
 use zelus_core::model::Role;
 
 use zelus_core::Result;
-use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
@@ -279,7 +278,7 @@ impl Pairing {
         let integrals = integrals(&self.blocks, part, states);
         let mut flags: Vec<bool> = integrals.iter().flatten().flat_map(|i| [i.overlapping, i.facing]).collect();
         if part.share.is_some() {
-            world().any_of(&mut flags);
+            part.ranks.any_of(&mut flags);
         }
         let meetings = flags.chunks_exact(2).map(|pair| Meeting { overlapping: pair[0], facing: pair[1] }).collect();
         (integrals, meetings)

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use zelus_core::Result;
-use zelus_core::communication::world;
 use zelus_core::model::ModelPart;
 
 use super::calibration::{calibrate, limit};
@@ -71,7 +70,7 @@ impl Setup {
         }
         let own = part.nodes.values.values(&NODAL_H, 0).iter().copied().filter(|h| *h > 0.0 && *h < f64::MAX);
         let own = own.fold([f64::INFINITY, 0.0_f64], |[least, most], h| [least.min(h), most.max(h)]);
-        let sizes = world().gather_numbers(&own).concat().into_iter().filter(|h| h.is_finite() && *h > 0.0);
+        let sizes = part.ranks.gather_numbers(&own).concat().into_iter().filter(|h| h.is_finite() && *h > 0.0);
         let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), h| (least.min(h), most.max(h)));
         if most > 0.0 {
             self.settings.search.factor *= most / least;

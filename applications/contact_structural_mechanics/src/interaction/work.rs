@@ -4,7 +4,6 @@
 //! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
 
 use zelus_core::Result;
-use zelus_core::communication::world;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, LocalSystems, Want};
 use zelus_core::model::ModelPart;
@@ -48,7 +47,7 @@ impl ContactWork {
     /// A geometry that cannot be computed with.
     pub(super) fn of_step(&mut self, part: &ModelPart, blocks: &[&dyn EntityBlock]) -> Result<()> {
         let forces = forces(part, blocks, std::mem::take(&mut self.now));
-        self.now = world().agree(forces)?;
+        self.now = part.ranks.agree(forces)?;
         self.before.resize(self.now.len(), 0.0);
         let mut sums = [0.0; 2];
         let history = &part.nodes.history;
@@ -58,7 +57,7 @@ impl ContactWork {
             sums[0] += work;
             sums[1] += 0.5 * work.abs();
         }
-        world().sum(&mut sums);
+        part.ranks.sum(&mut sums);
         self.step = Step { work: sums[0], handed_on: sums[1] };
         Ok(())
     }

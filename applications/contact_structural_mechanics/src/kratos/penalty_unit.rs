@@ -4,7 +4,7 @@
 //! number. Such numbers mean something in a unit of length only, and are chosen for bodies that measure about one in it.
 //! Engineers' units step by thousands: µm, mm, m, km.
 
-use zelus_core::communication::world;
+use zelus_core::communication::Ranks;
 use zelus_core::diagnostics::Diagnostic;
 
 /// The unit of length of a model, and the area that a penalty of weighted gaps is divided by (`penalty_of_weighted_gaps`).
@@ -18,8 +18,8 @@ pub struct PenaltyUnit {
 
 impl PenaltyUnit {
     /// That of these points; `by_length` in the plane, where weighted gaps hold a length. Collective.
-    pub fn of(points: &[[f64; 3]], by_length: bool) -> Self {
-        let length = unit_of_length(points);
+    pub fn of(ranks: &Ranks, points: &[[f64; 3]], by_length: bool) -> Self {
+        let length = unit_of_length(ranks, points);
         Self { length, measure: if by_length { length } else { length * length } }
     }
 
@@ -40,11 +40,11 @@ impl PenaltyUnit {
 ///
 /// The extent is the diagonal of the box around those of all ranks; 1 without any. In units a thousand times smaller it is a
 /// thousand times the number, to the last bit. Collective.
-fn unit_of_length(points: &[[f64; 3]]) -> f64 {
+fn unit_of_length(ranks: &Ranks, points: &[[f64; 3]]) -> f64 {
     let bounds = |c: usize| {
         let of = points.iter().map(|x| x[c]);
         let own = of.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)]);
-        let all = world().gather_numbers(&own);
+        let all = ranks.gather_numbers(&own);
         all.iter().fold((own[0], own[1]), |(least, most), of_rank| (least.min(of_rank[0]), most.max(of_rank[1])))
     };
     let sides = [0, 1, 2].map(bounds).map(|(least, most)| most - least);
@@ -54,14 +54,14 @@ fn unit_of_length(points: &[[f64; 3]]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::unit_of_length;
+    use super::*;
 
     #[test]
     fn follows_the_unit_of_the_mesh() {
-        let body = |extent: f64| unit_of_length(&[[5.0, 5.0, 5.0], [5.0 + extent, 5.0, 5.0]]);
+        let body = |extent: f64| unit_of_length(&Ranks::default(), &[[5.0, 5.0, 5.0], [5.0 + extent, 5.0, 5.0]]);
         assert_eq!([0.04, 1.0, 30.0].map(body), [1.0; 3]);
         assert_eq!([40.0, 1e3, 3e4].map(body), [1e3; 3]);
         assert_eq!([4e-5, 1e-3, 0.03].map(body), [1e-3; 3]);
-        assert_eq!((unit_of_length(&[]), body(0.0)), (1.0, 1.0));
+        assert_eq!((unit_of_length(&Ranks::default(), &[]), body(0.0)), (1.0, 1.0));
     }
 }

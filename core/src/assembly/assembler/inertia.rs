@@ -2,7 +2,6 @@
 
 use super::{Assembler, is_variable};
 use crate::assembly::{Dof, System};
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
 use crate::model::Role;
@@ -37,7 +36,7 @@ impl Assembler {
     /// An entity that cannot be computed.
     pub fn inertia_forces(&mut self, part: &ModelPart, system: &System, inertia: &Inertia) -> Result<Vec<f64>> {
         let own = self.own_inertia_forces(part, system, inertia);
-        let mut out = world().agree(own)?;
+        let mut out = part.ranks.agree(own)?;
         self.add_up(&mut out);
         Ok(out)
     }
@@ -143,7 +142,7 @@ impl Assembler {
     /// As [`Assembler::mass`].
     pub fn lumped_mass(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let own = self.mass(part, system).map(<[f64]>::to_vec);
-        let values = world().agree(own)?;
+        let values = part.ranks.agree(own)?;
         let mut out = vec![0.0; system.dofs.len()];
         self.mul_subtract(&values, &vec![-1.0; system.dofs.len()], &mut out);
         self.add_up(&mut out);

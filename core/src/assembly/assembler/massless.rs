@@ -4,7 +4,6 @@ use super::{Assembler, bulk_pattern};
 use crate::assembly::System;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::assembly::redistribution::diagonal;
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{MasslessNodes, Want};
 use crate::model::{ColumnOf, FIRST, ModelPart, SECOND};
@@ -47,7 +46,7 @@ impl Assembler {
     /// An entity that cannot be computed.
     pub fn energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
         let own = self.own_energy(part, system);
-        Ok(world().total(world().agree(own)?))
+        Ok(part.ranks.total(part.ranks.agree(own)?))
     }
 
     fn own_energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
@@ -85,7 +84,7 @@ impl Assembler {
         let mut values = system.dofs.column(&part.nodes.history, column, level);
         self.mass(part, system)?;
         let mut residual = self.redistribution.excess(&values);
-        if !world().any(residual.iter().any(|r| *r != 0.0)) {
+        if !part.ranks.any(residual.iter().any(|r| *r != 0.0)) {
             return Ok(());
         }
         self.add_up(&mut residual);

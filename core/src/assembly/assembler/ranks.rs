@@ -2,7 +2,7 @@
 
 use super::Assembler;
 use crate::assembly::{Distribution, Numbering};
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::model::{Halo, Named, ScalarVariable, named};
 
 /// An unknown, whether it is a multiplier, and the nodes that carry it.
@@ -14,6 +14,11 @@ impl Assembler {
         if let Some(distribution) = &self.distribution {
             distribution.sum(values);
         }
+    }
+
+    /// The processes that assemble the system together.
+    pub fn ranks(&self) -> &Ranks {
+        &self.ranks
     }
 
     /// Which rank owns which unknown; `None` when one process computes everything.
@@ -42,17 +47,23 @@ impl Assembler {
         self.distribution.as_ref().is_none_or(|distribution| distribution.is_own(number))
     }
 
+    /// The sum of one number of each rank that has a share of the system; collective.
+    pub fn total(&self, own: f64) -> f64 {
+        self.distribution.as_ref().map_or(own, |distribution| distribution.ranks().total(own))
+    }
+
     /// Σ a b over the unknowns of all ranks; collective.
     pub fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
         let own = (0..a.len()).filter(|&number| self.counts(number)).map(|number| a[number] * b[number]).sum::<f64>();
-        world().total(own)
+        self.total(own)
     }
 }
 
 /// The nodes that carry each unknown on any rank; collective.
 pub(super) fn carriers_of_all(own: Vec<Carriers>, nodes: usize, halo: &Halo) -> Vec<Carriers> {
     let names: Vec<String> = own.iter().map(|(variable, ..)| variable.to_string()).collect();
-    let mut all: Vec<String> = world()
+    let mut all: Vec<String> = halo
+        .ranks
         .gather_bytes(names.join("\n").as_bytes())
         .iter()
         .flat_map(|text| String::from_utf8_lossy(text).lines().map(str::to_owned).collect::<Vec<_>>())

@@ -7,7 +7,6 @@ use zelus_linear_algebra::Csr;
 use super::{Assembler, blocks_of, couplings, load_blocks};
 use crate::assembly::assembler::inertia::{Inertia, damped_by_properties, without_rates};
 use crate::assembly::{DofTable, System};
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::Coupling;
 use crate::model::ModelPart;
@@ -19,14 +18,14 @@ impl Assembler {
     /// An entity that cannot be computed.
     pub fn tangents(&mut self, part: &ModelPart, system: &System, inertia: Option<&Inertia>) -> Result<()> {
         let own = self.own_tangents(part, system, inertia);
-        world().agree(own)?;
+        part.ranks.agree(own)?;
         let start = Instant::now();
         // Damped unknowns without rates may be on other ranks only.
-        self.bulk_general = world().any(self.bulk_general);
+        self.bulk_general = part.ranks.any(self.bulk_general);
         let idle = |own: &dyn Coupling| if own.blocks().is_empty() { 1.0 } else { own.idle_diagonal() };
         let idle: Vec<f64> = couplings(system).map(idle).collect();
         let mut in_use = self.coupling.lonely_rows_in_use();
-        world().any_of(&mut in_use);
+        part.ranks.any_of(&mut in_use);
         let distribution = self.distribution.as_ref();
         let diagonals = self.coupling_of.iter().map(|&coupling| idle[coupling]);
         self.coupling.set_idle_diagonal(&in_use, diagonals, |n| distribution.is_none_or(|d| d.is_own(n)));

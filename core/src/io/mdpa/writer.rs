@@ -2,7 +2,7 @@
 
 use super::document::*;
 use crate::diagnostics::Result;
-use crate::io::replace_file;
+use crate::io::replace_own_file;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use std::path::Path;
 /// # Errors
 /// [`crate::diagnostics::Error::System`] when the disk refuses.
 pub fn write(document: &MdpaDocument, path: &Path) -> Result<()> {
-    replace_file(path, |out| write_to(document, out))
+    replace_own_file(path, |out| write_to(document, out))
 }
 
 /// Writes the text of a document.

@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 
 use super::dataset::{Column, Dataset, Values};
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::geometry::Shape;
 
 impl Dataset {
     /// The whole on rank 0, from the piece of each rank: points and cells by id, points of several pieces once. Other ranks
     /// get an empty one; collective.
-    pub fn gathered(&self) -> Self {
-        let all = world().to_root(pack(self));
-        if world().is_root() { join(self, &all) } else { Self::default() }
+    pub fn gathered(&self, ranks: &Ranks) -> Self {
+        let all = ranks.to_root(pack(self));
+        if ranks.is_root() { join(self, &all) } else { Self::default() }
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::dataset::{Column, Dataset};
 use super::vtu::{escape, type_of};
+use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::io::replace_file;
 
@@ -12,8 +13,8 @@ use crate::io::replace_file;
 ///
 /// # Errors
 /// [`crate::diagnostics::Error::System`] when the disk refuses.
-pub fn write_pvtu(path: &Path, data: &Dataset, pieces: &[String]) -> Result<()> {
-    replace_file(path, |out| pvtu(out, data, pieces))
+pub fn write_pvtu(ranks: &Ranks, path: &Path, data: &Dataset, pieces: &[String]) -> Result<()> {
+    replace_file(ranks, path, |out| pvtu(out, data, pieces))
 }
 
 fn pvtu(out: &mut impl Write, data: &Dataset, pieces: &[String]) -> io::Result<()> {

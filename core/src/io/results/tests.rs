@@ -3,6 +3,7 @@ use std::path::Path;
 
 use super::number::scientific;
 use super::*;
+use crate::communication::Ranks;
 use crate::geometry::Shape;
 
 fn data() -> Dataset {
@@ -40,7 +41,7 @@ fn legacy_text_has_the_layout_of_kratos() {
     let mut data = data();
     data.point_data.remove(0);
     data.cell_data.remove(0);
-    write_vtk(&path, &data, VtkFormat::Ascii { precision: 7 }).unwrap();
+    write_vtk(&Ranks::default(), &path, &data, VtkFormat::Ascii { precision: 7 }).unwrap();
     let wanted = "# vtk DataFile Version 4.0\nvtk output\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n\
         0.0000000e+00 0.0000000e+00 0.0000000e+00 \n1.0000000e+00 0.0000000e+00 0.0000000e+00 \n\
         0.0000000e+00 1.0000000e+00 0.0000000e+00 \n1.0000000e+00 1.0000000e+00 2.5000000e-01 \n\
@@ -54,7 +55,7 @@ fn legacy_text_has_the_layout_of_kratos() {
 fn legacy_binary_has_the_bytes_of_kratos() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.vtk");
-    write_vtk(&path, &data(), VtkFormat::Binary).unwrap();
+    write_vtk(&Ranks::default(), &path, &data(), VtkFormat::Binary).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     let head = b"# vtk DataFile Version 4.0\nvtk output\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n";
     assert!(bytes.starts_with(head));
@@ -119,7 +120,7 @@ fn read_array(path: &Path, name: &str) -> Array {
 fn vtu_reads_back_in_double_precision() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.vtu");
-    write_vtu(&path, &data()).unwrap();
+    write_vtu(&Ranks::default(), &path, &data()).unwrap();
     let array = |name| read_array(&path, name);
     assert_eq!(array("Points").reals(), data().points.concat());
     assert_eq!((array("connectivity").wholes(), array("offsets").wholes()), (vec![0, 1, 2, 0, 1, 3, 2], vec![3, 7]));
@@ -132,7 +133,8 @@ fn vtu_reads_back_in_double_precision() {
         ("Int32", &[1, 0, 0, 0][..])
     );
 
-    write_pvd(&folder.path().join("a.pvd"), &[(0.1, "a_1.vtu".into()), (0.2, "a_2.vtu".into())]).unwrap();
+    write_pvd(&Ranks::default(), &folder.path().join("a.pvd"), &[(0.1, "a_1.vtu".into()), (0.2, "a_2.vtu".into())])
+        .unwrap();
     let pvd = std::fs::read_to_string(folder.path().join("a.pvd")).unwrap();
     assert!(pvd.contains("<DataSet timestep=\"0.2\" part=\"0\" file=\"a_2.vtu\"/>"));
 }
@@ -152,7 +154,7 @@ fn vtu_reads_back_whatever_bytes_its_blocks_hold() {
     let mut data = data();
     data.points = noise.chunks(3).map(|x| [x[0], x[1], x[2]]).collect();
     data.point_data = vec![Column::real("NOISE", 3, noise.clone())];
-    write_vtu(&path, &data).unwrap();
+    write_vtu(&Ranks::default(), &path, &data).unwrap();
     let file = std::fs::read(&path).unwrap();
     assert!(file.windows(2).filter(|w| w[0] == b'<' && !w[1].is_ascii()).count() > 100, "the noise holds no marks");
     for name in ["NOISE", "Points"] {

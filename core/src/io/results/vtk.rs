@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::dataset::{Cells, Column, Dataset, Values};
 use super::number::scientific;
+use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::io::replace_file;
 
@@ -24,8 +25,8 @@ pub enum VtkFormat {
 ///
 /// # Errors
 /// [`crate::diagnostics::Error::System`] when the disk refuses.
-pub fn write_vtk(path: &Path, data: &Dataset, format: VtkFormat) -> Result<()> {
-    replace_file(path, |out| Vtk { out, format }.file(data))
+pub fn write_vtk(ranks: &Ranks, path: &Path, data: &Dataset, format: VtkFormat) -> Result<()> {
+    replace_file(ranks, path, |out| Vtk { out, format }.file(data))
 }
 
 struct Vtk<'a, W: Write> {

@@ -8,6 +8,7 @@ use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
 use super::dataset::{Column, Dataset, Values};
+use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::io::{replace_file, replace_own_file};
 
@@ -20,8 +21,8 @@ const LEVEL: u32 = 4;
 ///
 /// # Errors
 /// [`crate::diagnostics::Error::System`] when the disk refuses.
-pub fn write_vtu(path: &Path, data: &Dataset) -> Result<()> {
-    replace_file(path, |out| vtu(out, data))
+pub fn write_vtu(ranks: &Ranks, path: &Path, data: &Dataset) -> Result<()> {
+    replace_file(ranks, path, |out| vtu(out, data))
 }
 
 /// Writes the VTU file of this rank, whatever the other ranks write.
@@ -127,8 +128,8 @@ pub(super) fn escape(text: &str) -> String {
 ///
 /// # Errors
 /// [`crate::diagnostics::Error::System`] when the disk refuses.
-pub fn write_pvd(path: &Path, steps: &[(f64, String)]) -> Result<()> {
-    replace_file(path, |out| pvd(out, steps))
+pub fn write_pvd(ranks: &Ranks, path: &Path, steps: &[(f64, String)]) -> Result<()> {
+    replace_file(ranks, path, |out| pvd(out, steps))
 }
 
 fn pvd(out: &mut impl Write, steps: &[(f64, String)]) -> io::Result<()> {

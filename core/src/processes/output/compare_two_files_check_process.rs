@@ -4,7 +4,6 @@ use crate::processes::ProcessEntry;
 use std::path::{Path, PathBuf};
 
 use super::place::one_of;
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::Model;
 use crate::parameters::Defaults;
@@ -109,8 +108,8 @@ impl CompareTwoFiles {
 }
 
 impl Process for CompareTwoFiles {
-    fn finalize(&mut self, _model: &mut Model) -> Result<()> {
-        if !world().is_root() {
+    fn finalize(&mut self, model: &mut Model) -> Result<()> {
+        if !model.ranks.is_root() {
             return Ok(());
         }
         let (wanted, found) = (read(&self.reference, &self.place)?, read(&self.output, &self.place)?);

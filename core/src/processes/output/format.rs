@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::io::results::{Dataset, VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
 use crate::model::ModelPart;
@@ -57,10 +56,11 @@ struct Legacy(VtkFormat);
 impl OutputFormat for Legacy {
     fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
         let path = shown.folder.join(format!("{}_0_{}.vtk", shown.series, shown.label));
+        let ranks = &shown.part.ranks;
         if shown.part.share.is_some() {
-            return write_vtk(&path, &shown.data.gathered(), self.0);
+            return write_vtk(ranks, &path, &shown.data.gathered(ranks), self.0);
         }
-        write_vtk(&path, shown.data, self.0)
+        write_vtk(ranks, &path, shown.data, self.0)
     }
 
     fn endings(&self) -> &'static [&'static str] {
@@ -81,22 +81,23 @@ impl Vtu {
     /// Ranks without cells and points write nothing, unless all are without. The list is written once all that it lists is.
     fn write_file(shown: &Shown<'_>) -> Result<String> {
         let (own, name) = (shown.data, format!("{}_{}", shown.series, shown.label));
-        let Some(share) = &shown.part.share else {
+        let ranks = &shown.part.ranks;
+        if shown.part.share.is_none() {
             let file = format!("{name}.vtu");
-            write_vtu(&shown.folder.join(&file), own)?;
+            write_vtu(ranks, &shown.folder.join(&file), own)?;
             return Ok(file);
-        };
+        }
         let piece_file = |rank: usize| format!("{name}_{rank}.vtu");
-        let is_empty = !world().any(!own.points.is_empty());
-        let is_needed = !own.points.is_empty() || (is_empty && world().is_root());
-        let path = shown.folder.join(piece_file(world().rank()));
-        world().agree(if is_needed { write_piece(&path, own) } else { Ok(()) })?;
-        let mut has_piece = vec![false; share.ranks];
-        has_piece[world().rank()] = is_needed;
-        world().any_of(&mut has_piece);
-        let pieces: Vec<String> = (0..share.ranks).filter(|&rank| has_piece[rank]).map(piece_file).collect();
+        let is_empty = !ranks.any(!own.points.is_empty());
+        let is_needed = !own.points.is_empty() || (is_empty && ranks.is_root());
+        let path = shown.folder.join(piece_file(ranks.rank()));
+        ranks.agree(if is_needed { write_piece(&path, own) } else { Ok(()) })?;
+        let mut has_piece = vec![false; ranks.size()];
+        has_piece[ranks.rank()] = is_needed;
+        ranks.any_of(&mut has_piece);
+        let pieces: Vec<String> = (0..ranks.size()).filter(|&rank| has_piece[rank]).map(piece_file).collect();
         let file = format!("{name}.pvtu");
-        write_pvtu(&shown.folder.join(&file), own, &pieces)?;
+        write_pvtu(ranks, &shown.folder.join(&file), own, &pieces)?;
         Ok(file)
     }
 }
@@ -106,7 +107,7 @@ impl OutputFormat for Vtu {
         let file = Self::write_file(shown)?;
         let steps = self.series.entry(shown.series.to_owned()).or_default();
         steps.push((shown.part.info.time, file));
-        write_pvd(&shown.folder.join(format!("{}.pvd", shown.series)), steps)
+        write_pvd(&shown.part.ranks, &shown.folder.join(format!("{}.pvd", shown.series)), steps)
     }
 
     fn endings(&self) -> &'static [&'static str] {

@@ -12,7 +12,6 @@ use super::json_output_process::{fields, node_key, passes};
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::{Model, ModelPart, SubPart, Table};
 use crate::parameters::Defaults;
@@ -132,7 +131,7 @@ impl FromJsonCheck {
                 }
             });
         }
-        Differences { wrong: world().lines_of_all(found.wrong), uncertain: world().lines_of_all(found.uncertain) }
+        Differences { wrong: part.ranks.lines_of_all(found.wrong), uncertain: part.ranks.lines_of_all(found.uncertain) }
     }
 
     fn judge(&self, entry: &Value, key: &str, name: &str, values: &[f64], time: f64, found: &mut Differences) {

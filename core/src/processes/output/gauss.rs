@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::quantity::GaussQuantity;
 use crate::assembly::System;
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::entities::{EntityBlock, Gauss, StepView};
 use crate::geometry::Shape;
 use crate::io::results::{Column, GaussResult};
@@ -60,8 +60,8 @@ fn visit(
 }
 
 /// The largest number of components that any rank has met; collective.
-fn widest(components: usize) -> usize {
-    world().gather_numbers(&[components as f64]).concat().into_iter().fold(1.0, f64::max) as usize
+fn widest(ranks: &Ranks, components: usize) -> usize {
+    ranks.gather_numbers(&[components as f64]).concat().into_iter().fold(1.0, f64::max) as usize
 }
 
 fn values_of(block: &dyn EntityBlock, view: &StepView<'_>, name: &str, at: usize) -> Option<Gauss> {
@@ -85,7 +85,7 @@ pub(super) fn means(
         mean.iter_mut().for_each(|mean| *mean /= gauss.weights.len() as f64);
         found.push((row, mean));
     });
-    let components = widest(found.iter().map(|(_, mean)| mean.len()).max().unwrap_or(1));
+    let components = widest(&part.ranks, found.iter().map(|(_, mean)| mean.len()).max().unwrap_or(1));
     let mut values = vec![0.0; selected.len() * components];
     for (row, mean) in found {
         values[row * components..][..mean.len()].copy_from_slice(&mean);
@@ -135,7 +135,7 @@ pub(super) fn at_nodes(
             }
         }
     });
-    let most = widest(components);
+    let most = widest(&part.ranks, components);
     let mut sums = widen(&sums, components, most, part.nodes.len());
     let components = most;
     if let Some(halo) = part.share.as_ref().map(|share| &share.halo) {
@@ -193,11 +193,11 @@ pub(super) fn as_they_are(
         out[at].cells.push(ids[selected[row] as usize]);
         out[at].values.extend(values);
     });
-    if part.share.is_some() { gathered(&quantity.name, &out) } else { out }
+    if part.share.is_some() { gathered(&part.ranks, &quantity.name, &out) } else { out }
 }
 
 /// The results of all ranks on rank 0, cells by their ids.
-fn gathered(name: &str, own: &[GaussResult]) -> Vec<GaussResult> {
+fn gathered(ranks: &Ranks, name: &str, own: &[GaussResult]) -> Vec<GaussResult> {
     let mut message = Vec::new();
     for result in own {
         let sizes = [result.shape as usize, result.points.len(), result.components, result.cells.len()];
@@ -209,7 +209,7 @@ fn gathered(name: &str, own: &[GaussResult]) -> Vec<GaussResult> {
     // Local coordinates of the points, and for each cell its values.
     type Found = (Vec<[f64; 3]>, BTreeMap<usize, Vec<f64>>);
     let mut all: BTreeMap<[usize; 3], Found> = BTreeMap::new();
-    for message in world().to_root(message) {
+    for message in ranks.to_root(message) {
         let mut rest = &message[..];
         while let [shape, points, components, cells, more @ ..] = rest {
             let [shape, points, components, cells] = [shape, points, components, cells].map(|n| *n as usize);

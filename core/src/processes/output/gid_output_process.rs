@@ -11,6 +11,7 @@ use super::picture::{CellChoice, Mesh};
 use super::place::{PartPath, append, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::assembly::System;
+use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
@@ -118,7 +119,7 @@ impl GidOutput {
             (self.conditions, CellChoice::Conditions, GidKind::Condition),
         ];
         let mesh = |choice| Mesh::new(part, &drawn, choice, self.deformed).data;
-        let whole = |mesh: Dataset| if part.share.is_some() { mesh.gathered() } else { mesh };
+        let whole = |mesh: Dataset| if part.share.is_some() { mesh.gathered(&part.ranks) } else { mesh };
         let wanted = kinds.into_iter().filter(|(wanted, ..)| *wanted);
         wanted.map(|(_, choice, kind)| (kind, whole(mesh(choice)))).collect()
     }
@@ -126,7 +127,7 @@ impl GidOutput {
     /// Writes the file of the mesh; collective.
     fn write_mesh(&self, part: &ModelPart, selection: &SubPart, label: f64) -> Result<()> {
         let meshes = self.meshes(part, selection);
-        replace_file(&self.path(label, "msh"), |out| {
+        replace_file(&part.ranks, &self.path(label, "msh"), |out| {
             // GiD reads the points of all with the first that has cells.
             let mut with_points = true;
             for (kind, mesh) in &meshes {
@@ -159,7 +160,7 @@ impl GidOutput {
             return (ids, columns, gauss);
         }
         let points = vec![[0.0; 3]; ids.len()];
-        let shown = Dataset { point_ids: ids, points, point_data: columns, ..Dataset::default() }.gathered();
+        let shown = Dataset { point_ids: ids, points, point_data: columns, ..Dataset::default() }.gathered(&part.ranks);
         (shown.point_ids, shown.point_data, gauss)
     }
 
@@ -168,11 +169,11 @@ impl GidOutput {
     }
 
     /// The file that tells GiD which files belong together.
-    fn write_list(&self) -> Result<()> {
+    fn write_list(&self, ranks: &Ranks) -> Result<()> {
         let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
         let name = folder.file_name().map_or_else(|| "results".into(), |name| name.to_string_lossy().into_owned());
         let kind = if self.single { "Single" } else { "Multiple" };
-        replace_file(&self.folder.join(format!("{name}.post.lst")), |out| {
+        replace_file(ranks, &self.folder.join(format!("{name}.post.lst")), |out| {
             writeln!(out, "{kind}")?;
             for path in &self.written {
                 writeln!(out, "{}", path.strip_prefix(&self.folder).unwrap_or(path).display())?;
@@ -208,14 +209,14 @@ impl Process for GidOutput {
             self.write_mesh(part, selection, label)?;
         }
         if self.written.contains(&path) {
-            append_to_file(&path, |out| write_gid_step(out, label, &ids, &columns, &gauss))?;
+            append_to_file(&part.ranks, &path, |out| write_gid_step(out, label, &ids, &columns, &gauss))?;
         } else {
-            replace_file(&path, |out| {
+            replace_file(&part.ranks, &path, |out| {
                 write_gid_results_head(out, &gauss)?;
                 write_gid_step(out, label, &ids, &columns, &gauss)
             })?;
             self.written.push(path);
-            self.write_list()?;
+            self.write_list(&part.ranks)?;
         }
         self.control.written(&part.info);
         Ok(())

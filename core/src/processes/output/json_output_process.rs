@@ -12,7 +12,6 @@ use super::gauss;
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::Gauss;
 use crate::io::replace_file;
@@ -106,7 +105,7 @@ impl JsonOutput {
             let [x, y, z] = part.nodes.initial[node as usize];
             [part.nodes.ids[node as usize] as f64, x, y, z]
         };
-        for row in rows(world().to_root(new.iter().flat_map(row).collect()), 4) {
+        for row in rows(part.ranks.to_root(new.iter().flat_map(row).collect()), 4) {
             let id = row[0] as usize;
             let key = match self.by_coordinates {
                 true => format!("NODE_X_{:.6}_Y_{:.6}_Z_{:.6}", row[1], row[2], row[3]),
@@ -116,14 +115,14 @@ impl JsonOutput {
         }
         self.known.extend(new);
         self.known.sort_unstable();
-        if self.gauss.is_empty() || world().any(!self.followed.is_empty()) {
+        if self.gauss.is_empty() || part.ranks.any(!self.followed.is_empty()) {
             return;
         }
         let follows =
             |&&e: &&u32| part.evaluates(Role::Element, e as usize) && passes(&part.elements.flags, self.flag, e);
         self.followed = selection.elements.iter().filter(follows).copied().collect();
         let ids = self.followed.iter().map(|&element| part.elements.ids[element as usize] as f64).collect();
-        for id in world().to_root(ids).concat() {
+        for id in part.ranks.to_root(ids).concat() {
             self.elements.insert(id as usize, vec![Vec::new(); self.gauss.len()]);
         }
     }
@@ -148,7 +147,7 @@ impl JsonOutput {
             }
         }
         let mut sum = vec![0.0; width];
-        let mut sampled = rows(world().to_root(own), width + 1);
+        let mut sampled = rows(part.ranks.to_root(own), width + 1);
         sampled.sort_by(|a, b| a[0].total_cmp(&b[0]));
         for row in sampled {
             self.nodes.entry(row[0] as usize).or_default().values.extend_from_slice(&row[1..]);
@@ -167,7 +166,7 @@ impl JsonOutput {
                     own.extend(&gauss.values);
                 }
             });
-            for message in world().to_root(own) {
+            for message in part.ranks.to_root(own) {
                 let mut rest = &message[..];
                 while let [id, components, count, more @ ..] = rest {
                     let (values, more) = more.split_at(*count as usize);
@@ -184,7 +183,7 @@ impl JsonOutput {
     fn write(&mut self, model: &Model) -> Result<()> {
         let (part, _) = self.part.find(model)?;
         let sizes: Vec<usize> = self.quantities.iter().map(|q| q.components(fields(part, self.history))).collect();
-        replace_file(&self.file, |out| self.text(out, &sizes))?;
+        replace_file(&part.ranks, &self.file, |out| self.text(out, &sizes))?;
         self.last_write = Some(Instant::now());
         Ok(())
     }

@@ -4,7 +4,6 @@ use super::gauss::{self, Share};
 use super::place::one_of;
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::{Report, Result};
 use crate::io::results::{Column, Dataset};
 use crate::model::Role;
@@ -36,7 +35,7 @@ impl Mesh {
     /// the cells it evaluates with their points, and its nodes that no cell has; collective.
     pub(super) fn new(part: &ModelPart, selection: &SubPart, choice: CellChoice, deformed: bool) -> Self {
         let elements = match choice {
-            CellChoice::Automatic => world().any(!selection.elements.is_empty()),
+            CellChoice::Automatic => part.ranks.any(!selection.elements.is_empty()),
             CellChoice::Elements => true,
             CellChoice::Conditions => false,
         };

@@ -8,7 +8,6 @@ use super::json_output_process::fields;
 use super::place::{PartPath, one_of};
 use super::quantity::Quantity;
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::{mapping, shape_functions};
 use crate::io::{append_to_file, replace_file};
@@ -99,10 +98,10 @@ impl PointsOutput {
     fn find(&self, part: &ModelPart, selection: &SubPart, point: [f64; 3]) -> Option<Vec<(u32, f64)>> {
         let own = self.find_here(part, selection, point);
         let offer = own.as_ref().map_or(Vec::new(), |(distance, id, _)| vec![*distance, *id as f64]);
-        let offers = world().gather_numbers(&offer);
+        let offers = part.ranks.gather_numbers(&offer);
         let order = |a: &usize, b: &usize| offers[*a].partial_cmp(&offers[*b]).unwrap_or(std::cmp::Ordering::Equal);
         let best = (0..offers.len()).filter(|&rank| !offers[rank].is_empty()).min_by(order)?;
-        Some(own.filter(|_| best == world().rank()).map_or(Vec::new(), |(.., weights)| weights))
+        Some(own.filter(|_| best == part.ranks.rank()).map_or(Vec::new(), |(.., weights)| weights))
     }
 
     fn find_here(&self, part: &ModelPart, selection: &SubPart, point: [f64; 3]) -> Option<Found> {
@@ -196,9 +195,9 @@ impl Process for PointsOutput {
 
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
         let (part, _) = self.part.find(model)?;
-        self.points
-            .iter()
-            .try_for_each(|point| replace_file(&point.file, |out| writeln!(out, "{}", self.head(part, point))))
+        self.points.iter().try_for_each(|point| {
+            replace_file(&part.ranks, &point.file, |out| writeln!(out, "{}", self.head(part, point)))
+        })
     }
 
     fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
@@ -213,14 +212,14 @@ impl Process for PointsOutput {
             message.extend([at as f64, values.len() as f64]);
             message.extend(values);
         }
-        for message in world().to_root(message) {
+        for message in part.ranks.to_root(message) {
             let mut rest = &message[..];
             while let [at, count, more @ ..] = rest {
                 let (values, more) = more.split_at(*count as usize);
                 rest = more;
                 let mut line = format!("{:?}", part.info.time);
                 values.iter().for_each(|number| line.push_str(&format!(" {number:?}")));
-                append_to_file(&self.points[*at as usize].file, |out| writeln!(out, "{line}"))?;
+                append_to_file(&part.ranks, &self.points[*at as usize].file, |out| writeln!(out, "{line}"))?;
             }
         }
         Ok(())

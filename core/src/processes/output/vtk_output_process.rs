@@ -8,9 +8,7 @@ use super::format::{OutputFormat, OutputFormatEntry, Shown};
 use super::picture::Picture;
 use super::place::PartPath;
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::{Error, Result};
-use crate::io::on_one_rank;
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessRequest};
@@ -93,8 +91,8 @@ impl Process for VtkOutput {
         self.part.find(model).map(|_| ())
     }
 
-    fn before_loop(&mut self, _model: &mut Model) -> Result<()> {
-        if self.clears { on_one_rank(|| self.clear()) } else { Ok(()) }
+    fn before_loop(&mut self, model: &mut Model) -> Result<()> {
+        if self.clears { model.ranks.on_root(|| self.clear()) } else { Ok(()) }
     }
 
     fn is_output_step(&mut self, model: &Model) -> bool {
@@ -108,7 +106,7 @@ impl Process for VtkOutput {
         if self.sub_parts {
             for (name, child) in &selection.children {
                 let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
-                if world().any(is_here) {
+                if part.ranks.any(is_here) {
                     self.write(part, system, child, &format!("{path}.{name}"))?;
                 }
             }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{ENERGY_OF_MOTION, NewtonRaphson, References};
 use crate::assembly::System;
-use crate::communication::world;
+use crate::communication::Ranks;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, Outer, SetChange};
 use crate::model::ModelPart;
@@ -186,7 +186,7 @@ impl NewtonRaphson {
         let start = Instant::now();
         let verdict = self.judge(part, system, iteration, &self.with_pending(step), &step.references, &increment);
         self.phases.since("judge", start);
-        agree(iteration, &change, verdict.converged)?;
+        agree(&part.ranks, iteration, &change, verdict.converged)?;
         let record = IterationRecord {
             condition_number: condition,
             ..IterationRecord::new(iteration, verdict.checks, &change, &solved)
@@ -260,7 +260,7 @@ impl NewtonRaphson {
         if let Some(amount) = step.relaxed {
             self.assembler.relax_multipliers(&system.dofs, amount);
         }
-        if has_motion(&step.prescribed) {
+        if has_motion(&part.ranks, &step.prescribed) {
             self.assembler.subtract_product(&step.prescribed, &mut step.residual);
         }
         if iteration == 1 {
@@ -312,7 +312,7 @@ impl NewtonRaphson {
     /// Moves by what was solved for and what is prescribed; gives the increment of all unknowns.
     fn take(&mut self, solved: &Solved, step: &mut Step, part: &mut ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut increment = self.assembler.equations().expand(&solved.increment);
-        let is_still = !has_motion(&step.prescribed);
+        let is_still = !has_motion(&part.ranks, &step.prescribed);
         let searched = self.settings.line_search.filter(|_| is_still);
         increment.iter_mut().zip(&step.prescribed).for_each(|(sum, d)| *sum += d);
         step.prescribed.fill(0.0);
@@ -362,7 +362,7 @@ impl NewtonRaphson {
     /// The residual as the equations see it, with the force of motions that changed constraints still ask for. Collective.
     fn with_pending(&self, step: &Step) -> Vec<f64> {
         let mut residual = step.residual.clone();
-        if has_motion(&step.prescribed) {
+        if has_motion(self.assembler.ranks(), &step.prescribed) {
             self.assembler.subtract_product(&step.prescribed, &mut residual);
         }
         self.assembler.equations().balanced(&residual).into_owned()
@@ -432,15 +432,15 @@ impl NewtonRaphson {
 }
 
 /// Whether an unknown of any rank moves by prescription; collective.
-fn has_motion(prescribed: &[f64]) -> bool {
-    world().any(prescribed.iter().any(|d| *d != 0.0))
+fn has_motion(ranks: &Ranks, prescribed: &[f64]) -> bool {
+    ranks.any(prescribed.iter().any(|d| *d != 0.0))
 }
 
 /// # Errors
 /// Ranks that hold different states and would go different ways.
-fn agree(iteration: usize, change: &SetChange, converged: bool) -> Result<()> {
+fn agree(ranks: &Ranks, iteration: usize, change: &SetChange, converged: bool) -> Result<()> {
     let decided = (change.count() as u64) << 1 | u64::from(converged);
-    if world().is_same(decided) {
+    if ranks.is_same(decided) {
         return Ok(());
     }
     let fact = format!("iteration {iteration}: the ranks have come to different decisions");

@@ -2,7 +2,6 @@
 
 use super::NewtonRaphson;
 use crate::assembly::{System, reach};
-use crate::communication::world;
 use crate::model::{ModelPart, SubPart};
 
 impl NewtonRaphson {
@@ -14,7 +13,7 @@ impl NewtonRaphson {
         if !self.scheme.is_static() {
             return None;
         }
-        let reach = reach(&part.nodes, &system.dofs, self.assembler.equations());
+        let reach = reach(&part.ranks, &part.nodes, &system.dofs, self.assembler.equations());
         let now = self.assembler.values(part, system);
         let gone = system.dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.moves_mesh());
         let gone = gone.map(|(n, dof)| ((now[n] - begin[n]).abs(), dof.node)).filter(|(motion, _)| *motion > reach);
@@ -27,7 +26,7 @@ impl NewtonRaphson {
                  check that contact holds it from the first step"
             )
         });
-        world().first_to_say(said)
+        part.ranks.first_to_say(said)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::NewtonRaphson;
 use crate::assembly::System;
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 
@@ -53,6 +52,6 @@ impl NewtonRaphson {
     /// Euclidean norm over all unknowns but multipliers; collective.
     pub(super) fn size_of_forces(&self, system: &System, of: &[f64]) -> f64 {
         let own = system.dofs.dofs().iter().enumerate().filter(|(n, dof)| !dof.multiplier && self.assembler.counts(*n));
-        world().total(own.map(|(n, _)| of[n] * of[n]).sum()).sqrt()
+        self.assembler.total(own.map(|(n, _)| of[n] * of[n]).sum()).sqrt()
     }
 }

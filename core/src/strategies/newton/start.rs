@@ -2,7 +2,6 @@
 
 use super::NewtonRaphson;
 use crate::assembly::{System, impose_constraints};
-use crate::communication::world;
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, MasslessNodes};
 use crate::model::{MasterSlaveConstraint, ModelPart};
@@ -102,7 +101,7 @@ impl NewtonRaphson {
     pub(super) fn overshoots(&mut self, part: &ModelPart, system: &System, before: &[f64]) -> Result<bool> {
         let (now, old) = (self.assembler.values(part, system), system.dofs.gather(&part.nodes, 1));
         let moves = (0..now.len()).any(|n| self.assembler.equations().is_fixed(n) && now[n] != old[n]);
-        if !world().any(moves) || self.settings.linear {
+        if !part.ranks.any(moves) || self.settings.linear {
             return Ok(false);
         }
         let after = self.assembler.residual(part, system, None)?;

@@ -1,0 +1,60 @@
+//! The processes of a run as a value that is handed on with what they share.
+
+use std::fmt;
+use std::ops::Deref;
+use std::sync::{Arc, Mutex};
+
+use super::communicator::{Communicator, Serial};
+use crate::diagnostics::Error;
+
+/// The processes that run together, as one of them sees them; clones are the same processes.
+///
+/// By default this process is alone.
+#[derive(Clone)]
+pub struct Ranks(Arc<Together>);
+
+struct Together {
+    communicator: Box<dyn Communicator>,
+    /// An error of this rank that the others do not know of yet.
+    deferred: Mutex<Option<Error>>,
+}
+
+impl Ranks {
+    /// The processes that `communicator` joins.
+    pub fn new(communicator: impl Communicator + 'static) -> Self {
+        Self(Arc::new(Together { communicator: Box::new(communicator), deferred: Mutex::default() }))
+    }
+
+    pub(super) fn deferred_error(&self) -> &Mutex<Option<Error>> {
+        &self.0.deferred
+    }
+}
+
+impl Default for Ranks {
+    fn default() -> Self {
+        Self::new(Serial)
+    }
+}
+
+impl Deref for Ranks {
+    type Target = dyn Communicator;
+
+    fn deref(&self) -> &Self::Target {
+        self.0.communicator.as_ref()
+    }
+}
+
+impl fmt::Debug for Ranks {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "rank {} of {}", self.rank(), self.size())
+    }
+}
+
+/// The same place among as many processes.
+impl PartialEq for Ranks {
+    fn eq(&self, other: &Self) -> bool {
+        (self.rank(), self.size()) == (other.rank(), other.size())
+    }
+}
+
+impl Eq for Ranks {}
