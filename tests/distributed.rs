@@ -2,16 +2,19 @@
 //!
 //! They need the feature `mpi`, without which they are ignored, and mpirun.
 
+#[path = "support/boxes.rs"]
+mod boxes;
 mod support;
 #[path = "support/vtu.rs"]
 mod vtu;
 
-use serde_json::Value;
+use boxes::Boxes;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
-use support::{change, contents, read_json, root, said, scratch_copy, zelus};
+use support::{Results, change, contents, read_json, root, said, scratch_copy, zelus};
 use vtu::{Columns, read_vtu, sources};
 
 const RANKS: [usize; 5] = [1, 2, 3, 4, 8];
@@ -691,6 +694,50 @@ fn a_killed_rank_ends_all() {
     let start = Instant::now();
     let output = command.output().expect("mpirun starts");
     assert!(!output.status.success() && start.elapsed() < PROMPT, "{}", said(&output));
+}
+
+/// A corner that lands between the nodes of a coarse slave makes energy: what the work of contact says, on any number of ranks.
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn work_of_contact_is_counted_once() {
+    const MATERIAL: [f64; 3] = [1.0, 0.2, 1.0];
+    let mut boxes = Boxes::new(2);
+    let faces = ["x-", "x+", "y-", "y+"].map(|face| (face, "Skin"));
+    boxes.add("Block", [[0.0; 3], [1.0; 3]], [8; 3], 0.35, &faces, |_| [0.009, -0.012, 0.0]);
+    let lowest = boxes.nodes.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min) - 0.1;
+    let ground = [[-2.0, lowest - 0.5, 0.0], [4.0, lowest, 0.0]];
+    boxes.add("Ground", ground, [12, 1, 0], 0.0, &[("y+", "Top")], |_| [0.0; 3]);
+    let work = |ranks: usize| -> Vec<f64> {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        let (process, fixed) = (("alm_contact_process", &json!({})), [("Ground", [true; 3])]);
+        let settings = json!({"contact_settings": {"largest_energy_gain": 0.0}});
+        boxes.write(folder.path(), MATERIAL, &[("Top", "Skin")], &fixed, [0.8, 40.0], &settings, process);
+        let output = distributed(folder.path(), ranks, &["run", DECK, "--report", "report.json"]);
+        assert!(output.status.success(), "{ranks} ranks: {}", said(&output));
+        let report = read_json(&folder.path().join("report.json")).expect("the report");
+        let steps = report["steps"].as_array().expect("steps").iter().filter(|step| step["converged"] == true);
+        let of_step = |step: &Value| {
+            let numbers = step["interactions"].as_array().expect("numbers").iter();
+            numbers.filter(|number| number[0] == "work of contact").find_map(|number| number[1].as_f64()).expect("work")
+        };
+        let work: Vec<f64> = steps.map(of_step).collect();
+        let results = Results::read(&folder.path().join("results.json")).expect("results");
+        let energy = |step| boxes.state("Block", MATERIAL, &results, step).energy();
+        let (won, done) = (energy(Some(results.len() - 1)) - energy(None), work[work.len() - 1]);
+        // In steps this long the scheme has a share of the energy too.
+        assert!((won - done).abs() < 0.1 * done.abs(), "{ranks} ranks: the block wins {won}, contact does {done}");
+        work
+    };
+    let alone = work(1);
+    let most = alone.iter().fold(0.0_f64, |most, work| most.max(work.abs()));
+    assert!(most > 1e-6, "contact does no work: {most}");
+    for ranks in [2, 3] {
+        let shared = work(ranks);
+        assert_eq!(shared.len(), alone.len(), "{ranks} ranks");
+        for (step, (a, b)) in alone.iter().zip(&shared).enumerate() {
+            assert!((a - b).abs() < 1e-6 * most, "{ranks} ranks, step {step}: {b}, not {a}");
+        }
+    }
 }
 
 /// A program without MPI that is started as one of several would run the whole deck in each of them.

@@ -1,4 +1,5 @@
 //! Boxes of equal elements that move and touch: their mesh, their deck and what their motion holds.
+#![allow(dead_code, reason = "each test binary uses its part")]
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

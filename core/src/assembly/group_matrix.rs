@@ -6,8 +6,8 @@ use zelus_linear_algebra::Csr;
 
 use super::bulk_matrix::block_numbers;
 use super::dof_table::DofTable;
-use super::local::{BATCH, CHUNK, evaluate_runs};
-use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
+use super::local::{each_of_runs, own_runs};
+use crate::entities::{EntityBlock, EntityError, StepView, Want};
 
 /// A matrix over all unknowns whose rows are empty except where its blocks act.
 #[derive(Debug, Clone, Default)]
@@ -27,7 +27,8 @@ impl GroupMatrix {
     /// `is_own` says of the nodes of an entity whether it is evaluated here.
     pub fn new(dofs: &DofTable, blocks: &[&dyn EntityBlock], lonely: &[u32], is_own: impl Fn(&[u32]) -> bool) -> Self {
         let numbers: Vec<Vec<u32>> = blocks.iter().map(|block| block_numbers(*block, dofs)).collect();
-        let runs: Vec<Vec<Range<usize>>> = blocks.iter().map(|block| own_runs(*block, &is_own)).collect();
+        let runs: Vec<Vec<Range<usize>>> =
+            blocks.iter().map(|block| own_runs(block.len(), |at| is_own(block.nodes(at)))).collect();
         let mut adjacency = vec![Vec::new(); dofs.len()];
         for ((block, numbers), runs) in blocks.iter().zip(&numbers).zip(&runs) {
             let size = block.unknowns().len();
@@ -53,15 +54,9 @@ impl GroupMatrix {
     ) -> Result<(), EntityError> {
         for ((block, numbers), runs) in blocks.iter().zip(&self.numbers).zip(&self.runs) {
             let size = block.unknowns().len();
-            let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
-            for batch in runs.chunks(BATCH / CHUNK) {
-                for (run, mut systems) in batch.iter().zip(evaluate_runs(batch, size, want, &compute)?) {
-                    for (slot, at) in run.clone().enumerate() {
-                        let (lhs, rhs) = systems.entity(slot);
-                        add(*block, at, &numbers[at * size..(at + 1) * size], lhs, rhs);
-                    }
-                }
-            }
+            each_of_runs(*block, view, runs, want, |at, lhs, rhs| {
+                add(*block, at, &numbers[at * size..(at + 1) * size], lhs, rhs);
+            })?;
         }
         Ok(())
     }
@@ -140,16 +135,4 @@ fn find_all(columns: &[u32], wanted: &[u32], places: &mut Vec<usize>) {
         };
         places.push(place);
     }
-}
-
-/// The entities of a block that are evaluated here, in runs of at most [`CHUNK`].
-fn own_runs(block: &dyn EntityBlock, is_own: &impl Fn(&[u32]) -> bool) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for at in (0..block.len()).filter(|&at| is_own(block.nodes(at))) {
-        match runs.last_mut() {
-            Some(run) if run.end == at && run.len() < CHUNK => run.end += 1,
-            _ => runs.push(at..at + 1),
-        }
-    }
-    runs
 }

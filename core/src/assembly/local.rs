@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::entities::{EntityError, LocalSystems, Want};
+use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
 
 /// Entities whose local systems are held at a time.
 pub(super) const BATCH: usize = 2048;
 /// Entities of one task; fixed, so that results do not depend on the number of threads.
-pub(super) const CHUNK: usize = 64;
+const CHUNK: usize = 64;
 
 type Compute<'a> = &'a (dyn Fn(Range<usize>, &mut LocalSystems) -> Result<(), EntityError> + Sync);
 
@@ -26,7 +26,7 @@ pub(super) fn evaluate(
 }
 
 /// Local systems of each of `runs`, which are no longer than [`CHUNK`].
-pub(super) fn evaluate_runs(
+fn evaluate_runs(
     runs: &[Range<usize>],
     size: usize,
     want: Want,
@@ -39,6 +39,38 @@ pub(super) fn evaluate_runs(
             compute(run.clone(), &mut out).map(|()| out)
         })
         .collect()
+}
+
+/// Those of `count` entities that are evaluated here, in runs of at most [`CHUNK`].
+pub(super) fn own_runs(count: usize, is_own: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for at in (0..count).filter(|&at| is_own(at)) {
+        match runs.last_mut() {
+            Some(run) if run.end == at && run.len() < CHUNK => run.end += 1,
+            _ => runs.push(at..at + 1),
+        }
+    }
+    runs
+}
+
+/// Evaluates the entities of `runs` and hands the number of each, its tangent and its right-hand side on, in their order.
+pub(super) fn each_of_runs(
+    block: &dyn EntityBlock,
+    view: &StepView<'_>,
+    runs: &[Range<usize>],
+    want: Want,
+    mut add: impl FnMut(usize, &[f64], &[f64]),
+) -> Result<(), EntityError> {
+    let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
+    for batch in runs.chunks(BATCH / CHUNK) {
+        for (run, mut systems) in batch.iter().zip(evaluate_runs(batch, block.unknowns().len(), want, &compute)?) {
+            for (slot, at) in run.clone().enumerate() {
+                let (lhs, rhs) = systems.entity(slot);
+                add(at, lhs, rhs);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Tangent of the `at`-th entity of the evaluated range.

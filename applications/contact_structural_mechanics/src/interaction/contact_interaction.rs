@@ -172,6 +172,9 @@ impl Interaction for ContactInteraction {
         if self.contact.pairing.moved > 0 {
             out.push(("pairs moved to other ranks", self.contact.pairing.moved as f64));
         }
+        if self.contact.setup.parameters.dynamic {
+            out.push(("work of contact", self.loops.work.done()));
+        }
         if self.contact.setup.settings.family.updated {
             out.extend([("multiplier updates", self.loops.uzawa.updates as f64), ("rate", self.loops.uzawa.rate)]);
         }

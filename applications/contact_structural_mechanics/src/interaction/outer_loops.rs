@@ -31,7 +31,8 @@ pub(super) struct OuterLoops {
     start_gaps: Vec<f64>,
     /// What the last attempt at the step made of the energy of motion, where that was too much.
     impact_error: f64,
-    work: ContactWork,
+    /// Work of contact on bodies in motion.
+    pub work: ContactWork,
 }
 
 impl OuterLoops {

@@ -4,8 +4,9 @@
 //! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
 
 use zelus_core::Result;
+use zelus_core::assembly::nodal_vectors;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{EntityBlock, LocalSystems, Want};
+use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
 use zelus_structural_mechanics::variables::DISPLACEMENT;
@@ -41,19 +42,19 @@ pub(super) struct ContactWork {
 }
 
 impl ContactWork {
-    /// Adds up the work of the present step, at whose end `blocks` act.
+    /// Adds up the work of the present step, at whose end `blocks` act; collective.
     ///
     /// # Errors
     /// A geometry that cannot be computed with.
     pub(super) fn of_step(&mut self, part: &ModelPart, blocks: &[&dyn EntityBlock]) -> Result<()> {
-        let forces = forces(part, blocks, std::mem::take(&mut self.now));
-        self.now = part.ranks.agree(forces)?;
+        self.now = nodal_vectors(part, blocks, &DISPLACEMENT, std::mem::take(&mut self.now))?;
         self.before.resize(self.now.len(), 0.0);
         let mut sums = [0.0; 2];
-        let history = &part.nodes.history;
-        let motion = history.values(&DISPLACEMENT, 0).iter().zip(history.values(&DISPLACEMENT, 1));
-        for ((now, before), (end, start)) in self.now.iter().zip(&self.before).zip(motion) {
-            let work = 0.5 * (now + before) * (end - start);
+        let displacements = [0, 1].map(|level| part.nodes.history.values(&DISPLACEMENT, level));
+        for node in (0..part.nodes.len()).filter(|&node| part.owns_node(node)) {
+            let rows = 3 * node..3 * node + 3;
+            let of = |i: usize| (self.now[i] + self.before[i]) * (displacements[0][i] - displacements[1][i]);
+            let work = 0.5 * rows.map(of).sum::<f64>();
             sums[0] += work;
             sums[1] += 0.5 * work.abs();
         }
@@ -78,6 +79,11 @@ impl ContactWork {
         (most > 0.0 && gain > most && !part.info.is(KEEP_MASS)).then(fact)
     }
 
+    /// Work of contact since the run began, the present step included.
+    pub(super) fn done(&self) -> f64 {
+        self.sum.work + self.step.work
+    }
+
     /// The step is accepted: a warning when contact has made energy or, where it can only `conserve` it, lost some; once.
     pub(super) fn accept(&mut self, part: &ModelPart, conserves: bool) -> Option<Diagnostic> {
         let gain = self.gain(part);
@@ -95,25 +101,4 @@ impl ContactWork {
         );
         Some(Diagnostic::warning("contact-energy", fact).remedy(REMEDY))
     }
-}
-
-/// Forces of the active pairs of `blocks` on all nodes (3 a node), written into `out`.
-fn forces(part: &ModelPart, blocks: &[&dyn EntityBlock], mut out: Vec<f64>) -> Result<Vec<f64>> {
-    out.clear();
-    out.resize(3 * part.nodes.len(), 0.0);
-    let (view, mut systems) = (part.view(), LocalSystems::default());
-    for block in blocks {
-        let component = |unknown| (0..3_u8).find(|&c| DISPLACEMENT.component(c) == unknown);
-        let unknowns = block.unknowns().iter().enumerate();
-        let rows: Vec<(usize, usize, usize)> = unknowns
-            .filter_map(|(row, at)| component(at.variable).map(|c| (row, usize::from(at.node), usize::from(c))))
-            .collect();
-        for entity in (0..block.len()).filter(|&entity| block.is_active(entity, &view)) {
-            systems.reset(1, block.unknowns().len(), Want::Residual);
-            block.local_systems(&view, entity..entity + 1, Want::Residual, &mut systems)?;
-            let nodes = block.nodes(entity);
-            rows.iter().for_each(|&(row, node, c)| out[3 * nodes[node] as usize + c] += systems.rhs[row]);
-        }
-    }
-    Ok(out)
 }
