@@ -249,6 +249,20 @@ fn keys_given_twice_are_named() {
     assert!(said.contains("warning[duplicate-key]") && said.contains("max_iteration"), "{said}");
 }
 
+/// What a linear solver reads is no mistake, whichever of its settings it is.
+#[test]
+fn settings_of_linear_solvers_are_read() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("JSON");
+    let settings = json!({"solver_type": "multigrid", "tolerance": 1e-8, "direct_below": 100, "memory_limit": 50.0});
+    deck["solver_settings"]["linear_solver_settings"] = settings;
+    std::fs::write(&path, deck.to_string()).expect("a file");
+    let (status, said) = run(scratch.path());
+    assert_eq!(status, Some(0), "{said}");
+    assert!(!said.contains("nothing reads"), "{said}");
+}
+
 fn decks_below(folder: &Path, out: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();

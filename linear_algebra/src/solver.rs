@@ -5,7 +5,7 @@ use crate::csr::Csr;
 use crate::system::{Layout, System};
 
 /// What one solve did.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SolveReport {
     /// The engine that gave the answer.
     pub engine: &'static str,

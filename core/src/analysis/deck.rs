@@ -124,23 +124,24 @@ pub(super) fn root_name(settings: &Settings) -> Result<String> {
     Ok(name.to_owned())
 }
 
-pub(super) fn check_top_level(key: &str, known: &[&str], deck: &Node, problems: &mut Report) {
-    if known.contains(&key) {
-        return;
+/// Warns of keys beside the sections of a deck.
+pub(super) fn check_top_level(deck: &Node, known: &[&str], problems: &mut Report) -> Result<()> {
+    for key in deck.object()?.keys().filter(|key| !known.contains(key)) {
+        problems.push(if key.starts_with('_') {
+            let fact = format!("\"{key}\" starts with an underscore and is not read");
+            Diagnostic::warning("disabled-key", fact).at(deck.key_place(key))
+        } else {
+            unread_key(deck, key, format!("\"{key}\" at the top level is not read"), known)
+        });
     }
-    if key.starts_with('_') {
-        problems.push(
-            Diagnostic::warning("disabled-key", format!("\"{key}\" starts with an underscore and is not read"))
-                .at(deck.key_place(key)),
-        );
-    } else {
-        let hint = did_you_mean(key, known.iter().copied());
-        problems.push(
-            Diagnostic::warning("unknown-key-ignored", format!("\"{key}\" at the top level is not read"))
-                .at(deck.key_place(key))
-                .remedy(hint.unwrap_or_else(|| format!("read are: {}", known.join(", ")))),
-        );
-    }
+    Ok(())
+}
+
+/// The warning that nothing reads a key of `object`, whose `known` keys are read.
+pub(super) fn unread_key(object: &Node, key: &str, fact: String, known: &[&str]) -> Diagnostic {
+    let near = did_you_mean(key, known.iter().copied());
+    let remedy = near.unwrap_or_else(|| format!("read are: {}", known.join(", ")));
+    Diagnostic::warning("unknown-key-ignored", fact).at(object.key_place(key)).remedy(remedy)
 }
 
 /// Reads the mesh that the settings name into the model, unless an earlier stage has.
@@ -213,7 +214,18 @@ pub(super) fn import(
     Ok(())
 }
 
-/// The processes of `processes`, list by list in the order of their names, then those of `output_processes`.
+/// The entries of `processes`, list by list in the order of their names, then those of `output_processes`.
+pub(super) fn listed<'a>(deck: &'a Node, problems: &mut Report) -> Vec<&'a Node> {
+    let mut out = Vec::new();
+    for section in ["processes", "output_processes"].iter().filter_map(|section| deck.get(section)) {
+        for list in problems.absorb(section.object()).into_iter().flat_map(|lists| lists.iter()) {
+            out.extend(problems.absorb(list.node.array()).into_iter().flatten());
+        }
+    }
+    out
+}
+
+/// The processes of a deck.
 pub(super) fn make_processes(
     deck: &Node,
     folder: &Path,
@@ -221,18 +233,9 @@ pub(super) fn make_processes(
     problems: &mut Report,
 ) -> Vec<Box<dyn Process>> {
     let mut out = Vec::new();
-    for section in ["processes", "output_processes"] {
-        let Some(lists) = deck.get(section) else { continue };
-        let Some(lists) = problems.absorb(lists.object()) else { continue };
-        for list in lists.iter() {
-            let Some(items) = problems.absorb(list.node.array()) else { continue };
-            for item in items {
-                let made = make_process(item, folder, model, problems);
-                if let Some(process) = problems.absorb(made) {
-                    out.push(process);
-                }
-            }
-        }
+    for item in listed(deck, problems) {
+        let made = make_process(item, folder, model, problems);
+        out.extend(problems.absorb(made));
     }
     out
 }

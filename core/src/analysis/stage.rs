@@ -75,9 +75,7 @@ impl Stage {
             report.laid_defaults.extend(laid);
         }
         let known = ["problem_data", "solver_settings", "processes", "output_processes", "modelers", "analysis_stage"];
-        for member in deck.object()?.iter() {
-            check_top_level(&member.key, &known, &deck, &mut problems);
-        }
+        check_top_level(&deck, &known, &mut problems)?;
         let problem_data = problems.absorb(deck.require("problem_data").cloned());
         let times = problem_data.as_ref().and_then(|data| {
             let start = problems.absorb(data.require("start_time").and_then(Node::f64));
@@ -102,7 +100,7 @@ impl Stage {
             }
             start.zip(end)
         });
-        warn_of_unheeded(&mut deck, times, &mut problems);
+        warn_of_unheeded(&deck, times, &mut problems);
         deck.get("solver_settings").into_iter().for_each(|solver| check_tolerances(solver, &mut problems));
         let user = problems.absorb(deck.require("solver_settings").cloned());
         let solver = user.and_then(|user| {

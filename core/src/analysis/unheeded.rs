@@ -1,11 +1,12 @@
 //! Warnings of what a deck says and nothing heeds: keys that nothing reads, processes that never act, settings without a user.
 
-use super::older_decks::for_each_process;
+use super::deck::{listed, unread_key};
 use super::solver::SolverExtensionEntry;
 use crate::assembly::System;
-use crate::diagnostics::{Diagnostic, Report, did_you_mean};
-use crate::parameters::{Interval, Node};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::parameters::{Defaults, Interval, Node};
 use crate::registry;
+use crate::strategies::LinearSolverEntry;
 
 /// Objects of a deck that no registered settings check, with the keys that are read there, or that need no word.
 const OBJECTS: [(&str, &[&str]); 4] = [
@@ -65,6 +66,7 @@ const OBJECTS: [(&str, &[&str]); 4] = [
             "linear_solver_settings",
             "inner_solver_settings",
             "direct_below",
+            "memory_limit",
             "petsc_engine",
             "petsc_options",
         ],
@@ -85,16 +87,18 @@ const OF_PROCESS: [&str; 9] = [
 ];
 
 /// Keys that nothing reads, and intervals outside the times of the run.
-pub(super) fn warn_of_unheeded(deck: &mut Node, times: Option<(f64, f64)>, report: &mut Report) {
+pub(super) fn warn_of_unheeded(deck: &Node, times: Option<(f64, f64)>, report: &mut Report) {
     for (path, known) in OBJECTS {
         let Some(object) = deck.get_path(path) else { continue };
-        warn_of_keys(object, path, known, report);
+        let Some(own) = own_settings(object) else { continue };
+        let own = own.entries().iter().map(|entry| entry.path.as_str());
+        warn_of_keys(object, path, &known.iter().copied().chain(own).collect::<Vec<_>>(), report);
     }
-    warn_of_entries(deck, report);
+    let processes = listed(deck, &mut Report::new());
+    processes.iter().for_each(|process| warn_of_keys(process, "a process", &OF_PROCESS, report));
     let Some((start, end)) = times.filter(|(start, end)| end > start) else { return };
-    for_each_process(deck, |_, parameters| {
-        let Some(node) = parameters.get("interval") else { return };
-        let Ok(Interval { begin, end: last }) = Interval::from_node(node) else { return };
+    for node in processes.iter().filter_map(|process| process.get_path("Parameters.interval")) {
+        let Ok(Interval { begin, end: last }) = Interval::from_node(node) else { continue };
         let problem = if last < begin {
             let fact = format!("the interval {node} ends before it begins: the process never acts");
             Diagnostic::warning("interval-reversed", fact).remedy("write the earlier time first")
@@ -103,41 +107,34 @@ pub(super) fn warn_of_unheeded(deck: &mut Node, times: Option<(f64, f64)>, repor
             Diagnostic::note("interval-outside", fact)
                 .remedy("nothing to do where a run is shorter than its deck is for")
         } else {
-            return;
+            continue;
         };
         report.push(problem.at(node.place()));
-    });
+    }
+}
+
+/// What the linear solver that `object` names reads besides, nothing where it names none; `None` where there is no such solver.
+fn own_settings(object: &Node) -> Option<Defaults> {
+    let name = object.get("solver_type").and_then(|node| node.as_str()?.rsplit('.').next()).unwrap_or_default();
+    match registry::find::<LinearSolverEntry>(name) {
+        None if !name.is_empty() => None,
+        entry => {
+            let own = entry.map(|entry| entry.defaults).filter(|text| !text.is_empty());
+            Defaults::parse(name, own.unwrap_or("{}")).ok()
+        }
+    }
 }
 
 fn warn_of_keys(object: &Node, name: &str, known: &[&str], report: &mut Report) {
     let own = object.as_object().into_iter().flat_map(|object| object.iter());
     for member in own.filter(|member| !known.contains(&member.key.as_str()) && !is_remark(&member.key)) {
         let fact = format!("nothing reads {:?} of {name}", member.key);
-        let near = did_you_mean(&member.key, known.iter().copied());
-        let remedy = near.unwrap_or_else(|| format!("remove it; read are {}", known.join(", ")));
-        report.push(Diagnostic::warning("unknown-key-ignored", fact).at(object.key_place(&member.key)).remedy(remedy));
+        report.push(unread_key(object, &member.key, fact, known));
     }
 }
 
 fn is_remark(key: &str) -> bool {
     key.starts_with('_') || key.to_ascii_lowercase().starts_with("comment")
-}
-
-/// Warns of keys beside the parameters of processes.
-fn warn_of_entries(deck: &Node, report: &mut Report) {
-    fn walk(node: &Node, report: &mut Report) {
-        if node.get("python_module").is_some() {
-            warn_of_keys(node, "a process", &OF_PROCESS, report);
-        } else if let Some(items) = node.as_array() {
-            items.iter().for_each(|item| walk(item, report));
-        } else if let Some(object) = node.as_object() {
-            object.iter().for_each(|member| walk(&member.node, report));
-        }
-    }
-    ["processes", "output_processes"]
-        .iter()
-        .filter_map(|section| deck.get(section))
-        .for_each(|lists| walk(lists, report));
 }
 
 /// Tolerances that nothing could meet, or that everything meets.

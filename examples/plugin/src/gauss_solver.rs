@@ -4,7 +4,10 @@ use zelus_core::register;
 use zelus_core::strategies::LinearSolverEntry;
 use zelus_linear_algebra::{LinearSolver, SolveError, SolveReport, System, vector};
 
-struct Gauss;
+struct Gauss {
+    /// Largest size of a pivot that counts as none.
+    least_pivot: f64,
+}
 
 impl LinearSolver for Gauss {
     fn name(&self) -> &'static str {
@@ -17,7 +20,7 @@ impl LinearSolver for Gauss {
         let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
         for k in 0..n {
             let pivot = (k..n).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs())).unwrap_or(k);
-            if rows[pivot][k] == 0.0 {
+            if rows[pivot][k].abs() <= self.least_pivot {
                 return Err(SolveError::Singular { equations: vec![k], rank_deficiency: None });
             }
             rows.swap(k, pivot);
@@ -33,21 +36,17 @@ impl LinearSolver for Gauss {
         }
         let mut left = vec![0.0; n];
         let relative_residual = system.residual(rhs, x, &mut left) / vector::norm(rhs).max(f64::MIN_POSITIVE);
-        let [seconds_symbolic, seconds_numeric, seconds_solve] = [0.0; 3];
-        let (engine, iterations, fallback) = ("gauss", 0, None);
-        Ok(SolveReport {
-            engine,
-            relative_residual,
-            iterations,
-            fallback,
-            seconds_symbolic,
-            seconds_numeric,
-            seconds_solve,
-        })
+        Ok(SolveReport { engine: "gauss", relative_residual, ..SolveReport::default() })
     }
 }
 
 register! { LinearSolverEntry "gauss",
     about: "Gauss' elimination of the whole matrix, for small systems",
-    build: |_request| Ok(Box::new(Gauss)),
+    defaults: r#"{
+    "least_pivot": 0.0 // a pivot of this size or less is none
+}"#,
+    build: |request| {
+        let given = request.settings.node().get("least_pivot").map(|node| node.f64()).transpose()?;
+        Ok(Box::new(Gauss { least_pivot: given.unwrap_or(0.0) }))
+    },
 }

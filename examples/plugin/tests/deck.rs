@@ -37,6 +37,7 @@ fn a_column_sinks_into_its_foundation() {
     for word in ["energy", "gauss"] {
         assert!(said.contains(word), "{word} takes part: {said}");
     }
+    assert!(!said.contains("nothing reads"), "the solver's own settings are read: {said}");
     for (step, time) in [0.5, 1.0].into_iter().enumerate() {
         let pressure = 0.5 * 40.0 * time;
         for (node, y) in [(1, 0.0), (2, 0.0), (3, 1.0), (4, 1.0), (5, 2.0), (6, 2.0), (7, 2.0)] {
