@@ -5,7 +5,6 @@
 
 use zelus::contact_structural_mechanics::formulations::StepParameters;
 use zelus::contact_structural_mechanics::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
-use zelus::contact_structural_mechanics::mortar::{Operators, PairGeometry};
 use zelus::contact_structural_mechanics::pairs::Family;
 use zelus::contact_structural_mechanics::register_contact_family;
 use zelus_core::scalar::Real;
@@ -21,8 +20,6 @@ impl Formulation for HardeningPenalty {
     fn new(_: &StepParameters) -> Self {
         Self
     }
-
-    fn history<const NS: usize, const NM: usize>(_: Operators<f64, NS, NM>, _: &PairGeometry<f64, NS, NM>) {}
 
     fn residual<T: Real, const NS: usize, const NM: usize>(
         &self,

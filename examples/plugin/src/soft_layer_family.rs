@@ -7,7 +7,6 @@ use zelus::contact_structural_mechanics::formulations::StepParameters;
 use zelus::contact_structural_mechanics::formulations::{
     Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode,
 };
-use zelus::contact_structural_mechanics::mortar::{Operators, PairGeometry};
 use zelus::contact_structural_mechanics::pairs::Family;
 use zelus::contact_structural_mechanics::register_contact_family;
 use zelus::contact_structural_mechanics::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE as PRESSURE;
@@ -28,8 +27,6 @@ impl Formulation for SoftLayer {
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor }
     }
-
-    fn history<const NS: usize, const NM: usize>(_: Operators<f64, NS, NM>, _: &PairGeometry<f64, NS, NM>) {}
 
     fn residual<T: Real, const NS: usize, const NM: usize>(
         &self,

@@ -14,21 +14,21 @@
 //!
 //! In space the direction τ of sliding turns with the trial traction, which the tangent knows.
 //! The slip s is the objective one when both operators changed by more than a threshold since the start of the step,
-//! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference. In dynamics and where surfaces give way it is that of [`turned_slip`]: its
+//! otherwise −P [D δ¹ − M δ²] with δ = x − x_reference. In dynamics and where surfaces give way it is that of [`LastState::slip`]: its
 //! rate is what the tractions do work on, so that friction makes no energy. Where pairs augment, as in Kratos, it never is. In long
 //! static steps the objective one is nearer to the closed forms: it measures the change of what faces what.
 
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{add, constant, dot, scale, sub, value};
+use zelus_core::vector3::{constant, dot, scale, sub, value};
 
 use crate::active_set;
 use crate::formulations::StepParameters;
 use crate::formulations::{
-    Augmentation, Formulation, Kinematics, Multiplier, NodeState, PairResidual, SlaveNode, Turning,
+    Augmentation, Formulation, Kinematics, LastState, Multiplier, NodeState, PairHistory, PairResidual, SlaveNode,
+    Turning,
 };
 use crate::mortar::{
-    OperatorThreshold, Operators, PairGeometry, Turn, incremental_slip, is_objective, objective_slip, tangential,
-    turned_slip,
+    OperatorThreshold, Operators, PairGeometry, incremental_slip, is_objective, objective_slip, tangential,
 };
 use crate::pairs::{Family, Friction};
 use crate::register_contact_family;
@@ -56,10 +56,14 @@ pub struct AlmFrictional {
 pub struct SlipHistory<const NS: usize, const NM: usize> {
     /// D° and M°, at the start of the step.
     pub previous: Operators<f64, NS, NM>,
-    /// Slave positions from which increments count.
-    pub reference_slave: [[f64; 3]; NS],
-    /// Master positions from which increments count.
-    pub reference_master: [[f64; 3]; NM],
+    /// Its last accepted state.
+    pub last: LastState<NS, NM>,
+}
+
+impl<const NS: usize, const NM: usize> PairHistory<NS, NM> for SlipHistory<NS, NM> {
+    fn of(previous: Operators<f64, NS, NM>, last: &PairGeometry<f64, NS, NM>) -> Self {
+        Self { previous, last: PairHistory::of(previous, last) }
+    }
 }
 
 impl AlmFrictional {
@@ -70,40 +74,15 @@ impl AlmFrictional {
         history: &SlipHistory<NS, NM>,
     ) -> [[T; 3]; NS] {
         if self.compliant || (self.dynamic && self.augmentation == Augmentation::Node) {
-            let (slave, master) = (&history.reference_slave, &history.reference_master);
-            return turned_slip(&pair.operators, (&pair.slave, slave), (&pair.master, master), &pair.normals);
+            return history.last.slip(pair);
         }
         if is_objective(&pair.operators, &history.previous, self.operator_threshold) {
             return objective_slip(&pair.operators, &history.previous, &pair.slave, &pair.master, &pair.normals);
         }
         let increment = |x: [T; 3], from: [f64; 3]| std::array::from_fn(|c| x[c] - from[c]);
-        let delta_slave = std::array::from_fn(|j| increment(pair.slave[j], history.reference_slave[j]));
-        let delta_master = std::array::from_fn(|l| increment(pair.master[l], history.reference_master[l]));
+        let delta_slave = std::array::from_fn(|j| increment(pair.slave[j], history.last.slave[j]));
+        let delta_master = std::array::from_fn(|l| increment(pair.master[l], history.last.master[l]));
         incremental_slip(&pair.operators, &delta_slave, &delta_master, &pair.normals)
-    }
-
-    /// Tractions P R t° that slave nodes of a pair have from the last accepted state.
-    pub fn carried<T: Real, const NS: usize, const NM: usize>(
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        history: &SlipHistory<NS, NM>,
-    ) -> [[T; 3]; NS] {
-        let turn = Turn::of_facet(&pair.slave, &history.reference_slave);
-        std::array::from_fn(|j| tangential(turn.apply(constant(nodes[j].carried)), pair.normals[j]))
-    }
-
-    /// A times the elastic trial tractions P R t° + κ ε s/A of slave nodes whose surfaces give way.
-    pub fn trial<T: Real, const NS: usize, const NM: usize>(
-        &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        history: &SlipHistory<NS, NM>,
-    ) -> [[T; 3]; NS] {
-        let (carried, slip) = (Self::carried(pair, nodes, history), self.slip(pair, history));
-        std::array::from_fn(|j| {
-            let elastic = scale(slip[j], T::constant(self.tangent_factor * nodes[j].penalty));
-            add(scale(carried[j], pair.area(j)), elastic)
-        })
     }
 
     /// Takes from gap and slip what is elastic.
@@ -118,7 +97,7 @@ impl AlmFrictional {
         if !self.compliant {
             return;
         }
-        let carried = Self::carried(pair, nodes, history);
+        let carried = history.last.carried(pair, nodes);
         for (j, node) in nodes.iter().enumerate() {
             let traction = scale(pair.multipliers[j], T::constant(self.scale_factor));
             let give = pair.area(j) * node.compliance;
@@ -152,13 +131,6 @@ impl Formulation for AlmFrictional {
         }
     }
 
-    fn history<const NS: usize, const NM: usize>(
-        previous: Operators<f64, NS, NM>,
-        last: &PairGeometry<f64, NS, NM>,
-    ) -> SlipHistory<NS, NM> {
-        SlipHistory { previous, reference_slave: last.slave, reference_master: last.master }
-    }
-
     fn weighted_slip<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
@@ -173,7 +145,7 @@ impl Formulation for AlmFrictional {
         nodes: &[SlaveNode; NS],
         history: &SlipHistory<NS, NM>,
     ) -> Option<[[f64; 3]; NS]> {
-        self.compliant.then(|| self.trial(pair, nodes, history))
+        self.compliant.then(|| history.last.weighted_trial(pair, nodes, self.tangent_factor))
     }
 
     fn residual<T: Real, const NS: usize, const NM: usize>(

@@ -11,7 +11,6 @@ use zelus_core::vector3::scale;
 
 use crate::formulations::StepParameters;
 use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
-use crate::mortar::{Operators, PairGeometry};
 use crate::pairs::Family;
 use crate::register_contact_family;
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
@@ -32,8 +31,6 @@ impl Formulation for AlmFrictionless {
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
-
-    fn history<const NS: usize, const NM: usize>(_: Operators<f64, NS, NM>, _: &PairGeometry<f64, NS, NM>) {}
 
     fn residual<T: Real, const NS: usize, const NM: usize>(
         &self,

@@ -7,7 +7,7 @@ use zelus_core::scalar::Real;
 
 use crate::formulations::StepParameters;
 use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
-use crate::mortar::{Operators, PairGeometry, tangential};
+use crate::mortar::tangential;
 use crate::pairs::Family;
 use crate::register_contact_family;
 use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
@@ -28,8 +28,6 @@ impl Formulation for AlmFrictionlessComponents {
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
-
-    fn history<const NS: usize, const NM: usize>(_: Operators<f64, NS, NM>, _: &PairGeometry<f64, NS, NM>) {}
 
     fn residual<T: Real, const NS: usize, const NM: usize>(
         &self,

@@ -4,11 +4,10 @@
 //! friction. Where steps iterate, the same tractions are multipliers of surfaces that give way, see [`super::alm_frictional`].
 
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{add, constant, scale};
+use zelus_core::vector3::{constant, scale};
 
 use crate::formulations::StepParameters;
 use crate::formulations::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveNode};
-use crate::mortar::{Operators, PairGeometry};
 
 /// Penalty method by node, with or without friction. Its tangent is that of given tractions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,13 +24,6 @@ impl Formulation for PenaltyByNode {
         Self { tangent_factor: parameters.tangent_factor }
     }
 
-    fn history<const NS: usize, const NM: usize>(
-        _: Operators<f64, NS, NM>,
-        last: &PairGeometry<f64, NS, NM>,
-    ) -> LastState<NS, NM> {
-        LastState::new(last)
-    }
-
     fn weighted_slip<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
@@ -40,17 +32,13 @@ impl Formulation for PenaltyByNode {
         last.slip(pair)
     }
 
-    /// A times the trial tractions P R t° + κ ε s/A.
     fn weighted_trial<const NS: usize, const NM: usize>(
         &self,
         pair: &Kinematics<f64, NS, NM>,
         nodes: &[SlaveNode; NS],
         last: &LastState<NS, NM>,
     ) -> Option<[[f64; 3]; NS]> {
-        let (carried, slip) = (last.carried(pair, nodes), last.slip(pair));
-        Some(std::array::from_fn(|j| {
-            add(scale(carried[j], pair.area(j)), scale(slip[j], self.tangent_factor * nodes[j].penalty))
-        }))
+        Some(last.weighted_trial(pair, nodes, self.tangent_factor))
     }
 
     fn residual<T: Real, const NS: usize, const NM: usize>(

@@ -13,7 +13,6 @@ use super::penalty_by_node::PenaltyByNode;
 use crate::active_set;
 use crate::formulations::StepParameters;
 use crate::formulations::{Formulation, Kinematics, LastState, Multiplier, NodeState, PairResidual, SlaveNode};
-use crate::mortar::{Operators, PairGeometry};
 use crate::pairs::{ByNode, Family, Friction};
 use crate::register_contact_family;
 
@@ -50,13 +49,6 @@ impl Formulation for PenaltyFrictional {
 
     fn new(parameters: &StepParameters) -> Self {
         Self { tangent_factor: parameters.tangent_factor }
-    }
-
-    fn history<const NS: usize, const NM: usize>(
-        _: Operators<f64, NS, NM>,
-        last: &PairGeometry<f64, NS, NM>,
-    ) -> LastState<NS, NM> {
-        LastState::new(last)
     }
 
     fn weighted_slip<const NS: usize, const NM: usize>(

@@ -9,7 +9,6 @@ use super::alm_frictionless::AlmFrictionless;
 use super::penalty_by_node::PenaltyByNode;
 use crate::formulations::StepParameters;
 use crate::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
-use crate::mortar::{Operators, PairGeometry};
 use crate::pairs::{ByNode, Family};
 use crate::register_contact_family;
 
@@ -24,8 +23,6 @@ impl Formulation for PenaltyFrictionless {
     fn new(_: &StepParameters) -> Self {
         Self
     }
-
-    fn history<const NS: usize, const NM: usize>(_: Operators<f64, NS, NM>, _: &PairGeometry<f64, NS, NM>) {}
 
     fn residual<T: Real, const NS: usize, const NM: usize>(
         &self,

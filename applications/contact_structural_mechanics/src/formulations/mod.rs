@@ -22,6 +22,7 @@ pub mod mesh_tying;
 pub mod multiplier;
 pub mod nitsche;
 pub mod pair;
+pub mod pair_history;
 pub(crate) mod step_parameters;
 pub mod system;
 
@@ -31,10 +32,10 @@ pub use mesh_tying::MeshTying;
 pub use multiplier::Multiplier;
 pub use nitsche::{Nitsche, NitscheVariant, NodeOfPoints, PointForces, SlaveFace};
 pub use pair::{Kinematics, PairResidual, SlaveNode};
+pub use pair_history::PairHistory;
 pub use step_parameters::{NormalVariation, StepParameters};
 pub use system::{by_normals, local_size, residual, tangent};
 
-use crate::mortar::{Operators, PairGeometry};
 use zelus_core::scalar::Real;
 
 /// Where a gap augments the force of an augmented Lagrangian.
@@ -79,16 +80,10 @@ pub trait Formulation: Copy + Send + Sync + 'static {
     const MULTIPLIER: Multiplier;
 
     /// What it remembers of a pair from the start of the step.
-    type History<const NS: usize, const NM: usize>;
+    type History<const NS: usize, const NM: usize>: PairHistory<NS, NM>;
 
     /// The formulation with the numbers of the step.
     fn new(parameters: &StepParameters) -> Self;
-
-    /// What a pair remembers, from its operators at the start of the step and its positions in the last accepted state.
-    fn history<const NS: usize, const NM: usize>(
-        operators: Operators<f64, NS, NM>,
-        last: &PairGeometry<f64, NS, NM>,
-    ) -> Self::History<NS, NM>;
 
     /// Right-hand side of one pair; must be affine in the multipliers for given states.
     fn residual<T: Real, const NS: usize, const NM: usize>(

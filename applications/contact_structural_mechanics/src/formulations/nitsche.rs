@@ -22,7 +22,7 @@ use super::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveN
 use crate::friction_law::Bound;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
-use crate::mortar::{Operators, PairGeometry, SegmentationSettings, Turn, shape, tangential};
+use crate::mortar::{PairGeometry, SegmentationSettings, Turn, shape, tangential};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, value};
 
@@ -237,13 +237,6 @@ impl Formulation for Nitsche {
 
     fn new(parameters: &StepParameters) -> Self {
         parameters.nitsche
-    }
-
-    fn history<const NS: usize, const NM: usize>(
-        _: Operators<f64, NS, NM>,
-        last: &PairGeometry<f64, NS, NM>,
-    ) -> LastState<NS, NM> {
-        LastState::new(last)
     }
 
     fn residual<T: Real, const NS: usize, const NM: usize>(

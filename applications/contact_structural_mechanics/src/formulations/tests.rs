@@ -136,15 +136,13 @@ fn slip_history<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, N
     let mut shifted = |x: [f64; 3]| std::array::from_fn(|c| if c < dim { x[c] + 0.1 * noise.next() } else { 0.0 });
     SlipHistory {
         previous: earlier(pair),
-        reference_slave: pair.slave.map(&mut shifted),
-        reference_master: pair.master.map(&mut shifted),
+        last: LastState { slave: pair.slave.map(&mut shifted), master: pair.master.map(&mut shifted) },
     }
 }
 
 /// The pair before it turned, slid and deformed a little.
 fn last_state<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> LastState<NS, NM> {
-    let SlipHistory { reference_slave: slave, reference_master: master, .. } = slip_history(pair);
-    LastState { slave, master }
+    slip_history(pair).last
 }
 
 fn frictional(area: f64) -> AlmFrictional {
@@ -243,7 +241,7 @@ fn residuals_of_the_reference_program() {
         let vector = |i: usize| [start[25 + 3 * i], start[26 + 3 * i], start[27 + 3 * i]];
         let previous = operators(&line_pair(&start, &start), &SegmentationSettings::default()).cells().unwrap();
         let history =
-            SlipHistory { previous, reference_slave: [vector(0), vector(1)], reference_master: [vector(2), vector(3)] };
+            SlipHistory { previous, last: LastState { slave: [vector(0), vector(1)], master: [vector(2), vector(3)] } };
         match family {
             "alm_frictional" => check_references(&frictional(start[24]), &start, &lines, history),
             _ => check_references(&COMPONENTS, &start, &lines, ()),

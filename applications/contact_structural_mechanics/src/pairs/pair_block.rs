@@ -15,7 +15,7 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Augmentation, Formulation, Kinematics, SlaveNode};
+use crate::formulations::{self, Augmentation, Formulation, Kinematics, PairHistory, SlaveNode};
 use crate::formulations::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::kratos::FirstIterateTangent;
@@ -307,7 +307,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
             let geometry = self.geometry(at, view, &self.states);
             let nodes = self.slave_constants(at, &self.states);
             let multipliers = self.multipliers(at, view);
-            let history = F::history(self.pairs[at].previous.operators(), &self.previous(at, view, &self.states));
+            let history = F::History::of(self.pairs[at].previous.operators(), &self.previous(at, view, &self.states));
             let settings = &self.parameters.segmentation;
             let (width, rows) = (out.size, out.size - dimension(NS) * self.around);
             let (lhs, rhs) = out.entity(slot);
@@ -372,7 +372,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
                 if let Overlap::Cells(operators) = found {
                     out.overlapping = true;
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
-                    let history = F::history(self.pairs[at].previous.operators(), &self.previous(at, view, states));
+                    let history = F::History::of(self.pairs[at].previous.operators(), &self.previous(at, view, states));
                     let pair = Kinematics {
                         operators,
                         slave: geometry.slave,
