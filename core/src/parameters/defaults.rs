@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::document::{self, Comment};
 use super::node::{Node, Value};
-use crate::diagnostics::Result;
+use crate::diagnostics::{Diagnostic, Result};
 
 /// The defaults of one object, and how strictly a deck is held against them.
 #[derive(Debug, Clone)]
@@ -29,7 +29,12 @@ pub struct Entry {
     pub default: String,
     /// The comment beside or above the key; empty when there is none.
     pub description: String,
+    /// Why the key is read and changes nothing, where that is so.
+    pub without_effect: Option<String>,
 }
+
+/// The member of a file of defaults that lists keys without effect by the reason.
+const WITHOUT_EFFECT: &str = "$without_effect";
 
 /// An old spelling that decks still use.
 #[derive(Debug, Clone)]
@@ -50,16 +55,24 @@ impl Defaults {
     ///
     /// A default of `null` accepts any value, `{}` any content; the items of arrays are not checked. A number written
     /// without fraction stands for an integer. The comment above a key or at the end of its line documents it, the
-    /// one above the opening brace the object.
+    /// one above the opening brace the object. `$without_effect` is no key: it lists those that are read and change nothing,
+    /// `{ "reason": ["key", "other.key"] }`.
     ///
     /// # Errors
-    /// `invalid-json`, or `wrong-type` when the text is not an object.
+    /// `invalid-json`, `wrong-type` when the text is not an object, `unknown-key` when a key without effect is none.
     pub fn parse(name: &str, text: &str) -> Result<Self> {
         let (document, comments) = document::parse(text, Path::new(name), true)?;
-        let node = document.root;
+        let mut node = document.root;
+        let idle = match &mut node.value {
+            Value::Object(members) => members.remove(WITHOUT_EFFECT),
+            _ => None,
+        };
         node.object()?;
         let mut entries = Vec::new();
         collect(&node, "", &comments, &mut entries);
+        if let Some(idle) = idle {
+            mark(&idle.node, &mut entries)?;
+        }
         let description = comment_above(&comments, node.line);
         let (lenient, required, deprecated) = (false, Vec::new(), Vec::new());
         Ok(Self { name: name.to_owned(), node, lenient, required, deprecated, description, entries })
@@ -137,9 +150,24 @@ fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<Entry>
         texts.retain(|t| !t.is_empty());
         let kind = if member.node.is_null() { "any value" } else { member.node.value.kind() };
         let default = member.node.to_json().to_string();
-        out.push(Entry { path: path.clone(), kind, default, description: texts.join("\n") });
+        out.push(Entry { path: path.clone(), kind, default, description: texts.join("\n"), without_effect: None });
         collect(&member.node, &path, comments, out);
     }
+}
+
+/// Puts down why keys have no effect.
+fn mark(reasons: &Node, entries: &mut [Entry]) -> Result<()> {
+    for reason in reasons.object()?.iter() {
+        for key in reason.node.array()? {
+            let path = key.str()?;
+            let Some(entry) = entries.iter_mut().find(|entry| entry.path == path) else {
+                let problem = Diagnostic::error("unknown-key", format!("{path:?} without effect is no key"));
+                return Err(problem.at(key.place()).into());
+            };
+            entry.without_effect = Some(reason.key.clone());
+        }
+    }
+    Ok(())
 }
 
 /// The line where a comment beside the value stands: that of its last item, for an object that of its brace.
@@ -181,10 +209,14 @@ mod tests {
     "nested": { // an object
 
         "count": 3
-    }
+    },
+    "$without_effect": { "everything is counted": ["nested.count"] }
 }"#;
         let defaults = Defaults::parse("thing", text).unwrap();
         assert_eq!(defaults.description(), "Fixes a thing.\nTwice.");
+        let idle = defaults.entries().iter().filter_map(|entry| Some((&*entry.path, entry.without_effect.as_deref()?)));
+        assert_eq!(idle.collect::<Vec<_>>(), [("nested.count", "everything is counted")]);
+        assert!(Defaults::parse("thing", r#"{ "a": 1, "$without_effect": { "why": ["b"] } }"#).is_err());
         let said: Vec<String> = defaults
             .entries()
             .iter()

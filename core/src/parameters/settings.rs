@@ -153,12 +153,10 @@ impl Settings {
     }
 }
 
-/// Keys whose comment in the defaults begins with these words are read and change nothing.
-const WITHOUT_EFFECT: &str = "without effect";
-
 /// A key that changes nothing and is set to something else than its default deserves to be named.
 fn warn_without_effect(user: &Node, defaults: &Defaults, report: &mut Report) {
-    for entry in defaults.entries().iter().filter(|e| e.description.starts_with(WITHOUT_EFFECT)) {
+    for entry in defaults.entries() {
+        let Some(why) = &entry.without_effect else { continue };
         let (Some(given), Some(default)) = (user.get_path(&entry.path), defaults.node.get_path(&entry.path)) else {
             continue;
         };
@@ -167,9 +165,8 @@ fn warn_without_effect(user: &Node, defaults: &Defaults, report: &mut Report) {
             _ => given.to_json() == default.to_json(),
         };
         if !same {
-            let why = entry.description[WITHOUT_EFFECT.len()..].trim_start_matches([':', ' ']);
             let fact = format!("\"{}\" of {} is read and changes nothing", entry.path, defaults.name);
-            report.push(Diagnostic::warning("key-without-effect", fact).at(given.place()).remedy(why));
+            report.push(Diagnostic::warning("key-without-effect", fact).at(given.place()).remedy(why.as_str()));
         }
     }
 }
