@@ -166,6 +166,7 @@ impl Stage {
         for interaction in &mut system.interactions {
             problems.absorb(interaction.initialize(part));
         }
+        messages_of(&mut processes, &mut system).into_iter().for_each(|message| problems.push(message));
         problems = problems_of_all(&ranks, problems)?;
         report.parameters = tell_parameters(part, &system, monitor);
         let (strategy, says) = solver.strategy(part, &mut system, &mut problems)?;
@@ -183,10 +184,7 @@ impl Stage {
             let checked = process.check(model, &system, &mut problems);
             problems.absorb(checked);
         }
-        for warning in problems_of_all(&ranks, problems)?.finish()? {
-            report.warnings.push(warning.to_string());
-            monitor.warn(&warning);
-        }
+        tell(problems_of_all(&ranks, problems)?.finish()?, report, monitor);
         let (start_time, end_time) = times.expect("checked above");
         report.add_seconds("set up", start.elapsed().as_secs_f64());
         Ok(Self {
@@ -367,7 +365,7 @@ impl Stage {
         let start = Instant::now();
         let record = self.strategy.solve_step(model.root_mut(&self.root)?, &mut self.system, monitor)?;
         report.add_seconds("solve steps", start.elapsed().as_secs_f64());
-        self.pass_on_messages(model, report, monitor)?;
+        self.pass_on_messages(&ranks, report, monitor);
         if announced || !record.converged {
             monitor.end_step(&record);
         }
@@ -397,18 +395,30 @@ impl Stage {
             }
         }
         report.add_seconds("output", start.elapsed().as_secs_f64());
-        self.pass_on_messages(model, report, monitor)
+        self.pass_on_messages(&ranks, report, monitor);
+        Ok(())
     }
 
-    /// Hands notes and warnings met by processes and interactions to the monitor and the report.
-    fn pass_on_messages(&self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
-        let own = std::mem::take(&mut model.root_mut(&self.root)?.messages);
-        for warning in model.ranks.problems_of_all(own) {
-            let list = if warning.severity == Severity::Note { &mut report.notes } else { &mut report.warnings };
-            list.push(warning.to_string());
-            monitor.warn(&warning);
-        }
-        Ok(())
+    /// Hands on what processes, interactions and the strategy have to tell; collective.
+    fn pass_on_messages(&mut self, ranks: &Ranks, report: &mut RunReport, monitor: &mut dyn Monitor) {
+        let mut own = self.strategy.messages();
+        own.extend(messages_of(&mut self.processes, &mut self.system));
+        tell(ranks.problems_of_all(own), report, monitor);
+    }
+}
+
+/// Notes and warnings of processes and interactions.
+fn messages_of(processes: &mut [Box<dyn Process>], system: &mut System) -> Vec<Diagnostic> {
+    let of_processes = processes.iter_mut().flat_map(|process| process.messages());
+    of_processes.chain(system.interactions.iter_mut().flat_map(|interaction| interaction.messages())).collect()
+}
+
+/// Hands notes and warnings to the monitor and the report.
+fn tell(messages: Vec<Diagnostic>, report: &mut RunReport, monitor: &mut dyn Monitor) {
+    for message in messages {
+        let list = if message.severity == Severity::Note { &mut report.notes } else { &mut report.warnings };
+        list.push(message.to_string());
+        monitor.warn(&message);
     }
 }
 

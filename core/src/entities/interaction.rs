@@ -1,7 +1,7 @@
 //! What acts between bodies and changes with the state: contact above all.
 
 use super::block::EntityBlock;
-use crate::diagnostics::Result;
+use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{ModelPart, ScalarVariable};
 
 /// What the active-set stage of an iteration changed.
@@ -103,6 +103,11 @@ pub trait Interaction: Send + Sync {
 
     /// Numbers for the report of a step, by name.
     fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
+    /// Notes and warnings since they were last asked for; the stage passes them on.
+    fn messages(&mut self) -> Vec<Diagnostic> {
         Vec::new()
     }
 

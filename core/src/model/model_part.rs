@@ -44,8 +44,6 @@ pub struct ModelPart {
     pub ranks: Ranks,
     /// What this rank has of a mesh that several share; `None` when this process computes everything.
     pub share: Option<Share>,
-    /// Warnings met while running; the stage passes them on after each step.
-    pub messages: Vec<Diagnostic>,
 }
 
 impl ModelPart {

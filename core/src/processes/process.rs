@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::assembly::System;
-use crate::diagnostics::{Report, Result};
+use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
 use crate::model::Model;
 use crate::parameters::{Defaults, Node, Settings};
@@ -92,6 +92,11 @@ pub trait Process: Send {
     /// A file that cannot be written.
     fn finalize(&mut self, _model: &mut Model) -> Result<()> {
         Ok(())
+    }
+
+    /// Notes and warnings since they were last asked for; the stage passes them on.
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        Vec::new()
     }
 
     /// Files or folders a user would open, for the last lines of the program.

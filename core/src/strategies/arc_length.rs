@@ -122,7 +122,7 @@ impl ArcLength {
         if let (Err(Failed::Singular(why)), Relaxation { amount: Some(amount), taken: taken @ false }) =
             (&solved, relaxation)
         {
-            part.messages.extend(self.newton.warn_of_redundancy(why));
+            self.newton.warn_of_redundancy(why);
             *taken = true;
             self.newton.assembler.relax_multipliers(&system.dofs, *amount);
             solved = self.newton.solve(part, system, &rhs);
@@ -260,6 +260,10 @@ impl SolutionStrategy for ArcLength {
 
     fn assembler(&self) -> &Assembler {
         &self.newton.assembler
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        self.newton.messages()
     }
 
     fn phases(&self) -> Phases {

@@ -81,6 +81,7 @@ pub struct ExplicitStrategy {
     /// The predicted step and the steps made since.
     predicted: Option<(f64, usize)>,
     warned: bool,
+    messages: Vec<Diagnostic>,
 }
 
 impl ExplicitStrategy {
@@ -117,7 +118,7 @@ impl ExplicitStrategy {
                 "give a positive density, or elements whose lumped mass is positive (e.g. 2D4N instead of 2D8N)";
             return Err(Diagnostic::error("lumped-mass", fact).remedy(remedy).into());
         }
-        Ok(Self { settings, scheme, assembler, mass, predicted: None, warned: false })
+        Ok(Self { settings, scheme, assembler, mass, predicted: None, warned: false, messages: Vec::new() })
     }
 
     /// Estimates the longest stable step in the present state.
@@ -228,7 +229,7 @@ impl ExplicitStrategy {
         if let Some(moved) = part.ranks.first_to_say(moved) {
             let fact = format!("{moved} is fixed and given another value: it stays where it is");
             let remedy = "\"follow_prescribed_motion\" of the solver settings is false: true moves fixed unknowns";
-            part.messages.push(Diagnostic::warning("prescribed-motion", fact).remedy(remedy));
+            self.messages.push(Diagnostic::warning("prescribed-motion", fact).remedy(remedy));
             self.warned = true;
         }
     }
@@ -268,7 +269,7 @@ impl SolutionStrategy for ExplicitStrategy {
                 let fact = format!("the step {asked:.3e} is longer than the critical one, {critical:.3e}");
                 let remedy = "the motion can grow without bound: shorten \"time_step\", or let \
                               \"time_step_prediction_level\": 1 choose it";
-                part.messages.push(Diagnostic::warning("critical-step", fact).remedy(remedy));
+                self.messages.push(Diagnostic::warning("critical-step", fact).remedy(remedy));
             }
             self.predicted = Some(((SAFETY * critical).min(self.settings.max_delta_time), 0));
         }
@@ -281,6 +282,10 @@ impl SolutionStrategy for ExplicitStrategy {
         }
         let factors = system.interactions.iter().map(|interaction| interaction.step_factor(part));
         Ok(length * factors.fold(1.0, f64::min))
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
     }
 
     fn can_retry(&self) -> bool {

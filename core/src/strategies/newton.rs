@@ -73,11 +73,16 @@ pub struct NewtonRaphson {
     solver_place: Option<Place>,
     /// Whether the run has been warned that multipliers are not condensed.
     warned_of_multipliers: bool,
+    pub(super) messages: Vec<Diagnostic>,
 }
 
 impl SolutionStrategy for NewtonRaphson {
     fn assembler(&self) -> &Assembler {
         &self.assembler
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
     }
 
     fn phases(&self) -> Phases {
@@ -138,6 +143,7 @@ impl NewtonRaphson {
             warned: false,
             solver_place: None,
             warned_of_multipliers: false,
+            messages: Vec::new(),
         }
     }
 
@@ -170,7 +176,7 @@ impl NewtonRaphson {
     ///
     /// # Errors
     /// A singular matrix or a solver that fails, naming nodes.
-    pub(super) fn solve(&mut self, part: &mut ModelPart, system: &System, rhs: &[f64]) -> Result<Solved, Failed> {
+    pub(super) fn solve(&mut self, part: &ModelPart, system: &System, rhs: &[f64]) -> Result<Solved, Failed> {
         if !part.ranks.any(rhs.iter().any(|v| *v != 0.0)) {
             let engine = "none: nothing out of balance".to_owned();
             let increment = vec![0.0; rhs.len()];
@@ -195,7 +201,7 @@ impl NewtonRaphson {
                     Some(_) => self.gathered.meaning(equation),
                     None => unknowns.get(equation).map(|&number| Meaning::of(&system.dofs, &part.nodes, number)),
                 };
-                part.messages.push(condensing::warning(refused, &meaning, self.solver_place.as_ref()));
+                self.messages.push(condensing::warning(refused, &meaning, self.solver_place.as_ref()));
             }
         }
         Ok(Solved { increment, relative_residual, iterations, engine: engine.to_owned(), fallback })
@@ -282,15 +288,15 @@ impl NewtonRaphson {
         Ok(())
     }
 
-    /// The warning, once a run, that constraints of interactions repeat what others ask for.
-    pub(super) fn warn_of_redundancy(&mut self, why: &str) -> Option<Diagnostic> {
-        let first = why.lines().next().unwrap_or_default();
-        (!std::mem::replace(&mut self.warned, true)).then(|| {
-            Diagnostic::warning("redundant-constraints", format!("{first}; solved with relaxed constraints")).remedy(
-                "if supports hold both sides of an interface at its edge, leave those nodes out of it; the answer obeys all \
-                 constraints, their multipliers are one choice of many",
-            )
-        })
+    /// Warns, once a run, that constraints of interactions repeat what others ask for.
+    pub(super) fn warn_of_redundancy(&mut self, why: &str) {
+        if std::mem::replace(&mut self.warned, true) {
+            return;
+        }
+        let fact = format!("{}; solved with relaxed constraints", why.lines().next().unwrap_or_default());
+        let remedy = "if supports hold both sides of an interface at its edge, leave those nodes out of it; the answer \
+                      obeys all constraints, their multipliers are one choice of many";
+        self.messages.push(Diagnostic::warning("redundant-constraints", fact).remedy(remedy));
     }
 
     /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by power and inverse power iteration; on several

@@ -13,7 +13,7 @@ use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use crate::assembly::{Assembler, System};
-use crate::diagnostics::{Error, Report, Result};
+use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::{Interaction, SetChange};
 use crate::model::ModelPart;
 use crate::parameters::{Node, Settings};
@@ -61,6 +61,11 @@ pub trait SolutionStrategy: Send {
     /// # Errors
     /// An entity that cannot be computed.
     fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()>;
+
+    /// Notes and warnings since they were last asked for; the stage passes them on.
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        Vec::new()
+    }
 
     /// The system of the last step.
     fn assembler(&self) -> &Assembler;

@@ -2,6 +2,7 @@
 
 use zelus_core::Result;
 use zelus_core::assembly::{Assembler, System};
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 use zelus_core::register;
 use zelus_core::strategies::{Monitor, NewtonRaphson, SolutionStrategy, StepRecord, StrategyEntry};
@@ -26,6 +27,10 @@ impl SolutionStrategy for Patient {
 
     fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         self.0.accept_step(part, system)
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        self.0.messages()
     }
 
     fn assembler(&self) -> &Assembler {

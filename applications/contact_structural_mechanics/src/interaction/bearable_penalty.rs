@@ -39,7 +39,7 @@ impl BearablePenalty {
         stiffened: f64,
         given: bool,
         weighted: bool,
-    ) {
+    ) -> Option<Diagnostic> {
         let [load, area] = *self.load.get_or_insert_with(|| load(part, interfaces, revolution));
         let factor = if part.info.is("CONTACT") { 1.0 } else { part.info.value_or(DELTA_TIME_FACTOR, 1.0) };
         let step = part.info.delta_time * factor;
@@ -48,16 +48,15 @@ impl BearablePenalty {
         let most = square / (2.0 * load * stiffened) / if weighted { area } else { 1.0 };
         let penalty = part.info.value_or(INITIAL_PENALTY.name(), 0.0);
         if penalty <= most {
-            return;
+            return None;
         }
         let fixed = given || weighted;
         if !fixed {
             part.info.values.insert(INITIAL_PENALTY.name(), most);
             states.for_all(|state| state.penalty = state.penalty.min(most));
         }
-        if !std::mem::replace(&mut self.said, true) {
-            part.messages.push(if fixed { warn(step, penalty, most) } else { note(step, penalty, most) });
-        }
+        let says = !std::mem::replace(&mut self.said, true);
+        says.then(|| if fixed { warn(step, penalty, most) } else { note(step, penalty, most) })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Penalty, scale factor and reach of the search, from the bodies behind the interfaces and what the deck says.
 
 use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
 use super::contact_settings::ContactSettings;
@@ -31,6 +32,7 @@ pub(super) fn calibrate(
     interfaces: &[Interface],
     settings: &ContactSettings,
     before: &StepParameters,
+    messages: &mut Vec<Diagnostic>,
 ) -> Result<(f64, StepParameters)> {
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
     let unit = PenaltyUnit::of(&part.ranks, &part.nodes.initial, part.info.domain_size == 2 && !settings.axisymmetric);
@@ -43,7 +45,7 @@ pub(super) fn calibrate(
     });
     chosen = chosen.with_floors(settings.least_penalty);
     if settings.weighted_penalty && settings.manual.is_none() {
-        part.messages.extend(unit.warning());
+        messages.extend(unit.warning());
     }
     // Without factors, which a deck may have chosen for what else they do.
     let of_bodies = alm_parameters(part, interfaces, 1.0, 1.0).penalty;
@@ -72,7 +74,7 @@ pub(super) fn calibrate(
             ..settings.operator_threshold
         },
         stiffness: of_bodies,
-        slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction)?,
+        slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction, messages)?,
         ..before.clone()
     };
     Ok((threshold, parameters))

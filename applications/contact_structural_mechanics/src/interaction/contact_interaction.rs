@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::flags::CONTACT;
 use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
     ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, Outer, Retry, SetChange,
 };
@@ -95,7 +96,7 @@ impl Interaction for ContactInteraction {
         self.contact.setup.settings.adaptation.dynamic_factor = (explicit.is_some()
             && self.contact.setup.settings.weighted_penalty)
             || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
-        self.contact.setup.calibrate(part, &self.contact.pairing.interfaces)?;
+        self.contact.setup.calibrate(part, &self.contact.pairing.interfaces, &mut self.contact.messages)?;
         self.growth = explicit.map(|explicit| explicit.growth(part));
         if self.contact.setup.by_points() {
             let thickness = self.contact.setup.parameters.segmentation.axisymmetric;
@@ -118,7 +119,9 @@ impl Interaction for ContactInteraction {
                 let (given, weighted) = (settings.manual.is_some(), settings.weighted_penalty);
                 let revolution = self.contact.setup.parameters.segmentation.revolution();
                 let (states, interfaces) = (&mut self.contact.states, &self.contact.pairing.interfaces);
-                self.bearable.begin_step(part, states, interfaces, revolution, 1.0 + explicit.most, given, weighted);
+                let most = 1.0 + explicit.most;
+                let said = self.bearable.begin_step(part, states, interfaces, revolution, most, given, weighted);
+                self.contact.messages.extend(said);
             }
             self.contact.find_contact(part)?;
         } else {
@@ -130,7 +133,7 @@ impl Interaction for ContactInteraction {
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        self.loops.accept(part, &self.contact);
+        self.loops.accept(part, &mut self.contact);
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         self.contact.clear_inactive(part, &self.contact.states.slaves());
         let (family, clears) = (self.contact.setup.settings.family, self.contact.setup.settings.clear_inactive);
@@ -145,7 +148,7 @@ impl Interaction for ContactInteraction {
             if !self.warned_of_friction {
                 let warning = friction::warn_of_pushing(part, &self.contact.states, family.multiplier, parameters);
                 self.warned_of_friction = warning.is_some();
-                part.messages.extend(warning);
+                self.contact.messages.extend(warning);
             }
         }
         self.contact.publish(part);
@@ -179,6 +182,10 @@ impl Interaction for ContactInteraction {
             out.extend([("multiplier updates", self.loops.uzawa.updates as f64), ("rate", self.loops.uzawa.rate)]);
         }
         out
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.contact.messages)
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {
@@ -265,7 +272,7 @@ impl ActiveSet for ContactInteraction {
         if iteration >= SETTLED {
             self.contact.pairing.freeze_choices(part, &self.contact.states);
         }
-        let change = self.set.update(part, &mut self.contact.states, &self.contact.setup);
+        let change = self.set.update(part, &mut self.contact.states, &self.contact.setup, &mut self.contact.messages);
         let penalty = part.info.value_or(INITIAL_PENALTY.name(), 1.0);
         adaptation.adapt(&part.nodes, &mut self.contact.states, penalty, &gaps, self.growth);
         if explicit {

@@ -2,6 +2,7 @@
 
 use crate::flags::{MASTER, SLAVE};
 use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
 use super::activation::{self, Start};
@@ -13,7 +14,7 @@ use super::integration::integrate;
 use super::pairing::Pairing;
 use super::points;
 use super::setup::Setup;
-use crate::interface::{Roles, add_contact_part, interfaces};
+use crate::interface::{Roles, add_contact_part, interfaces, warnings_of_pairs};
 use crate::pairs::Pair;
 use crate::search::{GapCheck, assign_roles};
 use crate::slave_states::SlaveStates;
@@ -31,6 +32,8 @@ pub(super) struct ContactState {
     holding: Holding,
     steps_since_search: usize,
     saved: SlaveStates,
+    /// What the user is to be told.
+    pub messages: Vec<Diagnostic>,
 }
 
 impl ContactState {
@@ -42,6 +45,7 @@ impl ContactState {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
         Ok(Self {
+            messages: warnings_of_pairs(&settings.slaves, &interfaces),
             pairing: Pairing::new(interfaces, part, settings.nodal_normals),
             setup: Setup::new(settings),
             states: SlaveStates::default(),
@@ -141,11 +145,12 @@ impl ContactState {
     }
 
     /// Finds the slave nodes that supports hold with what their pairs face.
-    fn hold(&mut self, part: &mut ModelPart) {
+    fn hold(&mut self, part: &ModelPart) {
         if self.setup.settings.mind_supports {
             let keys = self.pairing.keys();
             let facets = keys.iter().map(|&key| (self.pairing.slave(key), self.pairing.master(key)));
-            self.holding.hold(part, &mut self.states, self.setup.settings.family, facets);
+            let said = self.holding.hold(part, &mut self.states, self.setup.settings.family, facets);
+            self.messages.extend(said);
         }
     }
 
@@ -169,7 +174,8 @@ impl ContactState {
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.setup.settings.database_step_update {
             self.assign_open_roles(part);
-            self.pairing.search(part, &self.states, &self.setup)?;
+            let warning = self.pairing.search(part, &self.states, &self.setup)?;
+            self.messages.extend(warning);
             self.steps_since_search = 0;
             self.find_normals(part);
         }

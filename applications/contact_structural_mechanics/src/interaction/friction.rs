@@ -45,7 +45,7 @@ impl Default for FrictionSettings {
 
 /// Writes the number of the law, the mean over the facets of a node, and says how stick and slip are told apart.
 /// Facets whose properties have none count with the pair's coefficient where the law takes one, else with what the node
-/// has. Without a number anywhere, contact always slides, and a warning says so.
+/// has. Without a number anywhere, contact always slides, and a warning among the `messages` says so.
 ///
 /// # Errors
 /// A number below zero.
@@ -54,6 +54,7 @@ pub(super) fn prepare(
     interfaces: &[Interface],
     settings: &FrictionSettings,
     friction: Friction,
+    messages: &mut Vec<Diagnostic>,
 ) -> Result<SlipRule> {
     let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
     let mut largest = 0.0_f64;
@@ -92,7 +93,7 @@ pub(super) fn prepare(
         let remedy = format!(
             "give {name} in the materials of the contact surfaces, or \"friction_coefficients\" of the process"
         );
-        part.messages.push(Diagnostic::warning("no-friction", fact).remedy(remedy));
+        messages.push(Diagnostic::warning("no-friction", fact).remedy(remedy));
     }
     let pure = friction == Friction::PureSlip || largest <= 0.0;
     Ok(if pure { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) })

@@ -108,14 +108,14 @@ impl Holding {
         }
     }
 
-    /// Says of the slave nodes what becomes of their multipliers by this family.
+    /// Decides what becomes of the multipliers of the slave nodes by this family; gives the note of it.
     pub(super) fn hold<'a>(
         &mut self,
-        part: &mut ModelPart,
+        part: &ModelPart,
         states: &mut SlaveStates,
         family: &Family,
         pairs: impl Iterator<Item = (&'a Facet, &'a Facet)> + Clone,
-    ) {
+    ) -> Option<Diagnostic> {
         states.for_all(|state| state.held = [Held::Free; 3]);
         let held = if family.multiplier.is_unknown() { self.nodes(part, pairs.clone()) } else { BTreeMap::new() };
         let followed = followed(&held, pairs.clone().map(|(slave, _)| slave));
@@ -146,7 +146,7 @@ impl Holding {
             dropped.insert(node, rules.map(Held::is_still));
         }
         let scalar = matches!(family.multiplier, Multiplier::Scalar(_));
-        self.say(part, &dropped, scalar);
+        self.say(part, &dropped, scalar)
     }
 
     /// Components in which nothing that a node faces can move.
@@ -163,10 +163,15 @@ impl Holding {
     }
 
     /// Says once a run how many multipliers have no equation.
-    pub(super) fn say(&mut self, part: &mut ModelPart, dropped: &BTreeMap<u32, Fixed>, along_normals: bool) {
+    pub(super) fn say(
+        &mut self,
+        part: &ModelPart,
+        dropped: &BTreeMap<u32, Fixed>,
+        along_normals: bool,
+    ) -> Option<Diagnostic> {
         let count = dropped.values().filter(|components| components.contains(&true)).count();
         if count == 0 || std::mem::replace(&mut self.said, true) {
-            return;
+            return None;
         }
         let along: Vec<String> = (0..3)
             .map(|c| (["x", "y", "z"][c], dropped.values().filter(|components| components[c]).count()))
@@ -181,7 +186,7 @@ impl Holding {
             ids.join(" "),
             if count > ids.len() { " …" } else { "" }
         );
-        part.messages.push(Diagnostic::note("held-multipliers", fact));
+        Some(Diagnostic::note("held-multipliers", fact))
     }
 }
 

@@ -24,7 +24,9 @@ use super::mpc_relations::Relations;
 use super::mpc_settings::{MpcKind, MpcSettings};
 use super::reach::Reach;
 use crate::active_set::SlipRule;
-use crate::interface::{Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes};
+use crate::interface::{
+    Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes, warnings_of_pairs,
+};
 use crate::pairs::{Friction, condition_name};
 use crate::slave_states::{Columns, SlaveStates};
 use crate::solver::UPDATE_EACH_ITERATION;
@@ -54,6 +56,7 @@ pub struct MpcInteraction {
     sided: bool,
     reach: Reach,
     warned_of_held: bool,
+    messages: Vec<Diagnostic>,
 }
 
 impl MpcInteraction {
@@ -65,6 +68,7 @@ impl MpcInteraction {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
         Ok(Self {
+            messages: warnings_of_pairs(&settings.slaves, &interfaces),
             settings,
             interfaces,
             states: SlaveStates::default(),
@@ -108,13 +112,13 @@ impl MpcInteraction {
                 interface.key
             );
             let remedy = "name the side that can move as slave";
-            part.messages.push(Diagnostic::warning("mpc-held-slaves", fact).remedy(remedy));
+            self.messages.push(Diagnostic::warning("mpc-held-slaves", fact).remedy(remedy));
         }
         self.states.set_slaves(slave_nodes(&self.interfaces));
     }
 
     /// Names nodes in contact that supports hold along their normals, while their masters are free: nothing holds those there.
-    fn warn_of_held(&mut self, part: &mut ModelPart) {
+    fn warn_of_held(&mut self, part: &ModelPart) {
         if self.warned_of_held || self.settings.ties() {
             return;
         }
@@ -138,7 +142,7 @@ impl MpcInteraction {
             part.nodes.ids[node as usize]
         );
         let remedy = "make the other side the slave, or use alm_contact_process";
-        part.messages.push(Diagnostic::warning("mpc-held-nodes", fact).remedy(remedy));
+        self.messages.push(Diagnostic::warning("mpc-held-nodes", fact).remedy(remedy));
     }
 
     /// Normals and relations of this iterate, where nodes have moved since they were made.
@@ -150,7 +154,8 @@ impl MpcInteraction {
         let least = if iteration <= settled { STILL } else { FAR };
         if self.relations.farthest(part, &self.interfaces) > least {
             nodal_normals(part, &self.interfaces);
-            self.relations.search(part, &self.interfaces, &self.settings, &self.states);
+            let warning = self.relations.search(part, &self.interfaces, &self.settings, &self.states);
+            self.messages.extend(warning);
         }
     }
 
@@ -248,7 +253,8 @@ impl Interaction for MpcInteraction {
         if self.settings.kind == MpcKind::Frictional {
             part.nodes.history.add(&WEIGHTED_SLIP);
             let friction = if self.settings.pure_slip { Friction::PureSlip } else { Friction::Coulomb };
-            self.friction.rule = friction::prepare(part, &self.interfaces, &self.settings.friction, friction)?;
+            self.friction.rule =
+                friction::prepare(part, &self.interfaces, &self.settings.friction, friction, &mut self.messages)?;
             let facet = &self.interfaces[0].facets[0];
             let name = condition_name("MPCMortarContactCondition", facet.shape, facet.shape);
             self.friction.entry = Some(require_kind(Role::Condition, &name)?);
@@ -280,7 +286,8 @@ impl Interaction for MpcInteraction {
         if self.settings.ties() && self.settings.consistent() && !self.relations.pairs.is_empty() {
             self.relations.relate(part, &self.interfaces, &self.settings, &[]);
         } else if self.steps_since_search >= self.settings.database_step_update {
-            self.relations.search(part, &self.interfaces, &self.settings, &self.states);
+            let warning = self.relations.search(part, &self.interfaces, &self.settings, &self.states);
+            self.messages.extend(warning);
             self.steps_since_search = 0;
         }
         self.integrate(part);
@@ -307,6 +314,10 @@ impl Interaction for MpcInteraction {
 
     fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
         vec![("pairs", self.relations.pairs.len() as f64), ("active nodes", self.states.count_active() as f64)]
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {

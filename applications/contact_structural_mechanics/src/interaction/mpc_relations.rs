@@ -41,11 +41,11 @@ impl Relations {
     /// Relations of the pairs that overlap; those that hold a node stay as they were made, unless they are to be renewed.
     pub(super) fn search(
         &mut self,
-        part: &mut ModelPart,
+        part: &ModelPart,
         interfaces: &[Interface],
         settings: &MpcSettings,
         states: &SlaveStates,
-    ) {
+    ) -> Option<Diagnostic> {
         let holds = |relation: &PairRelation| relation.nodes().any(|n| states[n].active);
         let keep = !settings.update_relations || settings.ties();
         let segmentation = &settings.segmentation;
@@ -56,7 +56,7 @@ impl Relations {
         let known = |key: &PairKey| self.pairs.contains_key(key);
         let found = overlapping_pairs(part, interfaces, &settings.search, segmentation, &known);
         self.relate(part, interfaces, settings, &found);
-        self.warn_of_unlike_meshes(part, settings);
+        self.warn_of_unlike_meshes(part, settings)
     }
 
     /// Renews the relations of the pairs there are.
@@ -107,24 +107,19 @@ impl Relations {
 
     /// With weights that do not add up to one nodes that follow several masters pass forces on wrongly, unless the master is
     /// held.
-    fn warn_of_unlike_meshes(&mut self, part: &mut ModelPart, settings: &MpcSettings) {
+    fn warn_of_unlike_meshes(&mut self, part: &ModelPart, settings: &MpcSettings) -> Option<Diagnostic> {
         if self.warned || settings.consistent() {
-            return;
+            return None;
         }
         let dimension = part.info.domain_size as u8;
         let deforms = |node: u32| (0..dimension).any(|c| !part.nodes.is_fixed(DISPLACEMENT.component(c), node));
         let mixed = self.nodes.values().filter(|relation| relation.is_mixed()).count();
-        if mixed > 0 && self.nodes.values().flat_map(|n| &n.weights).any(|&(node, _)| deforms(node)) {
-            self.warned = true;
-            let fact = format!(
-                "constraints join unlike meshes of deformable bodies at {mixed} slave nodes: stresses there are wrong"
-            );
-            part.messages.push(
-                Diagnostic::warning("mpc-unlike-meshes", fact).remedy(
-                    "leave \"consistent_weights\" at true: forces are then passed on as by alm_contact_process",
-                ),
-            );
-        }
+        self.warned = mixed > 0 && self.nodes.values().flat_map(|n| &n.weights).any(|&(node, _)| deforms(node));
+        let fact = format!(
+            "constraints join unlike meshes of deformable bodies at {mixed} slave nodes: stresses there are wrong"
+        );
+        let remedy = "leave \"consistent_weights\" at true: forces are then passed on as by alm_contact_process";
+        self.warned.then(|| Diagnostic::warning("mpc-unlike-meshes", fact).remedy(remedy))
     }
 
     /// Finds gaps and areas of the slave nodes in the present configuration.

@@ -80,11 +80,12 @@ impl OuterLoops {
             return Ok(settled);
         }
         let (pairs, searched) = ((&contact.pairing, &contact.states), contact.is_searched());
-        let (missed, outer) = self.step_search.in_converged_state(part, pairs, &contact.setup, searched)?;
+        let (missed, outer) =
+            self.step_search.in_converged_state(part, pairs, &contact.setup, searched, &mut contact.messages)?;
         if !missed.is_empty() {
             set.forget_sets();
             contact.take_in(part, missed)?;
-            set.update(part, &mut contact.states, &contact.setup);
+            set.update(part, &mut contact.states, &contact.setup, &mut contact.messages);
             set.find_tangents(part, &mut contact.states, &contact.setup);
         }
         if outer != Outer::Done {
@@ -119,13 +120,13 @@ impl OuterLoops {
     }
 
     /// The step is accepted.
-    pub(super) fn accept(&mut self, part: &mut ModelPart, contact: &ContactState) {
+    pub(super) fn accept(&mut self, part: &ModelPart, contact: &mut ContactState) {
         self.impact_error = 0.0;
         if contact.setup.parameters.dynamic {
             let family = contact.setup.settings.family;
             let stores = family.compliant || matches!(family.multiplier, Multiplier::None);
             let conserves = !stores && !family.frictional();
-            part.messages.extend(self.work.accept(part, conserves));
+            contact.messages.extend(self.work.accept(part, conserves));
         }
         self.friction_ramp.accept();
     }

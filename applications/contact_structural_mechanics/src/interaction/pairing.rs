@@ -144,7 +144,12 @@ impl Pairing {
     ///
     /// # Errors
     /// A condition for these shapes that is not registered.
-    pub(super) fn search(&mut self, part: &mut ModelPart, states: &SlaveStates, setup: &Setup) -> Result<()> {
+    pub(super) fn search(
+        &mut self,
+        part: &mut ModelPart,
+        states: &SlaveStates,
+        setup: &Setup,
+    ) -> Result<Option<Diagnostic>> {
         let Setup { settings, parameters, .. } = setup;
         let still = predicted_positions(part, settings.search.dynamic);
         let sides = |key: PairKey| (self.slave(key).role, self.master(key).role);
@@ -174,7 +179,7 @@ impl Pairing {
         self.set(known.into_values().collect(), settings, &searching(parameters, setup.limit()))?;
         let found: Vec<(Pair, Meeting)> = self.pairs().into_iter().zip(self.integrals(part, states).1).collect();
         let lost = found.iter().filter(|(pair, i)| i.overlapping && beyond.contains(&pair.key)).count();
-        warn_of_reach(part, lost, &mut self.warned_of_reach);
+        let warns = lost > 0 && !std::mem::replace(&mut self.warned_of_reach, true);
         // Slivers too: within the step they may grow to overlaps.
         let kept = found.into_iter().filter(|(pair, i)| i.facing && !beyond.contains(&pair.key));
         self.set(kept.map(|(pair, _)| pair).collect(), settings, parameters)?;
@@ -183,7 +188,7 @@ impl Pairing {
         }
         self.share_out(part);
         self.touching = touching;
-        Ok(())
+        Ok(warns.then(|| warn_of_reach(lost)))
     }
 
     /// On several ranks: lets ranks with few pairs evaluate some of those with many.

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Outer, SetChange};
 use zelus_core::model::ModelPart;
 
@@ -34,13 +35,19 @@ impl SetStage {
         self.cycles.begin_step();
     }
 
-    /// Lets the rules decide in the present state.
-    pub(super) fn update(&mut self, part: &mut ModelPart, states: &mut SlaveStates, setup: &Setup) -> SetChange {
+    /// Lets the rules decide in the present state; tells of cycles among the `messages`.
+    pub(super) fn update(
+        &mut self,
+        part: &mut ModelPart,
+        states: &mut SlaveStates,
+        setup: &Setup,
+        messages: &mut Vec<Diagnostic>,
+    ) -> SetChange {
         let rules = setup.rules();
         let (mut decisions, before) = rules.decide(&part.nodes, states, &mut self.released);
         if !setup.by_points() {
             self.cycles.restrict(&mut decisions, &before);
-            part.messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
+            messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
         } else if setup.settings.family.frictional() {
             // What points decide they decide in each evaluation of forces: nodes only tell of it.
             points::hold_turned(states, &mut decisions, &before, setup.resolution);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
 use super::calibration::{calibrate, limit};
@@ -56,9 +57,14 @@ impl Setup {
     ///
     /// # Errors
     /// A coefficient of friction below zero.
-    pub(super) fn calibrate(&mut self, part: &mut ModelPart, interfaces: &[Interface]) -> Result<()> {
+    pub(super) fn calibrate(
+        &mut self,
+        part: &mut ModelPart,
+        interfaces: &[Interface],
+        messages: &mut Vec<Diagnostic>,
+    ) -> Result<()> {
         self.adapt_search(part);
-        let (threshold, parameters) = calibrate(part, interfaces, &self.settings, &self.parameters)?;
+        let (threshold, parameters) = calibrate(part, interfaces, &self.settings, &self.parameters, messages)?;
         (self.threshold, self.parameters) = (threshold, Arc::new(parameters));
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! When contact searches within a step: in its first iterations, and in converged states.
 
 use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::Outer;
 use zelus_core::model::ModelPart;
 
@@ -71,10 +72,11 @@ impl StepSearch {
     /// Those of making blocks.
     pub(super) fn in_converged_state(
         &mut self,
-        part: &mut ModelPart,
+        part: &ModelPart,
         contact: (&Pairing, &SlaveStates),
         setup: &Setup,
         searched: bool,
+        messages: &mut Vec<Diagnostic>,
     ) -> Result<(Vec<Pair>, Outer)> {
         let late = self.late_pairs(part, contact, setup, searched)?;
         if late.missed.is_empty() {
@@ -93,7 +95,7 @@ impl StepSearch {
             return Ok((Vec::new(), Outer::Failed(why)));
         }
         if !std::mem::replace(&mut self.warned, true) {
-            part.messages.push(warn_of_late_pairs(late.missed.len(), MOST_SEARCHES));
+            messages.push(warn_of_late_pairs(late.missed.len(), MOST_SEARCHES));
         }
         Ok((Vec::new(), Outer::Done))
     }

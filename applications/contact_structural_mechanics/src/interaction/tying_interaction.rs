@@ -16,7 +16,7 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 use super::holding::Holding;
 use crate::interface::{
     Fixed, Interface, NodalNormals, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals,
-    slave_nodes,
+    slave_nodes, warnings_of_pairs,
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
@@ -69,6 +69,7 @@ pub struct TyingInteraction {
     /// Changes with the constraints on multipliers.
     constrained: u64,
     steps_since_search: Option<usize>,
+    messages: Vec<Diagnostic>,
 }
 
 impl TyingInteraction {
@@ -80,6 +81,7 @@ impl TyingInteraction {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
         Ok(Self {
+            messages: warnings_of_pairs(&settings.slaves, &interfaces),
             settings,
             slaves: slave_nodes(&interfaces),
             interfaces,
@@ -184,7 +186,7 @@ impl TyingInteraction {
         self.constrained += u64::from(old != new);
         constraints.extend(new);
         part.constraints = constraints;
-        self.holding.say(part, &dropped, false);
+        self.messages.extend(self.holding.say(part, &dropped, false));
     }
 
     /// Whether the equation of a slave node ties masters that are not fixed.
@@ -277,6 +279,10 @@ impl Interaction for TyingInteraction {
 
     fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
         vec![("tied pairs", if self.blocks.is_empty() { 0.0 } else { self.pairs.len() as f64 })]
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {

@@ -150,7 +150,6 @@ pub fn interfaces(
         out.push(Interface { key: key.clone(), facets: found, nodes, open: false });
     }
     assign_roles(part, parts, slaves, &mut out)?;
-    warn_of_pairs(part, slaves, &out);
     Ok(out)
 }
 
@@ -197,13 +196,14 @@ fn assign_roles(
 }
 
 /// Warnings of slaves that no pair has, and of surfaces that are slaves in two.
-fn warn_of_pairs(part: &mut ModelPart, slaves: &BTreeMap<String, Vec<String>>, interfaces: &[Interface]) {
+pub fn warnings_of_pairs(slaves: &BTreeMap<String, Vec<String>>, interfaces: &[Interface]) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
     let is_pair = |key: &String| interfaces.iter().any(|interface| interface.key == *key);
     for (key, list) in slaves.iter().filter(|(key, list)| !list.is_empty() && !is_pair(key)) {
         let fact =
             format!("\"assume_master_slave\" names {} for pair \"{key}\", which does not exist", list.join(", "));
         let remedy = "use the keys of the pairs of contact parts";
-        part.messages.push(Diagnostic::warning("slaves-without-pair", fact).remedy(remedy));
+        out.push(Diagnostic::warning("slaves-without-pair", fact).remedy(remedy));
     }
     let mut first: BTreeMap<Vec<u32>, &str> = BTreeMap::new();
     let mut twice: BTreeMap<[&str; 2], usize> = BTreeMap::new();
@@ -220,8 +220,9 @@ fn warn_of_pairs(part: &mut ModelPart, slaves: &BTreeMap<String, Vec<String>>, i
         let fact = format!("{count} facets are on the slave side of pair \"{one}\" and of pair \"{other}\"");
         let remedy =
             "a node has one multiplier: list both masters in one pair, or make this side the master of one of them";
-        part.messages.push(Diagnostic::warning("slave-in-two-pairs", fact).remedy(remedy));
+        out.push(Diagnostic::warning("slave-in-two-pairs", fact).remedy(remedy));
     }
+    out
 }
 
 fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Facet>) -> Result<()> {

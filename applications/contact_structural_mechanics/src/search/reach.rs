@@ -1,18 +1,12 @@
 //! What is said of overlaps that the reach of the search leaves out.
 
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::ModelPart;
 
-/// Overlaps that the deck's reach leaves out are said once: nothing acts there.
-pub fn warn_of_reach(part: &mut ModelPart, lost: usize, warned: &mut bool) {
-    if lost > 0 && !std::mem::replace(warned, true) {
-        let fact =
-            format!("{lost} pairs of facets overlap but lie beyond the reach of the search; contact has gaps there");
-        part.messages.push(
-            Diagnostic::warning("search-reach", fact)
-                .remedy("set \"search_parameters.search_distance\" to \"between_facets\", or raise \"search_factor\""),
-        );
-    }
+/// The warning that the deck's reach leaves out overlaps: nothing acts there.
+pub fn warn_of_reach(lost: usize) -> Diagnostic {
+    let fact = format!("{lost} pairs of facets overlap but lie beyond the reach of the search; contact has gaps there");
+    Diagnostic::warning("search-reach", fact)
+        .remedy("set \"search_parameters.search_distance\" to \"between_facets\", or raise \"search_factor\"")
 }
 
 /// What is said when searches within a step went on to find pairs.

@@ -25,7 +25,6 @@ const TOLD: usize = 10;
 /// Compares at each point in time that the counter gives.
 struct FromJsonCheck {
     part: PartPath,
-    root: String,
     file: PathBuf,
     place: Place,
     reference: Value,
@@ -38,6 +37,7 @@ struct FromJsonCheck {
     tolerance: f64,
     relative_tolerance: f64,
     reference_uncertainty: f64,
+    messages: Vec<Diagnostic>,
 }
 
 /// Values that differ, in words: beyond all bounds, and only by what the reference itself leaves open.
@@ -62,10 +62,10 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let times = numbers(&reference["TIME"]).ok_or_else(|| problem("there is no list \"TIME\"".to_owned()))?;
     Ok(Box::new(FromJsonCheck {
         part: PartPath::new(settings)?,
-        root: settings.get_str("model_part_name")?.to_owned(),
         file,
         place,
         reference,
+        messages: Vec::new(),
         times,
         counter: TimeCounter::new(settings)?,
         quantities: Quantity::list(settings, "check_variables", request.report)?,
@@ -159,6 +159,10 @@ impl Process for FromJsonCheck {
         self.part.find(model).map(|_| ())
     }
 
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
+    }
+
     fn end_step(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         if !self.counter.acts(&part.info) {
@@ -171,7 +175,7 @@ impl Process for FromJsonCheck {
         }
         if !found.uncertain.is_empty() {
             let fact = self.tell(&found.uncertain, time);
-            model.root_mut(&self.root)?.messages.push(
+            self.messages.push(
                 Diagnostic::warning("check-uncertain", fact)
                     .at(self.place.clone())
                     .remedy("the differences are within \"reference_uncertainty\"; set it to 0 to make them errors"),

@@ -241,7 +241,7 @@ impl NewtonRaphson {
         else {
             return solved;
         };
-        part.messages.extend(self.warn_of_redundancy(why));
+        self.warn_of_redundancy(why);
         step.relaxed = Some(amount);
         self.assembler.relax_multipliers(&system.dofs, amount);
         let rhs = self.assembler.equations().reduce(&step.residual);
