@@ -17,20 +17,22 @@ impl Default for Cutting {
 }
 
 /// The lengths tried on the way to the end of one of the deck's steps.
+///
+/// No attempt is shorter than the whole step cut as often as it may be, wherever in the step it stands: what is left to the end of
+/// the step is no step of its own.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lengths {
-    cutting: Cutting,
+    factor: f64,
     whole: f64,
+    shortest: f64,
     length: f64,
-    cuts: u32,
 }
 
 impl Lengths {
     /// Starts with a whole step, or with `first` where the step before had to be shortened.
     pub(super) fn new(cutting: Cutting, whole: f64, first: Option<f64>) -> Self {
-        let length = first.map_or(whole, |first| first.min(whole));
-        let cuts = ((whole / length).ln() / cutting.factor.ln()).round() as u32;
-        Self { cutting, whole, length, cuts }
+        let shortest = whole / cutting.factor.powi(cutting.times as i32) * (1.0 - 1e-9);
+        Self { factor: cutting.factor, whole, shortest, length: first.map_or(whole, |first| first.min(whole)) }
     }
 
     /// The end of the next attempt from `from`, and whether that is `target`.
@@ -41,31 +43,32 @@ impl Lengths {
 
     /// After an accepted attempt: grows back.
     pub(super) fn grow(&mut self) {
-        if self.cuts > 0 {
-            self.length = (self.cutting.factor * self.length).min(self.whole);
-            self.cuts -= 1;
-        }
+        self.length = (self.factor * self.length).min(self.whole);
     }
 
     /// After an attempt of length `tried` that failed: shortens; `false` when it may not.
     pub(super) fn cut(&mut self, tried: f64) -> bool {
-        if self.cuts >= self.cutting.times {
-            return false;
-        }
-        self.length = self.length.min(tried) / self.cutting.factor;
-        self.cuts += 1;
-        true
+        self.shorten(tried, self.shortest)
     }
 
     /// After an attempt of length `tried` that converged, but would better be shorter: shortens; `false` when that would leave
     /// no cut for one that fails.
     pub(super) fn refine(&mut self, tried: f64) -> bool {
-        self.cuts + 1 < self.cutting.times && self.cut(tried)
+        self.shorten(tried, self.factor * self.shortest)
+    }
+
+    fn shorten(&mut self, tried: f64, shortest: f64) -> bool {
+        let length = self.length.min(tried) / self.factor;
+        let may = length >= shortest && length < tried;
+        if may {
+            self.length = length;
+        }
+        may
     }
 
     /// The length to begin the next step with, when it should not be the whole one.
     pub(super) fn carry(&self) -> Option<f64> {
-        (self.cuts > 0).then_some(self.length)
+        (self.length < self.whole * (1.0 - 1e-9)).then_some(self.length)
     }
 }
 
@@ -92,5 +95,22 @@ mod tests {
         assert!(lengths.cut(1.0) && lengths.cut(0.1) && lengths.cut(0.01) && !lengths.cut(0.001));
         let next = Lengths::new(Cutting { factor: 10.0, times: 3 }, 1.0, lengths.carry());
         assert!((next.next(1.0, 2.0).0 - 1.001).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_left_of_a_step_is_not_cut_without_end() {
+        let mut lengths = Lengths::new(Cutting::default(), 1.0, None);
+        let (mut time, mut attempts) = (0.0, 0);
+        while time < 1.0 {
+            attempts += 1;
+            assert!(attempts < 1000, "at {time}");
+            let (to, _) = lengths.next(time, 1.0);
+            if !lengths.refine(to - time) {
+                time = to;
+                lengths.grow();
+            }
+        }
+        // Each piece of 1/32 is tried at twice its length first, but for the last.
+        assert_eq!(attempts, 5 + 32 + 30);
     }
 }
