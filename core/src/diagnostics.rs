@@ -6,8 +6,13 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::WrongState;
+
+use crate::names::{self, Name};
+
 /// A position in an input file; `line` and `column` count from 1, 0 means "the file as a whole".
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Place {
     /// The file, as the user named it.
     pub file: PathBuf,
@@ -43,7 +48,7 @@ impl fmt::Display for Place {
 }
 
 /// Whether a problem stops the run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Severity {
     /// Worth knowing, nothing to do about it.
     Note,
@@ -54,12 +59,13 @@ pub enum Severity {
 }
 
 /// One problem: its name, where it is, what is the case, and what to do.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
     /// Whether it stops the run.
     pub severity: Severity,
     /// Short stable name in kebab-case, e.g. `unknown-key`.
-    pub code: &'static str,
+    #[serde(deserialize_with = "names::read")]
+    pub code: Name,
     /// Where, when an input file is to blame.
     pub place: Option<Place>,
     /// What is the case, in one sentence without a final stop.
@@ -213,6 +219,12 @@ impl Error {
 impl From<Diagnostic> for Error {
     fn from(diagnostic: Diagnostic) -> Self {
         Self::input(diagnostic)
+    }
+}
+
+impl From<WrongState> for Error {
+    fn from(wrong: WrongState) -> Self {
+        Diagnostic::error("saved-state", wrong.to_string()).remedy("it was saved by a run of another deck").into()
     }
 }
 

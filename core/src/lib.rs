@@ -3,6 +3,7 @@
 //! Read the modules in the order below: each uses only those above it, and data flows the same way, from the words of a
 //! deck to the numbers on disk. What is found by name is in [`registry`]; what computes is in [`entities`].
 
+pub mod names;
 pub mod diagnostics;
 pub mod communication;
 pub mod parameters;
@@ -23,3 +24,4 @@ pub mod analysis;
 pub use diagnostics::{Error, Result};
 #[doc(hidden)]
 pub use inventory;
+pub use zelus_linear_algebra::{State, WrongState};

@@ -11,6 +11,7 @@ use crate::iterations::{Progress, conjugate_gradient, gmres};
 use crate::memory;
 use crate::precondition::{self, Precondition};
 use crate::solver::{DirectSettings, KrylovSettings, LinearSolver, Multipliers, SolveError, SolveReport};
+use crate::state::{State, WrongState};
 use crate::system::{Stamps, System};
 use crate::vector;
 
@@ -179,6 +180,18 @@ impl LinearSolver for KrylovSolver {
 
     fn not_condensed(&self) -> Option<NotCondensable> {
         self.refused
+    }
+
+    fn forget(&mut self) {
+        self.stand_in.forget();
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        self.stand_in.state()
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<(), WrongState> {
+        self.stand_in.resume(state)
     }
 
     fn needs(&self, equations: usize, entries: usize) -> u64 {

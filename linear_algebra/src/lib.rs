@@ -4,6 +4,8 @@
 //! coupling of an interface, with stamps that tell what changed; [`create`] makes a [`LinearSolver`] for it. Every answer has
 //! passed a check of its true residual, and none depends on the number of threads.
 
+mod state;
+
 mod csr;
 pub mod vector;
 mod system;
@@ -45,6 +47,7 @@ pub use solver::{
     DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Precondition, Preconditioner,
     PreconditionerFactory, SolveError, SolveReport,
 };
+pub use state::{State, WrongState};
 pub use system::{Layout, Symmetry, System};
 
 /// A solver of the kind asked for.

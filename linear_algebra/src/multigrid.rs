@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
 use crate::check;
 use crate::csr::Runs;
 use crate::direct::DirectSolver;
@@ -10,6 +12,7 @@ use crate::iterations::{Answers, Progress, conjugate_gradient, gmres};
 use crate::memory;
 use crate::precondition::{Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
+use crate::state::{State, WrongState};
 use crate::system::{Stamps, System};
 use crate::vector;
 
@@ -34,6 +37,8 @@ struct Hierarchy {
     prescribed: Vec<(u32, u32)>,
     /// Whether the matrix has changed since.
     is_old: bool,
+    /// Whether it serves the matrix that it was made of and no other.
+    is_bound: bool,
     /// Iterations by digit, of the first solve and of the last.
     first: Option<f64>,
     last: f64,
@@ -63,24 +68,39 @@ pub(crate) struct MultigridSolver {
     /// Of the bulk's rows, with the stamp of its graph.
     runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
-    answers: Answers,
+    learnt: Learnt,
     /// Relative residual to reach.
     tolerance: f64,
     stand_in: DirectSolver,
+}
+
+/// What the engine has learnt.
+#[derive(Clone, Default, Serialize, Deserialize)]
+struct Learnt {
+    answers: Answers,
     /// Solves one after the other that multigrid did not do.
     failures: usize,
 }
 
+#[derive(Serialize, Deserialize)]
+struct MultigridState {
+    learnt: Learnt,
+    stand_in: Option<Box<dyn State>>,
+}
+
+#[typetag::serde(name = "multigrid")]
+impl State for MultigridState {}
+
 impl MultigridSolver {
     pub(crate) fn new(settings: MultigridSettings) -> Self {
         let stand_in = DirectSolver::new(DirectSettings::default());
-        let (tolerance, answers) = (settings.tolerance, Answers::default());
-        Self { settings, constrained: None, runs: None, hierarchy: None, answers, tolerance, stand_in, failures: 0 }
+        let (tolerance, learnt) = (settings.tolerance, Learnt::default());
+        Self { settings, constrained: None, runs: None, hierarchy: None, learnt, tolerance, stand_in }
     }
 
     /// Whether multigrid is to solve a system, by its size and what came of it before.
     fn serves(&self, system: &System<'_>) -> bool {
-        self.failures < FAILURES && self.is_large(system.equations(), system.bulk.entries())
+        self.learnt.failures < FAILURES && self.is_large(system.equations(), system.bulk.entries())
     }
 
     fn is_large(&self, equations: usize, entries: usize) -> bool {
@@ -96,10 +116,10 @@ impl MultigridSolver {
         if self.constrained.as_ref().is_none_or(|(_, old)| *old != stamps) {
             self.constrained = None;
             self.constrained = Some((Constrained::new(system)?, stamps));
-            if let Some(hierarchy) = &mut self.hierarchy {
-                hierarchy.is_old = true;
-            }
+            self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_bound);
+            self.hierarchy.iter_mut().for_each(|hierarchy| hierarchy.is_old = true);
         }
+        self.hierarchy.iter_mut().for_each(|hierarchy| hierarchy.is_bound = false);
         let (constrained, _) = self.constrained.as_ref().expect("made above");
         if !self.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.suits(system, constrained)) {
             self.hierarchy = None;
@@ -108,6 +128,7 @@ impl MultigridSolver {
                 bulk_graph: system.bulk_graph,
                 prescribed: constrained.prescribed(),
                 is_old: false,
+                is_bound: false,
                 first: None,
                 last: 0.0,
             });
@@ -128,7 +149,7 @@ impl MultigridSolver {
             scale(y);
         };
         if x.iter().all(|x| *x == 0.0) {
-            self.answers.start(system.bulk_graph, multiply, &b, 0.5 * self.tolerance, x);
+            self.learnt.answers.start(system.bulk_graph, multiply, &b, 0.5 * self.tolerance, x);
         }
         let precondition = |r: &mut [f64]| {
             r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);
@@ -172,7 +193,7 @@ impl MultigridSolver {
             let Progress { iterations, relative_residual, .. } = progress;
             return Err(format!("multigrid reached only {relative_residual:.1e} after {iterations} iterations"));
         }
-        self.answers.keep(system.bulk_graph, x);
+        self.learnt.answers.keep(system.bulk_graph, x);
         let size = vector::norm(rhs);
         let mut residual = vec![0.0; rhs.len()];
         let left = system.residual(rhs, x, &mut residual);
@@ -203,6 +224,24 @@ impl LinearSolver for MultigridSolver {
         }
     }
 
+    fn forget(&mut self) {
+        self.stand_in.forget();
+        self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old);
+        if let Some(hierarchy) = &mut self.hierarchy {
+            (hierarchy.is_bound, hierarchy.first, hierarchy.last) = (true, None, 0.0);
+        }
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(MultigridState { learnt: self.learnt.clone(), stand_in: self.stand_in.state() }))
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<(), WrongState> {
+        let MultigridState { learnt, stand_in } = state.take()?;
+        self.learnt = learnt;
+        stand_in.map_or(Ok(()), |state| self.stand_in.resume(state))
+    }
+
     fn aim(&mut self, tolerance: f64) {
         let MultigridSettings { tolerance: tightest, loosest, .. } = self.settings;
         self.tolerance = tolerance.clamp(tightest, loosest.max(tightest));
@@ -228,18 +267,18 @@ impl LinearSolver for MultigridSolver {
         }
         if !self.serves(system) {
             let mut report = self.stand_in.solve(system, rhs, x)?;
-            if self.failures >= FAILURES {
+            if self.learnt.failures >= FAILURES {
                 report.fallback.get_or_insert_with(|| "multigrid failed before".to_owned());
             }
             return Ok(report);
         }
         match self.attempt(system, rhs, x) {
             Ok(report) => {
-                self.failures = 0;
+                self.learnt.failures = 0;
                 Ok(report)
             }
             Err(why) => {
-                self.failures += 1;
+                self.learnt.failures += 1;
                 let mut report = self.stand_in.solve(system, rhs, x)?;
                 let reasons = [Some(why), report.fallback.take()];
                 report.fallback = Some(reasons.into_iter().flatten().collect::<Vec<_>>().join("; "));

@@ -2,6 +2,7 @@
 
 use crate::condensation::{CondensationSettings, NotCondensable};
 use crate::csr::Csr;
+use crate::state::{State, WrongState};
 use crate::system::{Layout, System};
 
 /// What one solve did.
@@ -84,6 +85,23 @@ pub trait LinearSolver: Send {
     /// [`SolveError::Singular`] when the matrix has no inverse, [`SolveError::NotConverged`] when the residual stays
     /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
+
+    /// Forgets what would let later answers depend on earlier matrices, but for what [`LinearSolver::state`] holds: a solver
+    /// without past that takes up the state gives the same digits from here on. Called as each step of a run begins.
+    fn forget(&mut self) {}
+
+    /// What it has learnt from the solves so far; one that passes solves on passes these on, too.
+    fn state(&self) -> Option<Box<dyn State>> {
+        None
+    }
+
+    /// Takes up what another of its kind has learnt from the same systems.
+    ///
+    /// # Errors
+    /// The state of another kind.
+    fn resume(&mut self, _state: Box<dyn State>) -> Result<(), WrongState> {
+        Ok(())
+    }
 
     /// Says what relative residual is enough for the next solves; engines ask no more of themselves than their settings do.
     fn aim(&mut self, _: f64) {}

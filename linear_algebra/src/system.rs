@@ -1,5 +1,7 @@
 //! What a solver is given: the equations and their matrix in two parts.
 
+use serde::{Deserialize, Serialize};
+
 use crate::csr::{Csr, Runs};
 
 /// What is known of a matrix before it is factorised.
@@ -156,7 +158,7 @@ impl<'a> System<'a> {
 }
 
 /// The stamps of a system, to compare with those of the next one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Stamps {
     pub(crate) bulk_graph: u64,
     pub(crate) bulk_values: u64,

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use zelus_core::entities::find_kind;
-use zelus_core::model::Role;
 
-use zelus_core::diagnostics::Result;
-use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange};
-use zelus_core::model::{ModelPart, ScalarVariable};
+use serde::{Deserialize, Serialize};
+use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, find_kind};
+use zelus_core::model::{ModelPart, Role, ScalarVariable};
+use zelus_core::{Result, State};
 
 use crate::constraint_block::ConstraintBlock;
 use crate::constraints::{Constraint, INTERACTION};
@@ -21,6 +20,13 @@ pub struct ConstraintInteraction<M: Method> {
     blocks: Vec<ConstraintBlock<M>>,
     saved: Vec<Vec<ConstraintState>>,
 }
+
+/// What constraints remember between steps, as it stands in a saved run: their states, by block.
+#[derive(Serialize, Deserialize)]
+struct SavedConstraints(Vec<Vec<ConstraintState>>);
+
+#[typetag::serde(name = "constraints")]
+impl State for SavedConstraints {}
 
 impl<M: Method> ConstraintInteraction<M> {
     /// The interaction of these conditions, which are constraints.
@@ -83,6 +89,16 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
             state.penalty = method.penalty();
             state.active = method.may_start_active() && method.is_active(state);
         });
+        Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedConstraints(self.blocks.iter().map(|block| block.states.clone()).collect())))
+    }
+
+    fn resume(&mut self, _part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
+        let SavedConstraints(states) = state.take()?;
+        self.blocks.iter_mut().zip(states).for_each(|(block, states)| block.states = states);
         Ok(())
     }
 

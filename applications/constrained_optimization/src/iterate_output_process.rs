@@ -3,14 +3,14 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use zelus_core::processes::ProcessEntry;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+use zelus_core::State;
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
 use zelus_core::entities::{Interaction, Observer};
 use zelus_core::io::replace_file;
 use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
-use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 
 /// A column of the table.
@@ -23,6 +23,7 @@ struct Column {
 }
 
 /// A row of the table.
+#[derive(Clone, Serialize, Deserialize)]
 struct Row {
     step: usize,
     iteration: usize,
@@ -31,6 +32,13 @@ struct Row {
 }
 
 type Table = Arc<Mutex<Vec<Row>>>;
+
+/// The rows so far.
+#[derive(Serialize, Deserialize)]
+struct SavedRows(Vec<Row>);
+
+#[typetag::serde(name = "iterate_output")]
+impl State for SavedRows {}
 
 struct IterateOutput {
     root: String,
@@ -83,6 +91,16 @@ impl Process for IterateOutput {
         let found: Result<_> = self.columns.iter().map(|column| column.find(part)).collect();
         let columns = found.map_err(|error| error.at(&self.place))?;
         Ok(Some((self.root.clone(), Box::new(Watch { columns, table: Arc::clone(&self.table) }))))
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedRows(self.table.lock().unwrap_or_else(PoisonError::into_inner).clone())))
+    }
+
+    fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        let SavedRows(rows) = state.take()?;
+        *self.table.lock().unwrap_or_else(PoisonError::into_inner) = rows;
+        Ok(())
     }
 
     fn finalize(&mut self, model: &mut Model) -> Result<()> {

@@ -1,5 +1,6 @@
 //! What a method is: a term of the functional for each constraint, and when it acts.
 
+use serde::{Deserialize, Serialize};
 use zelus_contact_structural_mechanics::penalty_adaptation::adapted_augmented_lagrangian;
 use zelus_core::model::Variable;
 use zelus_core::scalar::Real;
@@ -10,7 +11,7 @@ use crate::variables::{CONSTRAINT_MULTIPLIER, SECOND_CONSTRAINT_MULTIPLIER};
 pub const MULTIPLIERS: [&Variable<f64>; 2] = [&CONSTRAINT_MULTIPLIER, &SECOND_CONSTRAINT_MULTIPLIER];
 
 /// What a constraint remembers between iterates, in the signs of g ≥ 0 and λ ≤ 0.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ConstraintState {
     /// Whether it acts.
     pub active: bool,

@@ -3,6 +3,7 @@
 //! - Coulomb: |t| ≤ −μ p, with the normal pressure p < 0 in compression;
 //! - Tresca: |t| ≤ τ, whatever the pressure.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Nodes, Variable};
 use zelus_core::registry;
@@ -15,7 +16,7 @@ use crate::variables::{FRICTION_COEFFICIENT, TRESCA_FRICTION_THRESHOLD};
 const NOTHING: f64 = f64::EPSILON;
 
 /// Limit c − μ p of a node's tangential traction (force per area).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Bound {
     /// μ ≥ 0: the part that grows with the pressure.
     pub coefficient: f64,

@@ -1,11 +1,12 @@
 //! The state of a slave node, as decisions give it and residuals take it.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::model::flags::{ACTIVE, Flags};
 
 use crate::flags::SLIP;
 
 /// Whether a slave node is in contact, and how.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum NodeState {
     /// Not in contact.
     #[default]
@@ -35,7 +36,7 @@ impl NodeState {
 }
 
 /// What becomes of a component of a multiplier.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Held {
     /// It has an equation of its own.
     #[default]
@@ -59,7 +60,7 @@ impl Held {
 ///
 /// Zero where the direction is a sign, as in the plane. It enters the tangent only; without it a body that slides is free
 /// across its direction.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Turning {
     /// κ b/|q̂|, with the sum b of the bounds that the pairs of the node state: slip across τ, in shares of the slip that stick
     /// would forbid. By the penalty method 1/|q|: turning by trial traction.

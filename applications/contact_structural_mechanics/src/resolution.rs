@@ -10,6 +10,7 @@
 //!    largest one in contact that a linear solve leaves open;
 //! 3. what does not differ decides nothing: the present state stays.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::vector3::norm;
 
 /// Round-off of a difference of positions, as a share of the distance from the origin.
@@ -20,7 +21,7 @@ const FORCES: f64 = 1024.0 * f64::EPSILON;
 const TRACTIONS: f64 = 1e-9;
 
 /// Sizes of an interface below which nothing is decided.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Resolution {
     /// Lengths up to this are none.
     pub length: f64,

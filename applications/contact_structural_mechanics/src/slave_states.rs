@@ -7,6 +7,8 @@
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::flags::{ISOLATED, SLIP};
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Variable};
@@ -22,7 +24,7 @@ use crate::variables::{
 };
 
 /// One slave node.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SlaveState {
     /// Whether it is in contact.
     pub active: bool,
@@ -79,7 +81,7 @@ pub struct SlaveState {
 }
 
 /// What of a slave node is compared with its last accepted state.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Accepted {
     /// Weighted gap.
     pub weighted_gap: f64,
@@ -115,13 +117,16 @@ pub struct Columns {
 }
 
 /// The states of all nodes that may carry multipliers.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct SlaveStates {
+    #[serde(skip)]
     carriers: Arc<[u32]>,
     slaves: Arc<[u32]>,
     /// By node index; [`NONE`] for nodes without state.
+    #[serde(skip)]
     slots: Arc<[u32]>,
     states: Vec<SlaveState>,
+    #[serde(skip)]
     columns: Columns,
 }
 
@@ -160,6 +165,11 @@ impl SlaveStates {
     /// Nodes on slave facets, ascending.
     pub fn slaves(&self) -> Arc<[u32]> {
         self.slaves.clone()
+    }
+
+    /// Takes up the states of the same carriers from a saved run.
+    pub fn resume(&mut self, saved: Self) {
+        (self.slaves, self.states) = (saved.slaves, saved.states);
     }
 
     /// Sets which carriers are on slave facets; the others are not in contact.

@@ -7,14 +7,17 @@
 mod inertia;
 mod massless;
 mod ranks;
+mod saved;
 mod tangents;
 
 use std::time::Instant;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Csr, Symmetry};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
+pub use saved::AssemblerState;
 
 use self::ranks::{Carriers, carriers_of_all};
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
@@ -67,6 +70,8 @@ pub struct Assembler {
     /// Of each of them, whose it is: the place among the couplings.
     coupling_of: Vec<usize>,
     equations: Equations,
+    /// Whether the equations are those of a saved run, which says no more of them than their roles.
+    incomplete: bool,
     reduced_bulk: Csr,
     reduced_coupling: Csr,
     reduced_loads: Csr,
@@ -83,7 +88,7 @@ pub struct Assembler {
     pub seconds: AssemblySeconds,
 }
 
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct Stamps {
     bulk_graph: u64,
     bulk_values: u64,
@@ -194,7 +199,8 @@ impl Assembler {
     pub fn begin_step(&mut self, part: &ModelPart, system: &System) -> Result<()> {
         let equations = part.ranks.agree(Equations::new(&system.dofs, &part.nodes, &part.constraints))?;
         let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
-        if part.ranks.any(changed) {
+        let changed = part.ranks.any(changed);
+        if changed || std::mem::take(&mut self.incomplete) {
             self.equations = equations;
             if self.distribution.is_none() {
                 let place = |&number: &u32| {
@@ -205,8 +211,8 @@ impl Assembler {
                 self.equations.layout.near_null_space = near_null_space(&places);
             }
             self.numbering = self.distribution.as_ref().map(|d| Numbering::new(&self.equations, d));
-            self.stamps.bulk_graph += 1;
-            self.stamps.bulk_values += 1;
+            self.stamps.bulk_graph += u64::from(changed);
+            self.stamps.bulk_values += u64::from(changed);
             self.coupling_graph = None;
         } else {
             self.equations.leaning = equations.leaning;

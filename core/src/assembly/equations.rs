@@ -8,6 +8,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Csr, Layout};
 
 use super::dof_table::DofTable;
@@ -18,7 +19,7 @@ use crate::model::{MasterSlaveConstraint, Nodes};
 const ROWS: usize = 1024;
 
 /// What became of an unknown.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Role {
     Free(u32),
     Fixed,
@@ -27,7 +28,7 @@ enum Role {
 }
 
 /// An equation that a slave follows.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Follow {
     equation: u32,
     /// Of its motion.
@@ -46,16 +47,21 @@ pub(super) struct Leaning {
 }
 
 /// The map between unknowns and equations.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Equations {
     roles: Vec<Role>,
     /// Unknown of each equation.
+    #[serde(skip)]
     free: Vec<u32>,
+    #[serde(skip)]
     has_slaves: bool,
+    #[serde(skip)]
     symmetric: bool,
     /// What constraints hand on to fixed unknowns.
+    #[serde(skip)]
     pub(super) leaning: Vec<Leaning>,
     /// What the equations stand for.
+    #[serde(skip)]
     pub layout: Layout,
 }
 
@@ -106,6 +112,11 @@ impl Equations {
         };
         let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());
         Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, leaning, layout })
+    }
+
+    /// All that a saved run holds of them: enough to tell whether others are the same.
+    pub(super) fn roles_only(&self) -> Self {
+        Self { roles: self.roles.clone(), ..Self::default() }
     }
 
     /// Whether both lead to the same equations.

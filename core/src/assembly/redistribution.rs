@@ -9,6 +9,7 @@
 //! so that mass, centre, inertia tensor, linear and angular momentum and kinetic energy of M_r and w are those of M and P w.
 
 use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::Csr;
 
 use super::dof_table::DofTable;
@@ -17,7 +18,7 @@ use crate::entities::MasslessNodes;
 use crate::model::ModelPart;
 
 /// Massless nodes and unknowns, and what stands in for them.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Redistribution {
     /// The nodes asked for.
     wanted: MasslessNodes,
@@ -28,6 +29,7 @@ pub(super) struct Redistribution {
     /// Massless unknowns, with those below them and their weights.
     unknowns: Vec<(u32, Vec<(u32, f64)>)>,
     /// The rows of the massless unknowns in this rank's M.
+    #[serde(skip)]
     rows: Vec<Vec<(u32, f64)>>,
 }
 

@@ -5,6 +5,9 @@ use std::ops::Range;
 
 use super::face_point::FacePoint;
 use super::view::StepView;
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
 use crate::diagnostics::{Diagnostic, Error, Result};
 use crate::model::{EntityKind, EntityTable, ModelPart, Nodes, ScalarVariable};
 
@@ -95,7 +98,7 @@ impl From<EntityError> for Error {
 }
 
 /// Values at the Gauss points of one entity.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Gauss {
     /// Numbers a point.
     pub components: usize,
@@ -211,6 +214,19 @@ pub trait EntityBlock: Send + Sync {
     /// # Errors
     /// As [`EntityBlock::local_systems`].
     fn accept_step(&mut self, _view: &StepView<'_>) -> Result<(), EntityError> {
+        Ok(())
+    }
+
+    /// What its entities remember, for the file of a saved run.
+    fn state(&self) -> Option<Box<dyn State>> {
+        None
+    }
+
+    /// Takes up what its entities remembered in a saved run.
+    ///
+    /// # Errors
+    /// The state of a block of other entities.
+    fn resume(&mut self, _state: Box<dyn State>) -> Result<()> {
         Ok(())
     }
 

@@ -1,5 +1,8 @@
 //! What acts between bodies and changes with the state: contact above all.
 
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
 use super::block::EntityBlock;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{ModelPart, ScalarVariable};
@@ -45,7 +48,7 @@ pub enum Outer {
 }
 
 /// Nodes whose mass others carry, ascending.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MasslessNodes {
     /// Those that have none for the whole run, where nodes that are not among them can carry it.
     pub surface: Vec<u32>,
@@ -83,6 +86,20 @@ pub trait Interaction: Send + Sync {
     /// # Errors
     /// A geometry that cannot be computed with.
     fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
+        Ok(())
+    }
+
+    /// What it remembers between steps beside the fields of the model, for the file of a saved run.
+    fn state(&self) -> Option<Box<dyn State>> {
+        None
+    }
+
+    /// Takes up a saved state in place of [`Interaction::begin_step`] and what follows, once it is initialised and the fields
+    /// are those of the saved run.
+    ///
+    /// # Errors
+    /// The state of another kind of interaction.
+    fn resume(&mut self, _part: &mut ModelPart, _state: Box<dyn State>) -> Result<()> {
         Ok(())
     }
 

@@ -1,18 +1,20 @@
 //! The mathematics of one entity, and the block that runs it over many.
 
-use crate::model::EntityKind;
-use crate::model::Role;
 use std::any::Any;
 use std::collections::HashMap;
 use std::ops::Range;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
 
 use super::block::{
     BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Tangent, Want,
 };
 use super::face_point::FacePoint;
 use super::view::StepView;
-use crate::diagnostics::Result;
-use crate::model::Properties;
+use crate::diagnostics::{Diagnostic, Result};
+use crate::model::{EntityKind, Properties, Role};
 
 /// What a kernel is told of its entity, beside the step's fields.
 #[derive(Clone, Copy)]
@@ -50,7 +52,7 @@ impl<const NODES: usize> Gather<'_, NODES> {
 /// of single entities lives in `State`.
 pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + 'static {
     /// History of one entity; advances only with an accepted step.
-    type State: Clone + Send + Sync;
+    type State: Clone + Send + Sync + Serialize + DeserializeOwned;
 
     /// The rows of the local system.
     fn unknowns() -> [LocalUnknown; SIZE];
@@ -165,6 +167,20 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         Err(NO_TRACTIONS.to_owned())
     }
 }
+
+/// What the entities of a block remember.
+#[derive(Serialize, Deserialize)]
+struct BlockState {
+    kind: String,
+    /// Of its entities.
+    ids: Vec<usize>,
+    /// As the kernel writes them.
+    #[serde(with = "serde_bytes")]
+    states: Vec<u8>,
+}
+
+#[typetag::serde(name = "entities")]
+impl State for BlockState {}
 
 /// A block made of a kernel, a connectivity and a state for each entity.
 pub struct KernelBlock<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> {
@@ -333,6 +349,27 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
         });
         self.states = states;
         result
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        if size_of::<K::State>() == 0 {
+            return None;
+        }
+        let states = rmp_serde::to_vec(&self.states).expect("numbers can be written");
+        Some(Box::new(BlockState { kind: self.entry.name.to_owned(), ids: self.ids.clone(), states }))
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
+        let BlockState { kind, ids, states } = state.take()?;
+        let states =
+            rmp_serde::from_slice(&states).ok().filter(|states: &Vec<K::State>| states.len() == self.ids.len());
+        let states = states.filter(|_| kind == self.entry.name && ids == self.ids);
+        self.states = states.ok_or_else(|| {
+            let fact =
+                format!("what {} {kind} remember does not fit {} {}", ids.len(), self.ids.len(), self.entry.name);
+            Diagnostic::error("saved-state", fact).remedy("it was saved by a run with another mesh or other materials")
+        })?;
+        Ok(())
     }
 
     fn as_any(&self) -> Option<&dyn Any> {

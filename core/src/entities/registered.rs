@@ -6,7 +6,7 @@ use super::block::{BlockRequest, EntityBlock};
 use crate::collect_kind;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::geometry::Shape;
-use crate::model::{EntityKind, Role};
+use crate::model::{EntityKind, KindFinder, Role};
 use crate::registry::{self, Entry};
 
 /// Makes the block of entities of one kind.
@@ -90,6 +90,8 @@ pub fn find_kind(role: Role, name: &str) -> Option<&'static EntityKind> {
         Role::Condition => registry::find::<ConditionEntry>(name).map(|entry| &**entry),
     }
 }
+
+inventory::submit! { KindFinder(find_kind) }
 
 /// As [`find_kind`].
 ///

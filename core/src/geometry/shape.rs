@@ -1,10 +1,12 @@
 //! The names of the reference cells.
 
+use serde::{Deserialize, Serialize};
+
 use super::ReferenceCell;
 use super::cells::CELLS;
 
 /// One of the reference cells; the number is that of its nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names say all; the facts are in the table of reference cells")]
 pub enum Shape {
     Point1,

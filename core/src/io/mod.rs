@@ -11,4 +11,4 @@ pub(crate) mod variables;
 
 pub use import::{import, read_mesh, read_mesh_of};
 pub use materials::{apply_materials, read_materials};
-pub use replace::{append_to_file, replace_file, replace_own_file};
+pub use replace::{append_to_file, cut_file, length_of, replace_file, replace_own_file};

@@ -65,9 +65,44 @@ fn append(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>
     done.map_err(|e| Error::System(format!("{}: cannot be written: {e}", path.display())))
 }
 
+/// Length of a file that grows; 0 where there is none yet.
+pub fn length_of(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |file| file.len())
+}
+
+/// Takes off a file what it has grown by beyond `length` bytes, as where a run goes on from before that.
+///
+/// # Errors
+/// A file that is not there or is shorter; with several ranks the error is kept until they next agree.
+pub fn cut_file(ranks: &Ranks, path: &Path, length: u64) -> Result<()> {
+    ranks.on_root(|| {
+        let now = length_of(path);
+        if now < length {
+            let fact = format!("{}: it has {now} bytes, and had {length} when the run was saved", path.display());
+            return Err(Error::System(format!("{fact}\n    bring it back, or run the deck from its start")));
+        }
+        let cut = File::options().write(true).open(path).and_then(|file| file.set_len(length));
+        cut.map_err(|e| Error::System(format!("{}: cannot be written: {e}", path.display())))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_that_grew_is_cut_and_one_that_is_short_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.dat");
+        let alone = Ranks::default();
+        assert!(length_of(&path) == 0 && cut_file(&alone, &path, 1).is_err());
+        replace_file(&alone, &path, |w| w.write_all(b"one\n")).unwrap();
+        append_to_file(&alone, &path, |w| w.write_all(b"two\n")).unwrap();
+        cut_file(&alone, &path, 4).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"one\n");
+        let error = cut_file(&alone, &path, 8).unwrap_err().to_string();
+        assert!(error.contains("history.dat") && error.contains("4 bytes"), "{error}");
+    }
 
     #[test]
     fn a_failed_writing_keeps_the_old_content() {

@@ -1,12 +1,14 @@
 //! Linear relations between unknowns, removed from the system by elimination (eqs. D.12a–e).
 
+use serde::{Deserialize, Serialize};
+
 use super::variable::ScalarVariable;
 
 /// An unknown of a node.
 pub type NodeUnknown = (u32, ScalarVariable);
 
 /// u_slave = Σ weight · u_master + constant.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MasterSlaveConstraint {
     /// Number in the mesh.
     pub id: usize,

@@ -2,11 +2,14 @@
 
 use std::ops::Deref;
 
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use crate::geometry::Shape;
 use crate::registry::Entry;
 
 /// Which table of a model part an entity stands in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
     /// A piece of a body.
     Element,
@@ -70,4 +73,31 @@ impl PartialEq for EntityKind {
     fn eq(&self, other: &Self) -> bool {
         self.role == other.role && self.name == other.name
     }
+}
+
+/// Finds the registered kinds; submitted by the module that holds the registry of what computes them.
+pub struct KindFinder(pub fn(Role, &str) -> Option<&'static EntityKind>);
+
+inventory::collect!(KindFinder);
+
+/// Writes kinds by name, each name once.
+pub(super) fn write_kinds<S: Serializer>(kinds: &[&'static EntityKind], to: S) -> Result<S::Ok, S::Error> {
+    let mut names: Vec<(Role, &str)> = kinds.iter().map(|kind| (kind.role, kind.name)).collect();
+    names.sort_unstable();
+    names.dedup();
+    let place = |kind: &&EntityKind| names.binary_search(&(kind.role, kind.name)).expect("it is one of them") as u32;
+    let places: Vec<u32> = kinds.iter().map(place).collect();
+    (&names, places).serialize(to)
+}
+
+/// Reads what [`write_kinds`] has written.
+pub(super) fn read_kinds<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<&'static EntityKind>, D::Error> {
+    let (names, places) = <(Vec<(Role, String)>, Vec<u32>)>::deserialize(from)?;
+    let find = |(role, name): &(Role, String)| {
+        let found = inventory::iter::<KindFinder>().find_map(|finder| finder.0(*role, name));
+        found.ok_or_else(|| D::Error::custom(format!("there is no {} {name}", role.word())))
+    };
+    let kinds = names.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    let kind = |place: u32| kinds.get(place as usize).copied().ok_or_else(|| D::Error::custom("a kind without a name"));
+    places.into_iter().map(kind).collect()
 }

@@ -1,17 +1,19 @@
 //! The elements or conditions of a model part as the mesh gives them: kind, nodes, properties, data, flags.
 
-use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
 
-use super::entity_kind::EntityKind;
+use super::entity_kind::{EntityKind, read_kinds, write_kinds};
 use super::fields::Fields;
 use super::flags::Flags;
+use super::index::Index;
 
 /// Elements or conditions in flat arrays; an index counts them in the order they were added.
-#[derive(Debug, Default, Clone)]
+#[derive(Debug, Default, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EntityTable {
     /// Ids; ascending for what the mesh file gives, later ones follow.
     pub ids: Vec<usize>,
     /// Registered kind of each.
+    #[serde(serialize_with = "write_kinds", deserialize_with = "read_kinds")]
     pub kinds: Vec<&'static EntityKind>,
     /// Properties id of each.
     pub properties: Vec<usize>,
@@ -21,7 +23,8 @@ pub struct EntityTable {
     pub flags: Flags,
     starts: Vec<u32>,
     nodes: Vec<u32>,
-    index: FxHashMap<usize, u32>,
+    #[serde(skip)]
+    index: Index,
 }
 
 impl EntityTable {
@@ -31,7 +34,8 @@ impl EntityTable {
     /// When the id is taken: the reader checks.
     pub fn push(&mut self, id: usize, kind: &'static EntityKind, properties: usize, nodes: &[u32]) -> u32 {
         let at = self.ids.len() as u32;
-        assert!(self.index.insert(id, at).is_none(), "entity id {id} is taken");
+        assert!(self.find(id).is_none(), "entity id {id} is taken");
+        self.index.push(id, at);
         if self.starts.is_empty() {
             self.starts.push(0);
         }
@@ -87,7 +91,7 @@ impl EntityTable {
 
     /// Index of the entity with that id.
     pub fn find(&self, id: usize) -> Option<u32> {
-        self.index.get(&id).copied()
+        self.index.find(&self.ids, id)
     }
 
     /// The largest id, 0 when empty.

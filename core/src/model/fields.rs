@@ -2,11 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::variable::{ColumnType, ScalarVariable, Variable};
 use crate::diagnostics::{Diagnostic, Result};
+use crate::names;
 
 /// One variable over all nodes (or entities): `levels[0]` is the present, `levels[1]` the previous step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Numbers a value takes: 1 or 3.
     pub components: usize,
@@ -27,8 +30,9 @@ impl Field {
 }
 
 /// Named columns of one length and one number of time levels.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fields {
+    #[serde(deserialize_with = "names::read_keys")]
     columns: BTreeMap<&'static str, Field>,
     levels: usize,
     count: usize,

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::variable::ScalarVariable;
 
 /// Marks of nodes by variable, whether a system solves for it or not.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fixities {
     columns: BTreeMap<ScalarVariable, Vec<bool>>,
 }

@@ -3,7 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use serde::{Deserialize, Serialize};
+
 use crate::diagnostics::did_you_mean;
+use crate::names;
 
 /// The registered name of a mark.
 pub struct FlagEntry(pub &'static str);
@@ -55,8 +58,9 @@ pub fn flag(name: &str) -> Result<&'static str, String> {
 const UNDEFINED: i8 = -1;
 
 /// Flags of many items, a column a flag; an absent column is undefined everywhere.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flags {
+    #[serde(deserialize_with = "names::read_keys")]
     columns: BTreeMap<&'static str, Vec<i8>>,
 }
 

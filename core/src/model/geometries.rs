@@ -1,10 +1,12 @@
 //! Cells of the mesh that nothing computes on yet: modelers make elements and conditions of them.
 
+use serde::{Deserialize, Serialize};
+
 use crate::diagnostics::Place;
 use crate::geometry::Shape;
 
 /// Geometries in flat arrays, ascending by id.
-#[derive(Debug, Default, Clone)]
+#[derive(Debug, Default, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Geometries {
     /// Ids.
     pub ids: Vec<usize>,

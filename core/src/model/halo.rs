@@ -1,13 +1,16 @@
 //! Copies that ranks have of each other's items, nodes or unknowns, and how values travel between them.
 
+use serde::{Deserialize, Serialize};
+
 use crate::communication::Ranks;
 
 /// Items that this rank owns and others have copies of, and items of others that it has copies of.
 ///
 /// Both sides of a pair of ranks list the same items in the same order.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Halo {
     /// The ranks that exchange values.
+    #[serde(skip)]
     pub ranks: Ranks,
     /// Own items that each rank has copies of, and not all ranks have.
     pub copied: Vec<Vec<u32>>,

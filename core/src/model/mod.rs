@@ -12,6 +12,7 @@ mod fixities;
 pub mod flags;
 mod geometries;
 mod halo;
+mod index;
 mod model_part;
 mod nodes;
 mod process_info;
@@ -27,8 +28,10 @@ pub mod variables;
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
-pub use entity_kind::{EntityKind, Role};
+pub use entity_kind::{EntityKind, KindFinder, Role};
 pub use entity_table::EntityTable;
 pub use fields::{Field, Fields};
 pub use fixities::Fixities;
@@ -49,15 +52,27 @@ use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result};
 
 /// All root model parts of a run by name; stages share it.
-#[derive(Default)]
+#[derive(Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// The processes of the run.
+    #[serde(skip)]
     pub ranks: Ranks,
     /// Root parts by name.
     pub parts: BTreeMap<String, ModelPart>,
 }
 
 impl Model {
+    /// The same model, as read from a file, of these processes.
+    #[must_use]
+    pub fn shared_by(mut self, ranks: &Ranks) -> Self {
+        self.ranks = ranks.clone();
+        for part in self.parts.values_mut() {
+            part.ranks = ranks.clone();
+            part.share.iter_mut().for_each(|share| share.halo.ranks = ranks.clone());
+        }
+        self
+    }
+
     /// No parts yet; those that are added belong to `ranks`.
     pub fn new(ranks: Ranks) -> Self {
         Self { ranks, parts: BTreeMap::new() }

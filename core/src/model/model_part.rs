@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::constraint::MasterSlaveConstraint;
 use super::entity_kind::Role;
 use super::entity_table::EntityTable;
@@ -16,7 +18,7 @@ use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
 
 /// A root model part; sub parts select from it by index.
-#[derive(Default)]
+#[derive(Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelPart {
     /// Name of the root, e.g. `Structure`.
     pub name: String,
@@ -41,6 +43,7 @@ pub struct ModelPart {
     /// Linear relations between unknowns.
     pub constraints: Vec<MasterSlaveConstraint>,
     /// The processes that have this part, in whole or in shares.
+    #[serde(skip)]
     pub ranks: Ranks,
     /// What this rank has of a mesh that several share; `None` when this process computes everything.
     pub share: Option<Share>,

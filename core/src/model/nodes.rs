@@ -1,15 +1,16 @@
 //! Nodes: ids, positions, fields and flags, in ascending order of id.
 
-use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
 
 use super::fields::Fields;
 use super::fixities::Fixities;
 use super::flags::Flags;
+use super::index::Index;
 use super::rates::Rates;
 use super::variable::ScalarVariable;
 
 /// All nodes of a model part; an index counts them by ascending id.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Nodes {
     /// Ids as in the mesh file, ascending.
     pub ids: Vec<usize>,
@@ -25,7 +26,8 @@ pub struct Nodes {
     pub flags: Flags,
     /// What is prescribed.
     pub fixities: Fixities,
-    index: FxHashMap<usize, u32>,
+    #[serde(skip)]
+    index: Index,
 }
 
 impl Nodes {
@@ -35,7 +37,6 @@ impl Nodes {
     /// When ids are not strictly ascending: the reader sorts them.
     pub fn new(ids: Vec<usize>, initial: Vec<[f64; 3]>) -> Self {
         assert!(ids.windows(2).all(|pair| pair[0] < pair[1]) && ids.len() == initial.len());
-        let index = ids.iter().enumerate().map(|(at, &id)| (id, at as u32)).collect();
         let count = ids.len();
         Self {
             ids,
@@ -45,7 +46,7 @@ impl Nodes {
             values: Fields::new(count, 1),
             flags: Flags::default(),
             fixities: Fixities::default(),
-            index,
+            index: Index::default(),
         }
     }
 
@@ -53,7 +54,7 @@ impl Nodes {
     pub fn pick(&self, nodes: &[u32]) -> Self {
         let ids: Vec<usize> = nodes.iter().map(|&at| self.ids[at as usize]).collect();
         Self {
-            index: ids.iter().enumerate().map(|(at, &id)| (id, at as u32)).collect(),
+            index: Index::default(),
             ids,
             initial: nodes.iter().map(|&at| self.initial[at as usize]).collect(),
             current: nodes.iter().map(|&at| self.current[at as usize]).collect(),
@@ -76,7 +77,7 @@ impl Nodes {
 
     /// Index of the node with that id.
     pub fn find(&self, id: usize) -> Option<u32> {
-        self.index.get(&id).copied()
+        self.index.find(&self.ids, id)
     }
 
     /// Fixes or frees a variable of some nodes, whether a system solves for it or not.

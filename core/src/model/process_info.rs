@@ -2,8 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
+use crate::names;
+
 /// Time, step and iteration counters, and named values set by processes.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ProcessInfo {
     /// Time at the end of the step.
     pub time: f64,
@@ -16,8 +20,10 @@ pub struct ProcessInfo {
     /// Dimensions of the problem: 2 or 3.
     pub domain_size: usize,
     /// Named numbers, e.g. INITIAL_PENALTY, SCALE_FACTOR.
+    #[serde(deserialize_with = "names::read_keys")]
     pub values: BTreeMap<&'static str, f64>,
     /// Named marks, e.g. ADAPT_PENALTY.
+    #[serde(deserialize_with = "names::read_keys")]
     pub marks: BTreeMap<&'static str, bool>,
 }
 

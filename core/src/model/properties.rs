@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::table::Table;
 use crate::diagnostics::{Diagnostic, Place, Result};
 
 /// A value of a property.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PropertyValue {
     /// One number.
     Number(f64),
@@ -21,7 +23,7 @@ pub enum PropertyValue {
 }
 
 /// Named constants and the constitutive law of a set of entities.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Properties {
     /// Number in the mesh and materials file.
     pub id: usize,

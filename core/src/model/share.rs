@@ -1,9 +1,11 @@
 //! What this process has of a mesh that several ranks share.
 
+use serde::{Deserialize, Serialize};
+
 use super::halo::Halo;
 
 /// Numbers of the whole mesh.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MeshSizes {
     /// Nodes.
     pub nodes: usize,
@@ -14,7 +16,7 @@ pub struct MeshSizes {
 }
 
 /// What this rank has of the mesh; indices count what it has, in the order of the whole mesh.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// Rank that evaluates each element.
     pub elements: Vec<u32>,

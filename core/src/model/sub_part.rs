@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::properties::PropertyValue;
 
 /// A named selection; whatever a child holds its parents hold too.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SubPart {
     /// Its own name, without those of its parents.
     pub name: String,

@@ -1,7 +1,9 @@
 //! Piecewise-linear tables.
 
+use serde::{Deserialize, Serialize};
+
 /// A piecewise-linear function given by points of ascending abscissa; ends continue with their slopes.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Points (x, y), x ascending.
     pub points: Vec<[f64; 2]>,

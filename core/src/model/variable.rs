@@ -5,6 +5,10 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::LazyLock;
 
+use serde::{Deserialize, Serialize};
+
+use crate::names::{self, Name};
+
 /// What a variable holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VariableKind {
@@ -75,10 +79,11 @@ impl Variable<[f64; 3]> {
 }
 
 /// One number of a column: a scalar variable or a component of a vector variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ScalarVariable {
     /// Name of the column that holds it.
-    pub column: &'static str,
+    #[serde(deserialize_with = "names::read")]
+    pub column: Name,
     /// 0, 1, 2 for X, Y, Z; `None` when the column is a scalar.
     pub component: Option<u8>,
 }

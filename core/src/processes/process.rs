@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use zelus_linear_algebra::State;
+
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
@@ -83,6 +85,19 @@ pub trait Process: Send {
     /// # Errors
     /// A file that cannot be written.
     fn print_output(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
+        Ok(())
+    }
+
+    /// What it remembers between steps, for the file of a saved run.
+    fn state(&self) -> Option<Box<dyn State>> {
+        None
+    }
+
+    /// Takes up a saved state in place of [`Process::before_loop`]; files that grow lose what was added since it was saved.
+    ///
+    /// # Errors
+    /// The state of another kind of process; a file that is no longer there.
+    fn resume(&mut self, _model: &mut Model, _state: Box<dyn State>) -> Result<()> {
         Ok(())
     }
 

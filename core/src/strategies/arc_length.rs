@@ -4,6 +4,9 @@
 //! Corrections stay in the plane normal to the predictor p: K δ_R = R, dλ = −(p·δ_R)/(p·δ_q), du = δ_R + dλ δ_q. The first
 //! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
 
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
 use super::phases::Phases;
@@ -75,6 +78,17 @@ pub struct ArcLength {
     pending: Option<(f64, Vec<f64>, usize)>,
 }
 
+#[derive(Serialize, Deserialize)]
+struct ArcLengthState {
+    factor: f64,
+    radius: Option<[f64; 2]>,
+    last: Vec<f64>,
+    newton: Option<Box<dyn State>>,
+}
+
+#[typetag::serde(name = "arc_length")]
+impl State for ArcLengthState {}
+
 impl ArcLength {
     /// Follows the path with the scheme, criterion and solver of `newton`.
     pub fn new(settings: ArcLengthSettings, newton: NewtonRaphson) -> Self {
@@ -145,6 +159,7 @@ impl ArcLength {
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<IterationRecord>, Option<String>)> {
         self.pending = None;
+        self.newton.solver.forget();
         part.info.nl_iteration = 0;
         for interaction in &mut system.interactions {
             interaction.begin_step(part)?;
@@ -264,6 +279,17 @@ impl SolutionStrategy for ArcLength {
 
     fn messages(&mut self) -> Vec<Diagnostic> {
         self.newton.messages()
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        let (last, newton) = (self.last.clone(), self.newton.state());
+        Some(Box::new(ArcLengthState { factor: self.factor, radius: self.radius, last, newton }))
+    }
+
+    fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
+        let ArcLengthState { factor, radius, last, newton } = state.take()?;
+        (self.factor, self.radius, self.last) = (factor, radius, last);
+        newton.map_or(Ok(()), |state| self.newton.resume(part, system, state))
     }
 
     fn phases(&self) -> Phases {

@@ -5,6 +5,9 @@
 //! steps, which have no such past, are of the order that theirs allows. Orders 1 and 2 are stable for every step; 3 to
 //! 5 are not for motion without damping.
 
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
 use super::scheme::{Scheme, SchemeFactory, predict_ballistic};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
@@ -21,6 +24,15 @@ pub struct BdfScheme {
     ends: Vec<f64>,
     weights: Vec<f64>,
 }
+
+#[derive(Serialize, Deserialize)]
+struct BdfState {
+    ends: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+#[typetag::serde(name = "bdf")]
+impl State for BdfState {}
 
 /// Weights of the values at `times` in the derivative at `times[0]` of the polynomial through them.
 fn weights(times: &[f64]) -> Vec<f64> {
@@ -83,6 +95,16 @@ impl Scheme for BdfScheme {
                 history.write_level(to, 0, &rate);
             }
         }
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(BdfState { ends: self.ends.clone(), weights: self.weights.clone() }))
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
+        let BdfState { ends, weights } = state.take()?;
+        (self.ends, self.weights) = (ends, weights);
+        Ok(())
     }
 
     fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {

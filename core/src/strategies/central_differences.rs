@@ -4,6 +4,8 @@
 //! u_{n+1} = u_n + Δt_{n+1} v_{n+½}. In the first step v_n is the initial velocity. The columns of v and a are those of
 //! t_n, one step behind that of u. Stable while Δt < 2/ω of the highest frequency ω.
 
+use serde::{Deserialize, Serialize};
+
 use super::scheme::{SchemeEntry, SchemeFactory};
 use crate::assembly::DofTable;
 use crate::model::{ColumnOf, FIRST, Fields, ModelPart, Rates, SECOND, UNKNOWN};
@@ -13,7 +15,7 @@ use crate::register;
 const MIDDLE: ColumnOf = |rates| rates.middle;
 
 /// The update of central differences, and the half step it carries over.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct CentralDifferences {
     /// Time from the middle of the last step to its end; 0 before the first.
     half_before: f64,

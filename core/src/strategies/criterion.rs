@@ -3,6 +3,7 @@
 use crate::assembly::{Distribution, Dof, DofTable, Equations};
 use crate::diagnostics::{Report, Result};
 use crate::model::Nodes;
+use crate::names::{self, Name};
 use crate::parameters::{Node, Settings};
 use crate::registered_kind;
 
@@ -89,10 +90,11 @@ pub fn is_last_digit(increment: f64, value: f64) -> bool {
 }
 
 /// One measured block.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Check {
     /// What was measured, e.g. `residual`.
-    pub label: &'static str,
+    #[serde(deserialize_with = "names::read")]
+    pub label: Name,
     /// Norm divided by its reference.
     pub ratio: f64,
     /// Tolerance of the ratio.

@@ -4,13 +4,18 @@
 //! and `after_update` of each interaction, then its blocks in the residual. An interaction may shorten the steps while it acts
 //! ([`crate::entities::Interaction::step_factor`]). One that adds stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
 
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
 use super::meaning::Meaning;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::strategy::{SolutionStrategy, accept, recorded};
-use crate::assembly::{Assembler, Inertia, System, damped_by_properties, impose_constraints, strongest_damping};
+use crate::assembly::{
+    Assembler, AssemblerState, Inertia, System, damped_by_properties, impose_constraints, strongest_damping,
+};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND};
 use crate::parameters::Settings;
@@ -83,6 +88,17 @@ pub struct ExplicitStrategy {
     warned: bool,
     messages: Vec<Diagnostic>,
 }
+
+#[derive(Serialize, Deserialize)]
+struct ExplicitState {
+    scheme: CentralDifferences,
+    assembler: AssemblerState,
+    predicted: Option<(f64, usize)>,
+    warned: bool,
+}
+
+#[typetag::serde(name = "explicit")]
+impl State for ExplicitState {}
 
 impl ExplicitStrategy {
     /// Numbers the unknowns of `part`, whose blocks and interactions are ready, and lumps the mass.
@@ -315,5 +331,17 @@ impl SolutionStrategy for ExplicitStrategy {
 
     fn assembler(&self) -> &Assembler {
         &self.assembler
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        let (scheme, assembler) = (self.scheme, self.assembler.state());
+        Some(Box::new(ExplicitState { scheme, assembler, predicted: self.predicted, warned: self.warned }))
+    }
+
+    fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
+        let ExplicitState { scheme, assembler, predicted, warned } = state.take()?;
+        self.assembler.resume(part, system, assembler);
+        (self.scheme, self.predicted, self.warned) = (scheme, predicted, warned);
+        Ok(())
     }
 }

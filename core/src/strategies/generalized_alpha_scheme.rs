@@ -5,6 +5,9 @@
 //! Newmark's relations hold with γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4. The code divides by 1 − α_f, so that the
 //! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
 
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
 use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
@@ -21,6 +24,14 @@ pub struct GeneralizedAlphaScheme {
     rayleigh: [f64; 2],
     forces: Option<Vec<f64>>,
 }
+
+#[derive(Serialize, Deserialize)]
+struct GeneralizedAlphaState {
+    forces: Option<Vec<f64>>,
+}
+
+#[typetag::serde(name = "generalized_alpha")]
+impl State for GeneralizedAlphaState {}
 
 impl GeneralizedAlphaScheme {
     /// The scheme with spectral radius `rho` in [0, 1] at infinite frequency.
@@ -91,6 +102,15 @@ impl Scheme for GeneralizedAlphaScheme {
 
     fn keep(&mut self, forces: Vec<f64>) {
         self.forces = Some(forces);
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(GeneralizedAlphaState { forces: self.forces.clone() }))
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
+        self.forces = state.take::<GeneralizedAlphaState>()?.forces;
+        Ok(())
     }
 
     fn kept(&mut self) -> Option<&mut Vec<f64>> {

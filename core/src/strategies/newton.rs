@@ -7,8 +7,10 @@ mod start;
 
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
 #[cfg(feature = "petsc")]
 use zelus_linear_algebra::Multipliers;
+use zelus_linear_algebra::State;
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 pub(super) use references::References;
@@ -23,7 +25,7 @@ use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded};
-use crate::assembly::{Assembler, System, impose_constraints};
+use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::ModelPart;
 use crate::register;
@@ -76,6 +78,19 @@ pub struct NewtonRaphson {
     pub(super) messages: Vec<Diagnostic>,
 }
 
+#[derive(Serialize, Deserialize)]
+struct NewtonState {
+    failed: bool,
+    /// Of redundant constraints, and of multipliers that are not condensed.
+    warned: [bool; 2],
+    scheme: Option<Box<dyn State>>,
+    solver: Option<Box<dyn State>>,
+    assembler: AssemblerState,
+}
+
+#[typetag::serde(name = "newton_raphson")]
+impl State for NewtonState {}
+
 impl SolutionStrategy for NewtonRaphson {
     fn assembler(&self) -> &Assembler {
         &self.assembler
@@ -87,6 +102,26 @@ impl SolutionStrategy for NewtonRaphson {
 
     fn phases(&self) -> Phases {
         self.phases.clone()
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(NewtonState {
+            failed: self.failed,
+            warned: [self.warned, self.warned_of_multipliers],
+            scheme: self.scheme.state(),
+            solver: self.solver.state(),
+            assembler: self.assembler.state(),
+        }))
+    }
+
+    fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
+        let NewtonState { failed, warned, scheme, solver, assembler } = state.take()?;
+        self.failed = failed;
+        [self.warned, self.warned_of_multipliers] = warned;
+        self.assembler.resume(part, system, assembler);
+        scheme.map_or(Ok(()), |state| self.scheme.resume(state))?;
+        solver.map_or(Ok(()), |state| self.solver.resume(state))?;
+        Ok(())
     }
 
     fn solve_step(

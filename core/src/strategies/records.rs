@@ -13,7 +13,7 @@ const NONE: f64 = 1e-9;
 const NAMED_NODES: usize = 12;
 
 /// One Newton iteration.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct IterationRecord {
     /// From 1.
     pub iteration: usize,
@@ -32,7 +32,7 @@ pub struct IterationRecord {
     /// Engine of the linear solve.
     pub engine: String,
     /// Condition number of the system, where it is asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition_number: Option<f64>,
 }
 
@@ -55,7 +55,7 @@ impl IterationRecord {
 }
 
 /// One step, or one attempt at it.
-#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StepRecord {
     /// Number of the step.
     pub step: usize,

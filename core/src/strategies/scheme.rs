@@ -1,5 +1,7 @@
 //! Time schemes: what inertia adds to the system, and how rates follow displacements.
 
+use zelus_linear_algebra::State;
+
 use super::central_differences::CentralDifferences;
 use crate::assembly::{DofTable, Inertia};
 use crate::diagnostics::Result;
@@ -62,6 +64,19 @@ pub trait Scheme: Send {
 
     /// The forces that inertia and damping took up at the end of an accepted step, a number an unknown.
     fn keep(&mut self, _forces: Vec<f64>) {}
+
+    /// What it remembers between steps beside the fields of the model, for the file of a saved run.
+    fn state(&self) -> Option<Box<dyn State>> {
+        None
+    }
+
+    /// Takes up a saved state.
+    ///
+    /// # Errors
+    /// The state of another scheme.
+    fn resume(&mut self, _state: Box<dyn State>) -> Result<()> {
+        Ok(())
+    }
 
     /// Step start: what it keeps of forces, for changes.
     fn kept(&mut self) -> Option<&mut Vec<f64>> {

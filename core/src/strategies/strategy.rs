@@ -1,6 +1,6 @@
 //! What the stage asks of the solution of a step, whether it iterates or not.
 
-use zelus_linear_algebra::LinearSolver;
+use zelus_linear_algebra::{LinearSolver, State};
 
 #[cfg(feature = "petsc")]
 use super::condensing::multipliers;
@@ -69,6 +69,15 @@ pub trait SolutionStrategy: Send {
 
     /// The system of the last step.
     fn assembler(&self) -> &Assembler;
+
+    /// What it remembers between steps, for the file of a saved run; one that is made of another passes on that of the other.
+    fn state(&self) -> Option<Box<dyn State>>;
+
+    /// Takes up a saved state; `part` and `system` have theirs already.
+    ///
+    /// # Errors
+    /// The state of another strategy.
+    fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()>;
 
     /// Seconds spent beside assembly.
     fn phases(&self) -> Phases {

@@ -1,16 +1,20 @@
 //! A static scheme whose steps begin where the last one would have led, and a solver that takes it.
 
-use zelus_core::Result;
+use serde::{Deserialize, Serialize};
 use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::assembly::DofTable;
 use zelus_core::model::ModelPart;
-use zelus_core::register;
 use zelus_core::strategies::{Scheme, SchemeEntry, SchemeFactory};
+use zelus_core::{Result, State, register};
 
+#[derive(Clone, Serialize, Deserialize)]
 struct Continued {
     /// What the unknowns were when the last step began.
     before: Vec<f64>,
 }
+
+#[typetag::serde(name = "continued")]
+impl State for Continued {}
 
 impl Scheme for Continued {
     fn is_static(&self) -> bool {
@@ -24,6 +28,15 @@ impl Scheme for Continued {
         let more: Vec<f64> = (0..now.len()).map(|at| if free(at) { guess(at) } else { 0.0 }).collect();
         dofs.scatter_add(&more, &mut part.nodes);
         self.before = now;
+        Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(self.clone()))
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
+        *self = state.take()?;
         Ok(())
     }
 }

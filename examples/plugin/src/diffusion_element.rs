@@ -4,6 +4,7 @@
 //! squared per time, times what s has) and s = STORAGE. A prescribed node takes up CONCENTRATION_SUPPLY, what it gives to the
 //! body (amount per time).
 
+use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::entities::{
@@ -36,7 +37,7 @@ struct Diffusion {
 }
 
 /// DIFFUSIVITY and STORAGE.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct Material {
     diffusivity: f64,
     storage: f64,

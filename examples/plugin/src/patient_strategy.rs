@@ -1,11 +1,11 @@
 //! Newton's iteration that goes on once where it has not converged.
 
-use zelus_core::Result;
 use zelus_core::assembly::{Assembler, System};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 use zelus_core::register;
 use zelus_core::strategies::{Monitor, NewtonRaphson, SolutionStrategy, StepRecord, StrategyEntry};
+use zelus_core::{Result, State};
 
 struct Patient(NewtonRaphson);
 
@@ -31,6 +31,14 @@ impl SolutionStrategy for Patient {
 
     fn messages(&mut self) -> Vec<Diagnostic> {
         self.0.messages()
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        self.0.state()
+    }
+
+    fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
+        self.0.resume(part, system, state)
     }
 
     fn assembler(&self) -> &Assembler {

@@ -1,7 +1,7 @@
 //! A builder-and-solver that corrects each answer once by what it leaves.
 
-use zelus_core::register;
 use zelus_core::strategies::{Builder, BuilderEntry};
+use zelus_core::{State, WrongState, register};
 use zelus_linear_algebra::{LinearSolver, SolveError, SolveReport, System};
 
 struct Refining(Box<dyn LinearSolver>);
@@ -21,6 +21,18 @@ impl LinearSolver for Refining {
             x.iter_mut().zip(&correction).for_each(|(x, more)| *x += more);
         }
         Ok(report)
+    }
+
+    fn forget(&mut self) {
+        self.0.forget();
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        self.0.state()
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<(), WrongState> {
+        self.0.resume(state)
     }
 }
 

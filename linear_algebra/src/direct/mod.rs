@@ -8,12 +8,15 @@ mod path;
 
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
 use crate::check::{self, NAMED_EQUATIONS, Refined};
 use crate::interface::Interface;
 use crate::iterations::gmres;
 use crate::lu::SparseLu;
 use crate::memory;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
+use crate::state::{State, WrongState};
 use crate::system::{Stamps, Symmetry, System};
 use crate::vector;
 use path::{Path, Sparse};
@@ -38,7 +41,7 @@ const CHOLESKY_PAUSE: usize = 4;
 const NULL_VECTOR: f64 = 1e-10;
 
 /// The ways, from the preferred one to the last resort.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Way {
     Dense,
     InterfaceCholesky,
@@ -65,23 +68,33 @@ impl Way {
 pub(crate) struct DirectSolver {
     settings: DirectSettings,
     current: Option<(Way, Path, Stamps)>,
-    /// Equations kept in the interface, with the stamp of the bulk's graph they belong to.
-    kept: Option<(Vec<bool>, u64)>,
-    /// Whether the interface of these graphs is too large for a dense block.
-    too_dense: Option<((u64, u64), bool)>,
-    cholesky_pause: usize,
+    learnt: DirectState,
+    /// Multiplications of a factorisation of the whole matrix with these graphs.
+    whole_work: Option<((u64, u64), f64)>,
     seconds_symbolic: f64,
     seconds_numeric: f64,
 }
+
+/// What the engine has learnt.
+#[derive(Clone, Default, Serialize, Deserialize)]
+struct DirectState {
+    /// The way of the last answer, with the stamps of its system.
+    served: Option<(Way, Stamps)>,
+    /// Equations kept in the interface, with the stamp of the bulk's graph they belong to.
+    kept: Option<(Vec<bool>, u64)>,
+    cholesky_pause: usize,
+}
+
+#[typetag::serde(name = "direct")]
+impl State for DirectState {}
 
 impl DirectSolver {
     pub(crate) fn new(settings: DirectSettings) -> Self {
         Self {
             settings,
             current: None,
-            kept: None,
-            too_dense: None,
-            cholesky_pause: 0,
+            learnt: DirectState::default(),
+            whole_work: None,
             seconds_symbolic: 0.0,
             seconds_numeric: 0.0,
         }
@@ -94,7 +107,7 @@ impl DirectSolver {
             return Ok(vec![Way::Dense]);
         }
         let mut ways = Vec::new();
-        let cholesky = system.bulk_symmetry != Symmetry::General && self.cholesky_pause == 0;
+        let cholesky = system.bulk_symmetry != Symmetry::General && self.learnt.cholesky_pause == 0;
         let kept = self.interface(system);
         if kept == 0 {
             ways.extend(cholesky.then_some(Way::WholeCholesky));
@@ -115,7 +128,7 @@ impl DirectSolver {
         let wanted = path::interface_equations(system);
         let count = |kept: &[bool]| kept.iter().filter(|&&kept| kept).count();
         let needed = count(&wanted);
-        if let Some((old, graph)) = &mut self.kept
+        if let Some((old, graph)) = &mut self.learnt.kept
             && *graph == system.bulk_graph
             && old.len() == wanted.len()
         {
@@ -128,7 +141,7 @@ impl DirectSolver {
                 return size;
             }
         }
-        self.kept = Some((wanted, system.bulk_graph));
+        self.learnt.kept = Some((wanted, system.bulk_graph));
         needed
     }
 
@@ -174,7 +187,7 @@ impl DirectSolver {
                 Ok(done.ok().map(|()| Path::Whole(sparse)))
             }
             Way::InterfaceCholesky | Way::InterfaceLu => {
-                let (kept, _) = self.kept.as_ref().expect("decided in `interface`");
+                let (kept, _) = self.learnt.kept.as_ref().expect("decided in `interface`");
                 let (mut sparse, mut old_interface) = match old {
                     Some(Path::Interface(sparse, interface)) if same_bulk_graph && covers(&sparse, kept) => {
                         (sparse, Some(interface))
@@ -214,18 +227,18 @@ impl DirectSolver {
             return Ok(false);
         }
         let graphs = (system.bulk_graph, system.coupling_graph);
-        if let Some((known, too_dense)) = self.too_dense
-            && known == graphs
-        {
-            return Ok(too_dense);
-        }
-        let start = Instant::now();
-        let whole = Sparse::new(&system.merged(), system, &vec![false; system.equations()])?;
-        self.seconds_symbolic += start.elapsed().as_secs_f64();
+        let whole = match self.whole_work {
+            Some((known, whole)) if known == graphs => whole,
+            _ => {
+                let start = Instant::now();
+                let whole = Sparse::new(&system.merged(), system, &vec![false; system.equations()])?.symbolic.work();
+                self.seconds_symbolic += start.elapsed().as_secs_f64();
+                self.whole_work = Some((graphs, whole));
+                whole
+            }
+        };
         // The whole matrix takes an LU, twice the work of Cholesky, in blocks smaller than the dense one.
-        let too_dense = work > 3.0 * 2.0 * whole.symbolic.work();
-        self.too_dense = Some((graphs, too_dense));
-        Ok(too_dense)
+        Ok(work > 3.0 * 2.0 * whole)
     }
 
     /// Solves by one way; `None` when another one should be tried.
@@ -345,6 +358,22 @@ impl LinearSolver for DirectSolver {
         memory::factor(equations, entries)
     }
 
+    /// Factors of an interface whose coupling has changed since would be iterated with.
+    fn forget(&mut self) {
+        if let Some((_, Path::Interface(_, interface), _)) = &mut self.current {
+            interface.forget();
+        }
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(self.learnt.clone()))
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<(), WrongState> {
+        self.learnt = state.take()?;
+        Ok(())
+    }
+
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
         check::input(system, rhs, x)?;
         check::empty_rows(system)?;
@@ -353,22 +382,23 @@ impl LinearSolver for DirectSolver {
         let mut failed: Vec<&'static str> = Vec::new();
         let mut ways = self.ways(system)?;
         // A way that served the same bulk before is tried first, so that a failing one is not tried at each solve.
-        if let Some((way, _, stamps)) = &self.current
+        if let Some((way, stamps)) = self.learnt.served.take()
             && stamps.bulk_graph == system.bulk_graph
             && stamps.bulk_values == system.bulk_values
-            && let Some(at) = ways.iter().position(|candidate| candidate == way)
+            && let Some(at) = ways.iter().position(|candidate| *candidate == way)
         {
             ways.drain(..at);
         }
         for way in ways {
             let Some(refined) = self.attempt(way, system, rhs, x)? else {
                 if matches!(way, Way::WholeCholesky | Way::InterfaceCholesky) {
-                    self.cholesky_pause = CHOLESKY_PAUSE + 1;
+                    self.learnt.cholesky_pause = CHOLESKY_PAUSE + 1;
                 }
                 failed.push(way.name());
                 continue;
             };
-            self.cholesky_pause = self.cholesky_pause.saturating_sub(1);
+            self.learnt.served = Some((way, Stamps::of(system)));
+            self.learnt.cholesky_pause = self.learnt.cholesky_pause.saturating_sub(1);
             let before_solve = self.seconds_symbolic + self.seconds_numeric;
             return Ok(SolveReport {
                 engine: way.name(),

@@ -6,6 +6,8 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 use crate::vector::{add_scaled, dot, norm};
 
 /// Answers kept.
@@ -14,7 +16,7 @@ const KEPT: usize = 6;
 const INDEPENDENT: f64 = 1e-7;
 
 /// The latest answers of a solver.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Answers {
     /// What they are answers of.
     graph: u64,

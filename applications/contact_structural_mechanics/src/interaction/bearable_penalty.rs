@@ -4,6 +4,7 @@
 //! their facets that is a node's and its mass m: (B x)² ≤ ‖B‖₁ Σ |B_i| x_i² for the operator B of a node, whose entries add up to
 //! its area on either side. Steps Δt are stable below ω² = 4/Δt², of which the bodies take 4/Δt_c².
 
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::mapping::domain_size;
 use zelus_core::model::ModelPart;
@@ -19,7 +20,7 @@ use crate::variables::INITIAL_PENALTY;
 const LEAST: f64 = 0.05;
 
 /// What the steps of a run have carried so far.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct BearablePenalty {
     /// Largest a/m and area a of the nodes that move (area by mass, area).
     load: Option<[f64; 2]>,

@@ -2,19 +2,19 @@
 
 use std::sync::Arc;
 
-use crate::flags::CONTACT;
-use zelus_core::Result;
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
     ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, Outer, Retry, SetChange,
 };
 use zelus_core::model::{ModelPart, ScalarVariable};
+use zelus_core::{Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
 use super::activation::Start;
 use super::bearable_penalty::BearablePenalty;
 use super::contact_settings::ContactSettings;
-use super::contact_state::ContactState;
+use super::contact_state::{ContactState, RememberedContact};
 use super::friction;
 use super::impact::near_nodes;
 use super::outer_loops::OuterLoops;
@@ -22,6 +22,7 @@ use super::points;
 use super::reach::Reach;
 use super::set_stage::SetStage;
 use super::step_parameters::StepParameters;
+use crate::flags::CONTACT;
 use crate::interface::{Bodies, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
 use crate::penalty_adaptation::Growth;
@@ -48,6 +49,20 @@ pub struct ContactInteraction {
     /// Nodes that contact is near to.
     near_nodes: Vec<u32>,
 }
+
+/// What contact remembers between steps, as it stands in a saved run.
+#[derive(Serialize, Deserialize)]
+struct SavedContact {
+    contact: RememberedContact,
+    set: SetStage,
+    loops: OuterLoops,
+    bearable: BearablePenalty,
+    near_nodes: Vec<u32>,
+    warned_of_friction: bool,
+}
+
+#[typetag::serde(name = "contact")]
+impl State for SavedContact {}
 
 impl ContactInteraction {
     /// Contact with these settings; the interfaces are built at once, so that a wrong part is named early.
@@ -152,6 +167,25 @@ impl Interaction for ContactInteraction {
             }
         }
         self.contact.publish(part);
+        Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedContact {
+            contact: self.contact.state(),
+            set: self.set.clone(),
+            loops: self.loops.clone(),
+            bearable: self.bearable.clone(),
+            near_nodes: self.near_nodes.clone(),
+            warned_of_friction: self.warned_of_friction,
+        }))
+    }
+
+    fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
+        let SavedContact { contact, set, loops, bearable, near_nodes, warned_of_friction } = state.take()?;
+        self.contact.resume(part, contact)?;
+        (self.set, self.loops, self.bearable) = (set, loops, bearable);
+        (self.near_nodes, self.warned_of_friction) = (near_nodes, warned_of_friction);
         Ok(())
     }
 

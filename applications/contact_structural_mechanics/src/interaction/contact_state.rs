@@ -1,6 +1,6 @@
 //! What contact is at a moment: interfaces with their pairs, slave nodes with their states, and the numbers of the run.
 
-use crate::flags::{MASTER, SLAVE};
+use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
@@ -11,11 +11,13 @@ use super::edges::turn_edges;
 use super::friction;
 use super::holding::Holding;
 use super::integration::integrate;
-use super::pairing::Pairing;
+use super::pairing::{Pairing, PairingState};
 use super::points;
 use super::setup::Setup;
+use crate::flags::{MASTER, SLAVE};
 use crate::interface::{Roles, add_contact_part, interfaces, warnings_of_pairs};
 use crate::pairs::Pair;
+use crate::resolution::Resolution;
 use crate::search::{GapCheck, assign_roles};
 use crate::slave_states::SlaveStates;
 use crate::solver::AVERAGED_EDGES;
@@ -34,6 +36,16 @@ pub(super) struct ContactState {
     saved: SlaveStates,
     /// What the user is to be told.
     pub messages: Vec<Diagnostic>,
+}
+
+/// What contact remembers between steps.
+#[derive(Serialize, Deserialize)]
+pub(super) struct RememberedContact {
+    pairing: PairingState,
+    states: SlaveStates,
+    holding: Holding,
+    resolution: Resolution,
+    steps_since_search: usize,
 }
 
 impl ContactState {
@@ -92,6 +104,30 @@ impl ContactState {
         self.states = self.saved.clone();
         self.pairing.restore(&self.setup);
         self.steps_since_search = usize::MAX;
+    }
+
+    /// What it remembers between steps.
+    pub(super) fn state(&self) -> RememberedContact {
+        RememberedContact {
+            pairing: self.pairing.state(),
+            states: self.states.clone(),
+            holding: self.holding.clone(),
+            resolution: self.setup.resolution,
+            steps_since_search: self.steps_since_search,
+        }
+    }
+
+    /// Takes up what it remembered of the same interfaces.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    pub(super) fn resume(&mut self, part: &mut ModelPart, state: RememberedContact) -> Result<()> {
+        let RememberedContact { pairing, states, holding, resolution, steps_since_search } = state;
+        (self.holding, self.setup.resolution, self.steps_since_search) = (holding, resolution, steps_since_search);
+        self.pairing.resume(part, &self.holding, &self.setup, pairing)?;
+        self.states.resume(states);
+        self.pairing.set_states(&self.states);
+        Ok(())
     }
 
     /// Normals of the nodes in the present configuration.

@@ -6,6 +6,7 @@
 //! what is an equilibrium. Where that comes back to a set too, no set fulfils all conditions at the resolution of the
 //! mesh; that one is taken which violates them least, if that is little, and the step fails otherwise.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 
 use crate::active_set::Decision;
@@ -34,12 +35,15 @@ pub(super) enum Settled {
 }
 
 /// The sets of a step's iterations.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct CycleGuard {
+    #[serde(skip)]
     sets: Vec<Vec<NodeState>>,
     /// Whether states change in converged states only.
+    #[serde(skip)]
     held: bool,
     /// Sets that have converged, with what they violate.
+    #[serde(skip)]
     converged: Vec<(Vec<NodeState>, f64)>,
     warned: bool,
 }

@@ -5,6 +5,7 @@
 //! far easier. A step that is tried again solves it first; from there friction takes over, against the slip that it left.
 //! What converges in the end is the step as the deck has it.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, scale};
@@ -18,7 +19,7 @@ use crate::slave_states::SlaveStates;
 const SHARES: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
 
 /// How much of friction acts.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct FrictionRamp {
     /// Attempts of this step that have failed one after the other.
     failed: usize,

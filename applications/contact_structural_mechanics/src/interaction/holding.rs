@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::geometry::shape_functions;
@@ -27,7 +28,7 @@ const LEAST_SLOPE: f64 = 0.1;
 const SAME_MOTION: f64 = 1e-9;
 
 /// Nodes that supports hold, and what was said of them.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Holding {
     fixed: BTreeMap<u32, Fixed>,
     planes: BTreeMap<u32, Fixed>,

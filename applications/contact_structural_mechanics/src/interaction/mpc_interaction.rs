@@ -5,14 +5,14 @@
 //! force of its constraint is below the bound of friction; beyond, a force of that size acts on it and on its masters instead,
 //! against the slip ([`slider_forces`](super::slider_forces)).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::flags::{CONTACT, MASTER, SLAVE};
-use zelus_core::Result;
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, require_kind};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role};
 use zelus_core::vector3::{dot, scale};
+use zelus_core::{Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::activation::{self, Start};
@@ -24,8 +24,10 @@ use super::mpc_relations::Relations;
 use super::mpc_settings::{MpcKind, MpcSettings};
 use super::reach::Reach;
 use crate::active_set::SlipRule;
+use crate::flags::{CONTACT, MASTER, SLAVE};
 use crate::interface::{
-    Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals, slave_nodes, warnings_of_pairs,
+    Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals, set_sides, sides, slave_nodes,
+    warnings_of_pairs,
 };
 use crate::pairs::{Friction, condition_name};
 use crate::slave_states::{Columns, SlaveStates};
@@ -58,6 +60,22 @@ pub struct MpcInteraction {
     warned_of_held: bool,
     messages: Vec<Diagnostic>,
 }
+
+/// What contact by constraints remembers between steps, as it stands in a saved run.
+#[derive(Serialize, Deserialize)]
+struct SavedMpc {
+    sides: Vec<Vec<Roles>>,
+    states: SlaveStates,
+    relations: Relations,
+    directions: BTreeMap<u32, [f64; 3]>,
+    versions: [u64; 2],
+    steps_since_search: usize,
+    sided: bool,
+    warned_of_held: bool,
+}
+
+#[typetag::serde(name = "mpc_contact")]
+impl State for SavedMpc {}
 
 impl MpcInteraction {
     /// Contact with these settings; the interfaces are built at once, so that a wrong part is named early.
@@ -305,6 +323,30 @@ impl Interaction for MpcInteraction {
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.warn_of_held(part);
+        Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedMpc {
+            sides: sides(&self.interfaces),
+            states: self.states.clone(),
+            relations: self.relations.clone(),
+            directions: self.friction.directions.clone(),
+            versions: [self.version, self.friction.graph],
+            steps_since_search: self.steps_since_search,
+            sided: self.sided,
+            warned_of_held: self.warned_of_held,
+        }))
+    }
+
+    fn resume(&mut self, _part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
+        let saved: SavedMpc = state.take()?;
+        set_sides(&mut self.interfaces, saved.sides);
+        self.states.resume(saved.states);
+        self.relations = saved.relations;
+        (self.friction.directions, [self.version, self.friction.graph]) = (saved.directions, saved.versions);
+        (self.steps_since_search, self.sided) = (saved.steps_since_search, saved.sided);
+        self.warned_of_held = saved.warned_of_held;
         Ok(())
     }
 

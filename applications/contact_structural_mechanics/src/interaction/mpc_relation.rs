@@ -13,6 +13,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart};
 use zelus_core::vector3::{dot, normalised, sub};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
@@ -28,13 +29,13 @@ const NEGLIGIBLE: f64 = 1e-12;
 const HOLD: f64 = 0.1;
 
 /// Rows of one pair: which slave nodes follow which masters.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct PairRelation {
     rows: Vec<Row>,
 }
 
 /// One slave node of a pair.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Row {
     node: u32,
     area: f64,
@@ -45,7 +46,7 @@ struct Row {
 }
 
 /// A slave node with the sum of its rows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct NodeRelation {
     /// Master nodes and their weights.
     pub weights: Vec<(u32, f64)>,

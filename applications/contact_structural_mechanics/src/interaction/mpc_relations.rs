@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, norm, sub};
@@ -19,7 +20,7 @@ use crate::variables::NODAL_H;
 const FINE: usize = 4;
 
 /// Relations by pair and by slave node.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Relations {
     /// By pair.
     pub pairs: BTreeMap<PairKey, PairRelation>,
@@ -27,6 +28,7 @@ pub(super) struct Relations {
     pub nodes: BTreeMap<u32, NodeRelation>,
     /// Where the nodes of the interfaces were when relations were made.
     places: Vec<[f64; 3]>,
+    #[serde(skip)]
     saved: BTreeMap<PairKey, PairRelation>,
     warned: bool,
 }

@@ -1,5 +1,6 @@
 //! The loops around Newton's iteration: the checks of a converged state, and what each changes before the next iteration.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::entities::Outer;
 use zelus_core::model::ModelPart;
@@ -17,7 +18,7 @@ use crate::solver::ENSURE_CONTACT;
 use crate::variables::WEIGHTED_GAP;
 
 /// The loops of a step.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct OuterLoops {
     /// Searches within the step.
     pub step_search: StepSearch,
@@ -28,6 +29,7 @@ pub(super) struct OuterLoops {
     /// Whether friction waits for contact.
     friction_ramp: FrictionRamp,
     /// Weighted gaps at the start of the step.
+    #[serde(skip)]
     start_gaps: Vec<f64>,
     /// What the last attempt at the step made of the energy of motion, where that was too much.
     impact_error: f64,

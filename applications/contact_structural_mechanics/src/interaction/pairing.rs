@@ -3,13 +3,12 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use zelus_core::entities::require_kind;
-use zelus_core::model::Role;
 
+use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::EntityBlock;
-use zelus_core::model::ModelPart;
+use zelus_core::entities::{EntityBlock, require_kind};
+use zelus_core::model::{ModelPart, Role};
 use zelus_core::vector3::dot;
 
 use super::contact_settings::ContactSettings;
@@ -18,7 +17,8 @@ use super::nodal_sums::NodalSums;
 use super::setup::Setup;
 use super::step_parameters::{NormalVariation, StepParameters};
 use crate::interface::{
-    Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, slave_nodes,
+    Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, set_sides, sides,
+    slave_nodes,
 };
 use crate::mortar::{Choices, SegmentationSettings};
 use crate::pairs::{
@@ -51,6 +51,16 @@ pub(super) struct Pairing {
     /// Pairs that another rank evaluates than the owner of their slave.
     pub moved: usize,
     saved: Vec<Pair>,
+    warned_of_reach: bool,
+}
+
+/// What pairs remember between steps.
+#[derive(Serialize, Deserialize)]
+pub(super) struct PairingState {
+    sides: Vec<Vec<Roles>>,
+    pairs: Vec<Pair>,
+    touching: BTreeSet<u32>,
+    graph: u64,
     warned_of_reach: bool,
 }
 
@@ -362,6 +372,35 @@ impl Pairing {
         // The same shapes were made into blocks before.
         let _ = self.set(saved, &setup.settings, &setup.parameters);
         self.graph += 1;
+    }
+
+    /// What it remembers between steps.
+    pub(super) fn state(&self) -> PairingState {
+        PairingState {
+            sides: sides(&self.interfaces),
+            pairs: self.pairs(),
+            touching: self.touching.clone(),
+            graph: self.graph,
+            warned_of_reach: self.warned_of_reach,
+        }
+    }
+
+    /// Takes up what it remembered of the same interfaces; `holding` has its state already.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    pub(super) fn resume(
+        &mut self,
+        part: &ModelPart,
+        holding: &Holding,
+        setup: &Setup,
+        state: PairingState,
+    ) -> Result<()> {
+        set_sides(&mut self.interfaces, state.sides);
+        self.find_patches(part, holding);
+        self.set(state.pairs, &setup.settings, &setup.parameters)?;
+        (self.touching, self.graph, self.warned_of_reach) = (state.touching, state.graph, state.warned_of_reach);
+        Ok(())
     }
 
     /// The blocks as the assembly sees them.

@@ -4,6 +4,7 @@
 //! an element makes pressures of it that decide on contact wrongly. A step that is tried again begins with a share of the
 //! penalty, and each converged state raises it, so that motions are small where the spring is stiff.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;
 use zelus_core::model::ProcessInfo;
 
@@ -16,7 +17,7 @@ const FIRST: f64 = 1e-3;
 const RISE: f64 = 10.0;
 
 /// The share of the penalty that acts now.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct PenaltyRamp {
     share: f64,
     /// Whether the next step begins with less than all of it.

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Outer, SetChange};
 use zelus_core::model::ModelPart;
@@ -13,12 +14,14 @@ use super::sliding::find_tangents;
 use crate::slave_states::SlaveStates;
 
 /// What the stage remembers of a step.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct SetStage {
     cycles: CycleGuard,
     /// Nodes that were pushed along their motion and stick since.
+    #[serde(skip)]
     released: BTreeSet<u32>,
     /// How often nodes that always slide have turned back.
+    #[serde(skip)]
     reversals: BTreeMap<u32, usize>,
 }
 

@@ -1,5 +1,6 @@
 //! When contact searches within a step: in its first iterations, and in converged states.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::Outer;
@@ -16,7 +17,7 @@ use crate::slave_states::SlaveStates;
 const MOST_SEARCHES: usize = 5;
 
 /// The searches of a step.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct StepSearch {
     /// In converged states of this step.
     searches: usize,

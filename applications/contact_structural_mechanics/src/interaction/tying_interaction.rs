@@ -1,19 +1,18 @@
 //! Meshes that do not match, tied by multipliers: D and M of a pair are those of the moment it is made.
 
 use std::collections::{BTreeMap, BTreeSet};
-use zelus_core::entities::require_kind;
-use zelus_core::model::Role;
 
-use crate::flags::CONTACT;
-use zelus_core::Result;
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{Coupling, EntityBlock, Interaction};
+use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{MasterSlaveConstraint, ModelPart, ScalarVariable};
+use zelus_core::model::{MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
 use zelus_core::parameters::Interval;
+use zelus_core::{Result, State};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::holding::Holding;
+use crate::flags::CONTACT;
 use crate::interface::{
     Fixed, Interface, NodalNormals, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals,
     slave_nodes, warnings_of_pairs,
@@ -71,6 +70,21 @@ pub struct TyingInteraction {
     steps_since_search: Option<usize>,
     messages: Vec<Diagnostic>,
 }
+
+/// What ties remember between steps, as it stands in a saved run.
+#[derive(Serialize, Deserialize)]
+struct SavedTie {
+    pairs: BTreeMap<PairKey, FacetOperators>,
+    /// Whether the tie holds now.
+    holds: bool,
+    holding: Holding,
+    graph: u64,
+    constrained: u64,
+    steps_since_search: Option<usize>,
+}
+
+#[typetag::serde(name = "mesh_tying")]
+impl State for SavedTie {}
 
 impl TyingInteraction {
     /// Ties with these settings; the interfaces are built at once, so that a wrong part is named early.
@@ -270,6 +284,27 @@ impl Interaction for TyingInteraction {
         if self.settings.mind_supports {
             self.hold(part);
         }
+        Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedTie {
+            pairs: self.pairs.clone(),
+            holds: !self.blocks.is_empty(),
+            holding: self.holding.clone(),
+            graph: self.graph,
+            constrained: self.constrained,
+            steps_since_search: self.steps_since_search,
+        }))
+    }
+
+    fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
+        let SavedTie { pairs, holds, holding, graph, constrained, steps_since_search } = state.take()?;
+        (self.pairs, self.holding, self.steps_since_search) = (pairs, holding, steps_since_search);
+        if holds {
+            self.make_blocks(part)?;
+        }
+        (self.graph, self.constrained) = (graph, constrained);
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! Uzawa's outer loop: the pressure that is kept follows the multipliers until nothing gives way (eq. D.10).
 
+use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;
 use zelus_core::model::Nodes;
 
@@ -16,7 +17,7 @@ pub struct UzawaSettings {
 }
 
 /// The updates of a step.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Uzawa {
     /// Updates made in this step.
     pub(super) updates: usize,

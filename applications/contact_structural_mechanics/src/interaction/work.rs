@@ -3,6 +3,7 @@
 //! What contact does to one body the other one takes, springs give back what they took, and friction only takes. A sum above
 //! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
 
+use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::assembly::nodal_vectors;
 use zelus_core::diagnostics::Diagnostic;
@@ -20,7 +21,7 @@ const REMEDY: &str = "make the finer of the two sides the slave, or refine the s
      keep \"contact_stabilisation\" and \"impact_energy_tolerance\" of \"contact_settings\" at their defaults";
 
 /// Sums over the present step.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct Step {
     /// Work on all nodes.
     work: f64,
@@ -29,11 +30,12 @@ struct Step {
 }
 
 /// Forces of contact on the nodes of a model part, and the work that they have done since the run began.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct ContactWork {
     /// Forces at the end of the last accepted step (3 a node); empty before the first one.
     before: Vec<f64>,
     /// Forces at the end of the present one.
+    #[serde(skip)]
     now: Vec<f64>,
     step: Step,
     /// Sums over all accepted steps.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::flags::{MASTER, SLAVE};
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
@@ -13,7 +15,7 @@ use zelus_core::model::{ModelPart, SubPart};
 use zelus_core::vector3::{dot, sub};
 
 /// Which sides a facet can be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Roles {
     /// Carries multipliers.
     Slave,
@@ -60,6 +62,18 @@ pub struct Interface {
     pub nodes: Vec<u32>,
     /// Whether each search decides the roles (self contact): the deck names no slave side.
     pub open: bool,
+}
+
+/// The sides of all facets.
+pub fn sides(interfaces: &[Interface]) -> Vec<Vec<Roles>> {
+    interfaces.iter().map(|interface| interface.facets.iter().map(|facet| facet.role).collect()).collect()
+}
+
+/// Gives the facets the sides that [`sides`] told of them.
+pub fn set_sides(interfaces: &mut [Interface], sides: Vec<Vec<Roles>>) {
+    for (interface, sides) in interfaces.iter_mut().zip(sides) {
+        interface.facets.iter_mut().zip(sides).for_each(|(facet, side)| facet.role = side);
+    }
 }
 
 impl Interface {

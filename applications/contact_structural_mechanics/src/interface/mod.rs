@@ -10,7 +10,7 @@ mod supports;
 
 pub use bodies::{Bodies, Tractions};
 pub use contact_part::add_contact_part;
-pub use facets::{Facet, FacetSource, Interface, Roles, interfaces, slave_nodes, warnings_of_pairs};
+pub use facets::{Facet, FacetSource, Interface, Roles, interfaces, set_sides, sides, slave_nodes, warnings_of_pairs};
 pub use nodal_h::find_nodal_h;
 pub use normals::{Corner, NodalNormals, NormalPatches, centre_normal, nodal_normals, positions};
 pub use parameters::{AlmParameters, alm_parameters};

@@ -4,8 +4,10 @@
 //! vertices, an overlap of one triangle takes plain functions for dual ones, a sliver counts for nothing. Where an
 //! equilibrium lies on such a jump no iterate reaches it, however short the step; with frozen choices one does.
 
+use serde::{Deserialize, Serialize};
+
 /// The choices a pair has frozen; none at first.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Choices {
     /// Local coordinates on the slave near which the vertex lies that all cells share.
     pub origin: Option<[f64; 2]>,

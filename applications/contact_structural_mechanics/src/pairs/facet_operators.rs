@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use zelus_core::model::ModelPart;
 use zelus_structural_mechanics::variables::NORMAL;
 
@@ -15,7 +16,7 @@ use crate::mortar::{Choices, Overlap, PairGeometry, SegmentationSettings, operat
 use crate::search::{Candidate, SearchSettings, candidates};
 
 /// D and M of a pair, in the leading rows and columns (area).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct FacetOperators {
     /// D_jk, slave on slave; diagonal where dual functions are in use.
     pub d: [[f64; 4]; 4],
@@ -53,7 +54,7 @@ impl FacetOperators {
 }
 
 /// Two facets that overlap.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FacetPair {
     /// Its facets.
     pub key: PairKey,

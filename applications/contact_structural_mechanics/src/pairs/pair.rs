@@ -1,9 +1,11 @@
 //! One slave facet and one master facet that overlap.
 
+use serde::{Deserialize, Serialize};
+
 use crate::mortar::{Choices, Operators};
 
 /// Which facets of which interface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct PairKey {
     /// Position of the interface.
     pub interface: u32,
@@ -14,7 +16,7 @@ pub struct PairKey {
 }
 
 /// Operators at the start of the step, against which slip is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Previous {
     /// D of the start of the step, in the leading rows and columns.
     pub d: [[f64; 4]; 4],
@@ -33,7 +35,7 @@ impl Previous {
 }
 
 /// A pair with what it remembers between iterations and steps.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// Its facets.
     pub key: PairKey,

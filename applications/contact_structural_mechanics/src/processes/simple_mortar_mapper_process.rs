@@ -1,14 +1,13 @@
 //! Maps a nodal variable from one surface to another that lies on it, by mortar: v_j = c Σ (M v)_j / Σ D_jj.
 
 use std::collections::BTreeMap;
-use zelus_core::processes::ProcessEntry;
 
-use zelus_core::Result;
+use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Field, Model, ModelPart, Named, named};
 use zelus_core::parameters::{Interval, Settings};
-use zelus_core::processes::{Process, ProcessRequest};
-use zelus_core::register;
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
+use zelus_core::{Result, State, register};
 use zelus_structural_mechanics::variables::NORMAL;
 
 use super::interface_settings::{check_positive, segmentation};
@@ -127,18 +126,32 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     }))
 }
 
+/// The overlaps that were found.
+#[derive(Serialize, Deserialize)]
+struct SavedPairs(Vec<FacetPair>);
+
+#[typetag::serde(name = "simple_mortar_mapper")]
+impl State for SavedPairs {}
+
 impl Mapper {
-    /// The overlaps as they stand; flags of contact on the same nodes are left as they are.
-    fn find_pairs(&mut self, part: &mut ModelPart) -> Result<()> {
-        if self.interface.is_empty() {
-            let flags = part.nodes.flags.clone();
-            let key = "0".to_owned();
-            let parts = BTreeMap::from([(key.clone(), vec![self.origin_part.clone(), self.destination_part.clone()])]);
-            let slaves = BTreeMap::from([(key, vec![self.destination_part.clone()])]);
-            let found = interfaces(part, &parts, &slaves);
-            part.nodes.flags = flags;
-            self.interface = found?;
+    /// The facets, once; flags of contact on the same nodes are left as they are.
+    fn find_facets(&mut self, part: &mut ModelPart) -> Result<()> {
+        if !self.interface.is_empty() {
+            return Ok(());
         }
+        let flags = part.nodes.flags.clone();
+        let key = "0".to_owned();
+        let parts = BTreeMap::from([(key.clone(), vec![self.origin_part.clone(), self.destination_part.clone()])]);
+        let slaves = BTreeMap::from([(key, vec![self.destination_part.clone()])]);
+        let found = interfaces(part, &parts, &slaves);
+        part.nodes.flags = flags;
+        self.interface = found?;
+        Ok(())
+    }
+
+    /// The overlaps as they stand.
+    fn find_pairs(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.find_facets(part)?;
         part.nodes.history.add(&NORMAL);
         nodal_normals(part, &self.interface);
         let pairs = overlapping_pairs(part, &self.interface, &self.search, &self.segmentation, &|_| false);
@@ -189,6 +202,16 @@ impl Process for Mapper {
             }
         }
         Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedPairs(self.pairs.clone())))
+    }
+
+    fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        let SavedPairs(pairs) = state.take()?;
+        self.pairs = pairs;
+        self.find_facets(model.root_mut(&self.root)?)
     }
 }
 

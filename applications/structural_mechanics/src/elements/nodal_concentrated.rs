@@ -4,6 +4,8 @@
 //! NODAL_DAMPING_RATIO (force per velocity), u_0 NODAL_INITIAL_DISPLACEMENT of the element and g VOLUME_ACCELERATION of
 //! the node. Constants of the properties go before those of the element.
 
+use serde::{Deserialize, Serialize};
+
 use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Build;
@@ -22,7 +24,7 @@ use crate::variables::{
 pub struct NodalConcentrated;
 
 /// Constants of one node.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Constants {
     mass: f64,
     stiffness: [f64; 3],

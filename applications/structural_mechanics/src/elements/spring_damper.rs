@@ -3,6 +3,8 @@
 //! Force on the first node k (u_2 − u_1) + c (v_2 − v_1), on the second the opposite; k NODAL_DISPLACEMENT_STIFFNESS, c
 //! NODAL_DAMPING_RATIO (force per velocity) of the properties or of the element. Its springs on rotations are not there.
 
+use serde::{Deserialize, Serialize};
+
 use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Build;
@@ -19,7 +21,7 @@ use crate::variables::{NODAL_DAMPING_RATIO, NODAL_DISPLACEMENT_STIFFNESS};
 pub struct SpringDamper<const DIM: usize>;
 
 /// Constants of one pair of nodes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Constants {
     stiffness: [f64; 3],
     damping: [f64; 3],

@@ -45,7 +45,8 @@ impl Assembler {
         let single = !damped_by_properties(part, system);
         let stale =
             self.traits.variable_bulk || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
-        if stale {
+        let missing = self.reduced_bulk.rows == 0;
+        if stale || missing {
             let is_constant = inertia.is_none() && !self.traits.variable_bulk;
             let mut values = if is_constant { Vec::new() } else { self.stiffness(part, system)? };
             // Damping acts on rates only, which takes the symmetry from unknowns without them.
@@ -74,7 +75,8 @@ impl Assembler {
             }
             self.bulk = (!is_constant).then_some(values);
             self.bulk_general = self.traits.general_elements || damped;
-            self.reduce_bulk(self.reduced_graph == self.stamps.bulk_graph);
+            self.reduce_bulk(!missing && self.reduced_graph == self.stamps.bulk_graph);
+            self.stamps.bulk_values += u64::from(stale);
             self.reduced_graph = self.stamps.bulk_graph;
             self.tangent_key = Some(key);
         }
@@ -89,7 +91,6 @@ impl Assembler {
     fn reduce_bulk(&mut self, same_pattern: bool) {
         let values = self.bulk.as_ref().or(self.constant.as_ref()).expect("assembled before it is reduced");
         self.equations.reduce_matrix(&self.pattern.zero, values, &mut self.reduced_bulk, same_pattern);
-        self.stamps.bulk_values += 1;
     }
 
     /// Multiplies the tangents of follower loads, until they are assembled again.

@@ -19,7 +19,8 @@ pub(super) enum Unit {
 pub(super) struct OutputControl {
     pub(super) unit: Unit,
     interval: f64,
-    next: f64,
+    /// When output is wanted next.
+    pub(super) next: f64,
 }
 
 impl OutputControl {
@@ -62,7 +63,8 @@ impl OutputControl {
 #[derive(Debug, Clone)]
 pub(super) struct TimeCounter {
     frequency: f64,
-    counter: f64,
+    /// Time since the last output.
+    pub(super) counter: f64,
 }
 
 impl TimeCounter {

@@ -3,6 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
 use crate::diagnostics::Result;
 use crate::io::results::{Dataset, VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
 use crate::model::ModelPart;
@@ -33,6 +36,19 @@ pub trait OutputFormat: Send {
 
     /// Endings of its files: those of earlier runs are removed from the folder.
     fn endings(&self) -> &'static [&'static str];
+
+    /// What it remembers between pictures, for the file of a saved run.
+    fn state(&self) -> Option<Box<dyn State>> {
+        None
+    }
+
+    /// Takes up a saved state.
+    ///
+    /// # Errors
+    /// The state of another format.
+    fn resume(&mut self, _state: Box<dyn State>) -> Result<()> {
+        Ok(())
+    }
 
     /// What a user would open; the folder unless the format has files that name the others.
     fn outputs(&self, folder: &Path) -> Vec<PathBuf> {
@@ -69,11 +85,14 @@ impl OutputFormat for Legacy {
 }
 
 /// Compressed VTU, with a PVD file a series.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 struct Vtu {
     /// Time and file of every step written, by series.
     series: BTreeMap<String, Vec<(f64, String)>>,
 }
+
+#[typetag::serde(name = "vtu")]
+impl State for Vtu {}
 
 impl Vtu {
     /// Writes a VTU file, or one a rank and a PVTU file that lists them; gives the name of what to open. Collective.
@@ -103,6 +122,15 @@ impl Vtu {
 }
 
 impl OutputFormat for Vtu {
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(self.clone()))
+    }
+
+    fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
+        *self = state.take()?;
+        Ok(())
+    }
+
     fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
         let file = Self::write_file(shown)?;
         let steps = self.series.entry(shown.series.to_owned()).or_default();

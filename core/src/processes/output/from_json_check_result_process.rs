@@ -1,10 +1,10 @@
 //! Results compared with those of a JSON file; a difference ends the run.
 
-use crate::model::Role;
-use crate::processes::ProcessEntry;
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use zelus_linear_algebra::State;
 
 use super::control::TimeCounter;
 use super::gauss;
@@ -13,10 +13,10 @@ use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
-use crate::model::{Model, ModelPart, SubPart, Table};
+use crate::model::{Model, ModelPart, Role, SubPart, Table};
 use crate::parameters::Defaults;
 use crate::processes::comparison::{is_close, told};
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
 /// Differences told in full; more are counted.
@@ -154,7 +154,23 @@ impl FromJsonCheck {
     }
 }
 
+/// Time since the last comparison.
+#[derive(Serialize, Deserialize)]
+struct SavedCounter(f64);
+
+#[typetag::serde(name = "from_json_check_result")]
+impl State for SavedCounter {}
+
 impl Process for FromJsonCheck {
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedCounter(self.counter.counter)))
+    }
+
+    fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        self.counter.counter = state.take::<SavedCounter>()?.0;
+        Ok(())
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
     }

@@ -1,9 +1,10 @@
 //! Results for GiD as text: a mesh file and a results file, or one pair a step.
 
-use crate::model::Role;
-use crate::processes::ProcessEntry;
 use std::io::Write;
 use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
 
 use super::control::OutputControl;
 use super::gauss;
@@ -16,10 +17,10 @@ use crate::diagnostics::{Diagnostic, Result};
 use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
 };
-use crate::io::{append_to_file, replace_file};
-use crate::model::{Model, ModelPart, SubPart};
+use crate::io::{append_to_file, cut_file, length_of, replace_file};
+use crate::model::{Model, ModelPart, Role, SubPart};
 use crate::parameters::{Defaults, Settings};
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
 /// Where the settings of the files are in `Parameters`.
@@ -183,6 +184,16 @@ impl GidOutput {
     }
 }
 
+/// Files of results so far, with their lengths, and when output is wanted next.
+#[derive(Serialize, Deserialize)]
+struct GidOutputState {
+    written: Vec<(PathBuf, u64)>,
+    next: f64,
+}
+
+#[typetag::serde(name = "gid_output")]
+impl State for GidOutputState {}
+
 impl Process for GidOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
@@ -219,6 +230,19 @@ impl Process for GidOutput {
             self.write_list(&part.ranks)?;
         }
         self.control.written(&part.info);
+        Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        let written = self.written.iter().map(|path| (path.clone(), length_of(path))).collect();
+        Some(Box::new(GidOutputState { written, next: self.control.next }))
+    }
+
+    fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        let GidOutputState { written, next } = state.take()?;
+        written.iter().try_for_each(|(path, length)| cut_file(&model.ranks, path, *length))?;
+        self.written = written.into_iter().map(|(path, _)| path).collect();
+        self.control.next = next;
         Ok(())
     }
 

@@ -1,11 +1,12 @@
 //! Histories of nodes and Gauss points in a JSON file.
 
-use crate::model::Role;
-use crate::processes::ProcessEntry;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
 
 use super::control::TimeCounter;
 use super::gauss;
@@ -15,9 +16,9 @@ use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::entities::Gauss;
 use crate::io::replace_file;
-use crate::model::{Fields, Flags, Model, ModelPart, SubPart};
+use crate::model::{Fields, Flags, Model, ModelPart, Role, SubPart};
 use crate::parameters::Defaults;
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
 /// How often at most the file is rewritten while the run goes on; at its end it is in any case.
@@ -34,6 +35,13 @@ struct JsonOutput {
     history: bool,
     resultant: bool,
     by_coordinates: bool,
+    series: Histories,
+    last_write: Option<Instant>,
+}
+
+/// What has been sampled so far.
+#[derive(Clone, Default, Serialize, Deserialize)]
+struct Histories {
     /// Nodes of this rank that have passed the filter, ascending.
     known: Vec<u32>,
     /// Elements of this rank whose Gauss points are followed.
@@ -44,11 +52,19 @@ struct JsonOutput {
     /// By id; of several ranks the first has them all.
     elements: BTreeMap<usize, Vec<Vec<Gauss>>>,
     resultants: Vec<Vec<f64>>,
-    last_write: Option<Instant>,
 }
 
+#[derive(Serialize, Deserialize)]
+struct JsonOutputState {
+    counter: f64,
+    series: Histories,
+}
+
+#[typetag::serde(name = "json_output")]
+impl State for JsonOutputState {}
+
 /// The history of one node: all quantities of a step one after another.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 struct NodeSeries {
     key: String,
     values: Vec<f64>,
@@ -67,12 +83,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         history: settings.get_bool("historical_value")?,
         resultant: settings.get_bool("resultant_solution")?,
         by_coordinates: settings.get_bool("use_node_coordinates")?,
-        known: Vec::new(),
-        followed: Vec::new(),
-        times: Vec::new(),
-        nodes: BTreeMap::new(),
-        elements: BTreeMap::new(),
-        resultants: Vec::new(),
+        series: Histories::default(),
         last_write: None,
     }))
 }
@@ -96,7 +107,7 @@ impl JsonOutput {
     /// Makes keys for the nodes and elements that pass the filter and have none yet; collective.
     fn keys(&mut self, part: &ModelPart, selection: &SubPart) {
         let is_new = |node: &&u32| {
-            self.known.binary_search(node).is_err()
+            self.series.known.binary_search(node).is_err()
                 && part.owns_node(**node as usize)
                 && passes(&part.nodes.flags, self.flag, **node)
         };
@@ -111,31 +122,31 @@ impl JsonOutput {
                 true => format!("NODE_X_{:.6}_Y_{:.6}_Z_{:.6}", row[1], row[2], row[3]),
                 false => node_key(id),
             };
-            self.nodes.insert(id, NodeSeries { key, ..NodeSeries::default() });
+            self.series.nodes.insert(id, NodeSeries { key, ..NodeSeries::default() });
         }
-        self.known.extend(new);
-        self.known.sort_unstable();
-        if self.gauss.is_empty() || part.ranks.any(!self.followed.is_empty()) {
+        self.series.known.extend(new);
+        self.series.known.sort_unstable();
+        if self.gauss.is_empty() || part.ranks.any(!self.series.followed.is_empty()) {
             return;
         }
         let follows =
             |&&e: &&u32| part.evaluates(Role::Element, e as usize) && passes(&part.elements.flags, self.flag, e);
-        self.followed = selection.elements.iter().filter(follows).copied().collect();
-        let ids = self.followed.iter().map(|&element| part.elements.ids[element as usize] as f64).collect();
+        self.series.followed = selection.elements.iter().filter(follows).copied().collect();
+        let ids = self.series.followed.iter().map(|&element| part.elements.ids[element as usize] as f64).collect();
         for id in part.ranks.to_root(ids).concat() {
-            self.elements.insert(id as usize, vec![Vec::new(); self.gauss.len()]);
+            self.series.elements.insert(id as usize, vec![Vec::new(); self.gauss.len()]);
         }
     }
 
     /// Takes the values of this moment; collective.
     fn sample(&mut self, part: &ModelPart, system: &System, selection: &SubPart) {
         self.keys(part, selection);
-        self.times.push(part.info.time);
+        self.series.times.push(part.info.time);
         let fields = fields(part, self.history);
         let sizes: Vec<usize> = self.quantities.iter().map(|q| q.components(fields)).collect();
         let width: usize = sizes.iter().sum();
         let mut own = Vec::new();
-        for &node in self.known.iter().filter(|&&node| passes(&part.nodes.flags, self.flag, node)) {
+        for &node in self.series.known.iter().filter(|&&node| passes(&part.nodes.flags, self.flag, node)) {
             own.push(part.nodes.ids[node as usize] as f64);
             let start = own.len();
             own.resize(start + width, 0.0);
@@ -150,16 +161,16 @@ impl JsonOutput {
         let mut sampled = rows(part.ranks.to_root(own), width + 1);
         sampled.sort_by(|a, b| a[0].total_cmp(&b[0]));
         for row in sampled {
-            self.nodes.entry(row[0] as usize).or_default().values.extend_from_slice(&row[1..]);
+            self.series.nodes.entry(row[0] as usize).or_default().values.extend_from_slice(&row[1..]);
             sum.iter_mut().zip(&row[1..]).for_each(|(sum, value)| *sum += value);
         }
         if self.resultant {
-            self.resultants.push(sum);
+            self.series.resultants.push(sum);
         }
         for (at, quantity) in self.gauss.iter().enumerate() {
             let mut own = Vec::new();
-            gauss::each(part, system, Role::Element, &self.followed, quantity, |row, gauss| {
-                let element = self.followed[row];
+            gauss::each(part, system, Role::Element, &self.series.followed, quantity, |row, gauss| {
+                let element = self.series.followed[row];
                 if passes(&part.elements.flags, self.flag, element) {
                     let id = part.elements.ids[element as usize];
                     own.extend([id as f64, gauss.components as f64, gauss.values.len() as f64]);
@@ -173,7 +184,7 @@ impl JsonOutput {
                     rest = more;
                     let only_values =
                         Gauss { components: *components as usize, values: values.to_vec(), ..Gauss::default() };
-                    let series = self.elements.get_mut(&(*id as usize)).expect("it is followed");
+                    let series = self.series.elements.get_mut(&(*id as usize)).expect("it is followed");
                     series[at].push(only_values);
                 }
             }
@@ -192,17 +203,17 @@ impl JsonOutput {
         let mut json = Json { out, depth: 0, first: true };
         json.open('{')?;
         json.key("TIME")?;
-        json.numbers(self.times.iter().copied())?;
+        json.numbers(self.series.times.iter().copied())?;
         if self.resultant {
             json.key("RESULTANT")?;
-            self.series(&mut json, &self.resultants.concat(), sizes)?;
+            self.series(&mut json, &self.series.resultants.concat(), sizes)?;
         } else {
-            for series in self.nodes.values() {
+            for series in self.series.nodes.values() {
                 json.key(&series.key)?;
                 self.series(&mut json, &series.values, sizes)?;
             }
         }
-        for (id, series) in &self.elements {
+        for (id, series) in &self.series.elements {
             json.key(&format!("ELEMENT_{id}"))?;
             json.open('{')?;
             for (quantity, steps) in self.gauss.iter().zip(series) {
@@ -335,6 +346,16 @@ impl Process for JsonOutput {
                 self.write(model)?;
             }
         }
+        Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(JsonOutputState { counter: self.counter.counter, series: self.series.clone() }))
+    }
+
+    fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        let JsonOutputState { counter, series } = state.take()?;
+        (self.counter.counter, self.series) = (counter, series);
         Ok(())
     }
 

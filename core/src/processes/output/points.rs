@@ -1,8 +1,10 @@
 //! Histories of quantities at points of space, as text files of columns, one a point.
 
-use crate::model::Role;
 use std::io::Write;
 use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
 
 use super::json_output_process::fields;
 use super::place::{PartPath, one_of};
@@ -10,8 +12,8 @@ use super::quantity::Quantity;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::{mapping, shape_functions};
-use crate::io::{append_to_file, replace_file};
-use crate::model::{Model, ModelPart, SubPart};
+use crate::io::{append_to_file, cut_file, length_of, replace_file};
+use crate::model::{Model, ModelPart, Role, SubPart};
 use crate::parameters::{Interval, Node, Settings};
 use crate::processes::{Process, ProcessRequest};
 
@@ -176,6 +178,13 @@ impl PointsOutput {
     }
 }
 
+/// Lengths of the files.
+#[derive(Serialize, Deserialize)]
+struct SavedLengths(Vec<u64>);
+
+#[typetag::serde(name = "points_output")]
+impl State for SavedLengths {}
+
 impl Process for PointsOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
@@ -223,6 +232,15 @@ impl Process for PointsOutput {
             }
         }
         Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(SavedLengths(self.points.iter().map(|point| length_of(&point.file)).collect())))
+    }
+
+    fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        let SavedLengths(lengths) = state.take()?;
+        self.points.iter().zip(lengths).try_for_each(|(point, length)| cut_file(&model.ranks, &point.file, length))
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

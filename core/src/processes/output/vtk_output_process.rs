@@ -1,7 +1,9 @@
 //! Pictures for ParaView: `vtk_output_process` in Kratos' legacy form, `vtu_output_process` compressed with a PVD series.
 
-use crate::processes::ProcessEntry;
 use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
 
 use super::control::{OutputControl, Unit};
 use super::format::{OutputFormat, OutputFormatEntry, Shown};
@@ -11,7 +13,7 @@ use crate::assembly::System;
 use crate::diagnostics::{Error, Result};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 use crate::registry::require;
 
@@ -86,6 +88,16 @@ impl VtkOutput {
     }
 }
 
+/// When output is wanted next, and what the format remembers.
+#[derive(Serialize, Deserialize)]
+struct VtkOutputState {
+    next: f64,
+    format: Option<Box<dyn State>>,
+}
+
+#[typetag::serde(name = "vtk_output")]
+impl State for VtkOutputState {}
+
 impl Process for VtkOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
@@ -113,6 +125,16 @@ impl Process for VtkOutput {
         }
         self.control.written(&part.info);
         Ok(())
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(VtkOutputState { next: self.control.next, format: self.format.state() }))
+    }
+
+    fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        let VtkOutputState { next, format } = state.take()?;
+        self.control.next = next;
+        format.map_or(Ok(()), |state| self.format.resume(state))
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

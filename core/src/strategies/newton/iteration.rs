@@ -100,6 +100,7 @@ impl NewtonRaphson {
     }
 
     fn begin_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<Step> {
+        self.solver.forget();
         part.info.nl_iteration = 0;
         let start = Instant::now();
         for interaction in &mut system.interactions {
