@@ -47,7 +47,7 @@ const CHANGEABLE: [&str; 6] = ["Mutex", "RwLock", "Cell<", "Lock<", "Atomic", "s
 
 /// Globals that hold no state of a run: what is read or computed once and never changes, and the lock of a library that
 /// takes one caller at a time.
-const CONSTANT: [&str; 7] = ["VARIABLES", "FLAGS", "RATES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS"];
+const CONSTANT: [&str; 8] = ["VARIABLES", "FLAGS", "RATES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS", "NAMES"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -12,6 +12,7 @@ mod mesh;
 mod older_decks;
 mod report;
 mod saved;
+mod saved_run;
 mod sharing;
 mod simulation;
 mod solver;

@@ -6,10 +6,12 @@ use std::time::Instant;
 
 use super::deck::{StageDeck, open, stages};
 use super::report::RunReport;
+use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of};
 use super::stage::{Stage, Systems};
 use crate::assembly::System;
 use crate::communication::{Ranks, fair_threads};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::io::{read_saved, write_saved};
 use crate::model::{Model, ModelPart};
 use crate::parameters::{Node, Value};
 use crate::processes::Process;
@@ -43,6 +45,8 @@ pub struct Simulation {
     folder: PathBuf,
     like: Option<String>,
     model: Model,
+    /// The model as the stage under way found it, where it is not the first.
+    before: Option<Model>,
     systems: Systems,
     /// Processes to act in the next stage.
     more: Vec<Box<dyn Process>>,
@@ -86,6 +90,7 @@ impl Simulation {
             folder,
             like: options.like.clone(),
             model: Model::new(options.ranks.clone()),
+            before: None,
             systems: Systems::new(),
             more: Vec::new(),
             pool: Arc::new(pool),
@@ -155,6 +160,37 @@ impl Simulation {
         })
     }
 
+    /// Saves the run as it stands between two steps, whole: fields, states, reports. Of several ranks each has a file of its
+    /// own, whose name ends in the number of the rank.
+    ///
+    /// # Errors
+    /// A disk that refuses; the file that was there is then untouched.
+    pub fn save(&self, path: &Path) -> Result<()> {
+        let run = SavedRun {
+            deck: self.fingerprint(),
+            rank: [self.model.ranks.rank(), self.model.ranks.size()],
+            over: self.over,
+            root: self.root.clone(),
+            before: self.before.as_ref(),
+            model: &self.model,
+            systems: self.systems.iter().map(|(root, system)| (root.clone(), states_of(&system.elements))).collect(),
+            stage: self.stage.as_ref().map(Stage::state),
+            report: &self.report,
+        };
+        self.model.ranks.agree(write_saved(&self.path_of_rank(path), &run))
+    }
+
+    /// Goes on where a run of the same deck was saved: what follows are the same bits, on any number of threads. Nothing may be
+    /// prepared yet; processes of the caller's are added before.
+    ///
+    /// Meshes are read again. Files of output that grow lose what was added since the run was saved.
+    ///
+    /// # Errors
+    /// A file that is no whole saved run, or one of another deck, mesh or number of ranks; problems of the deck.
+    pub fn load(&mut self, path: &Path, monitor: &mut dyn Monitor) -> Result<()> {
+        self.timed(|simulation| simulation.load_run(path, monitor))
+    }
+
     /// The model: all parts with their nodes, fields, elements and properties.
     pub fn model(&self) -> &Model {
         &self.model
@@ -207,6 +243,57 @@ impl Simulation {
         self.report
     }
 
+    fn fingerprint(&self) -> u32 {
+        fingerprint(&self.stages, self.like.as_deref())
+    }
+
+    /// The file of this rank.
+    fn path_of_rank(&self, path: &Path) -> PathBuf {
+        let ranks = &self.model.ranks;
+        let Some(name) = path.file_name().filter(|_| ranks.size() > 1) else { return path.to_owned() };
+        path.with_file_name(format!("{}.{}", name.to_string_lossy(), ranks.rank()))
+    }
+
+    fn load_run(&mut self, path: &Path, monitor: &mut dyn Monitor) -> Result<()> {
+        let ranks = self.model.ranks.clone();
+        let path = self.path_of_rank(path);
+        let run: LoadedRun = ranks.agree(read_saved(&path))?;
+        let here = Place::file(&path);
+        self.take_up(run, monitor).map_err(|error| error.at(&here))
+    }
+
+    fn take_up(&mut self, run: LoadedRun, monitor: &mut dyn Monitor) -> Result<()> {
+        let ranks = self.model.ranks.clone();
+        if self.stage.is_some() || self.over > 0 {
+            return Err(other_deck("the simulation has begun already"));
+        }
+        if run.rank != [ranks.rank(), ranks.size()] {
+            return Err(other_deck(format!("it was saved by {} ranks, and {} run now", run.rank[1], ranks.size())));
+        }
+        if run.deck != self.fingerprint() {
+            return Err(other_deck("it was saved by a run of another deck"));
+        }
+        let model = run.model.shared_by(&ranks);
+        self.over = run.over;
+        self.model = run.before.map_or_else(|| Model::new(ranks.clone()), |before| before.shared_by(&ranks));
+        for (root, states) in run.systems {
+            let part = self.model.parts.get(&root).map_or_else(|| model.root(&root), Ok)?;
+            self.systems.insert(root, earlier_system(part, states)?);
+        }
+        if let Some(state) = run.stage {
+            self.prepare_stage(monitor)?;
+            check_mesh(model.root(&self.root)?, self.model.root(&self.root)?)?;
+            self.model = model;
+            self.stage.as_mut().expect("just prepared").resume(&mut self.model, state)?;
+        } else {
+            self.model = model;
+        }
+        self.root = run.root;
+        let threads = self.report.threads;
+        self.report = RunReport { threads, ..run.report };
+        Ok(())
+    }
+
     fn prepare_stage(&mut self, monitor: &mut dyn Monitor) -> Result<()> {
         if self.stage.is_some() || self.over == self.stages.len() {
             return Ok(());
@@ -216,6 +303,7 @@ impl Simulation {
             monitor.warn(&warning);
         }
         let more = std::mem::take(&mut self.more);
+        self.before = (self.over > 0).then(|| self.model.clone());
         let (stages, like) = (&self.stages[self.over..], self.like.as_deref());
         let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
         let stage = Stage::prepare(stages, &self.folder, like, model, systems, report, monitor, more)?;
@@ -240,6 +328,7 @@ impl Simulation {
     /// Brings the processes of the stage under way to their end, `result` being that of its last step.
     fn end_stage(&mut self, result: Result<()>) -> Result<()> {
         let Some(stage) = self.stage.take() else { return result };
+        self.before = None;
         let ended = stage.finish(result, &mut self.model, &mut self.systems, &mut self.report);
         self.over = if ended.is_ok() { self.over + 1 } else { self.stages.len() };
         self.report.converged = ended.is_ok() && self.over == self.stages.len();

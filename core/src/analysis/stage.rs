@@ -10,6 +10,7 @@ use super::like::{lay_defaults, program};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
+use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
 use super::sharing::{distribute, read_the_same};
 use super::solver::{SolverSettings, check_dimensions};
 use super::time_stepping::TimeStepping;
@@ -220,6 +221,38 @@ impl Stage {
         }
         model.root_mut(&self.root)?.info.time = self.start_time;
         Ok(())
+    }
+
+    /// What it remembers between steps.
+    pub(super) fn state(&self) -> SavedStage {
+        SavedStage {
+            begun: self.begun,
+            first_length: self.first_length,
+            strategy: self.strategy.state(),
+            elements: states_of(&self.system.elements),
+            conditions: states_of(&self.system.conditions),
+            interactions: self.system.interactions.iter().map(|interaction| interaction.state()).collect(),
+            processes: self.processes.iter().map(|process| process.state()).collect(),
+        }
+    }
+
+    /// Takes up what it remembered between steps; `model` is that of then.
+    ///
+    /// # Errors
+    /// States of another deck; files of output that are not there any more.
+    pub(super) fn resume(&mut self, model: &mut Model, state: SavedStage) -> Result<()> {
+        (self.begun, self.first_length) = (state.begun, state.first_length);
+        let part = model.root_mut(&self.root)?;
+        resume_blocks(&mut self.system.elements, state.elements)?;
+        resume_blocks(&mut self.system.conditions, state.conditions)?;
+        hand_out(&mut self.system.interactions, state.interactions, "interactions", |own, state| {
+            own.resume(part, state)
+        })?;
+        if let Some(state) = state.strategy {
+            self.strategy.resume(part, &self.system, state)?;
+        }
+        let ranks = model.ranks.clone();
+        hand_out(&mut self.processes, state.processes, "processes", |own, state| ranks.agree(own.resume(model, state)))
     }
 
     /// Makes the next step of the deck, in several shorter ones where it does not converge; `false` when none is left.

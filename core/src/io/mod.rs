@@ -1,5 +1,6 @@
 //! Files in and out: meshes, materials, results.
 
+mod container;
 mod import;
 mod materials;
 pub mod mdpa;
@@ -9,6 +10,7 @@ pub mod results;
 mod tests;
 pub(crate) mod variables;
 
+pub use container::{read_saved, write_saved};
 pub use import::{import, read_mesh, read_mesh_of};
 pub use materials::{apply_materials, read_materials};
 pub use replace::{append_to_file, cut_file, length_of, replace_file, replace_own_file};

@@ -1,0 +1,167 @@
+//! A whole run between two steps, as a file holds it.
+//!
+//! What a deck says and what is made of it at the start of a stage, as numbers of unknowns, blocks and geometry of interfaces, is
+//! made again from the deck; the file holds all that has come of it since, the fields to the bit. What a stage was made of
+//! is the model that the stages before have left, so that this is held, too.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::State;
+
+use super::deck::StageDeck;
+use super::report::RunReport;
+use crate::assembly::System;
+use crate::diagnostics::{Diagnostic, Result};
+use crate::entities::EntityBlock;
+use crate::model::{Model, ModelPart};
+use crate::parameters::{Node, Value};
+
+/// What participants of one kind remember, in their order.
+pub(super) type States = Vec<Option<Box<dyn State>>>;
+
+/// The contents of the file: written from references, read into values.
+#[derive(Serialize, Deserialize)]
+pub(super) struct SavedRun<M, R> {
+    /// Of the deck, see [`fingerprint`].
+    pub deck: u32,
+    /// Rank that has written it, and their number.
+    pub rank: [usize; 2],
+    /// Stages that are over.
+    pub over: usize,
+    /// The part of the present or the last stage.
+    pub root: String,
+    /// The model as the present stage found it; `None` in the first.
+    pub before: Option<M>,
+    /// The model now.
+    pub model: M,
+    /// What the elements of earlier stages remember, by root part.
+    pub systems: BTreeMap<String, States>,
+    /// What the stage under way remembers.
+    pub stage: Option<SavedStage>,
+    /// The report so far.
+    pub report: R,
+}
+
+/// What a stage remembers.
+#[derive(Serialize, Deserialize)]
+pub(super) struct SavedStage {
+    pub begun: bool,
+    pub first_length: Option<f64>,
+    pub strategy: Option<Box<dyn State>>,
+    pub elements: States,
+    pub conditions: States,
+    pub interactions: States,
+    pub processes: States,
+}
+
+/// A run that was read.
+pub(super) type LoadedRun = SavedRun<Model, RunReport>;
+
+/// Settings that may be others when a run goes on: by them it runs on, or says less.
+const FREE: [&str; 3] = ["problem_data.end_time", "problem_data.echo_level", "problem_data.parallel_type"];
+
+/// A number that decks share that say the same, however they are written.
+pub(super) fn fingerprint(stages: &[StageDeck], like: Option<&str>) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(like.unwrap_or_default().as_bytes());
+    for stage in stages {
+        hasher.update(stage.name.as_bytes());
+        add(&stage.settings, "", &mut hasher);
+        stage.modelers.iter().for_each(|modeler| add(modeler, "", &mut hasher));
+    }
+    hasher.finalize()
+}
+
+fn add(node: &Node, path: &str, hasher: &mut crc32fast::Hasher) {
+    let mut word = |kind: u8, bytes: &[u8]| {
+        hasher.update(&[kind]);
+        hasher.update(&(bytes.len() as u64).to_le_bytes());
+        hasher.update(bytes);
+    };
+    match &node.value {
+        Value::Null => word(0, &[]),
+        Value::Bool(value) => word(1, &[u8::from(*value)]),
+        // A deck may write 1 or 1.0.
+        Value::Integer(value) => word(2, &(*value as f64).to_le_bytes()),
+        Value::Double(value) => word(2, &value.to_le_bytes()),
+        Value::String(text) => word(3, text.as_bytes()),
+        Value::Array(items) => {
+            word(4, &(items.len() as u64).to_le_bytes());
+            items.iter().for_each(|item| add(item, path, hasher));
+        }
+        Value::Object(members) => {
+            hasher.update(&[5]);
+            for member in members.iter() {
+                let inner = if path.is_empty() { member.key.clone() } else { format!("{path}.{}", member.key) };
+                if !FREE.contains(&inner.as_str()) {
+                    hasher.update(member.key.as_bytes());
+                    add(&member.node, &inner, hasher);
+                }
+            }
+        }
+    }
+}
+
+/// What the blocks remember.
+pub(super) fn states_of(blocks: &[Box<dyn EntityBlock>]) -> States {
+    blocks.iter().map(|block| block.state()).collect()
+}
+
+/// Gives each of as many participants its state; `what` they are.
+///
+/// # Errors
+/// Another number of them, or a state of another kind.
+pub(super) fn hand_out<T>(
+    to: &mut [T],
+    states: States,
+    what: &str,
+    mut resume: impl FnMut(&mut T, Box<dyn State>) -> Result<()>,
+) -> Result<()> {
+    if to.len() != states.len() {
+        let fact = format!("the saved run has {} {what}, this one {}", states.len(), to.len());
+        return Err(other_deck(fact));
+    }
+    to.iter_mut().zip(states).try_for_each(|(own, state)| state.map_or(Ok(()), |state| resume(own, state)))
+}
+
+/// Gives the blocks what they remembered.
+///
+/// # Errors
+/// States of other blocks.
+pub(super) fn resume_blocks(blocks: &mut [Box<dyn EntityBlock>], states: States) -> Result<()> {
+    hand_out(blocks, states, "blocks of entities", |block, state| block.resume(state))
+}
+
+/// The elements of an earlier stage on a part, with what they remembered.
+///
+/// # Errors
+/// States of other elements.
+pub(super) fn earlier_system(part: &ModelPart, states: States) -> Result<System> {
+    let mut system = System::default();
+    system.make_blocks(part)?;
+    resume_blocks(&mut system.elements, states)?;
+    Ok(System { elements: system.elements, ..System::default() })
+}
+
+/// # Errors
+/// Another mesh than that of the saved run.
+pub(super) fn check_mesh(saved: &ModelPart, read: &ModelPart) -> Result<()> {
+    let same = saved.nodes.ids == read.nodes.ids
+        && saved.nodes.initial == read.nodes.initial
+        && [(&saved.elements, &read.elements), (&saved.conditions, &read.conditions)].into_iter().all(|(a, b)| {
+            a.ids == b.ids && a.kinds == b.kinds && (0..a.len() as u32).all(|at| a.nodes(at) == b.nodes(at))
+        });
+    if same {
+        Ok(())
+    } else {
+        Err(other_deck(format!("the mesh of {} is another than that of the saved run", read.name)))
+    }
+}
+
+/// That a saved run does not belong to the deck.
+pub(super) fn other_deck(fact: impl Into<String>) -> crate::diagnostics::Error {
+    Diagnostic::error("saved-run", fact)
+        .remedy("go on with the deck and mesh it was saved by, or run this deck from its start")
+        .into()
+}

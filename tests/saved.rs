@@ -1,0 +1,275 @@
+//! A run that is saved between two steps and goes on elsewhere gives the bits of the run that was not: fields, states, report
+//! and files.
+
+mod support;
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use support::{contents, root, scratch_copy};
+use zelus::core::model::{EntityTable, Fields, ModelPart};
+use zelus::{Error, RunOptions, Silent, Simulation};
+
+const DECK: &str = "ProjectParameters.json";
+
+/// A folder below `tests`, what is changed in its deck, and how many steps it makes.
+struct Case {
+    folder: &'static str,
+    change: fn(&mut Value),
+    steps: usize,
+}
+
+const fn case(folder: &'static str, steps: usize) -> Case {
+    Case { folder, change: |_| {}, steps }
+}
+
+fn open(folder: &Path, threads: usize) -> Simulation {
+    let options = RunOptions { threads: Some(threads), ..RunOptions::default() };
+    Simulation::open(&folder.join(DECK), &options).expect("a deck")
+}
+
+fn bits(fields: &Fields, out: &mut Vec<(String, Vec<u64>)>) {
+    for (name, field) in fields.iter() {
+        for (level, values) in field.levels.iter().enumerate() {
+            out.push((format!("{name} {level}"), values.iter().map(|value| value.to_bits()).collect()));
+        }
+    }
+}
+
+/// All numbers of a part, by name.
+fn state(part: &ModelPart) -> Vec<(String, Vec<u64>)> {
+    let mut out = Vec::new();
+    for fields in [&part.nodes.history, &part.nodes.values, &part.elements.data, &part.conditions.data] {
+        bits(fields, &mut out);
+    }
+    out.push(("positions".into(), part.nodes.current.as_flattened().iter().map(|x| x.to_bits()).collect()));
+    let info = &part.info;
+    out.extend(info.values.iter().map(|(name, value)| ((*name).to_owned(), vec![value.to_bits()])));
+    out.push(("time".into(), vec![info.time.to_bits(), info.delta_time.to_bits(), info.step as u64]));
+    out
+}
+
+/// The report without what a clock and a machine make of it.
+fn report(simulation: &Simulation) -> Value {
+    let mut report = serde_json::to_value(simulation.report()).expect("a report");
+    for key in ["seconds", "threads"] {
+        report.as_object_mut().expect("an object").remove(key);
+    }
+    report
+}
+
+fn assert_same(what: &str, a: &Simulation, b: &Simulation) {
+    let [first, second] = [a, b].map(|simulation| simulation.part().expect("a part"));
+    for ((name, a), (other, b)) in state(first).iter().zip(&state(second)) {
+        assert_eq!(name, other, "{what}");
+        assert!(a == b, "{what}: {name} differs");
+    }
+    assert!(first.nodes.flags == second.nodes.flags && first.constraints == second.constraints, "{what}");
+    let flags = |table: &EntityTable| table.flags.clone();
+    assert!(flags(&first.elements) == flags(&second.elements), "{what}");
+    let [mut a, mut b] = [report(a), report(b)];
+    for key in a.as_object().expect("an object").keys().cloned().collect::<Vec<_>>() {
+        assert_eq!(a[&key].take(), b[&key].take(), "{what}: {key} of the report");
+    }
+}
+
+/// Runs a case to its end; again, saved in the middle; and again from there, with other threads and further back than the
+/// files have come to.
+fn goes_on(case: &Case) {
+    let scratch = scratch_copy(&root().join("tests").join(case.folder));
+    let path = scratch.path().join(DECK);
+    let text = std::fs::read_to_string(&path).expect("the deck");
+    let mut deck: Value = serde_json::from_str(&text).expect("JSON");
+    (case.change)(&mut deck);
+    if deck.get("stages").is_none() {
+        let end = deck["problem_data"]["end_time"].as_f64().expect("a time");
+        let start = deck["problem_data"]["start_time"].as_f64().expect("a time");
+        deck["solver_settings"]["time_stepping"] = json!({"time_step": (end - start) / case.steps as f64});
+    }
+    std::fs::write(&path, deck.to_string()).expect("the deck");
+    let mut whole = open(scratch.path(), 2);
+    whole.run(&mut Silent).expect("a run");
+    let files = contents(scratch.path());
+    let middle = (whole.records().iter().filter(|record| record.converged).count() / 2).max(1);
+    let saved = scratch.path().join("saved");
+    let mut first = open(scratch.path(), 1);
+    for _ in 0..middle {
+        assert!(first.step(&mut Silent).expect("a step"), "{}", case.folder);
+    }
+    first.save(&saved).expect("a saved run");
+    first.step(&mut Silent).expect("a step more, whose traces go");
+    drop(first);
+    let mut second = open(scratch.path(), 3);
+    second.load(&saved, &mut Silent).expect("a run to go on with");
+    second.run(&mut Silent).expect("the rest");
+    assert_same(case.folder, &whole, &second);
+    std::fs::remove_file(&saved).expect("the saved run");
+    let mut again = contents(scratch.path());
+    for (name, bytes) in &files {
+        assert!(again.remove(name).as_ref() == Some(bytes), "{}: {} differs", case.folder, name.display());
+    }
+    assert!(again.is_empty(), "{}: {:?}", case.folder, again.keys());
+}
+
+fn all(cases: &[Case]) {
+    cases.iter().for_each(goes_on);
+}
+
+fn scheme(deck: &mut Value, name: &str) {
+    deck["solver_settings"]["scheme_type"] = json!(name);
+}
+
+fn solver(deck: &mut Value, settings: Value) {
+    deck["solver_settings"]["linear_solver_settings"] = settings;
+}
+
+/// Files of every kind beside the histories.
+fn with_files(deck: &mut Value) {
+    let process = |name: &str, parameters: Value| json!({"python_module": name, "Parameters": parameters});
+    deck["output_processes"] = json!({"files": [
+        process("vtu_output_process", json!({"model_part_name": "Structure", "output_interval": 2,
+            "nodal_solution_step_data_variables": ["DISPLACEMENT"], "output_path": "vtu"})),
+        process("vtk_output_process", json!({"model_part_name": "Structure.Upper", "output_control_type": "time",
+            "output_interval": 0.3, "nodal_solution_step_data_variables": ["DISPLACEMENT"], "output_path": "vtk"})),
+        process("gid_output_process", json!({"model_part_name": "Structure", "output_name": "gid",
+            "postprocess_parameters": {"result_file_configuration": {"gidpost_flags": {"GiDPostMode": "GiD_PostAscii"},
+            "nodal_results": ["DISPLACEMENT"]}}})),
+        process("json_output_process", json!({"model_part_name": "Structure", "output_file_name": "gauss.json",
+            "output_variables": ["DISPLACEMENT"], "gauss_points_output_variables": ["VON_MISES_STRESS"],
+            "time_frequency": 0.3})),
+        process("multiple_points_output_process", json!({"model_part_name": "Structure.Upper", "entity_type": "node",
+            "positions": [[0.0, 0.0, 0.0]], "output_variables": ["REACTION"], "search_tolerance": 100.0,
+            "output_file_settings": {"file_name": "points"}})),
+    ]});
+}
+
+#[test]
+fn contact_in_the_plane() {
+    all(&[
+        Case { folder: "cases/contact_2d/friction_slide", change: with_files, steps: 5 },
+        case("cases/contact_2d/cattaneo_mindlin_light_coarse_penalty", 6),
+        case("cases/contact_2d/friction_penalty_slide", 5),
+        case("cases/contact_2d/uzawa", 4),
+        case("cases/contact_2d/nitsche", 4),
+        case("cases/contact_2d/opening", 4),
+        case("cases/self_contact/slit", 4),
+    ]);
+}
+
+#[test]
+fn contact_in_space() {
+    all(&[
+        case("cases/contact_3d/friction_slide", 4),
+        case("cases/contact_3d/friction_iterative_engine", 4),
+        Case {
+            folder: "cases/contact_3d/hexahedra_nonmatching",
+            change: |deck| solver(deck, json!({"solver_type": "amgcl", "direct_below": 0})),
+            steps: 4,
+        },
+    ]);
+}
+
+#[test]
+fn ties_and_constraints() {
+    all(&[
+        case("cases/mesh_tying/quadrilaterals", 4),
+        case("cases/mpc/pressed_and_opened", 6),
+        case("cases/mpc/tying_matching", 4),
+        case("cases/mpc/mapped_field", 4),
+        case("cases/constraints/rigid_plate", 4),
+        case("cases/constraints/rigid_plate_elimination", 4),
+    ]);
+}
+
+#[test]
+fn motion() {
+    all(&[
+        case("decks/bouncing_block", 40),
+        Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "generalized_alpha"), steps: 40 },
+        Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "bdf2"), steps: 40 },
+        case("decks/oscillator", 40),
+        case("cases/contact_3d/explicit_touch", 50),
+    ]);
+}
+
+#[test]
+fn materials_that_remember_and_paths_through_limits() {
+    all(&[
+        case("decks/squeezed_block", 6),
+        case("cases/structural/mixture_of_layers", 6),
+        case("decks/truss", 8),
+        case("cases/structural/stages_of_plastic_flow", 0),
+        case("cases/structural/two_stages", 0),
+    ]);
+}
+
+/// The deck of a slide, its folder and a run of it saved after a step.
+fn saved_slide() -> (tempfile::TempDir, PathBuf) {
+    let scratch = scratch_copy(&root().join("tests/cases/contact_2d/friction_slide"));
+    let mut simulation = open(scratch.path(), 1);
+    assert!(simulation.step(&mut Silent).expect("a step"));
+    let saved = scratch.path().join("saved");
+    simulation.save(&saved).expect("a saved run");
+    (scratch, saved)
+}
+
+fn refusal(folder: &Path, saved: &Path) -> String {
+    match open(folder, 1).load(saved, &mut Silent) {
+        Err(error @ Error::Input(_)) => error.to_string(),
+        other => panic!("it is refused, and not {other:?}"),
+    }
+}
+
+/// Both stages of a run, and the moment between them.
+#[test]
+fn stages_go_on_from_between() {
+    let scratch = scratch_copy(&root().join("tests/cases/structural/stages_of_plastic_flow"));
+    let mut whole = open(scratch.path(), 1);
+    whole.run(&mut Silent).expect("a run");
+    let saved = scratch.path().join("saved");
+    for steps in 0..whole.records().len() {
+        let mut first = open(scratch.path(), 1);
+        for _ in 0..steps {
+            assert!(first.step(&mut Silent).expect("a step"));
+        }
+        first.save(&saved).expect("a saved run");
+        let mut second = open(scratch.path(), 1);
+        second.load(&saved, &mut Silent).expect("a run to go on with");
+        second.run(&mut Silent).expect("the rest");
+        assert_same(&format!("after {steps} steps"), &whole, &second);
+    }
+}
+
+#[test]
+fn other_decks_and_meshes_and_begun_runs_are_refused() {
+    let (scratch, saved) = saved_slide();
+    let mut begun = open(scratch.path(), 1);
+    begun.prepare(&mut Silent).expect("a deck");
+    let error = begun.load(&saved, &mut Silent).expect_err("it has begun").to_string();
+    assert!(error.contains("has begun"), "{error}");
+    support::change(scratch.path(), "mesh.mdpa", "Begin Nodes\n", "Begin Nodes\n 99999 1e3 1e3 0.0\n");
+    let said = refusal(scratch.path(), &saved);
+    assert!(said.contains("mesh of Structure") && said.contains("saved"), "{said}");
+    support::change(scratch.path(), DECK, "\"max_iteration\": 30", "\"max_iteration\": 31");
+    let said = refusal(scratch.path(), &saved);
+    assert!(said.contains("another deck") && said.contains("from its start"), "{said}");
+    let said = refusal(scratch.path(), &scratch.path().join("mesh.mdpa"));
+    assert!(said.contains("no saved run") && said.contains("mesh.mdpa"), "{said}");
+}
+
+/// What was written to grow and is gone is named, instead of being begun anew without its beginning.
+#[test]
+fn files_of_output_must_be_there() {
+    let scratch = scratch_copy(&root().join("tests/cases/contact_2d/friction_slide"));
+    let mut deck: Value =
+        serde_json::from_str(&std::fs::read_to_string(scratch.path().join(DECK)).expect("the deck")).expect("JSON");
+    with_files(&mut deck);
+    std::fs::write(scratch.path().join(DECK), deck.to_string()).expect("the deck");
+    let mut simulation = open(scratch.path(), 1);
+    assert!(simulation.step(&mut Silent).expect("a step"));
+    let saved = scratch.path().join("saved");
+    simulation.save(&saved).expect("a saved run");
+    std::fs::remove_file(scratch.path().join("points_1.dat")).expect("a history");
+    let error = open(scratch.path(), 1).load(&saved, &mut Silent).expect_err("it is gone").to_string();
+    assert!(error.contains("points_1.dat"), "{error}");
+}
