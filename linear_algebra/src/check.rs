@@ -73,14 +73,15 @@ impl Refined {
 /// Share of `|A| |x|` that rounding may leave in a residual.
 const ROUNDING: f64 = 1e-14;
 /// Residual at which further refinement gains nothing.
-const GOOD_ENOUGH: f64 = 1e-10;
+pub(crate) const GOOD_ENOUGH: f64 = 1e-10;
 
-/// `x = A⁻¹ rhs` by `inverse` (in place), improved while the true residual drops by at least a factor of two.
+/// `x = A⁻¹ rhs` by `inverse` (in place), improved while the true residual drops by at least a factor of two, until it is `enough`.
 pub(crate) fn refine(
     system: &System<'_>,
     rhs: &[f64],
     x: &mut [f64],
     most_steps: usize,
+    enough: f64,
     mut inverse: impl FnMut(&mut [f64]),
 ) -> Refined {
     let scale = vector::norm(rhs);
@@ -95,7 +96,7 @@ pub(crate) fn refine(
     let mut best = system.residual(rhs, x, &mut residual) / scale;
     let mut trial = vec![0.0; rhs.len()];
     for step in 0..most_steps {
-        if best <= GOOD_ENOUGH || best.is_nan() {
+        if best <= enough || best.is_nan() {
             return Refined { relative_residual: best, steps: step };
         }
         correction.copy_from_slice(&residual);

@@ -119,37 +119,27 @@ pub(crate) fn cholesky_panel(panel: &mut [f64], order: usize, pivots: usize) -> 
     Ok(())
 }
 
-/// Lower part of `update = -below belowᵀ`, where `below` are the rows of `panel` after its pivots.
-pub(crate) fn symmetric_update(update: &mut [f64], panel: &[f64], order: usize, pivots: usize) {
-    let rows = order - pivots;
-    let below = view(panel, order, pivots).subrows(pivots, rows);
-    let tiles = column_tiles(view_mut(update, rows, rows), COLUMN_TILE);
-    for_each(rows * rows * pivots > PARALLEL_WORK, tiles, |(at, tile)| {
-        let width = tile.ncols();
-        let (diagonal, lower) = tile.subrows_mut(at, rows - at).split_at_row_mut(width);
-        let (near, far) = below.subrows(at, rows - at).split_at_row(width);
-        triangular::matmul(
-            diagonal,
-            BlockStructure::TriangularLower,
-            Accum::Replace,
-            near,
-            BlockStructure::Rectangular,
-            near.transpose(),
-            BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
-        matmul(lower, Accum::Replace, far, near.transpose(), -1.0, Par::Seq);
-    });
+/// Lower part of `update = -below nearᵀ`, where `near` are the first `width` rows of `below`.
+pub(crate) fn symmetric_update(update: &mut [f64], below: MatRef<'_, f64>, width: usize) {
+    let (diagonal, lower) = view_mut(update, below.nrows(), width).split_at_row_mut(width);
+    let (near, far) = below.split_at_row(width);
+    triangular::matmul(
+        diagonal,
+        BlockStructure::TriangularLower,
+        Accum::Replace,
+        near,
+        BlockStructure::Rectangular,
+        near.transpose(),
+        BlockStructure::Rectangular,
+        -1.0,
+        Par::Seq,
+    );
+    matmul(lower, Accum::Replace, far, near.transpose(), -1.0, Par::Seq);
 }
 
 /// `update = -left right`.
 pub(crate) fn general_update(update: MatMut<'_, f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>) {
-    let work = update.nrows() * update.ncols() * left.ncols();
-    for_each(work > PARALLEL_WORK, column_tiles(update, COLUMN_TILE), |(at, tile)| {
-        let width = tile.ncols();
-        matmul(tile, Accum::Replace, left, right.subcols(at, width), -1.0, Par::Seq);
-    });
+    matmul(update, Accum::Replace, left, right, -1.0, Par::Seq);
 }
 
 /// `matrix = matrix U⁻¹` with `U` the upper triangle of `factor`, in tiles of rows.
@@ -168,41 +158,28 @@ pub(crate) fn solve_unit_lower(matrix: MatMut<'_, f64>, factor: MatRef<'_, f64>)
     });
 }
 
-/// The triangle a vector is solved with.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Triangle {
-    /// `L` with its diagonal.
-    Lower,
-    /// `L` with ones on the diagonal.
-    UnitLower,
-}
-
 /// Columns solved at once in a triangular solve with a vector.
 const VECTOR_BLOCK: usize = 192;
 /// Rows or columns of one task of a matrix–vector product.
 const VECTOR_TILE: usize = 512;
 
-/// Solves with the first `pivots` columns of a panel of `order` rows; the rest of `local` loses their part.
-pub(crate) fn forward(panel: MatRef<'_, f64>, triangle: Triangle, local: &mut [f64]) {
-    let (order, pivots) = (panel.nrows(), panel.ncols());
+/// Solves with the unit lower triangle of a square factor.
+pub(crate) fn forward(square: MatRef<'_, f64>, local: &mut [f64]) {
+    let order = square.ncols();
     let mut k = 0;
-    while k < pivots {
-        let width = VECTOR_BLOCK.min(pivots - k);
-        let block = panel.submatrix(k, k, order - k, width);
-        let (head, below) = block.split_at_row(width);
+    while k < order {
+        let width = VECTOR_BLOCK.min(order - k);
+        let (head, below) = square.submatrix(k, k, order - k, width).split_at_row(width);
         let (x, rest) = local[k..order].split_at_mut(width);
         let mut x = view_mut(x, width, 1);
-        match triangle {
-            Triangle::Lower => solve_lower_triangular_in_place(head, x.as_mut(), Par::Seq),
-            Triangle::UnitLower => solve_unit_lower_triangular_in_place(head, x.as_mut(), Par::Seq),
-        }
+        solve_unit_lower_triangular_in_place(head, x.as_mut(), Par::Seq);
         subtract_from_vector(rest, below, x.as_ref());
         k += width;
     }
 }
 
 /// `target -= matrix x`.
-pub(crate) fn subtract_from_vector(target: &mut [f64], matrix: MatRef<'_, f64>, x: MatRef<'_, f64>) {
+fn subtract_from_vector(target: &mut [f64], matrix: MatRef<'_, f64>, x: MatRef<'_, f64>) {
     let rows = target.len();
     let tiles = row_tiles(view_mut(target, rows, 1), VECTOR_TILE);
     for_each(rows * matrix.ncols() > PARALLEL_WORK / 8, tiles, |(at, tile)| {
@@ -211,36 +188,9 @@ pub(crate) fn subtract_from_vector(target: &mut [f64], matrix: MatRef<'_, f64>, 
     });
 }
 
-/// Solves `Lᵀ x = local` for the pivots, the other entries of `local` being known.
-pub(crate) fn backward_transposed(panel: MatRef<'_, f64>, local: &mut [f64]) {
-    let (order, pivots) = (panel.nrows(), panel.ncols());
-    let mut end = pivots;
-    while end > 0 {
-        let start = (end - 1) / VECTOR_BLOCK * VECTOR_BLOCK;
-        let block = panel.submatrix(start, start, order - start, end - start);
-        let (head, below) = block.split_at_row(end - start);
-        let (x, rest) = local[start..order].split_at_mut(end - start);
-        if !rest.is_empty() {
-            let rest = view(rest, rest.len(), 1);
-            let tiles = row_tiles(view_mut(x, end - start, 1), 32);
-            for_each(below.nrows() * below.ncols() > PARALLEL_WORK / 8, tiles, |(at, tile)| {
-                let count = tile.nrows();
-                subtract_product(tile, below.subcols(at, count).transpose(), rest);
-            });
-        }
-        solve_upper_triangular_in_place(head.transpose(), view_mut(x, end - start, 1), Par::Seq);
-        end = start;
-    }
-}
-
-/// Solves `U x = local - right rest` for the pivots; `square` holds `U` on and above its diagonal.
-pub(crate) fn backward_upper(square: MatRef<'_, f64>, right: MatRef<'_, f64>, local: &mut [f64]) {
-    let pivots = square.ncols();
-    let (x, rest) = local.split_at_mut(pivots);
-    if !rest.is_empty() {
-        subtract_from_vector(x, right, view(rest, rest.len(), 1));
-    }
-    let mut end = pivots;
+/// Solves with the upper triangle of a square factor.
+pub(crate) fn backward_upper(square: MatRef<'_, f64>, x: &mut [f64]) {
+    let mut end = square.ncols();
     while end > 0 {
         let start = (end - 1) / VECTOR_BLOCK * VECTOR_BLOCK;
         let (above, block) = square.submatrix(0, start, end, end - start).split_at_row(start);

@@ -1,9 +1,9 @@
 //! Dense LU with partial pivoting, tiled at fixed places; tiny pivots are replaced and reported.
 
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
-use faer::{MatMut, MatRef, Par};
+use faer::{MatMut, Par};
 
-use crate::dense::{Triangle, backward_upper, for_each, forward, subtract_product, view, view_mut};
+use crate::dense::{backward_upper, for_each, forward, subtract_product, view, view_mut};
 
 /// Columns factorised at a time.
 const BLOCK: usize = 96;
@@ -86,8 +86,8 @@ pub(crate) fn factorise(values: &mut [f64], n: usize, limit: f64) -> Pivots {
 pub(crate) fn solve(values: &[f64], n: usize, pivots: &Pivots, x: &mut [f64]) {
     pivots.permute(x);
     let factor = view(values, n, n);
-    forward(factor, Triangle::UnitLower, x);
-    backward_upper(factor, MatRef::from_column_major_slice(&[], n, 0), x);
+    forward(factor, x);
+    backward_upper(factor, x);
 }
 
 /// Applies to each finished block of columns the exchanges of the blocks after it.

@@ -31,3 +31,9 @@ pub(crate) fn factors(matrix: &Csr) -> Scaling {
     }
     scaling
 }
+
+/// Factors that bring the diagonal of a symmetric positive definite matrix near one.
+pub(crate) fn of_diagonal(matrix: &Csr) -> Scaling {
+    let row: Vec<f64> = matrix.diagonal().into_iter().map(factor).collect();
+    Scaling { column: row.clone(), row }
+}

@@ -8,11 +8,11 @@ use std::cell::Cell;
 use rayon::prelude::*;
 
 use crate::csr::Csr;
-use crate::dense::{subtract_from_vector, view};
 use crate::dense_lu::{self, Pivots};
 use crate::equilibrate;
 use crate::iterations::gmres;
 use crate::multifrontal::Scaling;
+use crate::square::Square;
 
 /// Pivots of the equilibrated matrix below this are replaced and reported.
 const PIVOT_LIMIT: f64 = 1e-14;
@@ -123,12 +123,12 @@ pub(crate) struct Interface {
 }
 
 impl Interface {
-    /// Factorises `schur` (column-major) plus the `coupling` of the same equations.
+    /// Factorises `schur` plus the `coupling` of the same equations.
     ///
     /// `in_bulk` tells whether the bulk knows an equation. `earlier` belongs to the same `schur`: its factors stay in
     /// use where they may, else it gives its memory.
     pub(crate) fn new(
-        schur: &[f64],
+        schur: &Square,
         coupling: Csr,
         in_bulk: impl Fn(usize) -> bool,
         earlier: Option<Interface>,
@@ -143,19 +143,13 @@ impl Interface {
             }
             values = earlier.factor.into_values();
         }
-        let scaling = scaling(schur, n, &parts);
+        let scaling = scaling(schur, &parts);
         let m = parts.kept.len();
         if values.len() != m * m {
+            drop(std::mem::take(&mut values));
             values = vec![0.0; m * m];
         }
-        values.par_chunks_mut(m.max(1)).zip(&parts.kept).zip(&scaling.column).with_min_len(16).for_each(
-            |((target, &column), column_scale)| {
-                let source = &schur[n * column as usize..n * (column as usize + 1)];
-                for ((value, &row), row_scale) in target.iter_mut().zip(&parts.kept).zip(&scaling.row) {
-                    *value = source[row as usize] * row_scale * column_scale;
-                }
-            },
-        );
+        dense_block(schur, &parts.kept, &scaling, &mut values);
         for &(i, j, value) in &parts.entries {
             values[i + m * j] += value * scaling.row[i] * scaling.column[j];
         }
@@ -163,7 +157,7 @@ impl Interface {
     }
 
     /// Replaces `x`, in the order of the interface, by the solution; `schur` is that of [`Interface::new`].
-    pub(crate) fn solve(&self, schur: &[f64], x: &mut [f64]) {
+    pub(crate) fn solve(&self, schur: &Square, x: &mut [f64]) {
         let Some(coupling) = &self.newer else { return self.solve_factorised(x) };
         let n = x.len();
         let mut scale = vec![0.0; n];
@@ -173,7 +167,7 @@ impl Interface {
         let multiply = |x: &[f64], y: &mut [f64]| {
             y.fill(0.0);
             coupling.mul_vec_subtract(x, y);
-            subtract_from_vector(y, view(schur, n, n), view(x, n, 1));
+            schur.mul_vec_subtract(x, y);
             y.iter_mut().zip(&scale).for_each(|(y, scale)| *y *= -scale);
         };
         let precondition = |x: &mut [f64]| {
@@ -225,10 +219,52 @@ impl Interface {
 ///
 /// The diagonal stands for the whole Schur complement, since no entry of a positive definite matrix exceeds the
 /// geometric mean of its diagonal entries; that spares passes over the dense matrix.
-fn scaling(schur: &[f64], n: usize, parts: &Parts) -> Scaling {
-    let diagonal = parts.kept.iter().enumerate().map(|(at, &i)| (at, at, schur[i as usize * (n + 1)]));
+fn scaling(schur: &Square, parts: &Parts) -> Scaling {
+    let diagonal = parts.kept.iter().enumerate().map(|(at, &i)| (at, at, schur.diagonal(i as usize)));
     let sample: Vec<(usize, usize, f64)> = diagonal.chain(parts.entries.iter().copied()).collect();
     equilibrate::factors(&Csr::from_triplets(parts.kept.len(), &sample))
+}
+
+/// Writes the scaled rows and columns `kept` of a Schur complement to a column-major block.
+fn dense_block(schur: &Square, kept: &[u32], scaling: &Scaling, values: &mut [f64]) {
+    let m = kept.len().max(1);
+    let columns = values.par_chunks_mut(m).enumerate().with_min_len(16);
+    columns.for_each(|(k, target)| {
+        let column = kept[k] as usize;
+        let first = if schur.is_symmetric() { k } else { 0 };
+        let from = kept[first] as usize;
+        let source = schur.below(column, from);
+        for ((value, &row), row_scale) in target[first..].iter_mut().zip(&kept[first..]).zip(&scaling.row[first..]) {
+            *value = source[row as usize - from] * row_scale * scaling.column[k];
+        }
+    });
+    if schur.is_symmetric() {
+        let ratio: Vec<f64> = scaling.row.iter().zip(&scaling.column).map(|(row, column)| row / column).collect();
+        mirror_lower(values, &ratio);
+    }
+}
+
+/// Makes the upper triangle of a scaled symmetric matrix from the lower one, tile by tile; `ratio` is that of the scale factors
+/// of rows to those of columns, all powers of two.
+fn mirror_lower(values: &mut [f64], ratio: &[f64]) {
+    const TILE: usize = 64;
+    let order = ratio.len();
+    for block in (0..order).step_by(TILE) {
+        let block_end = (block + TILE).min(order);
+        let (left, right) = values.split_at_mut(block_end * order);
+        for j in block..block_end {
+            for i in block..j {
+                left[i + j * order] = left[j + i * order] * (ratio[i] / ratio[j]);
+            }
+        }
+        let source = &left[block * order..];
+        right.par_chunks_mut(order).enumerate().with_min_len(64).for_each(|(k, column)| {
+            let j = block_end + k;
+            for i in block..block_end {
+                column[i] = source[j + (i - block) * order] * (ratio[i] / ratio[j]);
+            }
+        });
+    }
 }
 
 #[cfg(test)]
@@ -237,7 +273,7 @@ mod tests {
 
     #[test]
     fn lone_equations_are_solved_apart() {
-        let schur = [4.0, 1.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 0.0];
+        let schur = Square::over(vec![4.0, 1.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 0.0], 3, false);
         let coupling = Csr::from_triplets(3, &[(0, 2, 5.0), (2, 2, -2.0)]);
         let interface = Interface::new(&schur, coupling, |at| at < 2, None);
         assert_eq!((interface.parts.lone.len(), interface.parts.kept.len()), (1, 2));
@@ -249,13 +285,13 @@ mod tests {
     }
 
     /// A dense Schur complement `2 I + 1 1ᵀ / n`, whose last `multipliers` equations are unknown to it.
-    fn schur(n: usize, multipliers: usize) -> Vec<f64> {
-        let mut values = vec![0.0; n * n];
+    fn schur(n: usize, multipliers: usize) -> Square {
+        let mut schur = Square::over(vec![0.0; Square::size(n, true)], n, true);
         for j in 0..n - multipliers {
-            values[n * j..n * (j + 1) - multipliers].fill(1.0 / n as f64);
-            values[j * (n + 1)] += 2.0;
+            (j..n - multipliers).for_each(|i| *schur.entry_mut(i, j) = 1.0 / n as f64);
+            *schur.entry_mut(j, j) += 2.0;
         }
-        values
+        schur
     }
 
     /// Multipliers at the end, each of which ties one equation, and one that is inactive.
@@ -272,12 +308,12 @@ mod tests {
         Csr::from_triplets(n, &triplets)
     }
 
-    fn error(interface: &Interface, schur: &[f64], coupling: &Csr) -> f64 {
+    fn error(interface: &Interface, schur: &Square, coupling: &Csr) -> f64 {
         let n = coupling.rows;
         let exact: Vec<f64> = (0..n).map(|i| (i % 7) as f64 - 3.0).collect();
         let mut x = vec![0.0; n];
         coupling.mul_vec_subtract(&exact, &mut x);
-        subtract_from_vector(&mut x, view(schur, n, n), view(&exact, n, 1));
+        schur.mul_vec_subtract(&exact, &mut x);
         x.iter_mut().for_each(|x| *x = -*x);
         interface.solve(schur, &mut x);
         x.iter().zip(&exact).map(|(x, exact)| (x - exact).abs()).fold(0.0, f64::max)

@@ -11,6 +11,8 @@ pub mod vector;
 mod system;
 
 mod dense;
+mod columns;
+mod square;
 mod dense_lu;
 
 mod condensation;

@@ -8,10 +8,12 @@ use std::path::{Path, PathBuf};
 
 /// Entries of a row, on average, from which on factors fill like those of solids in space.
 const MANY_ENTRIES: usize = 40;
-/// Bytes of a factorisation in space for each `n^(4/3)`.
-const FACTOR_IN_SPACE: f64 = 400.0;
-/// Bytes of a factorisation in the plane for each `n log₂ n`.
-const FACTOR_IN_PLANE: f64 = 120.0;
+/// Numbers of a factor in space for each `n^(4/3)`.
+const FACTOR_IN_SPACE: f64 = 20.0;
+/// Numbers of a factor in the plane for each `n log₂ n`.
+const FACTOR_IN_PLANE: f64 = 8.0;
+/// Bytes of a factorisation for each number of the factor, which is kept in double precision or in single.
+const BYTES_A_NUMBER: [f64; 2] = [13.5, 8.0];
 /// Bytes of the levels of multigrid, while they are made, for each entry of the matrix.
 const LEVELS: u64 = 16;
 /// Bytes of incomplete factors for each entry.
@@ -24,15 +26,16 @@ pub(crate) fn is_dense(equations: usize, entries: usize) -> bool {
     entries > MANY_ENTRIES * equations
 }
 
-/// Bytes of a factorisation of a matrix of this size, beside the matrix itself.
-pub(crate) fn factor(equations: usize, entries: usize) -> u64 {
+/// Bytes of a factorisation of a matrix of this size, beside the matrix itself, with factors of `single_from` numbers and more in
+/// single precision.
+pub(crate) fn factor(equations: usize, entries: usize, single_from: usize) -> u64 {
     let n = equations as f64;
-    let bytes = if is_dense(equations, entries) {
+    let numbers = if is_dense(equations, entries) {
         FACTOR_IN_SPACE * n.powf(4.0 / 3.0)
     } else {
         FACTOR_IN_PLANE * n * n.max(2.0).log2()
     };
-    bytes as u64
+    (numbers * BYTES_A_NUMBER[usize::from(numbers >= single_from as f64)]) as u64
 }
 
 /// Bytes of a multigrid hierarchy and the iteration with it.
@@ -99,15 +102,16 @@ mod tests {
         // Blocks of hexahedra (docs/performance.md) and squares of quadrilaterals: megabytes of the whole run, of which
         // matrices and model are 24 an entry.
         let measured = [
-            (21_499, 1_590_000, 316, 113),
-            (67_813, 5_200_000, 1_204, 314),
-            (218_599, 17_100_000, 5_411, 983),
-            (80_802, 1_450_000, 211, 138),
-            (246_402, 4_420_000, 664, 407),
+            (21_499, 1_590_000, 215, 113),
+            (67_813, 5_200_000, 850, 314),
+            (218_599, 17_100_000, 2_430, 983),
+            (80_802, 1_450_000, 208, 138),
+            (246_402, 4_420_000, 635, 407),
         ];
         for (equations, entries, direct, multigrid) in measured {
             let rest = 24.0 * entries as f64 / 1e6;
-            let own = [(factor(equations, entries), direct), (super::multigrid(equations, entries), multigrid)];
+            let own =
+                [(factor(equations, entries, 1 << 27), direct), (super::multigrid(equations, entries), multigrid)];
             for (own, whole) in own {
                 let ratio = (own as f64 / 1e6 + rest) / f64::from(whole);
                 assert!((0.7..1.4).contains(&ratio), "{equations}: {ratio}");

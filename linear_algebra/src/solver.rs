@@ -156,6 +156,9 @@ pub struct DirectSettings {
     pub dense_below: usize,
     /// Interfaces of at most this many equations go into a dense Schur complement.
     pub interface_limit: usize,
+    /// Numbers of a factor (of one of the two of a matrix without symmetry) from which on it is kept in single precision,
+    /// where refinement makes up for it.
+    pub single_from: usize,
     /// Relative residual above which an answer is refused.
     pub tolerance: f64,
     /// Largest number of steps of iterative refinement.
@@ -164,7 +167,7 @@ pub struct DirectSettings {
 
 impl Default for DirectSettings {
     fn default() -> Self {
-        Self { dense_below: 150, interface_limit: 9000, tolerance: 1e-6, refinements: 3 }
+        Self { dense_below: 150, interface_limit: 9000, single_from: 1 << 27, tolerance: 1e-6, refinements: 3 }
     }
 }
 

@@ -197,6 +197,12 @@ impl Symbolic {
         self.fronts.len() - usize::from(self.interior < self.equation.len())
     }
 
+    /// Numbers of a symmetric factor, about, without those of the equations kept last.
+    pub(crate) fn factor_size(&self) -> usize {
+        let of_front = |front: &Front| front.pivots() * (front.order() - front.pivots() / 2);
+        self.fronts[..self.eliminated_fronts()].iter().map(of_front).sum()
+    }
+
     /// Floating-point operations of a Cholesky factorisation, without the equations kept last.
     pub(crate) fn work(&self) -> f64 {
         self.fronts[..self.eliminated_fronts()].iter().map(Front::work).sum()

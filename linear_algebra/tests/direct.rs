@@ -90,6 +90,61 @@ fn a_floating_body_is_held_by_multipliers() {
     }
 }
 
+/// The engine with all factors in single precision.
+fn single(interface_limit: usize) -> Box<dyn LinearSolver> {
+    create(Engine::Direct(DirectSettings { interface_limit, single_from: 0, ..Default::default() }))
+}
+
+#[test]
+fn factors_in_single_precision_give_answers_in_double() {
+    let (bulk, layout) = clamped_box(9);
+    for (symmetry, engine) in [(Symmetry::PositiveDefinite, "cholesky"), (Symmetry::General, "multifrontal_lu")] {
+        // Stiffness far from one, which single precision alone could not hold.
+        for unit in [1.0, 1e60, 1e-60] {
+            let scaled = Csr { values: bulk.values.iter().map(|value| unit * value).collect(), ..bulk.clone() };
+            let (report, error) = solve_known(&mut *single(9000), &System::bulk(&layout, &scaled, symmetry));
+            assert_eq!((report.engine, report.fallback), (engine, None));
+            assert!(report.iterations > 0, "one solve in single precision leaves seven digits");
+            assert!(error < 1e-10 && report.relative_residual < 1e-12, "{engine} {unit}: {error}");
+        }
+    }
+    let sample = contact(7, 0.2, |at| at % 4 != 1);
+    let system = System {
+        coupling: Some(&sample.coupling),
+        coupling_symmetric: false,
+        ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+    };
+    for (limit, engine) in [(9000, "cholesky+interface"), (0, "multifrontal_lu")] {
+        let (report, error) = solve_known(&mut *single(limit), &system);
+        assert_eq!(report.engine, engine);
+        assert!(error < 1e-7 && report.relative_residual < 1e-10, "{engine}: {error}");
+    }
+}
+
+/// A slender beam, clamped at one end, whose condition number (the fourth power of its length) is beyond single precision.
+#[test]
+fn where_single_precision_does_not_serve_double_does() {
+    let n = 600;
+    let mut triplets = Vec::new();
+    for bend in 0..n {
+        let at = [bend as isize - 2, bend as isize - 1, bend as isize];
+        for (i, a) in at.into_iter().zip([1.0, -2.0, 1.0]).filter(|(i, _)| *i >= 0) {
+            triplets.extend(
+                at.into_iter()
+                    .zip([1.0, -2.0, 1.0])
+                    .filter(|(j, _)| *j >= 0)
+                    .map(|(j, b)| (i as usize, j as usize, a * b)),
+            );
+        }
+    }
+    let (bulk, layout) = (Csr::from_triplets(n, &triplets), Layout::scalar(n));
+    let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
+    let (in_double, error_in_double) = solve_known(&mut *direct(9000), &system);
+    let (report, error) = solve_known(&mut *single(9000), &system);
+    assert_eq!((report.engine, report.iterations), ("cholesky", in_double.iterations));
+    assert_eq!(error, error_in_double);
+}
+
 /// Two chains of springs: the first held at its end, the second only through multipliers.
 #[test]
 fn chains_tied_by_a_multiplier() {
@@ -235,8 +290,9 @@ fn a_singular_matrix_names_its_equations() {
     let bulk = Csr::from_triplets(3 * nodes, &triplets);
     let layout = Layout::blocked(nodes, 3);
     let rhs = right_hand_side(3 * nodes);
-    for dense_below in [0, 100_000] {
-        let mut solver = create(Engine::Direct(DirectSettings { dense_below, ..Default::default() }));
+    for (dense_below, single_from) in [(0, usize::MAX), (0, 0), (100_000, 0)] {
+        let settings = DirectSettings { dense_below, single_from, ..Default::default() };
+        let mut solver = create(Engine::Direct(settings));
         let mut x = vec![0.0; 3 * nodes];
         match solver.solve(&System::bulk(&layout, &bulk, Symmetry::PositiveDefinite), &rhs, &mut x) {
             Err(SolveError::Singular { equations, rank_deficiency }) => {
@@ -321,6 +377,10 @@ fn the_bits_do_not_depend_on_the_threads() {
                     answers.push(x);
                 }
             }
+            let mut x = vec![0.0; bulk.rows];
+            let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
+            single(9000).solve(&system, &right_hand_side(x.len()), &mut x).expect("regular");
+            answers.push(x);
             answers
         })
     };

@@ -15,6 +15,7 @@ use crate::interface::Interface;
 use crate::iterations::gmres;
 use crate::lu::SparseLu;
 use crate::memory;
+use crate::multifrontal::Precision;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
 use crate::state::{State, WrongState};
 use crate::system::{Stamps, Symmetry, System};
@@ -29,6 +30,10 @@ const WHOLE_WORK: f64 = 40.0;
 const RENEWAL_SHARE: f64 = 0.05;
 /// Largest system given to the slow last resort.
 const SPARSE_LU_LIMIT: usize = 60_000;
+/// Residual at which refinement with factors in single precision ends, as far as those in double precision get at once.
+const SINGLE_ENOUGH: f64 = 1e-12;
+/// Largest number of its steps.
+const SINGLE_REFINEMENTS: usize = 8;
 /// Residual that refinement should reach; above it Krylov iteration is tried.
 const WANTED: f64 = 1e-10;
 /// Residual up to which an answer counts that only rounding keeps from being better.
@@ -83,6 +88,8 @@ struct DirectState {
     /// Equations kept in the interface, with the stamp of the bulk's graph they belong to.
     kept: Option<(Vec<bool>, u64)>,
     cholesky_pause: usize,
+    /// Whether factors in single precision did not serve.
+    needs_double: bool,
 }
 
 #[typetag::serde(name = "direct")]
@@ -182,7 +189,8 @@ impl DirectSolver {
                 };
                 self.seconds_symbolic += start.elapsed().as_secs_f64();
                 let start = Instant::now();
-                let done = sparse.factorise(matrix, way == Way::WholeCholesky);
+                let precision = self.precision(&sparse);
+                let done = sparse.factorise(matrix, way == Way::WholeCholesky, precision);
                 self.seconds_numeric += start.elapsed().as_secs_f64();
                 Ok(done.ok().map(|()| Path::Whole(sparse)))
             }
@@ -198,7 +206,8 @@ impl DirectSolver {
                 let start = Instant::now();
                 if !(same_bulk && sparse.factor.is_some()) {
                     old_interface.iter_mut().for_each(Interface::forget);
-                    if sparse.factorise(system.bulk, way == Way::InterfaceCholesky).is_err() {
+                    let precision = self.precision(&sparse);
+                    if sparse.factorise(system.bulk, way == Way::InterfaceCholesky, precision).is_err() {
                         self.seconds_numeric += start.elapsed().as_secs_f64();
                         return Ok(None);
                     }
@@ -216,6 +225,15 @@ impl DirectSolver {
                 self.seconds_numeric += start.elapsed().as_secs_f64();
                 Ok(Some(Path::Interface(sparse, interface)))
             }
+        }
+    }
+
+    /// In which precision factors are kept.
+    fn precision(&self, sparse: &Sparse) -> Precision {
+        if !self.learnt.needs_double && sparse.symbolic.factor_size() >= self.settings.single_from {
+            Precision::Single
+        } else {
+            Precision::Double
         }
     }
 
@@ -254,6 +272,9 @@ impl DirectSolver {
             .as_ref()
             .is_some_and(|(old, path, stamps)| *old == way && *stamps == Stamps::of(system) && !path.is_lost());
         let Some(path) = self.prepare(way, system)? else { return Ok(None) };
+        if !known && path.suspicious() > 0 && path.is_single() {
+            return self.in_double(way, path, system, rhs, x);
+        }
         if !known && path.suspicious() > 0 && !is_regular(system, &path) {
             let (vector, ratio) = null_vector(system, &path);
             if ratio < NULL_VECTOR {
@@ -264,12 +285,19 @@ impl DirectSolver {
             }
             return Ok(None);
         }
-        let mut refined = check::refine(system, rhs, x, self.settings.refinements, |r| path.apply(r));
+        let (steps, enough) = match path.is_single() {
+            true => (SINGLE_REFINEMENTS, SINGLE_ENOUGH),
+            false => (self.settings.refinements, check::GOOD_ENOUGH),
+        };
+        let mut refined = check::refine(system, rhs, x, steps, enough, |r| path.apply(r));
         if path.is_lost() {
             self.current = Some((way, path, Stamps::of(system)));
             return self.attempt(way, system, rhs, x);
         }
         if !refined.reaches(WANTED) && !check::is_rounding(system, rhs, x) {
+            if path.is_single() {
+                return self.in_double(way, path, system, rhs, x);
+            }
             refined = krylov(system, &path, rhs, x, refined);
         }
         let good = refined.reaches(self.settings.tolerance)
@@ -278,6 +306,29 @@ impl DirectSolver {
             self.current = Some((way, path, Stamps::of(system)));
         }
         Ok(good.then_some(refined))
+    }
+
+    /// Solves by the way of `single`, whose factors in single precision do not serve, with factors in double precision.
+    fn in_double(
+        &mut self,
+        way: Way,
+        single: Path,
+        system: &System<'_>,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> Result<Option<Refined>, SolveError> {
+        drop(single);
+        self.learnt.needs_double = true;
+        let needed = memory::factor(system.equations(), system.bulk.entries(), usize::MAX);
+        if let Some(free) = memory::available().filter(|free| *free < needed) {
+            return Err(SolveError::Failed(format!(
+                "factors in single precision do not serve the system, those in double precision take {:.1} GB, and {:.1} GB \
+                 are free: use another engine or more memory",
+                needed as f64 / 1e9,
+                free as f64 / 1e9
+            )));
+        }
+        self.attempt(way, system, rhs, x)
     }
 }
 
@@ -316,7 +367,7 @@ fn is_regular(system: &System<'_>, path: &Path) -> bool {
     let mut rhs = check::magnitude(system, &vec![1.0; x.len()]);
     rhs.iter_mut().zip(&x).for_each(|(size, x)| *size *= x);
     let mut solution = vec![0.0; x.len()];
-    let mut refined = check::refine(system, &rhs, &mut solution, 2, |r| path.apply(r));
+    let mut refined = check::refine(system, &rhs, &mut solution, 2, check::GOOD_ENOUGH, |r| path.apply(r));
     if !refined.reaches(1e-8) {
         refined = krylov(system, path, &rhs, &mut solution, refined);
     }
@@ -355,7 +406,7 @@ impl LinearSolver for DirectSolver {
     }
 
     fn needs(&self, equations: usize, entries: usize) -> u64 {
-        memory::factor(equations, entries)
+        memory::factor(equations, entries, self.settings.single_from)
     }
 
     /// Factors of an interface whose coupling has changed since would be iterated with.

@@ -6,7 +6,7 @@ use crate::csr::Csr;
 use crate::equilibrate;
 use crate::interface::{DenseFactor, Interface};
 use crate::lu::SparseLu;
-use crate::multifrontal::{Factor, Kind, NotPositiveDefinite, Scatter};
+use crate::multifrontal::{Factor, Kind, NotPositiveDefinite, Precision, Scatter};
 use crate::solver::SolveError;
 use crate::symbolic::Symbolic;
 use crate::system::System;
@@ -35,18 +35,23 @@ impl Sparse {
     }
 
     /// Factorises `matrix`, which has the pattern given to [`Sparse::new`].
-    pub(crate) fn factorise(&mut self, matrix: &Csr, cholesky: bool) -> Result<(), NotPositiveDefinite> {
+    pub(crate) fn factorise(
+        &mut self,
+        matrix: &Csr,
+        cholesky: bool,
+        precision: Precision,
+    ) -> Result<(), NotPositiveDefinite> {
         if self.scatter.as_ref().is_none_or(|(_, symmetric)| *symmetric && !cholesky) {
             self.scatter = Some((Scatter::new(&self.symbolic, matrix, cholesky), cholesky));
         }
         let (scatter, _) = self.scatter.as_ref().expect("made above");
         let (kind, scaling) = if cholesky {
-            (Kind::Cholesky, None)
+            (Kind::Cholesky, equilibrate::of_diagonal(matrix))
         } else {
-            (Kind::Lu { limit: PIVOT_LIMIT }, Some(equilibrate::factors(matrix)))
+            (Kind::Lu { limit: PIVOT_LIMIT }, equilibrate::factors(matrix))
         };
         let old = self.factor.take();
-        self.factor = Some(Factor::new(&self.symbolic, scatter, matrix, kind, scaling, old)?);
+        self.factor = Some(Factor::new(&self.symbolic, scatter, matrix, kind, precision, scaling, old)?);
         Ok(())
     }
 }
@@ -80,6 +85,14 @@ impl Path {
     /// Whether factors kept from an earlier coupling turned out to be of no use.
     pub(crate) fn is_lost(&self) -> bool {
         matches!(self, Self::Interface(_, interface) if interface.is_lost())
+    }
+
+    /// Whether factors are kept in single precision.
+    pub(crate) fn is_single(&self) -> bool {
+        match self {
+            Self::Whole(sparse) | Self::Interface(sparse, _) => sparse.factor.as_ref().is_some_and(Factor::is_single),
+            Self::Dense(_) | Self::SparseLu(_) => false,
+        }
     }
 
     /// Number of pivots that hint at a singular matrix.

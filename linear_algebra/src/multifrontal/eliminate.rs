@@ -4,9 +4,11 @@ use rayon::prelude::*;
 
 use super::pool::Pool;
 use super::scatter::Scatter;
-use super::{Block, Kind, NotPositiveDefinite};
+use super::store::Block;
+use super::{Kind, NotPositiveDefinite, Scaling};
 use crate::dense::{self, PARALLEL_WORK, view, view_mut};
 use crate::dense_lu::{self, Pivots};
+use crate::square::{Square, Tile};
 use crate::symbolic::{Front, Symbolic};
 
 /// Operations of a subtree below which one task does all of it.
@@ -17,6 +19,7 @@ pub(super) struct Elimination<'a> {
     pub(super) symbolic: &'a Symbolic,
     pub(super) scatter: &'a Scatter,
     pub(super) values: &'a [f64],
+    pub(super) scaling: &'a Scaling,
     pub(super) kind: Kind,
     pub(super) pool: Pool,
 }
@@ -28,7 +31,7 @@ impl Elimination<'_> {
         blocks: &mut [Block<'_>],
         begin: usize,
         tops: &[usize],
-    ) -> Result<Vec<Vec<f64>>, NotPositiveDefinite> {
+    ) -> Result<Vec<Square>, NotPositiveDefinite> {
         let mut rest = blocks;
         let mut at = begin;
         let mut pieces = Vec::with_capacity(tops.len());
@@ -45,70 +48,102 @@ impl Elimination<'_> {
         }
     }
 
-    /// Eliminates a subtree and gives its update of the rows of its top, in a buffer that may be longer.
-    fn eliminate(&self, blocks: &mut [Block<'_>], top: usize) -> Result<Vec<f64>, NotPositiveDefinite> {
+    /// Eliminates a subtree and gives its update of the rows of its top.
+    fn eliminate(&self, blocks: &mut [Block<'_>], top: usize) -> Result<Square, NotPositiveDefinite> {
         let front = &self.symbolic.fronts[top];
         let (own, inner) = blocks.split_last_mut().expect("a subtree has a top");
         let updates = self.subtrees(inner, front.first, &front.children)?;
         let (pivots, order, rows) = (front.pivots(), front.order(), front.rows.len());
-        let Block { panel, right, pivots: exchanges } = own;
+        let symmetric = self.kind == Kind::Cholesky;
+        let (mut panel_memory, mut right_memory) =
+            (self.pool.take(order * pivots), self.pool.take(if symmetric { 0 } else { pivots * rows }));
+        let panel = &mut panel_memory[..order * pivots];
+        let right = if symmetric { &mut [][..] } else { &mut right_memory[..pivots * rows] };
         // Above the diagonal a Cholesky factor is neither written nor read.
         for (k, column) in panel.chunks_mut(order).enumerate() {
-            column[if self.kind == Kind::Cholesky { k } else { 0 }..].fill(0.0);
+            column[if symmetric { k } else { 0 }..].fill(0.0);
         }
         right.fill(0.0);
-        self.scatter_entries(top, panel, right);
-        let symmetric = self.kind == Kind::Cholesky;
+        self.each_entry(top, |row, column, value| match column.checked_sub(pivots) {
+            None => panel[row + column * order] += value,
+            Some(column) => right[row + column * pivots] += value,
+        });
         for (&child, update) in front.children.iter().zip(&updates) {
             let child = &self.symbolic.fronts[child];
-            extend_panel(child, update, symmetric, panel, order, pivots);
+            extend_panel(child, update, panel, order, pivots);
             if !symmetric {
                 extend_right(child, update, right, pivots);
             }
         }
-        let mut update = self.pool.take(rows * rows);
         match self.kind {
             Kind::Cholesky => {
                 dense::cholesky_panel(panel, order, pivots).map_err(|_| NotPositiveDefinite)?;
-                dense::symmetric_update(&mut update, panel, order, pivots);
             }
             Kind::Lu { limit } => {
-                **exchanges = factorise_front(panel, right, order, pivots, limit);
-                let below = view(panel, order, pivots).subrows(pivots, rows);
-                dense::general_update(view_mut(&mut update, rows, rows), below, view(right, pivots, rows));
+                *own.pivots = factorise_front(panel, right, order, pivots, limit);
+                own.upper.keep_rows(order, pivots, |k| match k.checked_sub(pivots) {
+                    None => &panel[k * order..k * order + pivots],
+                    Some(k) => &right[k * pivots..(k + 1) * pivots],
+                });
+                (0..pivots).for_each(|k| panel[k * (order + 1)] = 1.0);
             }
         }
-        for (&child, child_update) in front.children.iter().zip(&updates) {
-            extend_update(&self.symbolic.fronts[child], child_update, symmetric, &mut update, rows, pivots);
+        let (panel, right) = (&*panel, &*right);
+        own.lower.keep_columns(order, pivots, |k| &panel[k * order..(k + 1) * order]);
+        let below = view(panel, order, pivots).subrows(pivots, rows);
+        let memory = self.pool.take(Square::size(rows, symmetric));
+        let mut update = Square::over(memory, rows, symmetric);
+        update.each_tile(pivots, |mut tile| {
+            let Tile { row, column, width, ref mut values } = tile;
+            if symmetric {
+                dense::symmetric_update(values, below.subrows(row, rows - row), width);
+            } else {
+                let right = view(right, pivots, rows).subcols(column, width);
+                dense::general_update(view_mut(values, rows, width), below, right);
+            }
+            for (&child, update) in front.children.iter().zip(&updates) {
+                extend_tile(&self.symbolic.fronts[child], update, &mut tile, rows, pivots);
+            }
+        });
+        for memory in [panel_memory, right_memory] {
+            self.pool.give(memory);
         }
-        updates.into_iter().for_each(|update| self.pool.give(update));
+        updates.into_iter().for_each(|update| self.pool.give(update.into_values()));
         Ok(update)
     }
 
-    /// The Schur complement on the equations kept last, full; `values` is memory to use again.
-    pub(super) fn root(&self, root: usize, tops: &[usize], updates: &[Vec<f64>], mut values: Vec<f64>) -> Vec<f64> {
+    /// The Schur complement on the equations kept last; `values` is memory to use again.
+    pub(super) fn root(&self, root: usize, tops: &[usize], updates: &[Square], mut values: Vec<f64>) -> Square {
         let order = self.symbolic.fronts[root].order();
-        values.clear();
-        values.resize(order * order, 0.0);
-        self.scatter_entries(root, &mut values, &mut []);
         let symmetric = self.kind == Kind::Cholesky;
-        for (&top, update) in tops.iter().zip(updates) {
-            let front = &self.symbolic.fronts[top];
-            extend_panel(front, update, symmetric, &mut values, order, order);
-        }
-        if symmetric {
-            mirror_lower(&mut values, order);
-        }
-        values
+        values.clear();
+        values.resize(Square::size(order, symmetric), 0.0);
+        let mut schur = Square::over(values, order, symmetric);
+        self.each_entry(root, |row, column, value| *schur.entry_mut(row, column) += value);
+        schur.each_tile(4, |mut tile| {
+            for (&top, update) in tops.iter().zip(updates) {
+                extend_tile(&self.symbolic.fronts[top], update, &mut tile, order, 0);
+            }
+        });
+        schur
     }
 
-    fn scatter_entries(&self, front: usize, panel: &mut [f64], right: &mut [f64]) {
-        for entry in self.scatter.of(front, self.kind == Kind::Cholesky) {
-            let value = self.values[entry.source as usize];
-            match (entry.target as usize).checked_sub(panel.len()) {
-                None => panel[entry.target as usize] += value,
-                Some(at) => right[at] += value,
-            }
+    /// Gives `take` row, column and scaled value of every entry of the matrix in a front.
+    fn each_entry(&self, front: usize, mut take: impl FnMut(usize, usize, f64)) {
+        let at = front;
+        let front = &self.symbolic.fronts[at];
+        let (order, pivots) = (front.order(), front.pivots());
+        let positions = front.columns.clone().chain(front.rows.iter().map(|&row| row as usize));
+        let equations: Vec<usize> = positions.map(|position| self.symbolic.equation[position] as usize).collect();
+        let [rows, columns] = [&self.scaling.row, &self.scaling.column]
+            .map(|factors| equations.iter().map(|&i| factors[i]).collect::<Vec<f64>>());
+        for entry in self.scatter.of(at, self.kind == Kind::Cholesky) {
+            let target = entry.target as usize;
+            let (row, column) = match target.checked_sub(order * pivots) {
+                None => (target % order, target / order),
+                Some(right) => (right % pivots, pivots + right / pivots),
+            };
+            take(row, column, self.values[entry.source as usize] * rows[row] * columns[column]);
         }
     }
 }
@@ -133,24 +168,22 @@ fn factorise_front(panel: &mut [f64], right: &mut [f64], order: usize, pivots: u
 }
 
 /// Adds the columns of a child's update that are pivots of the parent, except their part right of the pivots.
-fn extend_panel(child: &Front, update: &[f64], symmetric: bool, panel: &mut [f64], order: usize, pivots: usize) {
-    let rows = child.rows.len();
+fn extend_panel(child: &Front, update: &Square, panel: &mut [f64], order: usize, pivots: usize) {
     for run in child.runs.iter().filter(|run| run.parent < pivots) {
         let columns = &mut panel[run.parent * order..(run.parent + run.len) * order];
         each_column(columns, order, |k, column| {
-            let from = &update[(run.child + k) * rows..(run.child + k + 1) * rows];
-            add_below(child, from, if symmetric { run.child + k } else { 0 }, 0, column);
+            let k = run.child + k;
+            add_below(child, update, k, if update.is_symmetric() { k } else { 0 }, 0, column);
         });
     }
 }
 
 /// Adds the rows of a child's update that are pivots of the parent, in columns that are not.
-fn extend_right(child: &Front, update: &[f64], right: &mut [f64], pivots: usize) {
-    let rows = child.rows.len();
+fn extend_right(child: &Front, update: &Square, right: &mut [f64], pivots: usize) {
     let own = child.runs.iter().filter(|run| run.parent < pivots);
     for columns in child.runs.iter().filter(|run| run.parent >= pivots) {
         for k in 0..columns.len {
-            let from = &update[(columns.child + k) * rows..(columns.child + k + 1) * rows];
+            let from = update.below(columns.child + k, 0);
             let to = &mut right[(columns.parent + k - pivots) * pivots..(columns.parent + k + 1 - pivots) * pivots];
             for run in own.clone() {
                 let to = &mut to[run.parent..run.parent + run.len];
@@ -160,27 +193,32 @@ fn extend_right(child: &Front, update: &[f64], right: &mut [f64], pivots: usize)
     }
 }
 
-/// Adds the part of a child's update that stays in the update of the parent.
-fn extend_update(child: &Front, from: &[f64], symmetric: bool, update: &mut [f64], order: usize, pivots: usize) {
-    let rows = child.rows.len();
-    let first = child.runs.iter().find(|run| run.parent >= pivots).map_or(rows, |run| run.child);
-    for run in child.runs.iter().filter(|run| run.parent >= pivots) {
-        let begin = run.parent - pivots;
-        each_column(&mut update[begin * order..(begin + run.len) * order], order, |k, column| {
-            let from = &from[(run.child + k) * rows..(run.child + k + 1) * rows];
-            add_below(child, from, if symmetric { run.child + k } else { first }, pivots, column);
-        });
+/// Adds the part of a child's update that falls into a tile of a matrix of `order`, which begins with row `offset` of the parent.
+fn extend_tile(child: &Front, update: &Square, tile: &mut Tile<'_>, order: usize, offset: usize) {
+    let stride = order - tile.row;
+    let (begin, end) = (tile.column + offset, tile.column + offset + tile.width);
+    let first = child.runs.iter().find(|run| run.parent >= offset).map_or(0, |run| run.child);
+    let skip = child.runs.partition_point(|run| run.parent + run.len <= begin);
+    for run in child.runs[skip..].iter().take_while(|run| run.parent < end) {
+        for parent in run.parent.max(begin)..(run.parent + run.len).min(end) {
+            let k = run.child + parent - run.parent;
+            let column = &mut tile.values[(parent - begin) * stride..(parent - begin + 1) * stride];
+            let from = if update.is_symmetric() { k } else { first };
+            add_below(child, update, k, from, offset + tile.row, column);
+        }
     }
 }
 
-/// Adds rows `first..` of a column of a child's update to a column whose first row is `offset` in the parent.
-fn add_below(child: &Front, from: &[f64], first: usize, offset: usize, column: &mut [f64]) {
+/// Adds rows `first..` of column `k` of a child's update to a column whose first row is `offset` in the parent.
+fn add_below(child: &Front, update: &Square, k: usize, first: usize, offset: usize, column: &mut [f64]) {
+    let from = update.below(k, first);
     let skip = child.runs.partition_point(|run| run.child + run.len <= first);
     for run in &child.runs[skip..] {
         let begin = first.max(run.child);
         let len = run.child + run.len - begin;
         let at = run.parent + (begin - run.child) - offset;
-        column[at..at + len].iter_mut().zip(&from[begin..begin + len]).for_each(|(c, f)| *c += f);
+        let from = &from[begin - first..begin - first + len];
+        column[at..at + len].iter_mut().zip(from).for_each(|(c, f)| *c += f);
     }
 }
 
@@ -189,26 +227,5 @@ fn each_column(columns: &mut [f64], order: usize, work: impl Fn(usize, &mut [f64
         columns.par_chunks_mut(order).enumerate().with_min_len(4).for_each(|(k, column)| work(k, column));
     } else {
         columns.chunks_mut(order).enumerate().for_each(|(k, column)| work(k, column));
-    }
-}
-
-/// Copies the lower triangle to the upper one, tile by tile.
-fn mirror_lower(values: &mut [f64], order: usize) {
-    const TILE: usize = 64;
-    for block in (0..order).step_by(TILE) {
-        let (left, right) = values.split_at_mut(((block + TILE).min(order)) * order);
-        let block_end = (block + TILE).min(order);
-        for j in block..block_end {
-            for i in block..j {
-                left[i + j * order] = left[j + i * order];
-            }
-        }
-        let source = &left[block * order..];
-        each_column(right, order, |k, column| {
-            let j = block_end + k;
-            for i in block..block_end {
-                column[i] = source[j + (i - block) * order];
-            }
-        });
     }
 }

@@ -5,16 +5,19 @@
 mod eliminate;
 mod pool;
 mod scatter;
+mod store;
 mod substitute;
 
 use std::sync::Arc;
 
 use crate::csr::Csr;
-use crate::dense_lu::Pivots;
+use crate::square::Square;
 use crate::symbolic::Symbolic;
 use eliminate::Elimination;
 use pool::Pool;
 pub(crate) use scatter::Scatter;
+pub(crate) use store::Precision;
+use store::Store;
 
 /// Which factorisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,75 +51,15 @@ impl Scaling {
     }
 }
 
-/// The numbers of all fronts one after the other, in memory that serves again.
-#[derive(Debug, Default)]
-struct Store {
-    /// Pivot columns of each front, `order × pivots`.
-    panels: Vec<f64>,
-    /// Pivot rows right of the pivots of each front, `pivots × rows`; empty for Cholesky.
-    rights: Vec<f64>,
-    pivots: Vec<Pivots>,
-    /// Where the panel and the right part of each front start, and where the last ones end.
-    starts: Vec<[usize; 2]>,
-}
-
-/// The numbers of one front.
-struct Block<'a> {
-    panel: &'a mut [f64],
-    right: &'a mut [f64],
-    pivots: &'a mut Pivots,
-}
-
-impl Store {
-    /// Makes room, whose numbers are of any value.
-    fn reserve(&mut self, symbolic: &Symbolic, kind: Kind) {
-        self.starts = vec![[0, 0]];
-        let [mut panel, mut right] = [0, 0];
-        for front in &symbolic.fronts[..symbolic.eliminated_fronts()] {
-            panel += front.order() * front.pivots();
-            right += if kind == Kind::Cholesky { 0 } else { front.pivots() * front.rows.len() };
-            self.starts.push([panel, right]);
-        }
-        for (values, len) in [(&mut self.panels, panel), (&mut self.rights, right)] {
-            if values.len() != len {
-                *values = Vec::new();
-                *values = vec![0.0; len];
-            }
-        }
-        self.pivots.resize_with(self.starts.len() - 1, Pivots::default);
-    }
-
-    fn blocks(&mut self) -> Vec<Block<'_>> {
-        let (mut panels, mut rights) = (&mut self.panels[..], &mut self.rights[..]);
-        let mut blocks = Vec::with_capacity(self.pivots.len());
-        for (pivots, starts) in self.pivots.iter_mut().zip(self.starts.windows(2)) {
-            let (panel, after) = panels.split_at_mut(starts[1][0] - starts[0][0]);
-            let (right, after_right) = rights.split_at_mut(starts[1][1] - starts[0][1]);
-            (panels, rights) = (after, after_right);
-            blocks.push(Block { panel, right, pivots });
-        }
-        blocks
-    }
-
-    fn panel(&self, front: usize) -> &[f64] {
-        &self.panels[self.starts[front][0]..self.starts[front + 1][0]]
-    }
-
-    fn right(&self, front: usize) -> &[f64] {
-        &self.rights[self.starts[front][1]..self.starts[front + 1][1]]
-    }
-}
-
 /// A factorised matrix; the equations kept last form the dense Schur complement `root`.
 #[derive(Debug)]
 pub(crate) struct Factor {
     symbolic: Arc<Symbolic>,
     kind: Kind,
     store: Store,
-    pool: Pool,
-    scaling: Option<Scaling>,
-    /// Schur complement on the equations kept last, column-major and full; not scaled.
-    pub(crate) root: Vec<f64>,
+    scaling: Scaling,
+    /// Schur complement on the equations kept last; not scaled.
+    pub(crate) root: Square,
     /// Equations whose pivot was replaced, or is tiny against the diagonal of the matrix.
     pub(crate) suspicious: Vec<usize>,
 }
@@ -138,58 +81,60 @@ impl Factor {
         scatter: &Scatter,
         matrix: &Csr,
         kind: Kind,
-        scaling: Option<Scaling>,
+        precision: Precision,
+        scaling: Scaling,
         reuse: Option<Factor>,
     ) -> Result<Self, NotPositiveDefinite> {
-        let (mut store, pool, memory) = reuse.map_or_else(Default::default, |old| (old.store, old.pool, old.root));
-        store.reserve(symbolic, kind);
-        let scaled = scaling.as_ref().map(|scaling| scaling.apply(matrix));
-        let values = scaled.as_deref().unwrap_or(&matrix.values);
-        let work = Elimination { symbolic, scatter, values, kind, pool };
+        let (mut store, memory) = reuse.map_or_else(Default::default, |old| (old.store, old.root.into_values()));
+        store.reserve(symbolic, kind == Kind::Cholesky, precision);
+        let work =
+            Elimination { symbolic, scatter, values: &matrix.values, scaling: &scaling, kind, pool: Pool::default() };
         let (tops, root) = symbolic.tops();
         let updates = work.subtrees(&mut store.blocks(), 0, &tops)?;
-        let root = root.map_or_else(Vec::new, |root| work.root(root, &tops, &updates, memory));
-        let pool = work.pool;
-        updates.into_iter().for_each(|update| pool.give(update));
-        let mut factor =
-            Self { symbolic: symbolic.clone(), kind, store, pool, scaling: None, root, suspicious: Vec::new() };
+        work.pool.clear();
+        let root = root.map_or_else(Square::default, |root| work.root(root, &tops, &updates, memory));
+        drop(updates);
+        let mut factor = Self { symbolic: symbolic.clone(), kind, store, scaling, root, suspicious: Vec::new() };
         factor.suspicious = factor.find_suspicious(matrix);
-        factor.scaling = scaling;
         factor.unscale_root();
         Ok(factor)
     }
 
+    /// Whether the factors are kept in single precision.
+    pub(crate) fn is_single(&self) -> bool {
+        self.store.precision() == Precision::Single
+    }
+
     fn unscale_root(&mut self) {
-        let Some(scaling) = &self.scaling else { return };
         let kept = &self.symbolic.equation[self.symbolic.interior..];
-        for (column, &j) in self.root.chunks_mut(kept.len().max(1)).zip(kept) {
-            for (value, &i) in column.iter_mut().zip(kept) {
-                *value /= scaling.row[i as usize] * scaling.column[j as usize];
+        let scaling = &self.scaling;
+        self.root.each_tile(4, |tile| {
+            let rows = &kept[tile.row..];
+            for (column, &j) in tile.values.chunks_mut(rows.len()).zip(&kept[tile.column..tile.column + tile.width]) {
+                for (value, &i) in column.iter_mut().zip(rows) {
+                    *value /= scaling.row[i as usize] * scaling.column[j as usize];
+                }
             }
-        }
+        });
     }
 
     fn find_suspicious(&self, matrix: &Csr) -> Vec<usize> {
         let mut found = Vec::new();
         for (at, pivots) in self.store.pivots.iter().enumerate() {
-            let front = &self.symbolic.fronts[at];
-            let start = front.columns.start;
+            let equations = &self.symbolic.equation[self.symbolic.fronts[at].columns.clone()];
             match self.kind {
-                Kind::Lu { .. } => {
-                    found.extend(pivots.replaced.iter().map(|&k| self.symbolic.equation[start + k as usize]));
-                }
+                Kind::Lu { .. } => found.extend(pivots.replaced.iter().map(|&k| equations[k as usize] as usize)),
                 Kind::Cholesky => {
-                    let panel = self.store.panel(at);
-                    for k in 0..front.pivots() {
-                        let pivot = panel[k + front.order() * k];
-                        let i = self.symbolic.equation[start + k];
-                        if pivot * pivot <= LOST_PIVOT * matrix.get(i as usize, i as usize) {
+                    for (pivot, &i) in self.store.diagonal(at).into_iter().zip(equations) {
+                        let i = i as usize;
+                        let diagonal = matrix.get(i, i) * self.scaling.row[i] * self.scaling.column[i];
+                        if pivot * pivot <= LOST_PIVOT * diagonal {
                             found.push(i);
                         }
                     }
                 }
             }
         }
-        found.into_iter().map(|i| i as usize).collect()
+        found
     }
 }

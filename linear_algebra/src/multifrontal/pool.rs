@@ -4,35 +4,57 @@ use std::sync::{Mutex, PoisonError};
 
 /// Shorter buffers are left to the allocator.
 const SMALL: usize = 1 << 13;
+/// Share of what is asked for by which a buffer may be longer.
+const LOOSE: f64 = 0.25;
+/// Numbers that may wait in buffers of half as many and more, which the allocator gives back to the system.
+const WAITING: usize = 1 << 23;
 
-/// Buffers waiting for their next use, by the power of two of their length.
+/// Buffers waiting for their next use, shortest first.
 #[derive(Debug, Default)]
 pub(crate) struct Pool {
-    free: Mutex<Vec<Vec<Vec<f64>>>>,
+    free: Mutex<Vec<Vec<f64>>>,
 }
 
 impl Pool {
     /// A buffer of at least `len` numbers of any value.
+    ///
+    /// Where none that waits serves, as many numbers as are asked for go back to the system before, so that what waits
+    /// never adds to the most that was in use.
     pub(crate) fn take(&self, len: usize) -> Vec<f64> {
-        if len < SMALL {
-            return vec![0.0; len];
+        if len >= SMALL {
+            let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+            let at = free.partition_point(|buffer| buffer.len() < len);
+            if free.get(at).is_some_and(|buffer| buffer.len() as f64 <= (1.0 + LOOSE) * len as f64) {
+                return free.remove(at);
+            }
+            let mut given = 0;
+            let useless = free.iter().take_while(|buffer| {
+                let more = given < len;
+                given += buffer.len();
+                more
+            });
+            let useless = useless.count();
+            free.drain(..useless);
         }
-        let class = len.next_power_of_two();
-        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
-        let waiting = free.get_mut(class.ilog2() as usize).and_then(Vec::pop);
-        drop(free);
-        waiting.unwrap_or_else(|| vec![0.0; class])
+        vec![0.0; len]
     }
 
-    /// Takes a buffer back.
+    /// Gives all that waits back to the system.
+    pub(crate) fn clear(&self) {
+        self.free.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+
+    /// Takes a buffer back; long ones go on to the system when too many numbers wait.
     pub(crate) fn give(&self, buffer: Vec<f64>) {
         if buffer.len() >= SMALL {
-            let class = buffer.len().ilog2() as usize;
             let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
-            if free.len() <= class {
-                free.resize_with(class + 1, Vec::new);
+            let at = free.partition_point(|other| other.len() < buffer.len());
+            free.insert(at, buffer);
+            let long = free.partition_point(|buffer| buffer.len() < WAITING / 2);
+            let mut waiting: usize = free[long..].iter().map(Vec::len).sum();
+            while waiting > WAITING {
+                waiting -= free.pop().map_or(0, |longest| longest.len());
             }
-            free[class].push(buffer);
         }
     }
 }
@@ -47,10 +69,16 @@ mod tests {
         let first = pool.take(10_000);
         let address = first.as_ptr();
         pool.give(first);
-        let longer = pool.take(20_000);
-        assert!(longer.as_ptr() != address && longer.len() >= 20_000);
         let again = pool.take(9_000);
-        assert!(again.as_ptr() == address && again.len() >= 9_000);
+        assert!(again.as_ptr() == address && again.len() == 10_000);
+        pool.give(again);
+        assert_eq!(pool.take(20_000).len(), 20_000);
+        assert!(pool.free.lock().unwrap().is_empty(), "the shorter one gave way");
+        pool.give(vec![0.0; 10_000]);
+        pool.give(vec![0.0; WAITING / 2 + 1]);
+        pool.give(vec![0.0; WAITING]);
+        let waiting: Vec<usize> = pool.free.lock().unwrap().iter().map(Vec::len).collect();
+        assert_eq!(waiting, [10_000, WAITING / 2 + 1], "more than may wait goes back");
         assert_eq!(pool.take(12).len(), 12);
     }
 }

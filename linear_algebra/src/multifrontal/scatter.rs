@@ -122,5 +122,6 @@ fn entries_of(
             }
         }
     }
+    entries.shrink_to_fit();
     (entries, lower)
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Factor, Kind};
-use crate::dense::{self, Triangle, view};
+use crate::dense;
 use crate::symbolic::{Front, Run};
 
 /// Operations of the elimination of a subtree below which one task substitutes in all of it.
@@ -15,10 +15,8 @@ impl Factor {
     /// `x` is in the order of the equations; `between` in that of `Symbolic::equation` after its interior.
     pub(crate) fn solve(&self, x: &mut [f64], between: impl FnOnce(&mut [f64])) {
         let symbolic = &*self.symbolic;
-        let mut y: Vec<f64> = match &self.scaling {
-            Some(scaling) => symbolic.equation.iter().map(|&i| x[i as usize] * scaling.row[i as usize]).collect(),
-            None => symbolic.equation.iter().map(|&i| x[i as usize]).collect(),
-        };
+        let scaling = &self.scaling;
+        let mut y: Vec<f64> = symbolic.equation.iter().map(|&i| x[i as usize] * scaling.row[i as usize]).collect();
         let (tops, root) = symbolic.tops();
         let (inside, kept) = y.split_at_mut(symbolic.interior);
         let updates = self.forward_subtrees(inside, 0, &tops);
@@ -26,23 +24,15 @@ impl Factor {
             for (&top, update) in tops.iter().zip(&updates) {
                 add_runs(&symbolic.fronts[top].runs, update, kept);
             }
-            if let Some(scaling) = &self.scaling {
-                kept.iter_mut()
-                    .zip(&symbolic.equation[symbolic.interior..])
-                    .for_each(|(value, &i)| *value /= scaling.row[i as usize]);
-            }
+            let equations = &symbolic.equation[symbolic.interior..];
+            kept.iter_mut().zip(equations).for_each(|(value, &i)| *value /= scaling.row[i as usize]);
             between(kept);
-            if let Some(scaling) = &self.scaling {
-                kept.iter_mut()
-                    .zip(&symbolic.equation[symbolic.interior..])
-                    .for_each(|(value, &i)| *value /= scaling.column[i as usize]);
-            }
+            kept.iter_mut().zip(equations).for_each(|(value, &i)| *value /= scaling.column[i as usize]);
         }
         let known: Vec<Vec<f64>> = tops.iter().map(|&top| gather_runs(&symbolic.fronts[top], kept)).collect();
         self.backward_subtrees(inside, 0, &tops, known);
         for (&i, value) in symbolic.equation.iter().zip(&y) {
-            let scale = self.scaling.as_ref().map_or(1.0, |scaling| scaling.column[i as usize]);
-            x[i as usize] = value * scale;
+            x[i as usize] = value * scaling.column[i as usize];
         }
     }
 
@@ -86,15 +76,8 @@ impl Factor {
         for (&child, update) in front.children.iter().zip(&updates) {
             add_runs(&fronts[child].runs, update, &mut local);
         }
-        let panel = view(self.store.panel(top), front.order(), front.pivots());
-        let triangle = match self.kind {
-            Kind::Cholesky => Triangle::Lower,
-            Kind::Lu { .. } => {
-                self.store.pivots[top].permute(&mut local);
-                Triangle::UnitLower
-            }
-        };
-        dense::forward(panel, triangle, &mut local);
+        self.store.pivots[top].permute(&mut local);
+        self.store.forward(top, &mut local);
         own.copy_from_slice(&local[..front.pivots()]);
         local.drain(..front.pivots());
         local
@@ -114,18 +97,7 @@ impl Factor {
         let mut local = Vec::with_capacity(front.order());
         local.extend_from_slice(own);
         local.extend_from_slice(&known);
-        let panel = view(self.store.panel(top), front.order(), front.pivots());
-        match self.kind {
-            Kind::Cholesky => dense::backward_transposed(panel, &mut local),
-            Kind::Lu { .. } => {
-                let square = panel.subrows(0, front.pivots());
-                dense::backward_upper(
-                    square,
-                    view(self.store.right(top), front.pivots(), front.rows.len()),
-                    &mut local,
-                );
-            }
-        }
+        self.store.backward(top, self.kind == Kind::Cholesky, &mut local);
         own.copy_from_slice(&local[..front.pivots()]);
         let begin = front.columns.start - inner.len();
         let known = front.children.iter().map(|&c| gather_runs(&self.symbolic.fronts[c], &local)).collect();

@@ -10,7 +10,7 @@ use super::aggregation::{NONE, coarsen};
 use super::block_matrix::{BlockMatrix, BlockRow, Into, multiplier};
 use crate::check;
 use crate::dense_lu;
-use crate::multifrontal::{Factor, Kind, Scatter};
+use crate::multifrontal::{Factor, Kind, Precision, Scatter};
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
 
@@ -125,7 +125,7 @@ fn factorise(matrix: &BlockMatrix) -> Option<Factor> {
     let symbolic = Arc::new(Symbolic::new(&csr, &layout, &vec![false; n]).ok()?);
     let scatter = Scatter::new(&symbolic, &csr, false);
     let scaling = crate::equilibrate::factors(&csr);
-    Factor::new(&symbolic, &scatter, &csr, Kind::Lu { limit: 1e-9 }, Some(scaling), None).ok()
+    Factor::new(&symbolic, &scatter, &csr, Kind::Lu { limit: 1e-9 }, Precision::Double, scaling, None).ok()
 }
 
 impl Level {
