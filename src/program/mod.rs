@@ -4,6 +4,7 @@ mod catalogue;
 mod kratos_names;
 mod partition;
 mod say;
+mod stop;
 mod terminal;
 
 use std::io::Write;
@@ -17,6 +18,7 @@ use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
 use say::say;
+use stop::Stop;
 use terminal::Terminal;
 
 /// Multiphysics finite elements: runs Kratos contact decks unmodified.
@@ -26,7 +28,8 @@ use terminal::Terminal;
     version,
     about,
     after_help = "Exit codes: 0 done and converged, 2 bad input, 3 not converged \
-    (what converged is written), 4 system or solver failure."
+    (what converged is written), 4 system or solver failure, 5 stopped by a signal after a step and saved \
+    (go on with --resume)."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -48,6 +51,10 @@ enum Command {
         /// Take the defaults of this program where the deck names nothing, e.g. kratos.
         #[arg(long, value_name = "PROGRAM")]
         like: Option<String>,
+        /// Go on from the latest saved run of the deck, with the bits of a run that was not stopped; from the start where
+        /// none was saved.
+        #[arg(long)]
+        resume: bool,
     },
     /// Check everything about a deck that can be known without solving.
     Check {
@@ -82,7 +89,7 @@ pub fn main() -> ExitCode {
         }
     };
     match execute(arguments.command, &ranks) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(error) => {
             let _ = std::io::stdout().flush();
             if ranks.size() > 1 {
@@ -94,25 +101,34 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn execute(command: Command, ranks: &Ranks) -> Result<()> {
+fn execute(command: Command, ranks: &Ranks) -> Result<ExitCode> {
     match command {
-        Command::Run { file, threads, report, like } => {
+        Command::Run { file, threads, report, like, resume } => {
             if let Some(path) = &report {
                 check_writable(path)?;
             }
             let options = RunOptions { threads, like, ranks: ranks.clone() };
+            let stop = Stop::listen()?;
             let opened = Simulation::open(&file, &options);
             if !ranks.is_root() {
-                return opened?.run(&mut Silent);
+                return drive(&mut opened?, &mut Silent, resume, &stop).map(|ended| ended.code());
             }
             let mut terminal = Terminal::new();
             let (result, run) = match opened {
-                Ok(mut simulation) => (simulation.run(&mut terminal), simulation.into_report()),
+                Ok(mut simulation) => (drive(&mut simulation, &mut terminal, resume, &stop), simulation.into_report()),
                 Err(error) => (Err(error), RunReport::default()),
             };
-            terminal.finish(&run, result.is_ok());
-            let written = report.map_or(Ok(()), |path| write_report(&path, &run));
-            result.and(written)
+            terminal.finish(&run, matches!(result, Ok(Ended::Done)));
+            report.map_or(Ok(()), |path| write_report(&path, &run))?;
+            let ended = result?;
+            if let Ended::Stopped { saved, time } = &ended {
+                say(&format!(
+                    "stopped at time {time}, and saved in {}: `zelus run {} --resume` goes on",
+                    saved.display(),
+                    file.display()
+                ));
+            }
+            Ok(ended.code())
         }
         Command::Check { file, like } => {
             let options = RunOptions { like, ranks: ranks.clone(), ..RunOptions::default() };
@@ -121,7 +137,7 @@ fn execute(command: Command, ranks: &Ranks) -> Result<()> {
             let mut simulation = Simulation::open(&file, &options)?;
             simulation.check(monitor.as_mut())?;
             if !ranks.is_root() {
-                return Ok(());
+                return Ok(ExitCode::SUCCESS);
             }
             let report = simulation.report();
             say(&format!(
@@ -132,12 +148,41 @@ fn execute(command: Command, ranks: &Ranks) -> Result<()> {
                 report.sizes.conditions,
                 report.sizes.unknowns
             ));
-            Ok(())
+            Ok(ExitCode::SUCCESS)
         }
-        Command::Partition(arguments) => partition::run(&arguments),
-        Command::List { kind } => catalogue::list(kind.as_deref()),
-        Command::Describe { name } => catalogue::describe(&name),
+        Command::Partition(arguments) => partition::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::List { kind } => catalogue::list(kind.as_deref()).map(|()| ExitCode::SUCCESS),
+        Command::Describe { name } => catalogue::describe(&name).map(|()| ExitCode::SUCCESS),
     }
+}
+
+/// How a run came to its end.
+enum Ended {
+    Done,
+    Stopped { saved: PathBuf, time: f64 },
+}
+
+impl Ended {
+    fn code(&self) -> ExitCode {
+        ExitCode::from(if matches!(self, Self::Done) { 0 } else { 5 })
+    }
+}
+
+/// Makes the steps of a deck, until a signal asks to stop after the one under way.
+fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, stop: &Stop) -> Result<Ended> {
+    if resume {
+        match simulation.resume(monitor)? {
+            Some(saved) => monitor.note(&format!("goes on from {}", saved.display())),
+            None => monitor.note("no run of this deck was saved: it is run from its start"),
+        }
+    }
+    while simulation.step(monitor)? {
+        if simulation.model().ranks.any(stop.is_asked()) {
+            let time = simulation.time().unwrap_or_default();
+            return Ok(Ended::Stopped { saved: simulation.suspend()?, time });
+        }
+    }
+    Ok(Ended::Done)
 }
 
 fn explain(error: &Error) -> String {

@@ -165,3 +165,12 @@ impl Results {
         found
     }
 }
+
+/// Reproducible numbers in [0, 1).
+pub fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}

@@ -83,13 +83,7 @@ fn refuse_other_orchestrators(deck: &Node) -> Result<()> {
         let remedy = "use \"Orchestrators.KratosMultiphysics.SequentialOrchestrator\"";
         return Err(Diagnostic::error("orchestrator", fact).at(name.place()).remedy(remedy).into());
     }
-    match deck.get_path("orchestrator.settings.load_from_checkpoint").filter(|from| !from.is_null()) {
-        None => Ok(()),
-        Some(from) => Err(Diagnostic::error("checkpoint", "checkpoints are not read")
-            .at(from.place())
-            .remedy("set \"load_from_checkpoint\" to null: all stages are run from the first")
-            .into()),
-    }
+    Ok(())
 }
 
 fn refuse_work_between_stages(stage: &Node, key: &str) -> Result<()> {
@@ -184,7 +178,7 @@ pub(super) fn import(
         other => {
             return Err(Diagnostic::error("input-type", format!("\"input_type\" is {other:?}"))
                 .at(import.key_place("input_type"))
-                .remedy("use \"mdpa\" or \"use_input_model_part\"")
+                .remedy("use \"mdpa\", \"use_input_model_part\" or, in the first stage, \"rest\"")
                 .into());
         }
     }

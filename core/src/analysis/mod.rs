@@ -5,6 +5,7 @@
 //! A [`Simulation`] reads `ProjectParameters.json` and makes the steps of its stage, or, in the form with an orchestrator, of its
 //! stages one after another on one model.
 
+mod checkpoints;
 mod cutting;
 mod deck;
 mod like;

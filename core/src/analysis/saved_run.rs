@@ -41,6 +41,8 @@ pub(super) struct SavedRun<M, R> {
     pub stage: Option<SavedStage>,
     /// The report so far.
     pub report: R,
+    /// The mesh file that the first stage names.
+    pub mesh: Option<String>,
 }
 
 /// What a stage remembers.
@@ -59,7 +61,13 @@ pub(super) struct SavedStage {
 pub(super) type LoadedRun = SavedRun<Model, RunReport>;
 
 /// Settings that may be others when a run goes on: by them it runs on, or says less.
-const FREE: [&str; 3] = ["problem_data.end_time", "problem_data.echo_level", "problem_data.parallel_type"];
+const FREE: [&str; 4] = [
+    "problem_data.end_time",
+    "problem_data.echo_level",
+    "problem_data.parallel_type",
+    // What a mesh holds is compared itself.
+    "solver_settings.model_import_settings",
+];
 
 /// A number that decks share that say the same, however they are written.
 pub(super) fn fingerprint(stages: &[StageDeck], like: Option<&str>) -> u32 {

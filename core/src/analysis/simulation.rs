@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::checkpoints::{Checkpoints, Pointer};
 use super::deck::{StageDeck, open, stages};
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of};
@@ -11,9 +12,9 @@ use super::stage::{Stage, Systems};
 use crate::assembly::System;
 use crate::communication::{Ranks, fair_threads};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
-use crate::io::{read_saved, write_saved};
+use crate::io::{path_of_rank, read_saved, write_saved};
 use crate::model::{Model, ModelPart};
-use crate::parameters::{Node, Value};
+use crate::parameters::Node;
 use crate::processes::Process;
 use crate::strategies::{Monitor, StepRecord};
 
@@ -54,6 +55,9 @@ pub struct Simulation {
     report: RunReport,
     /// Warnings of the deck as a whole, which no monitor has heard of.
     untold: Vec<Diagnostic>,
+    checkpoints: Checkpoints,
+    /// Names the latest saved run of a deck that is a file.
+    pointer: Option<Pointer>,
 }
 
 impl Simulation {
@@ -65,6 +69,7 @@ impl Simulation {
         let (deck, folder) = open(path)?;
         let mut simulation = Self::new(&deck.root, folder, options)?;
         simulation.untold.splice(..0, deck.warnings);
+        simulation.pointer = Some(Pointer::of(path));
         Ok(simulation)
     }
 
@@ -81,7 +86,8 @@ impl Simulation {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Error::System(format!("cannot start threads: {error}")))?;
         let mut report = RunReport { threads: pool.current_num_threads(), ..RunReport::default() };
-        let stages = stages(deck, &mut report)?;
+        let mut stages = stages(deck, &mut report)?;
+        let checkpoints = Checkpoints::new(deck, &mut stages, &folder)?;
         Ok(Self {
             stages,
             over: 0,
@@ -95,7 +101,9 @@ impl Simulation {
             more: Vec::new(),
             pool: Arc::new(pool),
             report,
-            untold: warning_of_checkpoints(deck).into_iter().collect(),
+            untold: Vec::new(),
+            checkpoints,
+            pointer: None,
         })
     }
 
@@ -176,8 +184,32 @@ impl Simulation {
             systems: self.systems.iter().map(|(root, system)| (root.clone(), states_of(&system.elements))).collect(),
             stage: self.stage.as_ref().map(Stage::state),
             report: &self.report,
+            mesh: self.checkpoints.mesh.clone(),
         };
-        self.model.ranks.agree(write_saved(&self.path_of_rank(path), &run))
+        self.model.ranks.agree(write_saved(&path_of_rank(&self.model.ranks, path), &run))
+    }
+
+    /// Saves the run beside its deck, where [`Simulation::resume`] finds it, and ends here: every process writes what it holds.
+    ///
+    /// # Errors
+    /// A deck that is no file; a disk that refuses, a process that fails.
+    pub fn suspend(&mut self) -> Result<PathBuf> {
+        let pointer = self.pointer.as_ref();
+        let path = pointer.map(Pointer::beside).ok_or_else(|| Error::System("the deck is no file".to_owned()))?;
+        self.save_named(&path)?;
+        self.finish()?;
+        Ok(path)
+    }
+
+    /// Goes on from the latest saved run of the deck, by its process `save_restart_process`, its checkpoints or
+    /// [`Simulation::suspend`]; the file, or `None` where none has been saved.
+    ///
+    /// # Errors
+    /// As [`Simulation::load`].
+    pub fn resume(&mut self, monitor: &mut dyn Monitor) -> Result<Option<PathBuf>> {
+        let Some(path) = self.pointer.as_ref().and_then(Pointer::read) else { return Ok(None) };
+        self.load(&path, monitor)?;
+        Ok(Some(path))
     }
 
     /// Goes on where a run of the same deck was saved: what follows are the same bits, on any number of threads. Nothing may be
@@ -243,20 +275,19 @@ impl Simulation {
         self.report
     }
 
+    /// As [`Simulation::save`], and as the latest.
+    fn save_named(&self, path: &Path) -> Result<()> {
+        self.save(path)?;
+        self.pointer.as_ref().map_or(Ok(()), |pointer| pointer.write(&self.model.ranks, path))
+    }
+
     fn fingerprint(&self) -> u32 {
         fingerprint(&self.stages, self.like.as_deref())
     }
 
-    /// The file of this rank.
-    fn path_of_rank(&self, path: &Path) -> PathBuf {
-        let ranks = &self.model.ranks;
-        let Some(name) = path.file_name().filter(|_| ranks.size() > 1) else { return path.to_owned() };
-        path.with_file_name(format!("{}.{}", name.to_string_lossy(), ranks.rank()))
-    }
-
     fn load_run(&mut self, path: &Path, monitor: &mut dyn Monitor) -> Result<()> {
         let ranks = self.model.ranks.clone();
-        let path = self.path_of_rank(path);
+        let path = path_of_rank(&self.model.ranks, path);
         let run: LoadedRun = ranks.agree(read_saved(&path))?;
         let here = Place::file(&path);
         self.take_up(run, monitor).map_err(|error| error.at(&here))
@@ -273,6 +304,8 @@ impl Simulation {
         if run.deck != self.fingerprint() {
             return Err(other_deck("it was saved by a run of another deck"));
         }
+        self.checkpoints.from = None;
+        self.checkpoints.name_mesh(&mut self.stages, run.mesh);
         let model = run.model.shared_by(&ranks);
         self.over = run.over;
         self.model = run.before.map_or_else(|| Model::new(ranks.clone()), |before| before.shared_by(&ranks));
@@ -298,6 +331,10 @@ impl Simulation {
         if self.stage.is_some() || self.over == self.stages.len() {
             return Ok(());
         }
+        if let Some(from) = self.checkpoints.from.take() {
+            self.load_run(&from.path, monitor).map_err(|error| error.at(&from.place))?;
+            return self.prepare_stage(monitor);
+        }
         for warning in std::mem::take(&mut self.untold) {
             self.report.warnings.push(warning.to_string());
             monitor.warn(&warning);
@@ -315,12 +352,20 @@ impl Simulation {
     fn next_step(&mut self, monitor: &mut dyn Monitor) -> Result<bool> {
         while self.over < self.stages.len() {
             self.prepare_stage(monitor)?;
-            let stage = self.stage.as_mut().expect("just prepared");
+            // A saved run may have been at its end.
+            let Some(stage) = self.stage.as_mut() else { break };
             let stepped = stage.step(&mut self.model, &mut self.report, monitor);
             if matches!(stepped, Ok(true)) {
-                return Ok(true);
+                let wanted = stage.saves(&self.model);
+                return match wanted.iter().try_for_each(|path| self.save_named(path)) {
+                    Ok(()) => Ok(true),
+                    Err(error) => self.end_stage(Err(error)).map(|()| false),
+                };
             }
             self.end_stage(stepped.map(|_| ()))?;
+            if let Some(path) = self.checkpoints.after(&self.stages[self.over - 1].name) {
+                self.save_named(&path)?;
+            }
         }
         Ok(false)
     }
@@ -342,14 +387,4 @@ impl Simulation {
         self.report.add_seconds("total", start.elapsed().as_secs_f64());
         result
     }
-}
-
-/// The warning that a deck asks for checkpoints.
-fn warning_of_checkpoints(deck: &Node) -> Option<Diagnostic> {
-    let wanted = deck.get_path("orchestrator.settings.stage_checkpoints")?;
-    if matches!(&wanted.value, Value::Bool(false)) || wanted.as_array().is_some_and(|list| list.is_empty()) {
-        return None;
-    }
-    let warning = Diagnostic::warning("checkpoint", "checkpoints are not written").at(wanted.place());
-    Some(warning.remedy("set \"stage_checkpoints\" to false: all stages are run from the first"))
 }

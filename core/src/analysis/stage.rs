@@ -1,7 +1,7 @@
 //! One stage: a solver, its processes, and the loop over the steps.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::cutting::{Cutting, Lengths};
@@ -221,6 +221,11 @@ impl Stage {
         }
         model.root_mut(&self.root)?.info.time = self.start_time;
         Ok(())
+    }
+
+    /// Where processes want the run to be saved now.
+    pub(super) fn saves(&mut self, model: &Model) -> Vec<PathBuf> {
+        self.processes.iter_mut().filter_map(|process| process.saves(model)).collect()
     }
 
     /// What it remembers between steps.

@@ -4,12 +4,13 @@
 
 use std::fs;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::replace::replace_own_file;
+use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 
 /// The first bytes of every saved run.
@@ -18,6 +19,12 @@ const MARK: &[u8; 16] = b"zelus saved run\n";
 const VERSION: u32 = 1;
 /// Bytes before the contents.
 const HEAD: usize = MARK.len() + 4 + 8 + 4;
+
+/// The file of this rank where several save a run: the name ends in the number of the rank.
+pub fn path_of_rank(ranks: &Ranks, path: &Path) -> PathBuf {
+    let Some(name) = path.file_name().filter(|_| ranks.size() > 1) else { return path.to_owned() };
+    path.with_file_name(format!("{}.{}", name.to_string_lossy(), ranks.rank()))
+}
 
 /// Writes a saved run in place of what stands at `path`, once it is whole on the disk.
 ///

@@ -10,7 +10,7 @@ pub mod results;
 mod tests;
 pub(crate) mod variables;
 
-pub use container::{read_saved, write_saved};
+pub use container::{path_of_rank, read_saved, write_saved};
 pub use import::{import, read_mesh, read_mesh_of};
 pub use materials::{apply_materials, read_materials};
 pub use replace::{append_to_file, cut_file, length_of, replace_file, replace_own_file};

@@ -212,6 +212,14 @@ impl Node {
         path.split('.').try_fold(self, |node, key| node.get(key))
     }
 
+    /// As [`Node::get_path`], to change.
+    pub fn get_path_mut(&mut self, path: &str) -> Option<&mut Node> {
+        path.split('.').try_fold(self, |node, key| match &mut node.value {
+            Value::Object(members) => members.get_mut(key),
+            _ => None,
+        })
+    }
+
     /// Where a key is written, else where the object begins.
     pub fn key_place(&self, key: &str) -> Place {
         match self.as_object().and_then(|o| o.member(key)) {

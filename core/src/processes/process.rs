@@ -1,6 +1,6 @@
 //! The trait of processes, and what one is made from.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::State;
 
@@ -86,6 +86,11 @@ pub trait Process: Send {
     /// A file that cannot be written.
     fn print_output(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
         Ok(())
+    }
+
+    /// Where the whole run is to be saved now; asked after each step of the deck, and remembered by its state as done.
+    fn saves(&mut self, _model: &Model) -> Option<PathBuf> {
+        None
     }
 
     /// What it remembers between steps, for the file of a saved run.

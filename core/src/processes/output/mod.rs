@@ -20,6 +20,7 @@ mod place;
 mod point_output_process;
 mod points;
 mod quantity;
+mod save_restart_process;
 #[cfg(test)]
 mod tests;
 mod vtk_output_process;

@@ -1,0 +1,145 @@
+//! Where a deck says that a run is saved between stages, and from where it goes on.
+
+use std::path::{Path, PathBuf};
+
+use super::deck::StageDeck;
+use crate::communication::Ranks;
+use crate::diagnostics::{Diagnostic, Place, Result, did_you_mean};
+use crate::io::replace_file;
+use crate::parameters::{Node, Value};
+
+/// Saved runs that a deck names, with Kratos' keys.
+#[derive(Default)]
+pub(super) struct Checkpoints {
+    folder: PathBuf,
+    /// Stages after which the run is saved.
+    after: Vec<String>,
+    /// The saved run to begin with.
+    pub from: Option<Beginning>,
+    /// The mesh file of the first stage.
+    pub mesh: Option<String>,
+}
+
+/// A saved run that the deck begins with.
+pub(super) struct Beginning {
+    pub path: PathBuf,
+    /// Where the deck names it.
+    pub place: Place,
+}
+
+const IMPORT: &str = "solver_settings.model_import_settings";
+
+impl Checkpoints {
+    /// From the settings of the orchestrator and of the first stage.
+    ///
+    /// # Errors
+    /// Stages that are not there; keys of another type.
+    pub(super) fn new(deck: &Node, stages: &mut [StageDeck], folder: &Path) -> Result<Self> {
+        let setting = |key: &str| deck.get_path(&format!("orchestrator.settings.{key}")).filter(|node| !node.is_null());
+        let names: Vec<String> = stages.iter().map(|stage| stage.name.clone()).collect();
+        let after = match setting("stage_checkpoints") {
+            None => Vec::new(),
+            Some(wanted) => match &wanted.value {
+                Value::Bool(all) => {
+                    if *all {
+                        names.clone()
+                    } else {
+                        Vec::new()
+                    }
+                }
+                _ => wanted.array()?.iter().map(|name| Ok(name.str()?.to_owned())).collect::<Result<Vec<String>>>()?,
+            },
+        };
+        if let Some(unknown) = after.iter().find(|name| !names.contains(name)) {
+            let place = setting("stage_checkpoints").map(Node::place);
+            let hint = did_you_mean(unknown, names.iter().map(String::as_str));
+            let problem =
+                Diagnostic::error("checkpoint", format!("there is no stage {unknown:?} to save after")).at(place);
+            return Err(problem.remedy(hint.unwrap_or_else(|| format!("stages are: {}", names.join(", ")))).into());
+        }
+        let checkpoints = setting("stage_checkpoints_folder").map(Node::str).transpose()?.unwrap_or("checkpoints");
+        let mut from = None;
+        if let Some(node) = setting("load_from_checkpoint") {
+            from = Some(Beginning { path: folder.join(node.str()?), place: node.place() });
+        }
+        let mut mesh = None;
+        if let Some(import) = stages.first().and_then(|first| first.settings.get_path(IMPORT)) {
+            let name = import.get("input_filename").map(Node::str).transpose()?;
+            match import.get("input_type").and_then(Node::as_str) {
+                Some("rest") => from = Some(restart(import, folder)?),
+                _ => mesh = name.map(str::to_owned),
+            }
+        }
+        Ok(Self { folder: folder.join(checkpoints), after, from, mesh })
+    }
+
+    /// The file to save to after a stage, where the deck asks for one.
+    pub(super) fn after(&self, stage: &str) -> Option<PathBuf> {
+        self.after.iter().any(|name| name == stage).then(|| self.folder.join(stage))
+    }
+
+    /// Lets a first stage that names a saved run in place of a mesh read the mesh that it was run on.
+    pub(super) fn name_mesh(&mut self, stages: &mut [StageDeck], mesh: Option<String>) {
+        let import = stages.first_mut().and_then(|first| first.settings.get_path_mut(IMPORT));
+        let (Some(import), Some(mesh)) = (import.filter(|_| self.mesh.is_none()), mesh) else { return };
+        for (key, text) in [("input_type", "mdpa"), ("input_filename", mesh.as_str())] {
+            if let Some(node) = import.get_path_mut(key) {
+                node.value = Value::String(text.to_owned());
+            }
+        }
+        self.mesh = Some(mesh);
+    }
+}
+
+/// The saved run that `"input_type": "rest"` names: `PART__restart_files/PART_LABEL.rest`.
+///
+/// # Errors
+/// Keys that are missing or of another type.
+fn restart(import: &Node, folder: &Path) -> Result<Beginning> {
+    let text =
+        |key: &str| Ok::<_, crate::diagnostics::Error>(import.get(key).map(Node::str).transpose()?.unwrap_or(""));
+    let (part, label) = (import.require("input_filename")?.str()?, import.require("restart_load_file_label")?.str()?);
+    let (part_folder, name) = part.rsplit_once('/').unwrap_or(("", part));
+    let in_folder = import.get("load_restart_files_from_folder").is_none_or(|node| node.as_bool() != Some(false));
+    let path = match (text("input_output_path")?, text("io_foldername")?) {
+        _ if !in_folder => folder.join(part_folder),
+        ("", "") => folder.join(part_folder).join(format!("{name}__restart_files")),
+        ("", old) => folder.join(part_folder).join(old),
+        (path, _) => folder.join(part_folder).join(path),
+    };
+    Ok(Beginning {
+        path: path.join(format!("{name}_{label}.rest")),
+        place: import.key_place("restart_load_file_label"),
+    })
+}
+
+/// The file beside a deck that names its latest saved run.
+pub(super) struct Pointer(PathBuf);
+
+impl Pointer {
+    /// That of a deck.
+    pub(super) fn of(deck: &Path) -> Self {
+        Self(deck.with_extension("resume"))
+    }
+
+    /// A saved run beside the deck.
+    pub(super) fn beside(&self) -> PathBuf {
+        self.0.with_extension("rest")
+    }
+
+    /// The latest saved run; `None` where there is none.
+    pub(super) fn read(&self) -> Option<PathBuf> {
+        let name = std::fs::read_to_string(&self.0).ok()?;
+        Some(self.0.parent().unwrap_or(Path::new("")).join(name.trim_end()))
+    }
+
+    /// Names the latest.
+    ///
+    /// # Errors
+    /// A disk that refuses.
+    pub(super) fn write(&self, ranks: &Ranks, path: &Path) -> Result<()> {
+        let folder = self.0.parent().unwrap_or(Path::new(""));
+        let name = path.strip_prefix(folder).unwrap_or(path);
+        replace_file(ranks, &self.0, |out| std::io::Write::write_all(out, format!("{}\n", name.display()).as_bytes()))
+    }
+}

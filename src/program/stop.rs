@@ -1,0 +1,34 @@
+//! Signals that ask the program to stop.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use zelus_core::{Error, Result};
+
+/// Whether SIGINT or SIGTERM has come; a second one ends the program at once, with 128 and its number as exit code.
+pub(super) struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// From now on.
+    ///
+    /// # Errors
+    /// A system that does not let signals be listened to.
+    pub(super) fn listen() -> Result<Self> {
+        let asked = Arc::new(AtomicBool::new(false));
+        for signal in [SIGINT, SIGTERM] {
+            // The order matters: the first signal finds the flag unset, and sets it.
+            let second = flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&asked));
+            second
+                .and_then(|_| flag::register(signal, Arc::clone(&asked)))
+                .map_err(|error| Error::System(format!("signals cannot be listened to: {error}")))?;
+        }
+        Ok(Self(asked))
+    }
+
+    /// Whether a signal has come.
+    pub(super) fn is_asked(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
