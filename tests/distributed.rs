@@ -16,6 +16,8 @@ use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 use support::{Results, change, contents, read_json, root, said, scratch_copy, zelus};
 use vtu::{Columns, read_vtu, sources};
+use zelus::core::communication::{self, Ranks};
+use zelus::{RunOptions, Silent, Simulation};
 
 const RANKS: [usize; 5] = [1, 2, 3, 4, 8];
 const DECK: &str = "ProjectParameters.json";
@@ -518,8 +520,68 @@ fn files_of_one_rank_hold_what_all_have() {
     }
 }
 
+/// Set for the processes that run this very test as ranks.
+const AS_RANK: &str = "ZELUS_TEST_AS_RANK";
+
+/// Rank 0 makes the steps of a run of its own between those of the run that all ranks share.
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn a_run_of_one_rank_stands_beside_one_of_all() {
+    if std::env::var_os(AS_RANK).is_some() {
+        return run_alone_and_together();
+    }
+    let mut command = mpirun(&root());
+    command.env(AS_RANK, "yes").args(["-n", "3"]).arg(std::env::current_exe().expect("this program"));
+    let name = "a_run_of_one_rank_stands_beside_one_of_all";
+    let output = command.args(["--exact", name, "--test-threads=1"]).output().expect("mpirun starts");
+    assert!(output.status.success() && said(&output).matches("1 passed").count() == 3, "{}", said(&output));
+}
+
+fn run_alone_and_together() {
+    let ranks = communication::join().expect("the ranks that mpirun started");
+    let open = |ranks: Ranks| {
+        let mut deck = read_json(&case_folder("contact_3d/hexahedra_nonmatching").join(DECK)).expect("a deck");
+        deck.as_object_mut().expect("a deck").remove("output_processes");
+        deck["solver_settings"]["time_stepping"]["time_step"] = 0.25.into();
+        // PETSc, where there is one, takes the processes of MPI and leaves the other run alone.
+        deck["solver_settings"]["linear_solver_settings"] = serde_json::json!({"petsc_engine": "automatic"});
+        deck["processes"].as_object_mut().expect("lists").remove("json_output_process_list");
+        let options = RunOptions { threads: Some(1), ranks, ..RunOptions::default() };
+        Simulation::of_value(&deck, &case_folder("contact_3d/hexahedra_nonmatching"), &options).expect("a deck")
+    };
+    let mut together = open(ranks.clone());
+    let mut alone = (ranks.rank() == 0).then(|| open(Ranks::default()));
+    let mut steps = 0;
+    loop {
+        let stepped = alone.as_mut().map(|alone| alone.step(&mut Silent).expect("it converges"));
+        let went_on = together.step(&mut Silent).expect("it converges");
+        assert!(stepped.is_none_or(|stepped| stepped == went_on));
+        if !went_on {
+            break;
+        }
+        steps += 1;
+        let Some(alone) = &alone else { continue };
+        let by_node = |simulation: &Simulation| -> BTreeMap<usize, Vec<f64>> {
+            let displacement = simulation.field("DISPLACEMENT").expect("a field").chunks_exact(3).map(<[f64]>::to_vec);
+            simulation.part().expect("a part").nodes.ids.iter().copied().zip(displacement).collect()
+        };
+        let (expected, found) = (by_node(alone), by_node(&together));
+        assert!(found.len() < expected.len(), "nothing is shared out");
+        let largest = expected.values().flatten().fold(0.0_f64, |most, u| most.max(u.abs()));
+        for (id, u) in found {
+            let near = u.iter().zip(&expected[&id]).all(|(a, b)| (a - b).abs() <= EQUAL * largest);
+            assert!(near, "node {id}: {u:?}, not {:?}", expected[&id]);
+        }
+    }
+    assert!(steps > 1);
+}
+
+fn case_folder(name: &str) -> std::path::PathBuf {
+    root().join("tests/cases").join(name)
+}
+
 fn case(name: &str) -> tempfile::TempDir {
-    scratch_copy(&root().join("tests/cases").join(name))
+    scratch_copy(&case_folder(name))
 }
 
 /// The run fails with this exit code and says the text once.
