@@ -2,7 +2,7 @@
 
 use zelus_core::register;
 use zelus_core::strategies::CriterionEntry;
-use zelus_core::strategies::{Check, ConvergenceCriterion, Measures, ResidualCriterion, Verdict, both};
+use zelus_core::strategies::{Check, ConvergenceCriterion, Form, Measure, Measures, Verdict, both};
 
 use crate::variables::CONSTRAINT_VIOLATION;
 
@@ -30,6 +30,6 @@ register! { CriterionEntry "optimality_criterion",
     source: "g ≥ 0, λ ≤ 0 (eqs. D.3a, D.5d)",
     build: |request| {
         let tolerance = request.settings.get_f64("feasibility_tolerance")?;
-        Ok(both(Box::new(ResidualCriterion::from_settings(request)?), Box::new(Feasibility { tolerance })))
+        Ok(both(Box::new(Measure::of_all(request.settings, Form::Residual)?), Box::new(Feasibility { tolerance })))
     },
 }

@@ -1,6 +1,7 @@
 //! Convergence criteria: what they may look at, and what they say.
 
 use crate::assembly::{Distribution, Dof, DofTable, Equations};
+use crate::communication::Ranks;
 use crate::diagnostics::{Report, Result};
 use crate::model::Nodes;
 use crate::names::{self, Name};
@@ -69,11 +70,49 @@ impl Measures<'_> {
         (sums[0], sums[1] as usize)
     }
 
-    /// Euclidean norm over a block, and number of its entries, as [`Measures::dot`].
-    pub fn block(&self, vector: &[f64], block: Block) -> (f64, usize) {
-        let (square, count) = self.dot(vector, vector, block);
-        (square.sqrt(), count)
+    /// Norms over a block: of each variable where they are measured `apart`, else of all together; collective.
+    pub fn norms(&self, vector: &[f64], block: Block, apart: bool) -> Vec<Norm> {
+        let dofs = self.dofs.dofs();
+        let counts = |n: &usize| block.holds(&dofs[*n]) && self.distribution.is_none_or(|d| d.is_own(*n));
+        let own = self.equations.unknowns().iter().map(|&n| n as usize).filter(counts);
+        let ranks = self.distribution.map(Distribution::ranks);
+        norms(self.dofs, own, vector, apart, ranks).into_iter().filter(|norm| norm.count > 0).collect()
     }
+}
+
+/// Norm of the entries of a variable.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Norm {
+    /// Euclidean norm.
+    pub size: f64,
+    /// Number of entries.
+    pub count: usize,
+}
+
+/// Norms of the entries `own` of a vector by variable, those of other ranks too, or of all together; collective over `ranks`.
+pub(super) fn norms(
+    dofs: &DofTable,
+    own: impl Iterator<Item = usize>,
+    vector: &[f64],
+    apart: bool,
+    ranks: Option<&Ranks>,
+) -> Vec<Norm> {
+    let mut columns: Vec<&str> = dofs.variables().map(|variable| variable.column).collect();
+    columns.dedup();
+    if !apart {
+        columns.truncate(1);
+    }
+    let mut sums = vec![0.0; 2 * columns.len()];
+    for n in own {
+        let column = dofs.dofs()[n].variable.column;
+        let at = columns.iter().position(|own| *own == column).unwrap_or(0);
+        sums[2 * at] += vector[n] * vector[n];
+        sums[2 * at + 1] += 1.0;
+    }
+    if let Some(ranks) = ranks {
+        ranks.sum(&mut sums);
+    }
+    sums.chunks_exact(2).map(|sum| Norm { size: sum[0].sqrt(), count: sum[1] as usize }).collect()
 }
 
 /// Whether a residual norm is no larger than the round-off of the terms it is the sum of.

@@ -21,6 +21,7 @@ mod line_search;
 mod linear_solve;
 mod linear_solvers;
 mod meaning;
+mod measure;
 mod memory;
 mod newton;
 #[cfg(feature = "petsc")]
@@ -43,10 +44,9 @@ pub use central_differences::CentralDifferences;
 pub(crate) use condensing::multipliers;
 pub use condensing::{CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE};
 pub use criterion::{
-    Block, Check, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Verdict, both,
-    either, is_last_digit, is_round_off,
+    Block, Check, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Norm, Verdict,
+    both, either, is_last_digit, is_round_off,
 };
-pub use displacement_criterion::DisplacementCriterion;
 pub use explicit::{CRITICAL_STEP, ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
@@ -54,10 +54,10 @@ pub use linear_solvers::{LinearSolverEntry, LinearSolverFactory, LinearSolverReq
 pub(crate) use linear_solvers::{
     frugal as frugal_linear_solver, make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all,
 };
+pub use measure::{Form, Measure, Tolerance};
 pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use phases::Phases;
 pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use records::{IterationRecord, Monitor, Silent, StepRecord};
-pub use residual_criterion::ResidualCriterion;
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
 pub use strategy::{SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest};

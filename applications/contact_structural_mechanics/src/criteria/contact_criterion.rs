@@ -3,17 +3,18 @@
 use zelus_core::Result;
 use zelus_core::register;
 use zelus_core::strategies::CriterionEntry;
-use zelus_core::strategies::{Block, ConvergenceCriterion, CriterionRequest, Measures, Verdict, both, either};
+use zelus_core::strategies::{
+    Block, ConvergenceCriterion, CriterionRequest, Form, Measure, Measures, Verdict, both, either,
+};
 
 use super::frictional_criterion::FrictionalCriterion;
-use super::measure::{Form, Tolerance, check};
 use crate::pairs::{Family, find_family};
 
 /// Displacements and multipliers, each in its form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactCriterion {
-    primary: (Form, Tolerance),
-    multiplier: (Form, Tolerance),
+    primary: Measure,
+    multiplier: Measure,
 }
 
 impl ContactCriterion {
@@ -22,22 +23,21 @@ impl ContactCriterion {
     /// # Errors
     /// Settings that are not numbers.
     pub fn from_settings(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Result<Self> {
-        let primary_tolerance = Tolerance::read(request.settings, primary.word())?;
+        let of_contact = format!("contact_settings.contact_{}", multiplier.word());
         let contact = request.settings.node().get("contact_settings").is_some();
-        let multiplier_tolerance = if contact {
-            Tolerance::read(request.settings, &format!("contact_settings.contact_{}", multiplier.word()))?
-        } else {
-            primary_tolerance
-        };
-        Ok(Self { primary: (primary, primary_tolerance), multiplier: (multiplier, multiplier_tolerance) })
+        let stem = if contact { &of_contact } else { primary.word() };
+        Ok(Self {
+            primary: Measure::read(request.settings, primary, Block::Primary, primary.word())?,
+            multiplier: Measure::read(request.settings, multiplier, Block::Multiplier, stem)?,
+        })
     }
 }
 
 impl ConvergenceCriterion for ContactCriterion {
     fn judge(&self, measures: &Measures<'_>) -> Verdict {
-        let mut checks = vec![check(measures, Block::Primary, self.primary)];
+        let mut checks = vec![self.primary.check(measures)];
         if measures.dofs.dofs().iter().any(|dof| dof.multiplier) {
-            checks.push(check(measures, Block::Multiplier, self.multiplier));
+            checks.push(self.multiplier.check(measures));
         }
         Verdict::all(checks)
     }

@@ -6,12 +6,12 @@
 
 use zelus_core::Result;
 use zelus_core::strategies::{
-    Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict, is_last_digit, is_round_off,
+    Block, Check, ConvergenceCriterion, CriterionRequest, Form, Measure, Measures, Tolerance, Verdict, is_last_digit,
+    is_round_off,
 };
 use zelus_core::vector3::{dot, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use super::measure::{Form, Tolerance, check};
 use crate::formulations::NodeState;
 use crate::friction_law::smooth_nodes;
 use crate::mortar::tangential;
@@ -20,7 +20,7 @@ use crate::variables::MULTIPLIER_WEIGHT;
 /// The criterion of the families with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionalCriterion {
-    primary: (Form, Tolerance),
+    primary: Measure,
     multiplier: Form,
     tolerances: [Tolerance; 3],
     /// Tangential measure, relative to the normal one, that counts as none.
@@ -43,7 +43,7 @@ impl FrictionalCriterion {
         let of =
             |stem: &str| Tolerance::read(request.settings, &format!("contact_settings.{stem}_{}", multiplier.word()));
         Ok(Self {
-            primary: (primary, Tolerance::read(request.settings, primary.word())?),
+            primary: Measure::read(request.settings, primary, Block::Primary, primary.word())?,
             multiplier,
             tolerances: [of("contact")?, of("frictional_stick_contact")?, of("frictional_slip_contact")?],
             threshold: request.settings.get_f64("contact_settings.ratio_normal_tangent_threshold")?,
@@ -143,7 +143,7 @@ fn references(measures: &Measures<'_>) -> [f64; 3] {
 
 impl ConvergenceCriterion for FrictionalCriterion {
     fn judge(&self, measures: &Measures<'_>) -> Verdict {
-        let mut checks = vec![check(measures, Block::Primary, self.primary)];
+        let mut checks = vec![self.primary.check(measures)];
         if !measures.dofs.dofs().iter().any(|dof| dof.multiplier) {
             return Verdict::all(checks);
         }

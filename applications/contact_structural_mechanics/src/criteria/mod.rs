@@ -5,8 +5,6 @@
 
 mod contact_criterion;
 mod frictional_criterion;
-mod measure;
 
 pub use contact_criterion::ContactCriterion;
 pub use frictional_criterion::FrictionalCriterion;
-pub use measure::Form;

@@ -1,7 +1,8 @@
 //! What the residuals of a step are measured by: those at its start, as far as forces of its size explain them.
 
+use super::super::criterion::norms;
 use super::NewtonRaphson;
-use crate::assembly::System;
+use crate::assembly::{Distribution, System};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 
@@ -16,8 +17,8 @@ pub(in crate::strategies) struct References {
     pub start: Vec<Vec<f64>>,
     /// After the last change of state.
     pub switched: Option<Vec<f64>>,
-    /// Size of the forces at the start: loads, reactions and what is out of balance.
-    forces: f64,
+    /// Sizes of the forces at the start by variable: loads, reactions and what is out of balance.
+    forces: Vec<f64>,
 }
 
 impl NewtonRaphson {
@@ -33,7 +34,8 @@ impl NewtonRaphson {
         to: &mut References,
     ) -> Result<()> {
         let loads = self.assembler.loads(part, system)?;
-        to.forces = self.size_of_forces(system, residual).hypot(self.size_of_forces(system, &loads));
+        let sizes = [residual, &loads[..]].map(|forces| self.sizes_of_forces(system, forces));
+        to.forces = sizes[0].iter().zip(&sizes[1]).map(|(residual, load)| residual.hypot(*load)).collect();
         to.start.push(self.assembler.equations().balanced(residual).into_owned());
         Ok(())
     }
@@ -41,17 +43,21 @@ impl NewtonRaphson {
     /// Takes the residual after the first solve: where no force at the start explains it, a share of it. Collective.
     pub(super) fn refer_to_first(&self, system: &System, balanced: &[f64], to: &mut References) {
         let mut taken = balanced.to_vec();
-        let (size, largest) = (self.size_of_forces(system, balanced), LARGEST * to.forces);
-        if largest > 0.0 && size > largest {
+        let sizes = self.sizes_of_forces(system, balanced);
+        let shares = sizes.iter().zip(&to.forces).map(|(size, force)| (size, LARGEST * force));
+        let beyond = shares.filter(|(size, largest)| *largest > 0.0 && *size > largest);
+        let share = beyond.map(|(size, largest)| largest / size).fold(1.0, f64::min);
+        if share < 1.0 {
             let forces = system.dofs.dofs().iter().zip(&mut taken).filter(|(dof, _)| !dof.multiplier);
-            forces.for_each(|(_, force)| *force *= largest / size);
+            forces.for_each(|(_, force)| *force *= share);
         }
         to.start.push(taken);
     }
 
-    /// Euclidean norm over all unknowns but multipliers; collective.
-    pub(super) fn size_of_forces(&self, system: &System, of: &[f64]) -> f64 {
+    /// Euclidean norm over all unknowns of each variable, zero for multipliers; collective.
+    pub(super) fn sizes_of_forces(&self, system: &System, of: &[f64]) -> Vec<f64> {
         let own = system.dofs.dofs().iter().enumerate().filter(|(n, dof)| !dof.multiplier && self.assembler.counts(*n));
-        self.assembler.total(own.map(|(n, _)| of[n] * of[n]).sum()).sqrt()
+        let ranks = self.assembler.distribution().map(Distribution::ranks);
+        norms(&system.dofs, own.map(|(n, _)| n), of, true, ranks).into_iter().map(|norm| norm.size).collect()
     }
 }

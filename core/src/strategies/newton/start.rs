@@ -106,7 +106,10 @@ impl NewtonRaphson {
         }
         let after = self.assembler.residual(part, system, None)?;
         let after = self.assembler.equations().balanced(&after);
-        Ok(self.size_of_forces(system, &after) > self.size_of_forces(system, before))
+        let [after, before] = [&after[..], before].map(|forces| self.sizes_of_forces(system, forces));
+        // Variables in which nothing is out of balance before measure nothing, unless there is no other.
+        let is_still = before.iter().all(|size| *size == 0.0);
+        Ok(after.iter().zip(&before).any(|(after, before)| (*before > 0.0 || is_still) && after > before))
     }
 
     /// Goes back to the step's start, `begin` but for prescribed unknowns, and gives the increments of those.
