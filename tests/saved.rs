@@ -2,11 +2,15 @@
 //! and files.
 
 mod support;
+#[path = "support/thread_ranks.rs"]
+mod thread_ranks;
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use support::{contents, root, scratch_copy};
+use thread_ranks::on_threads;
+use zelus::core::communication::Ranks;
 use zelus::core::model::{EntityTable, Fields, ModelPart};
 use zelus::{Error, RunOptions, Silent, Simulation};
 
@@ -272,4 +276,31 @@ fn files_of_output_must_be_there() {
     std::fs::remove_file(scratch.path().join("points_1.dat")).expect("a history");
     let error = open(scratch.path(), 1).load(&saved, &mut Silent).expect_err("it is gone").to_string();
     assert!(error.contains("points_1.dat"), "{error}");
+}
+
+/// Several ranks save a file each, and go on with the same bits; as many as they were.
+#[test]
+fn ranks_go_on_as_many_as_they_were() {
+    for case in ["contact_2d/friction_slide", "contact_3d/friction_slide"] {
+        let scratch = scratch_copy(&root().join("tests/cases").join(case));
+        let saved = scratch.path().join("saved");
+        let of_rank = |ranks: &Ranks| {
+            let options = RunOptions { threads: Some(1), ranks: ranks.clone(), ..RunOptions::default() };
+            Simulation::open(&scratch.path().join(DECK), &options).expect("a deck")
+        };
+        on_threads(3, |ranks| {
+            let mut whole = of_rank(&ranks);
+            whole.run(&mut Silent).expect("a run");
+            let mut first = of_rank(&ranks);
+            assert!(first.step(&mut Silent).expect("a step"));
+            first.save(&saved).expect("a saved run");
+            let mut second = of_rank(&ranks);
+            second.load(&saved, &mut Silent).expect("a run to go on with");
+            second.run(&mut Silent).expect("the rest");
+            assert_same(&format!("{case}, {ranks:?}"), &whole, &second);
+        });
+        let refusals =
+            on_threads(2, |ranks| of_rank(&ranks).load(&saved, &mut Silent).expect_err("other ranks").to_string());
+        assert!(refusals.iter().all(|said| said.contains("saved by 3 ranks, and 2 run now")), "{refusals:?}");
+    }
 }
