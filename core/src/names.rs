@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn a_name_is_kept_once() {
-        let [first, second] = ["A_NAME", "A_NAME"].map(|name| lasting(&name.to_owned()));
+        let [first, second] = ["A_NAME", "A_NAME"].map(|name| lasting(name));
         assert!(std::ptr::eq(first, second) && first == "A_NAME");
     }
 }

@@ -107,8 +107,9 @@ fn execute(command: Command, ranks: &Ranks) -> Result<ExitCode> {
             if let Some(path) = &report {
                 check_writable(path)?;
             }
-            let options = RunOptions { threads, like, ranks: ranks.clone() };
             let stop = Stop::listen()?;
+            let also = like.as_ref().map(|like| format!("--like {like} ")).unwrap_or_default();
+            let options = RunOptions { threads, like, ranks: ranks.clone() };
             let opened = Simulation::open(&file, &options);
             if !ranks.is_root() {
                 return drive(&mut opened?, &mut Silent, resume, &stop).map(|ended| ended.code());
@@ -119,11 +120,12 @@ fn execute(command: Command, ranks: &Ranks) -> Result<ExitCode> {
                 Err(error) => (Err(error), RunReport::default()),
             };
             terminal.finish(&run, matches!(result, Ok(Ended::Done)));
-            report.map_or(Ok(()), |path| write_report(&path, &run))?;
+            let written = report.map_or(Ok(()), |path| write_report(&path, &run));
             let ended = result?;
+            written?;
             if let Ended::Stopped { saved, time } = &ended {
                 say(&format!(
-                    "stopped at time {time}, and saved in {}: `zelus run {} --resume` goes on",
+                    "stopped at time {time}, and saved in {}: `zelus run {} {also}--resume` goes on",
                     saved.display(),
                     file.display()
                 ));
