@@ -16,11 +16,11 @@ use zelus::contact_structural_mechanics::formulations::{
 };
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interface::{
-    Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles, centre_normal,
+    Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles,
 };
-use zelus::contact_structural_mechanics::mortar::{Choices, IntegrationOrder, OperatorThreshold, SegmentationSettings};
+use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
-    ContactBlock, Pair, PairKey, PairRequest, Previous, condition_name, find_family, group_by_surroundings,
+    ContactBlock, Pair, PairKey, PairRequest, condition_name, find_family, group_by_surroundings,
 };
 use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
@@ -145,15 +145,7 @@ impl Contact {
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::new(variant, Some(2.0), None),
         });
-        let pair = Pair {
-            key: PairKey { interface: 0, slave: 0, master: 1 },
-            slave_normal: [0.0; 3],
-            master_normal: [0.0; 3],
-            overlapping: true,
-            area: [0.0; 4],
-            previous: Previous::default(),
-            choices: Choices::default(),
-        };
+        let pair = Pair::new(PairKey { interface: 0, slave: 0, master: 1 }, [[0.0; 3]; 2]);
         let own: Vec<u32> = interface.facets[1].nodes.iter().chain(&interface.facets[0].nodes).copied().collect();
         let behind = |_: &Pair| bodies.nodes([0, 0]).to_vec();
         let groups = group_by_surroundings(Some(&patches), behind, face.len(), vec![pair], &own);
@@ -187,8 +179,7 @@ impl Contact {
         self.block.set_states(Arc::new(self.states.clone()));
         let normal = |facet: usize| {
             let facet = &self.interface.facets[facet];
-            let x: Vec<Vec3> = facet.nodes.iter().map(|&n| self.part.nodes.current[n as usize]).collect();
-            centre_normal(facet.shape, &x).expect("an area")
+            facet.normal(&self.part)
         };
         let normals = (normal(0), normal(1));
         let pair = &mut self.block.pairs_mut()[0];

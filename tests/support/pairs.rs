@@ -6,9 +6,11 @@ use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::flags::SLIP;
 use zelus::contact_structural_mechanics::formulations::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
-use zelus::contact_structural_mechanics::mortar::{Choices, IntegrationOrder, OperatorThreshold, SegmentationSettings};
+use zelus::contact_structural_mechanics::mortar::{
+    IntegrationOrder, MOST_NODES, OperatorThreshold, SegmentationSettings,
+};
 use zelus::contact_structural_mechanics::pairs::{
-    ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, Previous, condition_name,
+    ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, condition_name,
 };
 use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::{
@@ -17,10 +19,11 @@ use zelus::contact_structural_mechanics::variables::{
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::{EntityBlock, LocalSystems, Want, block_kinds, find_kind};
 use zelus_core::geometry::Shape;
+use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::registry::all;
-use zelus_core::vector3::{add, cross, dot, normalised, scale, sub};
+use zelus_core::vector3::{add, dot, normalised, scale, sub};
 
 use super::specimen::{Random, Vec3, difference, size};
 
@@ -48,14 +51,6 @@ struct Setting {
     order: usize,
 }
 
-fn facet_normal(x: &[Vec3]) -> Vec3 {
-    match x {
-        [a, b] => normalised([b[1] - a[1], a[0] - b[0], 0.0]),
-        [a, b, c] => normalised(cross(sub(*b, *a), sub(*c, *a))),
-        _ => normalised(cross(sub(x[2], x[0]), sub(x[3], x[1]))),
-    }
-}
-
 impl Setting {
     /// A partly overlapping pair; `noise` distorts facets and normals.
     fn new(slave: Shape, master: Shape, seed: u64, noise: f64, states: [(bool, bool); 2]) -> Self {
@@ -75,7 +70,8 @@ impl Setting {
             .rev()
             .map(|x| add(add(scale(x, 1.1), shift), random.vector(noise, space)))
             .collect();
-        let (slave_normal, master_normal) = (facet_normal(&slave_x), facet_normal(&master_x));
+        let normal = |shape: Shape, x: &[Vec3]| unit_normal(shape, x, shape.cell().centre).expect("an area");
+        let (slave_normal, master_normal) = (normal(slave, &slave_x), normal(master, &master_x));
         let normals: Vec<Vec3> =
             slave_x.iter().map(|_| normalised(add(slave_normal, random.vector(noise, space)))).collect();
         let tangents = normals
@@ -201,15 +197,8 @@ impl Setting {
         };
         let mut states = SlaveStates::of(&part, (masters as u32..count as u32).collect(), family.columns());
         states.read_friction(&part.nodes, &COULOMB);
-        let pair = Pair {
-            key: PairKey { interface: 0, slave: 0, master: 0 },
-            slave_normal: self.slave_normal,
-            master_normal: self.master_normal,
-            overlapping: true,
-            area: [0.6; 4],
-            previous: Previous::default(),
-            choices: Choices::default(),
-        };
+        let key = PairKey { interface: 0, slave: 0, master: 0 };
+        let pair = Pair { area: [0.6; MOST_NODES], ..Pair::new(key, [self.slave_normal, self.master_normal]) };
         let request = PairRequest {
             entry: entry.unwrap_or(block_kinds()[0]),
             pairs: vec![pair],

@@ -114,7 +114,7 @@ const fn same<const K: usize>() -> &'static [usize] {
 const THIRD: f64 = 1.0 / 3.0;
 
 /// The table, in the order of [`Shape`].
-pub(super) static CELLS: [ReferenceCell; Shape::ALL.len()] = [
+pub(super) const CELLS: &[ReferenceCell; Shape::ALL.len()] = &[
     ReferenceCell {
         shape: Shape::Point1,
         dim: 0,

@@ -4,7 +4,6 @@
 //! caller's choice. Normals: a line a → b in the plane has n = (t_y, −t_x), to the right of the direction of travel; a
 //! surface has t_1 × t_2. Faces as listed in the reference cells thus point outward.
 
-use super::shape_functions::Jet;
 use super::{Shape, ShapeTable, local_gradients, shape_functions};
 use crate::vector3::{add, cross, dot, norm, scale, sub};
 
@@ -115,6 +114,13 @@ pub fn area_normal(shape: Shape, x: &[Vec3], xi: [f64; 3]) -> Vec3 {
     }
 }
 
+/// Normal with the size of the cell as its magnitude, from its centre: exact for lines, triangles and quadrilaterals with straight
+/// edges.
+pub fn vector_area(shape: Shape, x: &[Vec3]) -> Vec3 {
+    let cell = shape.cell();
+    scale(area_normal(shape, x, cell.centre), cell.size())
+}
+
 /// Unit normal at `xi`, or `None` where the cell is degenerate or has no normal.
 pub fn unit_normal(shape: Shape, x: &[Vec3], xi: [f64; 3]) -> Option<Vec3> {
     let normal = area_normal(shape, x, xi);
@@ -176,21 +182,16 @@ fn step_is_stale(t: &[Vec3; 3], r: Vec3, dim: usize) -> bool {
     (0..dim).all(|k| dot(t[k], r).abs() <= 1e-11 * norm(t[k]) * (norm(r) + norm(t[k])))
 }
 
+/// Image of `xi`, ∂x/∂ξ_k and ∂²x/∂ξ_k∂ξ_l. No shape function is of higher degree than two in one coordinate, where central
+/// differences are exact.
 fn derivatives(shape: Shape, x: &[Vec3], xi: [f64; 3]) -> (Vec3, [Vec3; 3], [[Vec3; 3]; 3]) {
-    let coordinates = Jet::coordinates(Jet::coordinates(xi));
-    let mut jets = [coordinates[0]; 27];
-    shape_functions(shape, coordinates, &mut jets);
-    let (mut image, mut t, mut second) = ([0.0; 3], [[0.0; 3]; 3], [[[0.0; 3]; 3]; 3]);
-    for (x, jet) in x.iter().zip(&jets) {
-        image = add(image, scale(*x, jet.value.value));
-        for k in 0..3 {
-            t[k] = add(t[k], scale(*x, jet.d[k].value));
-            for l in 0..3 {
-                second[k][l] = add(second[k][l], scale(*x, jet.d[k].d[l]));
-            }
-        }
-    }
-    (image, t, second)
+    let beside =
+        |l: usize, step: f64| tangents(shape, x, std::array::from_fn(|k| xi[k] + if k == l { step } else { 0.0 }));
+    let second = [0, 1, 2].map(|l| {
+        let (after, before) = (beside(l, 1.0), beside(l, -1.0));
+        [0, 1, 2].map(|k| scale(sub(after[k], before[k]), 0.5))
+    });
+    (position(shape, x, xi), tangents(shape, x, xi), second)
 }
 
 /// Solution of the 3×3 system `a x = b` by cofactors, or `None` when `a` is singular.

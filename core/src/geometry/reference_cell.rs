@@ -58,8 +58,20 @@ impl ReferenceCell {
         }
     }
 
+    /// Length, area or volume of the cell in local coordinates; 1 for a point.
+    pub const fn size(&self) -> f64 {
+        match self.shape {
+            Shape::Point1 => 1.0,
+            Shape::Line2 | Shape::Line3 => 2.0,
+            Shape::Tri3 | Shape::Tri6 | Shape::Prism6 | Shape::Prism15 => 0.5,
+            Shape::Quad4 | Shape::Quad8 | Shape::Quad9 => 4.0,
+            Shape::Tet4 | Shape::Tet10 => 1.0 / 6.0,
+            Shape::Hex8 | Shape::Hex20 | Shape::Hex27 => 8.0,
+        }
+    }
+
     /// Nodes at the corners, which come first: those of the linear cell of the same kind.
-    pub fn corners(&self) -> usize {
+    pub const fn corners(&self) -> usize {
         match self.shape {
             Shape::Point1 => 1,
             Shape::Line2 | Shape::Line3 => 2,

@@ -68,21 +68,26 @@ impl Shape {
         })
     }
 
+    /// The shape of the same kind whose nodes are the corners.
+    pub fn linear(self) -> Shape {
+        Self::of(self.dim(), self.cell().corners()).expect("every kind has a linear shape")
+    }
+
     /// The constant facts of the shape.
     #[inline]
-    pub fn cell(self) -> &'static ReferenceCell {
+    pub const fn cell(self) -> &'static ReferenceCell {
         &CELLS[self as usize]
     }
 
     /// Number of nodes.
     #[inline]
-    pub fn nodes(self) -> usize {
+    pub const fn nodes(self) -> usize {
         self.cell().points.len()
     }
 
     /// Local dimension: 0 point, 1 line, 2 surface, 3 solid.
     #[inline]
-    pub fn dim(self) -> usize {
+    pub const fn dim(self) -> usize {
         self.cell().dim
     }
 }

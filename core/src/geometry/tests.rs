@@ -281,15 +281,20 @@ fn sizes_of_simple_cells() {
     assert!(near(characteristic_length(Shape::Quad4, &square), 2.0, 1e-15));
     assert_eq!(shortest_node_distance(&square), 2.0);
     for shape in Shape::ALL {
-        let exact = [0.0, 2.0, if shape.cell().corners() == 3 { 0.5 } else { 4.0 }, 0.0][shape.dim()];
-        let exact = match shape {
-            Shape::Tet4 | Shape::Tet10 => 1.0 / 6.0,
-            Shape::Prism6 | Shape::Prism15 => 0.5,
-            Shape::Hex8 | Shape::Hex20 | Shape::Hex27 => 8.0,
-            _ => exact,
-        };
-        assert!(near(domain_size(shape, shape.cell().points), exact, 1e-8), "{shape:?}");
+        let (cell, linear) = (shape.cell(), shape.linear().cell());
+        if shape.dim() > 0 {
+            assert!(near(domain_size(shape, cell.points), cell.size(), 1e-8), "{shape:?}");
+            assert!(near(monomial_integral(shape, [0; 3]), cell.size(), 1e-15), "{shape:?}");
+        }
+        assert_eq!((linear.size(), linear.points.len()), (cell.size(), cell.corners()));
+        if shape.dim() == 2 {
+            assert!(near(norm(vector_area(shape, cell.points)), cell.size(), 1e-15), "{shape:?}");
+        }
     }
+    // Warped, it is half the product of the diagonals.
+    let warped = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.3], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+    let half = scale(cross(sub(warped[2], warped[0]), sub(warped[3], warped[1])), 0.5);
+    assert!(distance(vector_area(Shape::Quad4, &warped), half) < 1e-15);
 }
 
 #[test]

@@ -25,6 +25,11 @@ impl Face {
         &self.key[..self.key.iter().position(|&node| node == NONE).unwrap_or(4)]
     }
 
+    /// Its shape.
+    pub(super) fn shape(&self, part: &ModelPart) -> Shape {
+        shape_of(part, self.element).cell().faces[usize::from(self.number)].shape
+    }
+
     /// All its nodes, mid-side nodes included.
     pub(super) fn all<'p>(&self, part: &'p ModelPart) -> impl Iterator<Item = u32> + use<'p> {
         let nodes = part.elements.nodes(self.element);

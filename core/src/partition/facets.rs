@@ -4,8 +4,10 @@ use rustc_hash::FxHashMap;
 
 use super::faces::Face;
 use super::interfaces::Surface;
+use crate::geometry::Shape;
+use crate::geometry::mapping::vector_area;
 use crate::model::ModelPart;
-use crate::vector3::{add, cross, dot, norm, scale, sub};
+use crate::vector3::{add, dot, norm, scale, sub};
 
 /// A face of an element on a surface that may touch another.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,24 +42,18 @@ pub(super) fn contact_facets(part: &ModelPart, outer: &[Face], surfaces: &[Surfa
             if surface.whole_skin || all(&on) {
                 let positions = face.ordered(part).map(|node| part.nodes.initial[node as usize]).collect::<Vec<_>>();
                 let slave = surface.slaves.is_empty() || all(&slave);
-                out.push(facet(face.element, at as u32, slave, &positions));
+                out.push(facet(face, face.shape(part).linear(), at as u32, slave, &positions));
             }
         }
     }
     out
 }
 
-fn facet(element: u32, surface: u32, slave: bool, corners: &[[f64; 3]]) -> ContactFacet {
+fn facet(face: &Face, shape: Shape, surface: u32, slave: bool, corners: &[[f64; 3]]) -> ContactFacet {
     let sum = corners.iter().fold([0.0; 3], |sum, &x| add(sum, x));
     let centre = scale(sum, 1.0 / corners.len().max(1) as f64);
     let radius = corners.iter().map(|&x| norm(sub(x, centre))).fold(0.0, f64::max);
-    let normal = match corners {
-        [a, b] => [b[1] - a[1], a[0] - b[0], 0.0],
-        [a, b, c] => scale(cross(sub(*b, *a), sub(*c, *a)), 0.5),
-        [a, b, c, d] => scale(cross(sub(*c, *a), sub(*d, *b)), 0.5),
-        _ => [0.0; 3],
-    };
-    ContactFacet { element, surface, slave, centre, normal, radius }
+    ContactFacet { element: face.element, surface, slave, centre, normal: vector_area(shape, corners), radius }
 }
 
 /// For each slave facet the nearest facet that faces it, on the same surface and within two mean diameters.

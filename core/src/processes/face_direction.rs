@@ -32,7 +32,9 @@ pub(super) fn pulling(
     let mut by_kind: BTreeMap<&str, (&'static EntityKind, Vec<u32>)> = BTreeMap::new();
     for &at in conditions {
         let entry = part.conditions.kinds[at as usize];
-        if entry.nodes() > 1 && part.properties.contains_key(&part.conditions.properties[at as usize]) {
+        if entry.cell.is_some_and(|shape| shape.dim() > 0)
+            && part.properties.contains_key(&part.conditions.properties[at as usize])
+        {
             by_kind.entry(entry.name).or_insert((entry, Vec::new())).1.push(at);
         }
     }

@@ -7,6 +7,7 @@ use zelus::contact_structural_mechanics::formulations::StepParameters;
 use zelus::contact_structural_mechanics::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
 use zelus::contact_structural_mechanics::pairs::Family;
 use zelus::contact_structural_mechanics::register_contact_family;
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
@@ -15,18 +16,18 @@ struct HardeningPenalty;
 
 impl Formulation for HardeningPenalty {
     const MULTIPLIER: Multiplier = Multiplier::None;
-    type History<const NS: usize, const NM: usize> = ();
+    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(_: &StepParameters) -> Self {
         Self
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
         (): &(),
-    ) -> PairResidual<T, NS, NM> {
+    ) -> PairResidual<T, S, M> {
         let gap = pair.gap();
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {

@@ -10,6 +10,7 @@ use zelus::contact_structural_mechanics::formulations::{
 use zelus::contact_structural_mechanics::pairs::Family;
 use zelus::contact_structural_mechanics::register_contact_family;
 use zelus::contact_structural_mechanics::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE as PRESSURE;
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
@@ -22,18 +23,18 @@ struct SoftLayer {
 
 impl Formulation for SoftLayer {
     const MULTIPLIER: Multiplier = Multiplier::Scalar(&PRESSURE);
-    type History<const NS: usize, const NM: usize> = ();
+    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor }
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
         (): &(),
-    ) -> PairResidual<T, NS, NM> {
+    ) -> PairResidual<T, S, M> {
         let (k, gap) = (self.scale_factor, pair.gap());
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate() {

@@ -18,6 +18,7 @@
 //! rate is what the tractions do work on, so that friction makes no energy. Where pairs augment, as in Kratos, it never is. In long
 //! static steps the objective one is nearer to the closed forms: it measures the change of what faces what.
 
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, dot, scale, sub, value};
 
@@ -52,27 +53,27 @@ pub struct AlmFrictional {
 }
 
 /// A pair as it was when slip began to be counted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlipHistory<const NS: usize, const NM: usize> {
+#[derive(Debug, Clone, Copy)]
+pub struct SlipHistory<S: FacetShape, M: FacetShape> {
     /// D° and M°, at the start of the step.
-    pub previous: Operators<f64, NS, NM>,
+    pub previous: Operators<f64, S, M>,
     /// Its last accepted state.
-    pub last: LastState<NS, NM>,
+    pub last: LastState<S, M>,
 }
 
-impl<const NS: usize, const NM: usize> PairHistory<NS, NM> for SlipHistory<NS, NM> {
-    fn of(previous: Operators<f64, NS, NM>, last: &PairGeometry<f64, NS, NM>) -> Self {
+impl<S: FacetShape, M: FacetShape> PairHistory<S, M> for SlipHistory<S, M> {
+    fn of(previous: Operators<f64, S, M>, last: &PairGeometry<f64, S, M>) -> Self {
         Self { previous, last: PairHistory::of(previous, last) }
     }
 }
 
 impl AlmFrictional {
     /// Weighted slip vectors s of a pair.
-    pub fn slip<T: Real, const NS: usize, const NM: usize>(
+    pub fn slip<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        history: &SlipHistory<NS, NM>,
-    ) -> [[T; 3]; NS] {
+        pair: &Kinematics<T, S, M>,
+        history: &SlipHistory<S, M>,
+    ) -> S::Nodal<[T; 3]> {
         if self.compliant || (self.dynamic && self.augmentation == Augmentation::Node) {
             return history.last.slip(pair);
         }
@@ -80,19 +81,19 @@ impl AlmFrictional {
             return objective_slip(&pair.operators, &history.previous, &pair.slave, &pair.master, &pair.normals);
         }
         let increment = |x: [T; 3], from: [f64; 3]| std::array::from_fn(|c| x[c] - from[c]);
-        let delta_slave = std::array::from_fn(|j| increment(pair.slave[j], history.last.slave[j]));
-        let delta_master = std::array::from_fn(|l| increment(pair.master[l], history.last.master[l]));
+        let delta_slave = S::nodal(|j| increment(pair.slave[j], history.last.slave[j]));
+        let delta_master = M::nodal(|l| increment(pair.master[l], history.last.master[l]));
         incremental_slip(&pair.operators, &delta_slave, &delta_master, &pair.normals)
     }
 
     /// Takes from gap and slip what is elastic.
-    fn take_elastic<T: Real, const NS: usize, const NM: usize>(
+    fn take_elastic<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        history: &SlipHistory<NS, NM>,
-        gap: &mut [T; NS],
-        slip: &mut [[T; 3]; NS],
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        history: &SlipHistory<S, M>,
+        gap: &mut S::Nodal<T>,
+        slip: &mut S::Nodal<[T; 3]>,
     ) {
         if !self.compliant {
             return;
@@ -118,7 +119,7 @@ fn across<T: Real>(vector: [T; 3], node: &SlaveNode) -> [T; 3] {
 
 impl Formulation for AlmFrictional {
     const MULTIPLIER: Multiplier = Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER);
-    type History<const NS: usize, const NM: usize> = SlipHistory<NS, NM>;
+    type History<S: FacetShape, M: FacetShape> = SlipHistory<S, M>;
 
     fn new(parameters: &StepParameters) -> Self {
         Self {
@@ -131,33 +132,33 @@ impl Formulation for AlmFrictional {
         }
     }
 
-    fn weighted_slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        history: &SlipHistory<NS, NM>,
-    ) -> [[f64; 3]; NS] {
+        pair: &Kinematics<f64, S, M>,
+        history: &SlipHistory<S, M>,
+    ) -> S::Nodal<[f64; 3]> {
         self.slip(pair, history)
     }
 
-    fn weighted_trial<const NS: usize, const NM: usize>(
+    fn weighted_trial<S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        history: &SlipHistory<NS, NM>,
-    ) -> Option<[[f64; 3]; NS]> {
+        pair: &Kinematics<f64, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        history: &SlipHistory<S, M>,
+    ) -> Option<S::Nodal<[f64; 3]>> {
         self.compliant.then(|| history.last.weighted_trial(pair, nodes, self.tangent_factor))
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        history: &SlipHistory<NS, NM>,
-    ) -> PairResidual<T, NS, NM> {
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        history: &SlipHistory<S, M>,
+    ) -> PairResidual<T, S, M> {
         let k = self.scale_factor;
         let (mut gap, mut slip) = (pair.gap(), self.slip(pair, history));
         self.take_elastic(pair, nodes, history, &mut gap, &mut slip);
-        let mut out = PairResidual::zero();
+        let mut out = PairResidual::<T, S, M>::zero();
         for (j, node) in nodes.iter().enumerate() {
             let (lambda, n, penalty) = (pair.multipliers[j], pair.normals[j], self.augmentation.penalty(node));
             let lambda_n = dot(lambda, n);

@@ -6,6 +6,7 @@
 //! pressure k λ is then ε times its gap. p° is zero but for Uzawa's iteration (eq. D.10), which updates it outside, p° ← k λ, until
 //! k λ − p° and with it the gap vanish.
 
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
@@ -26,18 +27,18 @@ pub struct AlmFrictionless {
 
 impl Formulation for AlmFrictionless {
     const MULTIPLIER: Multiplier = Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE);
-    type History<const NS: usize, const NM: usize> = ();
+    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
         (): &(),
-    ) -> PairResidual<T, NS, NM> {
+    ) -> PairResidual<T, S, M> {
         let k = self.scale_factor;
         let gap = pair.gap();
         let mut out = PairResidual::zero();

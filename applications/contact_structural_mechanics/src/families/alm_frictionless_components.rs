@@ -3,6 +3,7 @@
 //! Active: p = f (k λ + ε̂ g̃ n) and b_λ = k g̃ n − k² (A/c) P λ, which drives the tangential part to zero.
 //! Inactive: p = 0 and b_λ = −k² (A/c) λ.
 
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 
 use crate::formulations::StepParameters;
@@ -23,18 +24,18 @@ pub struct AlmFrictionlessComponents {
 
 impl Formulation for AlmFrictionlessComponents {
     const MULTIPLIER: Multiplier = Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER);
-    type History<const NS: usize, const NM: usize> = ();
+    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
         (): &(),
-    ) -> PairResidual<T, NS, NM> {
+    ) -> PairResidual<T, S, M> {
         let k = self.scale_factor;
         let gap = pair.gap();
         let mut out = PairResidual::zero();

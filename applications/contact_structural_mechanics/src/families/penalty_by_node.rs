@@ -3,6 +3,7 @@
 //! t_t is the elastic trial traction P R t° + κ ε s/A of the whole node, cut to the bound of the law of friction; zero without
 //! friction. Where steps iterate, the same tractions are multipliers of surfaces that give way, see [`super::alm_frictional`].
 
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, scale};
 
@@ -18,35 +19,35 @@ pub struct PenaltyByNode {
 
 impl Formulation for PenaltyByNode {
     const MULTIPLIER: Multiplier = Multiplier::None;
-    type History<const NS: usize, const NM: usize> = LastState<NS, NM>;
+    type History<S: FacetShape, M: FacetShape> = LastState<S, M>;
 
     fn new(parameters: &StepParameters) -> Self {
         Self { tangent_factor: parameters.tangent_factor }
     }
 
-    fn weighted_slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        last: &LastState<NS, NM>,
-    ) -> [[f64; 3]; NS] {
+        pair: &Kinematics<f64, S, M>,
+        last: &LastState<S, M>,
+    ) -> S::Nodal<[f64; 3]> {
         last.slip(pair)
     }
 
-    fn weighted_trial<const NS: usize, const NM: usize>(
+    fn weighted_trial<S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        last: &LastState<NS, NM>,
-    ) -> Option<[[f64; 3]; NS]> {
+        pair: &Kinematics<f64, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        last: &LastState<S, M>,
+    ) -> Option<S::Nodal<[f64; 3]>> {
         Some(last.weighted_trial(pair, nodes, self.tangent_factor))
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        _: &LastState<NS, NM>,
-    ) -> PairResidual<T, NS, NM> {
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        _: &LastState<S, M>,
+    ) -> PairResidual<T, S, M> {
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {
             out.add_nodal_force(&pair.operators, j, constant(scale(node.traction, node.dynamic_factor)));

@@ -5,6 +5,7 @@
 //! traction of all pairs of the node; in space the tangent knows how it turns. An active node has the force p = f (ε g̃ n + t),
 //! which acts through D and M.
 
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, scale};
 
@@ -25,14 +26,14 @@ pub struct PenaltyFrictional {
 
 impl PenaltyFrictional {
     /// Trial tractions q of the slave nodes of a pair.
-    pub fn trial<T: Real, const NS: usize, const NM: usize>(
+    pub fn trial<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        last: &LastState<NS, NM>,
-    ) -> [[T; 3]; NS] {
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        last: &LastState<S, M>,
+    ) -> S::Nodal<[T; 3]> {
         let (carried, slip) = (last.carried(pair, nodes), last.slip(pair));
-        std::array::from_fn(|j| add(carried[j], scale(slip[j], T::constant(self.tangent_factor * nodes[j].penalty))))
+        S::nodal(|j| add(carried[j], scale(slip[j], T::constant(self.tangent_factor * nodes[j].penalty))))
     }
 }
 
@@ -45,36 +46,36 @@ fn direction<T: Real>(node: &SlaveNode, trial: [T; 3]) -> [T; 3] {
 
 impl Formulation for PenaltyFrictional {
     const MULTIPLIER: Multiplier = Multiplier::None;
-    type History<const NS: usize, const NM: usize> = LastState<NS, NM>;
+    type History<S: FacetShape, M: FacetShape> = LastState<S, M>;
 
     fn new(parameters: &StepParameters) -> Self {
         Self { tangent_factor: parameters.tangent_factor }
     }
 
-    fn weighted_slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        last: &LastState<NS, NM>,
-    ) -> [[f64; 3]; NS] {
+        pair: &Kinematics<f64, S, M>,
+        last: &LastState<S, M>,
+    ) -> S::Nodal<[f64; 3]> {
         last.slip(pair)
     }
 
-    fn weighted_trial<const NS: usize, const NM: usize>(
+    fn weighted_trial<S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        last: &LastState<NS, NM>,
-    ) -> Option<[[f64; 3]; NS]> {
+        pair: &Kinematics<f64, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        last: &LastState<S, M>,
+    ) -> Option<S::Nodal<[f64; 3]>> {
         let trial = self.trial(pair, nodes, last);
-        Some(std::array::from_fn(|j| scale(trial[j], pair.area(j))))
+        Some(S::nodal(|j| scale(trial[j], pair.area(j))))
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        last: &LastState<NS, NM>,
-    ) -> PairResidual<T, NS, NM> {
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        last: &LastState<S, M>,
+    ) -> PairResidual<T, S, M> {
         let gap = pair.gap();
         let trial = self.trial(pair, nodes, last);
         let mut out = PairResidual::zero();

@@ -2,6 +2,7 @@
 //!
 //! ε g̃ holds an area: it counts the weighted gap of the pair.
 
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
@@ -18,18 +19,18 @@ pub struct PenaltyFrictionless;
 
 impl Formulation for PenaltyFrictionless {
     const MULTIPLIER: Multiplier = Multiplier::None;
-    type History<const NS: usize, const NM: usize> = ();
+    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(_: &StepParameters) -> Self {
         Self
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
         (): &(),
-    ) -> PairResidual<T, NS, NM> {
+    ) -> PairResidual<T, S, M> {
         let gap = pair.gap();
         let mut out = PairResidual::zero();
         for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {

@@ -16,7 +16,7 @@ macro_rules! register_contact_family {
     ) => {
         $crate::register_contact_family! { $name, about: $about, source: $source, build: $family }
         $crate::register_pair_conditions! { $stem, concat!("pair of the family ", $name) }
-        $crate::register_pair_conditions! { @ $axisymmetric, Line2, 2, concat!("pair of the family ", $name) }
+        $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the family ", $name), (Line2, Line2, "") }
     };
 }
 
@@ -24,21 +24,18 @@ macro_rules! register_contact_family {
 #[macro_export]
 macro_rules! register_pair_conditions {
     ($stem:literal, $about:expr) => {
-        $crate::register_pair_conditions! { @ concat!($stem, "2D2N"), Line2, 2, $about }
-        $crate::register_pair_conditions! { @ concat!($stem, "3D3N"), Tri3, 3, $about }
-        $crate::register_pair_conditions! { @ concat!($stem, "3D4N"), Quad4, 3, $about }
-        $crate::register_pair_conditions! { @ concat!($stem, "3D3N4N"), Tri3, 3, $about }
-        $crate::register_pair_conditions! { @ concat!($stem, "3D4N3N"), Quad4, 3, $about }
+        $crate::with_pairs_of_shapes! { [$crate::register_pair_conditions] @ $stem, $about, }
     };
-    (@ $name:expr, $shape:ident, $space:literal, $about:expr) => {
+    (@ $stem:literal, $about:expr, $(($slave:ident, $master:ident, $end:literal))*) => {$(
         const _: () = {
             use zelus_core::entities::ConditionEntry;
-            zelus_core::register! { ConditionEntry $name,
+            use zelus_core::geometry::{self, FacetShape};
+            zelus_core::register! { ConditionEntry concat!($stem, $end),
                 about: $about,
-                cell: Some(zelus_core::geometry::Shape::$shape),
-                space: $space,
+                cell: Some(geometry::$slave::SHAPE),
+                space: geometry::$slave::SPACE,
                 build: zelus_core::entities::Build::Pairs,
             }
         };
-    };
+    )*};
 }

@@ -10,6 +10,7 @@
 
 use super::{Kinematics, Multiplier, PairResidual, SlaveNode};
 use crate::node_state::{Held, NodeState};
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, normalised, scale, sub};
 
@@ -36,11 +37,11 @@ fn free<T: Real>(vector: [T; 3], held: [Held; 3]) -> [T; 3] {
 const NO_ONE_TO_FOLLOW: f64 = 1e-6;
 
 /// Replaces equations of held nodes, each with the weight k² A/c of its node.
-pub fn restate<T: Real, const NS: usize, const NM: usize>(
-    out: &mut PairResidual<T, NS, NM>,
+pub fn restate<T: Real, S: FacetShape, M: FacetShape>(
+    out: &mut PairResidual<T, S, M>,
     kind: Multiplier,
-    pair: &Kinematics<T, NS, NM>,
-    nodes: &[SlaveNode; NS],
+    pair: &Kinematics<T, S, M>,
+    nodes: &S::Nodal<SlaveNode>,
 ) {
     for (j, node) in nodes.iter().enumerate() {
         let held = node.held;
@@ -64,7 +65,7 @@ pub fn restate<T: Real, const NS: usize, const NM: usize>(
                 Held::KeptInStick if node.state == NodeState::Slip => continue,
                 Held::Kept | Held::KeptInStick => (T::constant(own.value()) - own) * node.held_weight,
                 Held::Follows => {
-                    let free = (0..NS).filter(|&k| nodes[k].held[c] == Held::Free);
+                    let free = (0..S::NODES).filter(|&k| nodes[k].held[c] == Held::Free);
                     let (mut sum, mut count, mut any) = (T::zero(), 0.0, false);
                     for k in free {
                         any = true;

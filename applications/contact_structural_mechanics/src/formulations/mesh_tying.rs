@@ -4,6 +4,7 @@
 //! linear and its tangent K = k [ 0 0 −Mᵀ ; 0 0 Dᵀ ; −M D 0 ] constant and symmetric.
 
 use crate::mortar::Operators;
+use zelus_core::geometry::FacetShape;
 
 /// Mesh tying of a field with any number of components a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,34 +15,34 @@ pub struct MeshTying {
 
 impl MeshTying {
     /// Number of local unknowns of a field with `C` components.
-    pub const fn size<const NS: usize, const NM: usize, const C: usize>() -> usize {
-        C * (NM + 2 * NS)
+    pub const fn size<S: FacetShape, M: FacetShape, const C: usize>() -> usize {
+        C * (M::NODES + 2 * S::NODES)
     }
 
     /// Writes the right-hand side in the order master, slave, multipliers.
     ///
     /// # Panics
     /// If `rhs` does not have [`MeshTying::size`] entries.
-    pub fn residual<const NS: usize, const NM: usize, const C: usize>(
+    pub fn residual<S: FacetShape, M: FacetShape, const C: usize>(
         &self,
-        operators: &Operators<f64, NS, NM>,
-        master: &[[f64; C]; NM],
-        slave: &[[f64; C]; NS],
-        multipliers: &[[f64; C]; NS],
+        operators: &Operators<f64, S, M>,
+        master: &M::Nodal<[f64; C]>,
+        slave: &S::Nodal<[f64; C]>,
+        multipliers: &S::Nodal<[f64; C]>,
         rhs: &mut [f64],
     ) {
-        assert_eq!(rhs.len(), Self::size::<NS, NM, C>(), "one entry per local unknown");
+        assert_eq!(rhs.len(), Self::size::<S, M, C>(), "one entry per local unknown");
         rhs.fill(0.0);
         let k = self.scale_factor;
-        for j in 0..NS {
+        for j in 0..S::NODES {
             for c in 0..C {
-                let row = C * (NM + NS + j) + c;
-                for l in 0..NM {
+                let row = C * (M::NODES + S::NODES + j) + c;
+                for l in 0..M::NODES {
                     rhs[C * l + c] += k * operators.m[j][l] * multipliers[j][c];
                     rhs[row] += k * operators.m[j][l] * master[l][c];
                 }
-                for i in 0..NS {
-                    rhs[C * (NM + i) + c] -= k * operators.d[j][i] * multipliers[j][c];
+                for i in 0..S::NODES {
+                    rhs[C * (M::NODES + i) + c] -= k * operators.d[j][i] * multipliers[j][c];
                     rhs[row] -= k * operators.d[j][i] * slave[i][c];
                 }
             }
@@ -52,20 +53,20 @@ impl MeshTying {
     ///
     /// # Panics
     /// If `lhs` does not have the square of [`MeshTying::size`] entries.
-    pub fn tangent<const NS: usize, const NM: usize, const C: usize>(
+    pub fn tangent<S: FacetShape, M: FacetShape, const C: usize>(
         &self,
-        operators: &Operators<f64, NS, NM>,
+        operators: &Operators<f64, S, M>,
         lhs: &mut [f64],
     ) {
-        let n = Self::size::<NS, NM, C>();
+        let n = Self::size::<S, M, C>();
         assert_eq!(lhs.len(), n * n, "one entry per pair of local unknowns");
         lhs.fill(0.0);
         let k = self.scale_factor;
-        for j in 0..NS {
+        for j in 0..S::NODES {
             for c in 0..C {
-                let row = C * (NM + NS + j) + c;
-                for i in 0..NM + NS {
-                    let entry = if i < NM { -k * operators.m[j][i] } else { k * operators.d[j][i - NM] };
+                let row = C * (M::NODES + S::NODES + j) + c;
+                for i in 0..M::NODES + S::NODES {
+                    let entry = if i < M::NODES { -k * operators.m[j][i] } else { k * operators.d[j][i - M::NODES] };
                     lhs[row * n + C * i + c] = entry;
                     lhs[(C * i + c) * n + row] = entry;
                 }

@@ -36,6 +36,7 @@ pub use pair_history::PairHistory;
 pub use step_parameters::{NormalVariation, StepParameters};
 pub use system::{by_normals, local_size, residual, tangent};
 
+use zelus_core::geometry::FacetShape;
 use zelus_core::scalar::Real;
 
 /// Where a gap augments the force of an augmented Lagrangian.
@@ -80,35 +81,35 @@ pub trait Formulation: Copy + Send + Sync + 'static {
     const MULTIPLIER: Multiplier;
 
     /// What it remembers of a pair from the start of the step.
-    type History<const NS: usize, const NM: usize>: PairHistory<NS, NM>;
+    type History<S: FacetShape, M: FacetShape>: PairHistory<S, M>;
 
     /// The formulation with the numbers of the step.
     fn new(parameters: &StepParameters) -> Self;
 
     /// Right-hand side of one pair; must be affine in the multipliers for given states.
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<T, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        history: &Self::History<NS, NM>,
-    ) -> PairResidual<T, NS, NM>;
+        pair: &Kinematics<T, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        history: &Self::History<S, M>,
+    ) -> PairResidual<T, S, M>;
 
     /// Weighted slip vectors of a pair; zero without friction.
-    fn weighted_slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<S: FacetShape, M: FacetShape>(
         &self,
-        _pair: &Kinematics<f64, NS, NM>,
-        _history: &Self::History<NS, NM>,
-    ) -> [[f64; 3]; NS] {
-        [[0.0; 3]; NS]
+        _pair: &Kinematics<f64, S, M>,
+        _history: &Self::History<S, M>,
+    ) -> S::Nodal<[f64; 3]> {
+        S::nodal(|_| [0.0; 3])
     }
 
     /// Areas times trial tractions of a pair, for families that carry tractions from state to state.
-    fn weighted_trial<const NS: usize, const NM: usize>(
+    fn weighted_trial<S: FacetShape, M: FacetShape>(
         &self,
-        _pair: &Kinematics<f64, NS, NM>,
-        _nodes: &[SlaveNode; NS],
-        _history: &Self::History<NS, NM>,
-    ) -> Option<[[f64; 3]; NS]> {
+        _pair: &Kinematics<f64, S, M>,
+        _nodes: &S::Nodal<SlaveNode>,
+        _history: &Self::History<S, M>,
+    ) -> Option<S::Nodal<[f64; 3]>> {
         None
     }
 }

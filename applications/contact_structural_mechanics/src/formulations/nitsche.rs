@@ -22,7 +22,8 @@ use super::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveN
 use crate::friction_law::Bound;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
-use crate::mortar::{PairGeometry, SegmentationSettings, Turn, shape, tangential};
+use crate::mortar::{PairGeometry, SegmentationSettings, Turn, inner_point, inner_values, tangential};
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, value};
 
@@ -74,10 +75,10 @@ impl Nitsche {
 }
 
 /// The face of the slave's element, in the initial state.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlaveFace<const NS: usize> {
+#[derive(Debug, Clone, Copy)]
+pub struct SlaveFace<S: FacetShape> {
     /// Length or area by local coordinates at the inner points; about an axis times the radius.
-    pub densities: [f64; NS],
+    pub densities: S::Nodal<f64>,
     /// M A/V (stress by length, in the plane times the thickness).
     pub stiffness: f64,
     /// What tractions are multiplied by, where the weights of points are divided by it.
@@ -99,57 +100,61 @@ pub struct NodeOfPoints {
 
 /// What the points of a pair add up to.
 #[derive(Debug, Clone, Copy)]
-pub struct PointForces<T, const NS: usize, const NM: usize> {
+pub struct PointForces<T: Real, S: FacetShape, M: FacetShape> {
     /// Forces on slave nodes.
-    pub slave: [[T; 3]; NS],
+    pub slave: S::Nodal<[T; 3]>,
     /// Forces on master nodes.
-    pub master: [[T; 3]; NM],
+    pub master: M::Nodal<[T; 3]>,
     /// ∫ N (τ − t + σ n) over the points in contact, with friction.
-    pub carried: [[T; 3]; NS],
+    pub carried: S::Nodal<[T; 3]>,
     /// What works on changes of the tractions at the inner points (a length times an area).
-    pub by_traction: [[T; 3]; NS],
+    pub by_traction: S::Nodal<[T; 3]>,
 }
 
 impl Nitsche {
     /// Forces of a pair whose slave has these tractions of the initial area at its inner points; `None` without overlap.
-    pub fn forces<T: Real, const NS: usize, const NM: usize>(
+    pub fn forces<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        pair: &PairGeometry<T, NS, NM>,
-        tractions: &[[T; 3]; NS],
-        (face, nodes): (&SlaveFace<NS>, &[NodeOfPoints; NS]),
-        last: &LastState<NS, NM>,
+        pair: &PairGeometry<T, S, M>,
+        tractions: &S::Nodal<[T; 3]>,
+        (face, nodes): (&SlaveFace<S>, &S::Nodal<NodeOfPoints>),
+        last: &LastState<S, M>,
         settings: &SegmentationSettings,
-    ) -> Option<PointForces<T, NS, NM>> {
+    ) -> Option<PointForces<T, S, M>> {
         let zero = [T::zero(); 3];
-        let mut out =
-            PointForces { slave: [zero; NS], master: [zero; NM], carried: [zero; NS], by_traction: [zero; NS] };
+        let mut out = PointForces::<T, S, M> {
+            slave: S::nodal(|_| zero),
+            master: M::nodal(|_| zero),
+            carried: S::nodal(|_| zero),
+            by_traction: S::nodal(|_| zero),
+        };
         let origin = value(pair.slave[0]);
         let relative = |x: [T; 3]| std::array::from_fn(|c| x[c] - origin[c]);
-        let (slave, master) = (pair.slave.map(relative), pair.master.map(relative));
+        let (slave, master) = (S::map(&pair.slave, relative), M::map(&pair.master, relative));
         // By how much the facet has become smaller at its inner points.
-        let shrunk: [T; NS] = std::array::from_fn(|g| {
-            let xi = shape::inner_point::<NS>(g);
-            let mut now = shape::density(&pair.slave, xi);
+        let shrunk: S::Nodal<T> = S::nodal(|g| {
+            let xi = inner_point::<S>(g);
+            let mut now = norm(S::area_normal(&pair.slave, xi));
             if settings.axisymmetric.is_some() {
-                now *= shape::combine(&shape::values::<f64, NS>(xi), &pair.slave)[0];
+                now *= S::combine(&S::values(xi), &pair.slave)[0];
             }
             now.recip() * (face.densities[g] * face.thickness)
         });
         let gamma = self.factor * face.stiffness * face.thickness;
-        let turn = Turn::of_facet(&pair.slave, &last.slave);
+        let turn = Turn::of_facet::<S>(&pair.slave, &last.slave);
         let covered = for_each_point(pair, settings, |point| {
-            let normal = normalised(shape::interpolate(&point.slave, &pair.nodal_normals));
-            let inner: [T; NS] = shape::inner_values(point.local);
+            let normal = normalised(S::interpolate(&point.slave, &pair.nodal_normals));
+            let inner = inner_values::<T, S>(point.local);
             let mut traction = zero;
-            for g in 0..NS {
+            for g in 0..S::NODES {
                 let share = inner[g] * shrunk[g];
                 (0..3).for_each(|c| traction[c].add_product(share, tractions[g][c]));
             }
-            let jump = sub(shape::interpolate(&point.slave, &slave), shape::interpolate(&point.master, &master));
+            let jump = sub(S::interpolate(&point.slave, &slave), M::interpolate(&point.master, &master));
             let stress = dot(normal, traction);
             let pressure = stress - dot(normal, jump) * gamma;
             let share = |of: fn(&NodeOfPoints) -> f64| {
-                nodes.iter().zip(&point.slave).map(|(node, n)| of(node) * n.value()).sum::<f64>() > HELD
+                nodes.iter().zip(point.slave.iter()).map(|(node, n)| of(node) * n.value()).sum::<f64>() > HELD
             };
             let held = share(|node| node.held);
             let pressing = held || pressure.value() < 0.0;
@@ -158,37 +163,37 @@ impl Nitsche {
             if let Some(ratio) = self.friction {
                 own = traction;
                 if pressing {
-                    let before = jump_before(&point.slave, &point.master, last);
+                    let before = jump_before::<T, S, M>(&point.slave, &point.master, last);
                     let slip = tangential(sub(turn.apply(before), jump), normal);
-                    let weights = point.slave.map(T::value);
+                    let weights = S::map(&point.slave, T::value);
                     let mut carried = zero;
-                    for (node, n) in nodes.iter().zip(&point.slave) {
+                    for (node, n) in nodes.iter().zip(point.slave.iter()) {
                         (0..3).for_each(|c| carried[c].add_scaled(*n, node.carried[c]));
                     }
                     let carried = tangential(turn.apply(carried), normal);
                     let along = sub(traction, scale(normal, stress));
                     let trial = add(add(along, carried), scale(slip, T::constant(gamma * ratio)));
                     let sticks = held || share(|node| node.stuck);
-                    let friction = limited(trial, pressure, mean_bound(nodes, &weights), sticks);
+                    let friction = limited(trial, pressure, mean_bound::<S>(nodes, &weights), sticks);
                     force = add(force, friction);
                     let apart = sub(friction, along);
-                    for k in 0..NS {
+                    for k in 0..S::NODES {
                         let weight = point.slave[k] * point.weight;
                         (0..3).for_each(|c| out.carried[k][c].add_product(weight, apart[c]));
                     }
                 }
             }
-            for k in 0..NS {
+            for k in 0..S::NODES {
                 let weight = point.slave[k] * point.weight;
                 (0..3).for_each(|c| out.slave[k][c].add_product(weight, force[c]));
             }
-            for l in 0..NM {
+            for l in 0..M::NODES {
                 let weight = point.master[l] * point.weight;
                 (0..3).for_each(|c| out.master[l][c].add_product(weight, -force[c]));
             }
             if self.theta != 0.0 {
                 let lack = sub(force, own);
-                for g in 0..NS {
+                for g in 0..S::NODES {
                     let weight = inner[g] * shrunk[g] * point.weight * (-self.theta / gamma);
                     (0..3).for_each(|c| out.by_traction[g][c].add_product(weight, lack[c]));
                 }
@@ -199,18 +204,18 @@ impl Nitsche {
 }
 
 /// x¹ − x² of a point in the last accepted state.
-fn jump_before<T: Real, const NS: usize, const NM: usize>(
-    slave: &[T; NS],
-    master: &[T; NM],
-    last: &LastState<NS, NM>,
+fn jump_before<T: Real, S: FacetShape, M: FacetShape>(
+    slave: &S::Nodal<T>,
+    master: &M::Nodal<T>,
+    last: &LastState<S, M>,
 ) -> [T; 3] {
     let origin = last.slave[0];
     let relative = |x: [f64; 3]| constant(sub(x, origin));
-    sub(shape::interpolate(slave, &last.slave.map(relative)), shape::interpolate(master, &last.master.map(relative)))
+    sub(S::interpolate(slave, &S::map(&last.slave, relative)), M::interpolate(master, &M::map(&last.master, relative)))
 }
 
-fn mean_bound<const NS: usize>(nodes: &[NodeOfPoints; NS], weights: &[f64; NS]) -> Bound {
-    let mean = |of: fn(&Bound) -> f64| nodes.iter().zip(weights).map(|(node, n)| n * of(&node.friction)).sum();
+fn mean_bound<S: FacetShape>(nodes: &S::Nodal<NodeOfPoints>, weights: &S::Nodal<f64>) -> Bound {
+    let mean = |of: fn(&Bound) -> f64| nodes.iter().zip(weights.iter()).map(|(node, n)| n * of(&node.friction)).sum();
     Bound { coefficient: mean(|bound| bound.coefficient), threshold: mean(|bound| bound.threshold) }
 }
 
@@ -233,26 +238,26 @@ fn limited<T: Real>(trial: [T; 3], pressure: T, bound: Bound, sticks: bool) -> [
 /// By operators there is nothing: forces are those of points.
 impl Formulation for Nitsche {
     const MULTIPLIER: Multiplier = Multiplier::Body;
-    type History<const NS: usize, const NM: usize> = LastState<NS, NM>;
+    type History<S: FacetShape, M: FacetShape> = LastState<S, M>;
 
     fn new(parameters: &StepParameters) -> Self {
         parameters.nitsche
     }
 
-    fn residual<T: Real, const NS: usize, const NM: usize>(
+    fn residual<T: Real, S: FacetShape, M: FacetShape>(
         &self,
-        _pair: &Kinematics<T, NS, NM>,
-        _nodes: &[SlaveNode; NS],
-        _last: &LastState<NS, NM>,
-    ) -> PairResidual<T, NS, NM> {
+        _pair: &Kinematics<T, S, M>,
+        _nodes: &S::Nodal<SlaveNode>,
+        _last: &LastState<S, M>,
+    ) -> PairResidual<T, S, M> {
         PairResidual::zero()
     }
 
-    fn weighted_slip<const NS: usize, const NM: usize>(
+    fn weighted_slip<S: FacetShape, M: FacetShape>(
         &self,
-        pair: &Kinematics<f64, NS, NM>,
-        last: &LastState<NS, NM>,
-    ) -> [[f64; 3]; NS] {
-        if self.friction.is_some() { last.slip(pair) } else { [[0.0; 3]; NS] }
+        pair: &Kinematics<f64, S, M>,
+        last: &LastState<S, M>,
+    ) -> S::Nodal<[f64; 3]> {
+        if self.friction.is_some() { last.slip(pair) } else { S::nodal(|_| [0.0; 3]) }
     }
 }

@@ -3,6 +3,7 @@
 use crate::friction_law::Bound;
 use crate::mortar::{Operators, weighted_gap};
 use crate::node_state::{Held, NodeState, Turning};
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 
 /// Constants of a slave node during an assembly.
@@ -40,23 +41,23 @@ pub struct SlaveNode {
 
 /// Operators, positions, normals and multipliers of a pair in one scalar.
 #[derive(Debug, Clone, Copy)]
-pub struct Kinematics<T, const NS: usize, const NM: usize> {
+pub struct Kinematics<T: Real, S: FacetShape, M: FacetShape> {
     /// D and M.
-    pub operators: Operators<T, NS, NM>,
+    pub operators: Operators<T, S, M>,
     /// Current positions of the slave nodes.
-    pub slave: [[T; 3]; NS],
+    pub slave: S::Nodal<[T; 3]>,
     /// Current positions of the master nodes.
-    pub master: [[T; 3]; NM],
+    pub master: M::Nodal<[T; 3]>,
     /// Unit normals at the slave nodes, out of the slave body.
-    pub normals: [[T; 3]; NS],
+    pub normals: S::Nodal<[T; 3]>,
     /// Multipliers of the slave nodes, compression negative; a scalar one in the first component.
-    pub multipliers: [[T; 3]; NS],
+    pub multipliers: S::Nodal<[T; 3]>,
 }
 
-impl<T: Real, const NS: usize, const NM: usize> Kinematics<T, NS, NM> {
+impl<T: Real, S: FacetShape, M: FacetShape> Kinematics<T, S, M> {
     /// Weighted gaps g̃ of this pair alone.
     #[inline]
-    pub fn gap(&self) -> [T; NS] {
+    pub fn gap(&self) -> S::Nodal<T> {
         weighted_gap(&self.operators, &self.slave, &self.master, &self.normals)
     }
 
@@ -69,33 +70,33 @@ impl<T: Real, const NS: usize, const NM: usize> Kinematics<T, NS, NM> {
 
 /// Right-hand side of a pair, by node.
 #[derive(Debug, Clone, Copy)]
-pub struct PairResidual<T, const NS: usize, const NM: usize> {
+pub struct PairResidual<T: Real, S: FacetShape, M: FacetShape> {
     /// Forces on master nodes.
-    pub master: [[T; 3]; NM],
+    pub master: M::Nodal<[T; 3]>,
     /// Forces on slave nodes.
-    pub slave: [[T; 3]; NS],
+    pub slave: S::Nodal<[T; 3]>,
     /// Multiplier rows; a scalar one in the first component.
-    pub multipliers: [[T; 3]; NS],
+    pub multipliers: S::Nodal<[T; 3]>,
 }
 
-impl<T: Real, const NS: usize, const NM: usize> PairResidual<T, NS, NM> {
+impl<T: Real, S: FacetShape, M: FacetShape> PairResidual<T, S, M> {
     /// Nothing yet.
     #[inline]
     pub fn zero() -> Self {
         let zero = [T::zero(); 3];
-        Self { master: [zero; NM], slave: [zero; NS], multipliers: [zero; NS] }
+        Self { master: M::nodal(|_| zero), slave: S::nodal(|_| zero), multipliers: S::nodal(|_| zero) }
     }
 
     /// Spreads the force vector p of slave node `j` over both sides: b_slave += D_jk p, b_master −= M_jl p.
     #[inline]
-    pub fn add_nodal_force(&mut self, operators: &Operators<T, NS, NM>, j: usize, p: [T; 3]) {
-        for k in 0..NS {
+    pub fn add_nodal_force(&mut self, operators: &Operators<T, S, M>, j: usize, p: [T; 3]) {
+        for k in 0..S::NODES {
             // Off the diagonal a zero is exact: dual functions.
             if k == j || operators.d[j][k].value() != 0.0 {
                 (0..3).for_each(|c| self.slave[k][c].add_product(operators.d[j][k], p[c]));
             }
         }
-        for l in 0..NM {
+        for l in 0..M::NODES {
             (0..3).for_each(|c| self.master[l][c].add_product(-operators.m[j][l], p[c]));
         }
     }

@@ -10,9 +10,8 @@ use crate::families::penalty_frictionless::PenaltyFrictionless;
 use crate::friction_law::Bound;
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::tests::{Noise, displaced, for_all_shapes, random_pair};
-use crate::mortar::{
-    Choices, OperatorThreshold, Operators, PairGeometry, SegmentationSettings, dimension, operators, tangential,
-};
+use crate::mortar::{Choices, OperatorThreshold, Operators, PairGeometry, SegmentationSettings, operators, tangential};
+use zelus_core::geometry::{FacetShape, Line2, NodeArray, Quadrilateral4, Triangle3};
 use zelus_core::vector3::{dot, normalised};
 
 const PAIR: Augmentation = Augmentation::Pair;
@@ -21,9 +20,13 @@ const COMPONENTS: AlmFrictionlessComponents = AlmFrictionlessComponents { scale_
 const PENALTY: PenaltyFrictional = PenaltyFrictional { tangent_factor: 0.3 };
 
 /// States of the slave nodes, starting with `first`.
-fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, states: [NodeState; 3]) -> [SlaveNode; NS] {
-    let dim = dimension(NS);
-    std::array::from_fn(|j| SlaveNode {
+fn nodes<S: FacetShape>(
+    pair_normals: &S::Nodal<[f64; 3]>,
+    noise: &mut Noise,
+    states: [NodeState; 3],
+) -> S::Nodal<SlaveNode> {
+    let dim = S::SPACE;
+    S::nodal(|j| SlaveNode {
         state: states[j % 3],
         penalty: 20.0 + 5.0 * noise.next(),
         compliance: 0.06,
@@ -44,8 +47,8 @@ fn nodes<const NS: usize>(pair_normals: &[[f64; 3]; NS], noise: &mut Noise, stat
     })
 }
 
-fn multipliers<const NS: usize>(noise: &mut Noise) -> [[f64; 3]; NS] {
-    std::array::from_fn(|_| std::array::from_fn(|c| if c < dimension(NS) { noise.next() } else { 0.0 }))
+fn multipliers<S: FacetShape>(noise: &mut Noise) -> S::Nodal<[f64; 3]> {
+    S::nodal(|_| std::array::from_fn(|c| if c < S::SPACE { noise.next() } else { 0.0 }))
 }
 
 const MIXES: [[NodeState; 3]; 5] = {
@@ -53,26 +56,27 @@ const MIXES: [[NodeState; 3]; 5] = {
     [[Inactive; 3], [Slip; 3], [Stick; 3], [Slip, Inactive, Stick], [Stick, Slip, Inactive]]
 };
 
-fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usize>(
+fn check_tangent<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize>(
     formulation: &F,
-    history: impl Fn(&PairGeometry<f64, NS, NM>) -> F::History<NS, NM>,
+    history: impl Fn(&PairGeometry<f64, S, M>) -> F::History<S, M>,
 ) {
+    let shapes = [S::SHAPE, M::SHAPE];
     let settings = SegmentationSettings::default();
-    let n = local_size::<F, NS, NM>();
-    let count = F::MULTIPLIER.count(dimension(NS));
+    let n = local_size::<F, S, M>();
+    let count = F::MULTIPLIER.count(S::SPACE);
     let mut checked = 0;
     for seed in 0..12 {
         for states in MIXES {
-            let pair = random_pair::<NS, NM>(seed);
+            let pair = random_pair::<S, M>(seed);
             if operators(&pair, &settings).cells().is_none() {
                 continue;
             }
             let mut noise = Noise::new(seed + 100);
-            let mut nodes = nodes(&pair.nodal_normals, &mut noise, states);
+            let mut nodes = nodes::<S>(&pair.nodal_normals, &mut noise, states);
             if seed % 3 == 2 {
                 nodes[0].held[0] = Held::Follows;
             }
-            let lambda = multipliers::<NS>(&mut noise);
+            let lambda = multipliers::<S>(&mut noise);
             let history = history(&pair);
             let (mut lhs, mut rhs, mut plain) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
             tangent(
@@ -108,13 +112,13 @@ fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usi
                     let (slope, exact) = (-(plus - minus) / (2.0 * h), lhs[row * n + column]);
                     assert!(
                         (slope - exact).abs() < 1e-6 * largest,
-                        "{NS}–{NM} seed {seed} {states:?} row {row} column {column}: {slope} {exact}"
+                        "{shapes:?} seed {seed} {states:?} row {row} column {column}: {slope} {exact}"
                     );
                 }
             }
             // What is pushed on one side is pushed back on the other.
-            for c in 0..dimension(NS) {
-                let total: f64 = plain[..NU].iter().skip(c).step_by(dimension(NS)).sum();
+            for c in 0..S::SPACE {
+                let total: f64 = plain[..NU].iter().skip(c).step_by(S::SPACE).sum();
                 assert!(total.abs() < 1e-10 * size, "forces out of balance by {total}");
             }
             checked += 1;
@@ -124,24 +128,24 @@ fn check_tangent<F: Formulation, const NS: usize, const NM: usize, const NU: usi
 }
 
 /// Operators of a slightly different configuration, as if at the start of the step.
-fn earlier<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> Operators<f64, NS, NM> {
+fn earlier<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, M>) -> Operators<f64, S, M> {
     let mut before = *pair;
     before.master.iter_mut().for_each(|x| x[0] += 0.03);
     operators(&before, &SegmentationSettings::default()).cells().unwrap()
 }
 
-fn slip_history<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> SlipHistory<NS, NM> {
+fn slip_history<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, M>) -> SlipHistory<S, M> {
     let mut noise = Noise::new(77);
-    let dim = dimension(NS);
+    let dim = S::SPACE;
     let mut shifted = |x: [f64; 3]| std::array::from_fn(|c| if c < dim { x[c] + 0.1 * noise.next() } else { 0.0 });
     SlipHistory {
         previous: earlier(pair),
-        last: LastState { slave: pair.slave.map(&mut shifted), master: pair.master.map(&mut shifted) },
+        last: LastState { slave: S::map(&pair.slave, &mut shifted), master: M::map(&pair.master, &mut shifted) },
     }
 }
 
 /// The pair before it turned, slid and deformed a little.
-fn last_state<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> LastState<NS, NM> {
+fn last_state<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, M>) -> LastState<S, M> {
     slip_history(pair).last
 }
 
@@ -157,22 +161,19 @@ fn frictional(area: f64) -> AlmFrictional {
     }
 }
 
-fn all_families<const NS: usize, const NM: usize, const NU: usize>() {
-    check_tangent::<_, NS, NM, NU>(&ALM, |_| ());
-    check_tangent::<_, NS, NM, NU>(&COMPONENTS, |_| ());
-    check_tangent::<_, NS, NM, NU>(&frictional(0.0), slip_history);
-    check_tangent::<_, NS, NM, NU>(
-        &AlmFrictional { augmentation: Augmentation::Node, ..frictional(0.0) },
-        slip_history,
-    );
-    check_tangent::<_, NS, NM, NU>(
+fn all_families<S: FacetShape, M: FacetShape, const NU: usize>() {
+    check_tangent::<_, S, M, NU>(&ALM, |_| ());
+    check_tangent::<_, S, M, NU>(&COMPONENTS, |_| ());
+    check_tangent::<_, S, M, NU>(&frictional(0.0), slip_history);
+    check_tangent::<_, S, M, NU>(&AlmFrictional { augmentation: Augmentation::Node, ..frictional(0.0) }, slip_history);
+    check_tangent::<_, S, M, NU>(
         &AlmFrictional { augmentation: Augmentation::Node, compliant: true, ..frictional(0.0) },
         slip_history,
     );
-    check_tangent::<_, NS, NM, NU>(&AlmFrictionless { augmentation: Augmentation::Node, ..ALM }, |_| ());
-    check_tangent::<_, NS, NM, NU>(&frictional(1e9), slip_history);
-    check_tangent::<_, NS, NM, NU>(&PenaltyFrictionless, |_| ());
-    check_tangent::<_, NS, NM, NU>(&PENALTY, last_state);
+    check_tangent::<_, S, M, NU>(&AlmFrictionless { augmentation: Augmentation::Node, ..ALM }, |_| ());
+    check_tangent::<_, S, M, NU>(&frictional(1e9), slip_history);
+    check_tangent::<_, S, M, NU>(&PenaltyFrictionless, |_| ());
+    check_tangent::<_, S, M, NU>(&PENALTY, last_state);
 }
 
 #[test]
@@ -181,7 +182,12 @@ fn tangents_match_differences() {
 }
 
 /// Residuals of one family against lines of `reference_residuals.txt`; numbers are nodal vectors, then scalars.
-fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec<f64>], history: F::History<2, 2>) {
+fn check_references<F: Formulation>(
+    formulation: &F,
+    start: &[f64],
+    lines: &[Vec<f64>],
+    history: F::History<Line2, Line2>,
+) {
     for line in lines {
         let vector = |i: usize| [line[3 * i], line[3 * i + 1], line[3 * i + 2]];
         let pair = PairGeometry { nodal_normals: [vector(4), vector(5)], ..line_pair(line, start) };
@@ -215,7 +221,7 @@ fn check_references<F: Formulation>(formulation: &F, start: &[f64], lines: &[Vec
 }
 
 /// Nodes from the first vectors of a line, facet normals from the start of the step.
-fn line_pair(line: &[f64], start: &[f64]) -> PairGeometry<f64, 2, 2> {
+fn line_pair(line: &[f64], start: &[f64]) -> PairGeometry<f64, Line2, Line2> {
     let vector = |of: &[f64], i: usize| [of[3 * i], of[3 * i + 1], of[3 * i + 2]];
     PairGeometry {
         slave: [vector(line, 0), vector(line, 1)],
@@ -255,9 +261,9 @@ fn residuals_of_the_reference_program() {
 #[test]
 fn scalar_and_components_agree() {
     let settings = SegmentationSettings::default();
-    let pair = random_pair::<4, 3>(2);
+    let pair = random_pair::<Quadrilateral4, Triangle3>(2);
     let mut noise = Noise::new(9);
-    let mut nodes = nodes(&pair.nodal_normals, &mut noise, [NodeState::Slip; 3]);
+    let mut nodes = nodes::<Quadrilateral4>(&pair.nodal_normals, &mut noise, [NodeState::Slip; 3]);
     nodes.iter_mut().for_each(|node| node.compliance = 0.0);
     let pressure: [f64; 4] = std::array::from_fn(|_| noise.next());
     let scalar = pressure.map(|p| [p, 0.0, 0.0]);
@@ -280,7 +286,7 @@ fn sign_of_the_contact_force() {
     let slave = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let master = [3, 2, 1, 0].map(|n: usize| [slave[n][0], slave[n][1], -0.01]);
     let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
-    let pair = PairGeometry {
+    let pair = PairGeometry::<f64, Quadrilateral4, Quadrilateral4> {
         slave,
         master,
         nodal_normals: [up; 4],
@@ -322,10 +328,10 @@ fn sign_of_the_contact_force() {
 
 #[test]
 fn mesh_tying_is_symmetric_and_linear() {
-    let pair = random_pair::<4, 3>(1);
+    let pair = random_pair::<Quadrilateral4, Triangle3>(1);
     let operators = operators(&pair, &SegmentationSettings::default()).cells().unwrap();
     let tying = MeshTying { scale_factor: 2.5 };
-    const N: usize = MeshTying::size::<4, 3, 3>();
+    const N: usize = MeshTying::size::<Quadrilateral4, Triangle3, 3>();
     let mut noise = Noise::new(4);
     let mut unknowns = [0.0; N];
     unknowns.iter_mut().for_each(|x| *x = noise.next());
@@ -338,7 +344,7 @@ fn mesh_tying_is_symmetric_and_linear() {
         &std::array::from_fn(|n| node(7 + n)),
         &mut rhs,
     );
-    tying.tangent::<4, 3, 3>(&operators, &mut lhs);
+    tying.tangent::<Quadrilateral4, Triangle3, 3>(&operators, &mut lhs);
     for row in 0..N {
         let product: f64 = (0..N).map(|column| lhs[row * N + column] * unknowns[column]).sum();
         assert!((product + rhs[row]).abs() < 1e-14);
@@ -350,21 +356,27 @@ fn mesh_tying_is_symmetric_and_linear() {
 #[test]
 #[ignore = "a measurement"]
 fn cost_of_local_systems() {
-    fn measure<const NS: usize, const NM: usize, const NU: usize>() {
-        fn one<F: Formulation, const NS: usize, const NM: usize, const NU: usize>(
+    fn measure<S: FacetShape, M: FacetShape, const NU: usize>() {
+        fn one<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize>(
             name: &str,
             formulation: &F,
-            history: impl Fn(&PairGeometry<f64, NS, NM>) -> F::History<NS, NM>,
+            history: impl Fn(&PairGeometry<f64, S, M>) -> F::History<S, M>,
         ) {
+            let shapes = [S::SHAPE, M::SHAPE];
             let settings = SegmentationSettings::default();
-            let n = local_size::<F, NS, NM>();
+            let n = local_size::<F, S, M>();
             let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
             let mut noise = Noise::new(1);
             let cases: Vec<_> = (0..50)
-                .map(random_pair::<NS, NM>)
+                .map(random_pair::<S, M>)
                 .filter(|p| operators(p, &settings).cells().is_some())
                 .map(|p| {
-                    (p, nodes(&p.nodal_normals, &mut noise, [NodeState::Slip; 3]), multipliers(&mut noise), history(&p))
+                    (
+                        p,
+                        nodes::<S>(&p.nodal_normals, &mut noise, [NodeState::Slip; 3]),
+                        multipliers::<S>(&mut noise),
+                        history(&p),
+                    )
                 })
                 .collect();
             let start = std::time::Instant::now();
@@ -388,12 +400,12 @@ fn cost_of_local_systems() {
             }
             let dual = start.elapsed().as_secs_f64();
             let each = 1e6 / (40 * cases.len()) as f64;
-            println!("{NS}–{NM} {name}: residual {:.2} µs, with tangent {:.2} µs", plain * each, dual * each);
+            println!("{shapes:?} {name}: residual {:.2} µs, with tangent {:.2} µs", plain * each, dual * each);
         }
-        one::<_, NS, NM, NU>("ALM scalar", &ALM, |_| ());
-        one::<_, NS, NM, NU>("ALM components", &COMPONENTS, |_| ());
-        one::<_, NS, NM, NU>("ALM frictional", &frictional(0.0), slip_history);
-        one::<_, NS, NM, NU>("penalty frictional", &PENALTY, last_state);
+        one::<_, S, M, NU>("ALM scalar", &ALM, |_| ());
+        one::<_, S, M, NU>("ALM components", &COMPONENTS, |_| ());
+        one::<_, S, M, NU>("ALM frictional", &frictional(0.0), slip_history);
+        one::<_, S, M, NU>("penalty frictional", &PENALTY, last_state);
     }
     for_all_shapes!(measure);
 }
@@ -413,7 +425,7 @@ fn penalty_friction_acts_through_the_mortar_operators() {
         for rigid in [false, true] {
             let place = |x: [f64; 3]| if rigid { turned(x) } else { x };
             let free = |v: [f64; 3]| if rigid { turn(v) } else { v };
-            let pair = PairGeometry {
+            let pair = PairGeometry::<f64, Quadrilateral4, Quadrilateral4> {
                 slave: slave.map(place),
                 master: master.map(place),
                 nodal_normals: [free(up); 4],

@@ -6,12 +6,11 @@
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::geometry::mapping::domain_size;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::CRITICAL_STEP;
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NODAL_MASS};
 
-use crate::interface::{Interface, positions};
+use crate::interface::Interface;
 use crate::slave_states::SlaveStates;
 use crate::solver::DELTA_TIME_FACTOR;
 use crate::variables::INITIAL_PENALTY;
@@ -77,9 +76,8 @@ fn note(step: f64, penalty: f64, most: f64) -> Diagnostic {
 /// Largest a/m of the nodes of the interfaces that can move, and their largest area.
 fn load(part: &ModelPart, interfaces: &[Interface], revolution: Option<f64>) -> [f64; 2] {
     let mut areas = vec![0.0; part.nodes.len()];
-    let mut buffer = [[0.0; 3]; 4];
     for facet in interfaces.iter().flat_map(|interface| &interface.facets) {
-        let size = domain_size(facet.shape, positions(facet, part, &mut buffer)) / facet.nodes.len() as f64;
+        let size = facet.size(part) / facet.nodes.len() as f64;
         let ring = |node: u32| revolution.map_or(1.0, |factor| factor * part.nodes.current[node as usize][0].abs());
         facet.nodes.iter().for_each(|&node| areas[node as usize] += size * ring(node));
     }

@@ -5,11 +5,12 @@
 //! which the bodies are infinitely stiff: multipliers of 1e16 then hold what is no contact. The near nodes close the gap of
 //! the sliver on their own.
 
+use zelus_core::geometry::mapping::vector_area;
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{cross, norm, sub};
+use zelus_core::vector3::norm;
 
 use super::nodal_sums::NodalSums;
-use crate::interface::{Interface, Roles, positions};
+use crate::interface::{Interface, Roles};
 use crate::slave_states::SlaveStates;
 
 /// Says of each slave node that is beside the master that it is isolated: the area that it integrates, as a share of its facets,
@@ -27,7 +28,7 @@ pub(super) fn isolate_beside(
     let facets = || interfaces.iter().flat_map(|i| &i.facets).filter(|facet| facet.role == Roles::Slave);
     let mut whole = NodalSums::<1>::new(part.nodes.len(), &slaves);
     for facet in facets() {
-        let own = measure(positions(facet, part, &mut [[0.0; 3]; 4])) / facet.nodes.len() as f64;
+        let own = norm(vector_area(facet.shape, &facet.positions(part))) / facet.nodes.len() as f64;
         let mean = facet.nodes.iter().map(|&node| weight(node)).sum::<f64>() / facet.nodes.len() as f64;
         // What the shape function of a node integrates of a weight along a line: on the axis it is not nothing.
         facet.nodes.iter().for_each(|&node| whole[node][0] += own * (weight(node) + 2.0 * mean) / 3.0);
@@ -44,14 +45,4 @@ pub(super) fn isolate_beside(
     let bound = |node: u32| least * if states[node].active { 0.5 } else { 1.0 };
     let beside: Vec<bool> = slaves.iter().map(|&node| share(node) < bound(node) * best[node][0]).collect();
     slaves.iter().zip(beside).for_each(|(&node, beside)| states[node].isolated |= beside);
-}
-
-/// Length of a line, area of a surface.
-fn measure(x: &[[f64; 3]]) -> f64 {
-    match x {
-        [a, b] => norm(sub(*b, *a)),
-        [a, b, c] => 0.5 * norm(cross(sub(*b, *a), sub(*c, *a))),
-        [a, b, c, d] => 0.5 * norm(cross(sub(*c, *a), sub(*d, *b))),
-        _ => 0.0,
-    }
 }

@@ -11,7 +11,6 @@ use zelus_core::vector3::{add, dot, norm, scale, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
 use super::pairing::Pairing;
-use crate::interface::{Facet, centre_normal, positions};
 use crate::slave_states::SlaveStates;
 
 /// Cosine of the angle between a facet and the mean normal of its node, beyond which the node is on an edge: 35°.
@@ -38,11 +37,10 @@ pub(super) fn turn_edges(part: &mut ModelPart, states: &mut SlaveStates, pairing
 fn opposite_normals(part: &ModelPart, pairing: &Pairing) -> BTreeMap<u32, [f64; 3]> {
     let mut sharp = BTreeMap::new();
     for facet in pairing.interfaces.iter().flat_map(|interface| &interface.facets) {
-        let mut buffer = [[0.0; 3]; 4];
-        let points = positions(facet, part, &mut buffer);
+        let points = facet.positions(part);
         for (local, &node) in facet.nodes.iter().enumerate() {
             let mean = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
-            let own = unit_normal(facet.shape, points, facet.shape.cell().points[local]);
+            let own = unit_normal(facet.shape, &points, facet.shape.cell().points[local]);
             if own.is_some_and(|own| dot(own, mean) < SHARP) {
                 sharp.insert(node, Vec::new());
             }
@@ -52,7 +50,7 @@ fn opposite_normals(part: &ModelPart, pairing: &Pairing) -> BTreeMap<u32, [f64; 
         return BTreeMap::new();
     }
     for pair in pairing.blocks.iter().flat_map(|block| block.pairs()).filter(|pair| pair.overlapping) {
-        let into = scale(normal(part, pairing.master(pair.key)), -1.0);
+        let into = scale(pairing.master(pair.key).normal(part), -1.0);
         for node in &pairing.slave(pair.key).nodes {
             let Some(seen) = sharp.get_mut(node) else { continue };
             if !seen.iter().any(|other: &[f64; 3]| norm(sub(into, *other)) < 1e-6) {
@@ -62,8 +60,4 @@ fn opposite_normals(part: &ModelPart, pairing: &Pairing) -> BTreeMap<u32, [f64; 
     }
     let sums = sharp.into_iter().filter(|(_, seen)| !seen.is_empty());
     sums.map(|(node, seen)| (node, seen.into_iter().fold([0.0; 3], add))).collect()
-}
-
-fn normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
-    centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
 }

@@ -12,9 +12,8 @@ use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use crate::formulations::Held;
 use crate::formulations::held::free_normal;
-use crate::interface::{
-    Facet, Fixed, Interface, NodalNormals, NormalPatches, centre_normal, fixed_components, positions, symmetry_planes,
-};
+use crate::interface::{Facet, Fixed, Interface, NodalNormals, NormalPatches, fixed_components, symmetry_planes};
+use crate::mortar::MOST_NODES;
 use crate::pairs::{Family, Multiplier};
 use crate::slave_states::SlaveStates;
 
@@ -71,13 +70,12 @@ impl Holding {
     ) -> BTreeMap<u32, HeldNode> {
         // Of each node the image on the master that lies least beside a facet, then the nearest.
         let mut faced: BTreeMap<u32, ([f64; 2], HeldNode)> = BTreeMap::new();
-        let mut buffer = [[0.0; 3]; 4];
         for (slave, master) in pairs {
             for &node in slave.nodes.iter().filter(|node| self.fixed.contains_key(node)) {
-                let points = positions(master, part, &mut buffer);
-                let foot = foot(part, node, master, points);
-                let Some(image) = local_coordinates(master.shape, points, foot) else { continue };
-                let mut shares = [0.0; 4];
+                let points = master.positions(part);
+                let foot = foot(part, node, master, &points);
+                let Some(image) = local_coordinates(master.shape, &points, foot) else { continue };
+                let mut shares = [0.0; MOST_NODES];
                 shape_functions(master.shape, image.xi, &mut shares[..master.nodes.len()]);
                 let beside = shares.iter().fold(0.0_f64, |most, share| most.max(-share));
                 let distance = norm(sub(foot, part.nodes.current[node as usize])) + image.distance;
@@ -90,7 +88,7 @@ impl Holding {
         faced.into_iter().map(|(node, (_, held))| (node, held)).filter(|(_, h)| h.components.contains(&true)).collect()
     }
 
-    fn held(&self, part: &ModelPart, node: u32, master: &Facet, shares: &[f64; 4]) -> HeldNode {
+    fn held(&self, part: &ModelPart, node: u32, master: &Facet, shares: &[f64]) -> HeldNode {
         let own = self.fixed[&node];
         let weights = || master.nodes.iter().zip(shares).filter(|(_, share)| **share > NO_SHARE);
         let components = std::array::from_fn(|c| own[c] && weights().all(|(&faced, _)| self.fixes(faced, c)));
@@ -196,7 +194,7 @@ impl Holding {
 fn foot(part: &ModelPart, node: u32, master: &Facet, points: &[[f64; 3]]) -> [f64; 3] {
     let at = part.nodes.current[node as usize];
     let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
-    let across = centre_normal(master.shape, points).unwrap_or([0.0; 3]);
+    let across = master.normal_at(points);
     match dot(normal, across) {
         slope if slope < -LEAST_SLOPE => add(at, scale(normal, dot(sub(points[0], at), across) / slope)),
         _ => at,

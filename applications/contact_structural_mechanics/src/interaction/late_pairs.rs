@@ -10,7 +10,7 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 use super::nodal_sums::NodalSums;
 use super::pairing::{Pairing, integrals, searching};
 use super::setup::Setup;
-use crate::interface::{Facet, centre_normal};
+use crate::interface::Facet;
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
@@ -123,7 +123,7 @@ fn have_crossed(part: &ModelPart, slave: &Facet, master: &Facet) -> bool {
         let positions = |facet: &Facet| -> Vec<[f64; 3]> { facet.nodes.iter().map(|&n| position(n)).collect() };
         let centre = |x: &[[f64; 3]]| std::array::from_fn(|c| x.iter().map(|x| x[c]).sum::<f64>() / x.len() as f64);
         let (slave, master_at) = (positions(slave), positions(master));
-        let normal = centre_normal(master.shape, &master_at).unwrap_or([0.0; 3]);
+        let normal = master.normal_at(&master_at);
         dot(sub(centre(&slave), centre(&master_at)), normal)
     };
     height(&|n| step_start(part, n)) > 0.0 && height(&|n| part.nodes.current[n as usize]) < 0.0

@@ -16,14 +16,10 @@ use super::holding::Holding;
 use super::nodal_sums::NodalSums;
 use super::setup::Setup;
 use super::step_parameters::{NormalVariation, StepParameters};
-use crate::interface::{
-    Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, centre_normal, positions, set_sides, sides,
-    slave_nodes,
-};
+use crate::interface::{Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, set_sides, sides, slave_nodes};
 use crate::mortar::{Choices, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Integral, Pair, PairKey, PairRequest, Present, Previous, condition_name, group_by_shapes,
-    group_by_surroundings,
+    ContactBlock, Integral, Pair, PairKey, PairRequest, Present, condition_name, group_by_shapes, group_by_surroundings,
 };
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
 use crate::slave_states::SlaveStates;
@@ -232,19 +228,11 @@ impl Pairing {
     /// Whether the facets face each other. A facet across an edge of the slave is at right angles to the master: its overlap is
     /// that of a projection, not of a surface.
     fn meet(&self, part: &ModelPart, key: PairKey) -> bool {
-        dot(normal(part, self.slave(key)), normal(part, self.master(key))) < -FACING
+        dot(self.slave(key).normal(part), self.master(key).normal(part)) < -FACING
     }
 
     pub(super) fn pair(&self, part: &ModelPart, key: PairKey) -> Pair {
-        Pair {
-            key,
-            slave_normal: normal(part, self.slave(key)),
-            master_normal: normal(part, self.master(key)),
-            overlapping: true,
-            area: [0.0; 4],
-            previous: Previous::default(),
-            choices: Choices::default(),
-        }
+        Pair::new(key, [self.slave(key), self.master(key)].map(|facet| facet.normal(part)))
     }
 
     fn set(&mut self, pairs: Vec<Pair>, settings: &ContactSettings, parameters: &Arc<StepParameters>) -> Result<()> {
@@ -303,9 +291,9 @@ impl Pairing {
     pub(super) fn refresh_normals(&mut self, part: &ModelPart, slaves: bool) {
         let mut blocks = std::mem::take(&mut self.blocks);
         for pair in blocks.iter_mut().flat_map(|block| block.pairs_mut()) {
-            pair.master_normal = normal(part, self.master(pair.key));
+            pair.master_normal = self.master(pair.key).normal(part);
             if slaves {
-                pair.slave_normal = normal(part, self.slave(pair.key));
+                pair.slave_normal = self.slave(pair.key).normal(part);
             }
         }
         self.blocks = blocks;
@@ -413,10 +401,6 @@ impl Pairing {
 pub(super) fn searching(parameters: &StepParameters, limit: f64) -> Arc<StepParameters> {
     let segmentation = SegmentationSettings { distance_threshold: limit, ..parameters.segmentation };
     Arc::new(StepParameters { segmentation, ..parameters.clone() })
-}
-
-fn normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
-    centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
 }
 
 /// The integrals of the pairs of this rank.

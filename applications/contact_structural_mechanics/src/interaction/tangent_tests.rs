@@ -19,12 +19,12 @@ use crate::active_set::{Margin, SlipRule};
 use crate::formulations::{Augmentation, Nitsche};
 use crate::formulations::{NormalVariation, StepParameters};
 use crate::friction_law::COULOMB;
-use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles, centre_normal};
+use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles};
 use crate::mortar::tests::Noise;
-use crate::mortar::{Choices, OperatorThreshold, SegmentationSettings};
+use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Present, Previous, condition_name, find_family,
-    group_by_shapes, group_by_surroundings,
+    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Present, condition_name, find_family, group_by_shapes,
+    group_by_surroundings,
 };
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
@@ -138,15 +138,7 @@ impl Contact {
         };
         let pairs: Vec<Pair> = of_role(Roles::Slave)
             .flat_map(|slave| of_role(Roles::Master).map(move |master| PairKey { interface: 0, slave, master }))
-            .map(|key| Pair {
-                key,
-                slave_normal: [0.0; 3],
-                master_normal: [0.0; 3],
-                overlapping: true,
-                area: [0.0; 4],
-                previous: Previous::default(),
-                choices: Choices::default(),
-            })
+            .map(|key| Pair::new(key, [[0.0; 3]; 2]))
             .collect();
         for ((slave, master), (pairs, nodes)) in
             group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
@@ -220,7 +212,7 @@ impl Contact {
             let normal = |facet: u32| {
                 let facet = &self.interface.facets[facet as usize];
                 let places: Vec<[f64; 3]> = facet.nodes.iter().map(|&n| self.part.nodes.current[n as usize]).collect();
-                centre_normal(facet.shape, &places).unwrap()
+                facet.normal_at(&places)
             };
             (pair.slave_normal, pair.master_normal) = (normal(pair.key.slave), normal(pair.key.master));
         }

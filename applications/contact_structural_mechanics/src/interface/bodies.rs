@@ -5,14 +5,17 @@ use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{BlockRequest, EntityBlock, EntityError, FacePoint, StepView, Tangent, block_factory};
 use zelus_core::geometry::mapping::domain_size;
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::model::EntityKind;
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{dot, sub};
+use zelus_core::vector3::{dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use super::facets::{Facet, Interface, Roles};
+use super::facet::{Facet, Roles};
+use super::facets::Interface;
 use crate::formulations::SlaveFace;
-use crate::mortar::shape;
+use crate::mortar::inner_point;
+use crate::mortar::shapes::for_shapes;
 
 /// Share of the size of an element by which it is moved for second derivatives.
 const STEP: f64 = 1e-5;
@@ -38,9 +41,9 @@ struct Face {
 }
 
 /// Tractions of the initial area at the inner points of a facet (force per area).
-pub struct Tractions<const NS: usize> {
+pub struct Tractions<S: FacetShape> {
     /// The tractions.
-    pub values: [[f64; 3]; NS],
+    pub values: S::Nodal<[f64; 3]>,
     /// Their derivatives by the unknowns of the element, inner point by inner point.
     pub by: Vec<[f64; 3]>,
 }
@@ -104,9 +107,9 @@ impl Bodies {
     }
 
     /// The face behind a facet.
-    pub fn slave_face<const NS: usize>(&self, key: [u32; 2]) -> SlaveFace<NS> {
+    pub fn slave_face<S: FacetShape>(&self, key: [u32; 2]) -> SlaveFace<S> {
         let (face, _) = self.face(key);
-        let densities = std::array::from_fn(|g| face.densities[g]);
+        let densities = S::nodal(|g| face.densities[g]);
         SlaveFace { densities, stiffness: face.stiffness, thickness: self.thickness }
     }
 
@@ -114,27 +117,27 @@ impl Bodies {
     ///
     /// # Errors
     /// An inverted element.
-    pub fn tractions<const NS: usize>(
+    pub fn tractions<S: FacetShape>(
         &self,
         key: [u32; 2],
         view: &StepView<'_>,
         wanted: bool,
-    ) -> Result<Tractions<NS>, EntityError> {
+    ) -> Result<Tractions<S>, EntityError> {
         let (face, block) = self.face(key);
         self.tractions_at(face, block, view, &displacements(block.nodes(face.at), view), wanted)
     }
 
-    fn tractions_at<const NS: usize>(
+    fn tractions_at<S: FacetShape>(
         &self,
         face: &Face,
         block: &dyn EntityBlock,
         view: &StepView<'_>,
         u: &[[f64; 3]],
         wanted: bool,
-    ) -> Result<Tractions<NS>, EntityError> {
+    ) -> Result<Tractions<S>, EntityError> {
         let size = block.unknowns().len();
-        let mut values = [[0.0; 3]; NS];
-        let mut by = vec![[0.0; 3]; if wanted { NS * size } else { 0 }];
+        let mut values = S::nodal(|_| [0.0; 3]);
+        let mut by = vec![[0.0; 3]; if wanted { S::NODES * size } else { 0 }];
         for (g, point) in face.points.iter().enumerate() {
             let by = wanted.then(|| &mut by[g * size..(g + 1) * size]);
             values[g] = block.traction(view, face.at, point, u, by)?;
@@ -147,11 +150,11 @@ impl Bodies {
     ///
     /// # Errors
     /// An inverted element.
-    pub fn add_second_derivative<const NS: usize>(
+    pub fn add_second_derivative<S: FacetShape>(
         &self,
         key: [u32; 2],
         view: &StepView<'_>,
-        weights: &[[f64; 3]; NS],
+        weights: &S::Nodal<[f64; 3]>,
         mut add: impl FnMut(usize, usize, f64),
     ) -> Result<(), EntityError> {
         let (face, block) = self.face(key);
@@ -166,9 +169,9 @@ impl Bodies {
             let here = u[node][c];
             for sign in [1.0, -1.0] {
                 u[node][c] = here + sign * face.step;
-                let moved = self.tractions_at::<NS>(face, block, view, &u, true)?;
+                let moved = self.tractions_at::<S>(face, block, view, &u, true)?;
                 for row in 0..size {
-                    let work: f64 = (0..NS).map(|g| dot(weights[g], moved.by[g * size + row])).sum();
+                    let work: f64 = (0..S::NODES).map(|g| dot(weights[g], moved.by[g * size + row])).sum();
                     add(row, column, sign * work / (2.0 * face.step));
                 }
             }
@@ -193,14 +196,15 @@ impl Face {
         (of_block, at): (usize, usize),
         axisymmetric: bool,
     ) -> Result<Self> {
-        match facet.nodes.len() {
-            2 => Self::of_shape::<2>(part, facet, block, (of_block, at), axisymmetric),
-            3 => Self::of_shape::<3>(part, facet, block, (of_block, at), axisymmetric),
-            _ => Self::of_shape::<4>(part, facet, block, (of_block, at), axisymmetric),
+        macro_rules! make {
+            ($slave:ty, $master:ty, $end:literal) => {
+                Self::of_shape::<$slave>(part, facet, block, (of_block, at), axisymmetric)
+            };
         }
+        for_shapes!(facet.shape, facet.shape, make).expect("facets carry contact with their like")
     }
 
-    fn of_shape<const NS: usize>(
+    fn of_shape<S: FacetShape>(
         part: &ModelPart,
         facet: &Facet,
         block: &dyn EntityBlock,
@@ -209,22 +213,22 @@ impl Face {
     ) -> Result<Self> {
         let nodes = block.nodes(at);
         let cell = kind(part, facet.element).cell.expect("elements with faces have a cell").cell();
-        let corners: [[f64; 3]; NS] = std::array::from_fn(|j| {
+        let corners: S::Nodal<[f64; 3]> = S::nodal(|j| {
             let place = nodes.iter().position(|node| *node == facet.nodes[j]).expect("a face of the element");
             cell.points[place]
         });
-        let x: [[f64; 3]; NS] = std::array::from_fn(|j| part.nodes.initial[facet.nodes[j] as usize]);
-        let (mut points, mut densities) = (Vec::with_capacity(NS), Vec::with_capacity(NS));
-        for g in 0..NS {
-            let xi = shape::inner_point::<NS>(g);
-            let n = shape::values::<f64, NS>(xi);
-            let local = shape::combine(&n, &corners);
-            points.push(FacePoint { local, normal: shape::unit_normal(&x, xi) });
-            let radius = if axisymmetric { shape::combine(&n, &x)[0] } else { 1.0 };
-            densities.push(shape::density(&x, xi) * radius);
+        let x: S::Nodal<[f64; 3]> = S::nodal(|j| part.nodes.initial[facet.nodes[j] as usize]);
+        let (mut points, mut densities) = (Vec::with_capacity(S::NODES), Vec::with_capacity(S::NODES));
+        for g in 0..S::NODES {
+            let xi = inner_point::<S>(g);
+            let n = S::values(xi);
+            let local = S::combine(&n, &corners);
+            points.push(FacePoint { local, normal: S::unit_normal(&x, xi) });
+            let radius = if axisymmetric { S::combine(&n, &x)[0] } else { 1.0 };
+            densities.push(norm(S::area_normal(&x, xi)) * radius);
         }
         let places: Vec<[f64; 3]> = nodes.iter().map(|&node| part.nodes.initial[node as usize]).collect();
-        let by_depth = domain_size(facet.shape, &x) / domain_size(cell.shape, &places);
+        let by_depth = domain_size(S::SHAPE, x.as_slice()) / domain_size(cell.shape, &places);
         let mut by = vec![[0.0; 3]; block.unknowns().len()];
         let rest = vec![[0.0; 3]; nodes.len()];
         let mut across = 0.0_f64;
@@ -237,7 +241,7 @@ impl Face {
             });
             across = across.max(stretched.sum());
         }
-        let size = places.iter().flat_map(|a| places.iter().map(|b| zelus_core::vector3::norm(sub(*a, *b))));
+        let size = places.iter().flat_map(|a| places.iter().map(|b| norm(sub(*a, *b))));
         let step = STEP * size.fold(0.0, f64::max);
         Ok(Self { block: of_block, at, points, densities, stiffness: across * by_depth, step })
     }

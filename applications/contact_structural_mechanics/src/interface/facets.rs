@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-
 use crate::flags::{MASTER, SLAVE};
+use crate::mortar::carries_contact;
+
+use super::facet::{Facet, FacetSource, Roles};
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -13,43 +14,6 @@ use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::flags::INTERFACE;
 use zelus_core::model::{ModelPart, SubPart};
 use zelus_core::vector3::{dot, sub};
-
-/// Which sides a facet can be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Roles {
-    /// Carries multipliers.
-    Slave,
-    /// Is touched.
-    Master,
-    /// Either, to be decided by each search (self contact).
-    Open,
-}
-
-/// Where a facet comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FacetSource {
-    /// A condition of the mesh, by its index.
-    Condition(u32),
-    /// A face of an element, by the index of the element.
-    Face(u32),
-}
-
-/// One piece of a contact surface; its nodes go round so that the normal points out of the body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Facet {
-    /// Node indices.
-    pub nodes: Vec<u32>,
-    /// Line2, Tri3 or Quad4.
-    pub shape: Shape,
-    /// What it is part of.
-    pub source: FacetSource,
-    /// Index of the element whose face it is.
-    pub element: u32,
-    /// Properties id with the elastic constants of the body.
-    pub properties: usize,
-    /// Its side.
-    pub role: Roles,
-}
 
 /// The facets of one contact pair of a deck (one key).
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -100,8 +64,29 @@ pub fn slave_nodes(interfaces: &[Interface]) -> Vec<u32> {
     nodes
 }
 
-/// Faces of elements by their sorted nodes: element, nodes in the element's order, and how many elements share it.
-type Faces = FxHashMap<Vec<u32>, (u32, Vec<u32>, usize)>;
+/// A face of an element.
+struct Face {
+    element: u32,
+    /// In the element's order.
+    nodes: Vec<u32>,
+    shape: Shape,
+    /// How many elements have it.
+    shared: usize,
+}
+
+/// Faces of elements by their sorted nodes.
+type Faces = FxHashMap<Vec<u32>, Face>;
+
+/// The faces of one element only whose nodes are `wanted`, as facets in the order of the elements' ids.
+fn outer_facets(part: &ModelPart, faces: &Faces, wanted: impl Fn(u32) -> bool, found: &mut Vec<Facet>) -> Result<()> {
+    let outer = faces.values().filter(|face| face.shared == 1 && face.nodes.iter().all(|&node| wanted(node)));
+    let mut outer: Vec<&Face> = outer.collect();
+    outer.sort_by_key(|face| (part.elements.ids[face.element as usize], face.nodes.clone()));
+    for face in outer {
+        found.push(facet(part, face, face.nodes.clone(), FacetSource::Face(face.element))?);
+    }
+    Ok(())
+}
 
 /// Builds the interfaces a deck names: `parts` and `slaves` are its lists of sub parts by key.
 ///
@@ -128,13 +113,7 @@ pub fn interfaces(
         let mut found: Vec<Facet> = Vec::new();
         if skin {
             // Where ranks meet, a face may seem to be an outer one.
-            let whole = |nodes: &[u32]| nodes.iter().all(|&node| part.has_all_at(node as usize));
-            let outer = faces.values().filter(|(_, nodes, shared)| *shared == 1 && whole(nodes));
-            let mut all: Vec<&(u32, Vec<u32>, usize)> = outer.collect();
-            all.sort_by_key(|(element, nodes, _)| (part.elements.ids[*element as usize], nodes.clone()));
-            for (element, nodes, _) in all {
-                found.push(facet(part, nodes.clone(), FacetSource::Face(*element), *element)?);
-            }
+            outer_facets(part, &faces, |node| part.has_all_at(node as usize), &mut found)?;
         }
         for name in list {
             let sub = part.part(name)?.clone();
@@ -242,14 +221,14 @@ pub fn warnings_of_pairs(slaves: &BTreeMap<String, Vec<String>>, interfaces: &[I
 fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Facet>) -> Result<()> {
     let mut from_conditions = false;
     for &at in &sub.conditions {
-        let nodes = part.conditions.nodes(at).to_vec();
-        if nodes.len() < 2 {
+        if part.conditions.kinds[at as usize].cell.is_none_or(|shape| shape.dim() == 0) {
             continue;
         }
+        let nodes = part.conditions.nodes(at).to_vec();
         from_conditions = true;
         let mut sorted = nodes.clone();
         sorted.sort_unstable();
-        let Some((element, ..)) = faces.get(&sorted) else {
+        let Some(face) = faces.get(&sorted) else {
             let fact = format!(
                 "condition {} of contact part {:?} is not a face of any element",
                 part.conditions.ids[at as usize], sub.name
@@ -258,42 +237,31 @@ fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Fac
                 .remedy("contact surfaces must lie on the skin of a body")
                 .into());
         };
-        found.push(facet(part, nodes, FacetSource::Condition(at), *element)?);
+        found.push(facet(part, face, nodes, FacetSource::Condition(at))?);
     }
     if from_conditions {
         return Ok(());
     }
     let mut inside = vec![false; part.nodes.len()];
     sub.nodes.iter().for_each(|&n| inside[n as usize] = true);
-    let mut faces: Vec<&(u32, Vec<u32>, usize)> =
-        faces.values().filter(|(_, nodes, shared)| *shared == 1 && nodes.iter().all(|&n| inside[n as usize])).collect();
-    faces.sort_by_key(|(element, nodes, _)| (part.elements.ids[*element as usize], nodes.clone()));
-    for (element, nodes, _) in faces {
-        found.push(facet(part, nodes.clone(), FacetSource::Face(*element), *element)?);
-    }
-    Ok(())
+    outer_facets(part, faces, |node| inside[node as usize], found)
 }
 
 /// A facet whose nodes are turned so that its normal leaves the element.
-fn facet(part: &ModelPart, mut nodes: Vec<u32>, source: FacetSource, element: u32) -> Result<Facet> {
-    let plane = part.info.domain_size == 2;
-    let shape = match (nodes.len(), plane) {
-        (2, true) => Shape::Line2,
-        (3, false) => Shape::Tri3,
-        (4, false) => Shape::Quad4,
-        (count, _) => {
-            let fact = format!(
-                "element {}: a facet with {count} nodes cannot carry contact in {} dimensions",
-                part.elements.ids[element as usize], part.info.domain_size
-            );
-            return Err(Diagnostic::error("contact-facet", fact)
-                .remedy(
-                    "contact works on lines of 2 nodes in the plane, triangles of 3 and quadrilaterals of 4 in space; is \
-                     \"domain_size\" right?",
-                )
-                .into());
-        }
-    };
+fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource) -> Result<Facet> {
+    let &Face { element, shape, .. } = face;
+    let (id, space) = (part.elements.ids[element as usize], part.info.domain_size);
+    if !carries_contact(shape) || shape.dim() + 1 != space {
+        let fact =
+            format!("a face of element {id} is of shape {shape:?}, which cannot carry contact in {space} dimensions");
+        let curved = shape.nodes() > shape.cell().corners();
+        let why =
+            if curved { "mesh bodies in contact by elements of first order" } else { "is \"domain_size\" right?" };
+        let remedy = format!(
+            "contact works on lines of 2 nodes in the plane, triangles of 3 and quadrilaterals of 4 in space: {why}"
+        );
+        return Err(Diagnostic::error("contact-facet", fact).remedy(remedy).into());
+    }
     let centre = |nodes: &[u32]| {
         let mut sum = [0.0; 3];
         for &n in nodes {
@@ -304,7 +272,7 @@ fn facet(part: &ModelPart, mut nodes: Vec<u32>, source: FacetSource, element: u3
     let points: Vec<[f64; 3]> = nodes.iter().map(|&n| part.nodes.initial[n as usize]).collect();
     let outward = sub(centre(&nodes), centre(part.elements.nodes(element)));
     let Some(normal) = unit_normal(shape, &points, shape.cell().centre) else {
-        let fact = format!("a facet of element {} has no area", part.elements.ids[element as usize]);
+        let fact = format!("a facet of element {id} has no area");
         return Err(Diagnostic::error("degenerate-facet", fact).remedy("mend the mesh").into());
     };
     if dot(normal, outward) < 0.0 {
@@ -324,12 +292,50 @@ fn boundary_faces(part: &ModelPart) -> Faces {
     for element in 0..part.elements.len() as u32 {
         let Some(cell) = part.elements.kinds[element as usize].cell.map(Shape::cell) else { continue };
         let nodes = part.elements.nodes(element);
-        for face in cell.faces {
-            let face: Vec<u32> = face.nodes.iter().map(|&n| nodes[n]).collect();
+        for facet in cell.faces {
+            let face: Vec<u32> = facet.nodes.iter().map(|&n| nodes[n]).collect();
             let mut sorted = face.clone();
             sorted.sort_unstable();
-            faces.entry(sorted).and_modify(|(.., shared)| *shared += 1).or_insert((element, face, 1));
+            let new = || Face { element, nodes: face, shape: facet.shape, shared: 1 };
+            faces.entry(sorted).and_modify(|face| face.shared += 1).or_insert_with(new);
         }
     }
     faces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use zelus_core::entities::require_kind;
+    use zelus_core::model::{Nodes, Role};
+
+    /// The skin of one element in a space of `space` dimensions.
+    fn skin(name: &str, space: usize) -> Result<Vec<Interface>> {
+        let kind = require_kind(Role::Element, name).unwrap();
+        let cell = kind.cell.unwrap().cell();
+        let mut part = ModelPart::new("Body");
+        part.info.domain_size = space;
+        part.nodes = Nodes::new((1..=cell.points.len()).collect(), cell.points.to_vec());
+        part.elements.push(1, kind, 0, &(0..cell.points.len() as u32).collect::<Vec<u32>>());
+        interfaces(&mut part, &BTreeMap::new(), &BTreeMap::new())
+    }
+
+    #[test]
+    fn faces_are_known_by_their_shape_not_their_number_of_nodes() {
+        assert_eq!(skin("SmallDisplacementElement2D3N", 2).unwrap()[0].facets.len(), 3);
+        assert_eq!(skin("SmallDisplacementElement3D8N", 3).unwrap()[0].facets.len(), 6);
+        // Lines of three nodes have as many as triangles, quadrilaterals of eight as nothing else.
+        for (name, space, shape) in [
+            ("SmallDisplacementElement2D6N", 3, "Line3"),
+            ("SmallDisplacementElement2D6N", 2, "Line3"),
+            ("SmallDisplacementElement3D10N", 3, "Tri6"),
+            ("SmallDisplacementElement3D20N", 3, "Quad8"),
+            ("SmallDisplacementElement3D27N", 3, "Quad9"),
+        ] {
+            let said = skin(name, space).unwrap_err().to_string();
+            assert!(said.contains(shape) && said.contains("first order"), "{name}: {said}");
+        }
+        let said = skin("SmallDisplacementElement2D3N", 3).unwrap_err().to_string();
+        assert!(said.contains("Line2") && said.contains("domain_size"), "{said}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod contact_part;
 mod bodies;
+mod facet;
 mod facets;
 mod nodal_h;
 mod normals;
@@ -10,8 +11,9 @@ mod supports;
 
 pub use bodies::{Bodies, Tractions};
 pub use contact_part::add_contact_part;
-pub use facets::{Facet, FacetSource, Interface, Roles, interfaces, set_sides, sides, slave_nodes, warnings_of_pairs};
+pub use facet::{Facet, FacetSource, Positions, Roles};
+pub use facets::{Interface, interfaces, set_sides, sides, slave_nodes, warnings_of_pairs};
 pub use nodal_h::find_nodal_h;
-pub use normals::{Corner, NodalNormals, NormalPatches, centre_normal, nodal_normals, positions};
+pub use normals::{Corner, NodalNormals, NormalPatches, nodal_normals};
 pub use parameters::{AlmParameters, alm_parameters};
 pub use supports::{Fixed, fixed_components, symmetry_planes};

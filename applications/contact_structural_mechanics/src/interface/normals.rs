@@ -15,27 +15,13 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::geometry::Shape;
-use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{cross, dot, norm, scale, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use super::facets::{Facet, Interface, Roles};
+use super::facet::{Facet, Roles};
+use super::facets::Interface;
 use super::supports::Fixed;
-
-/// Unit normal at the centre of a facet; `None` when it has no area.
-pub fn centre_normal(shape: Shape, points: &[[f64; 3]]) -> Option<[f64; 3]> {
-    unit_normal(shape, points, shape.cell().centre)
-}
-
-/// Present positions of a facet's nodes.
-pub fn positions<'a>(facet: &Facet, part: &ModelPart, buffer: &'a mut [[f64; 3]; 4]) -> &'a [[f64; 3]] {
-    for (slot, &node) in buffer.iter_mut().zip(&facet.nodes) {
-        *slot = part.nodes.current[node as usize];
-    }
-    &buffer[..facet.nodes.len()]
-}
 
 /// The edge that a line has not.
 const AXIS: [f64; 3] = [0.0, 0.0, 1.0];
@@ -52,16 +38,14 @@ pub struct Corner {
 }
 
 impl Corner {
-    fn new(facet: [u32; 2], nodes: &[u32], local: usize) -> Self {
-        let count = nodes.len();
-        match (count, local) {
-            (2, 0) => Self { facet, next: Some(nodes[1]), previous: None },
-            (2, _) => Self { facet, next: None, previous: Some(nodes[0]) },
-            _ => Self {
-                facet,
-                next: Some(nodes[(local + 1) % count]),
-                previous: Some(nodes[(local + count - 1) % count]),
-            },
+    fn new(at: [u32; 2], facet: &Facet, local: usize) -> Self {
+        let corners = facet.shape.cell().corners();
+        let (next, previous) = (facet.nodes[(local + 1) % corners], facet.nodes[(local + corners - 1) % corners]);
+        let line = facet.shape.dim() == 1;
+        Self {
+            facet: at,
+            next: (!line || local == 0).then_some(next),
+            previous: (!line || local > 0).then_some(previous),
         }
     }
 
@@ -146,7 +130,7 @@ impl NormalPatches {
             for (f, facet) in interface.facets.iter().enumerate() {
                 for (local, &node) in facet.nodes.iter().enumerate() {
                     if facet.role != Roles::Open || !met[node as usize] {
-                        at_nodes.push((node, Corner::new([i as u32, f as u32], &facet.nodes, local)));
+                        at_nodes.push((node, Corner::new([i as u32, f as u32], facet, local)));
                     }
                 }
             }
@@ -270,6 +254,7 @@ mod tests {
     use super::*;
     use crate::interface::FacetSource;
     use crate::mortar::tests::Noise;
+    use zelus_core::geometry::Shape;
 
     fn interface(facets: &[&[u32]]) -> Interface {
         let facet = |nodes: &&[u32]| Facet {

@@ -2,11 +2,10 @@
 //!
 //! ε = k = factor · E_mean / h_mean on each side, the means weighted by the area of the facets; the smaller side counts.
 
-use zelus_core::geometry::mapping::domain_size;
 use zelus_core::model::ModelPart;
 
-use super::facets::{Interface, Roles};
-use super::normals::positions;
+use super::facet::Roles;
+use super::facets::Interface;
 use crate::variables::NODAL_H;
 
 /// Penalty and scale factor of an interface, force per length cubed.
@@ -37,11 +36,10 @@ pub fn alm_parameters(
     penalty_scale_factor: f64,
 ) -> AlmParameters {
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let mut buffer = [[0.0; 3]; 4];
-    let mut side = |role: Roles| {
+    let side = |role: Roles| {
         let (mut area, mut stiffness, mut length) = (0.0, 0.0, 0.0);
         for facet in interfaces.iter().flat_map(|i| &i.facets).filter(|f| f.role == role || f.role == Roles::Open) {
-            let size = domain_size(facet.shape, positions(facet, part, &mut buffer));
+            let size = facet.size(part);
             let young = part.properties.get(&facet.properties).and_then(|p| p.number("YOUNG_MODULUS")).unwrap_or(0.0);
             area += size;
             stiffness += young * size;

@@ -5,6 +5,7 @@
 //! [`operators_on_flat_master`] says; in the plane constant operators are nearest to Kratos'.
 
 use zelus_core::entities::{NORMALS_OF_FIRST_ITERATION, StepView};
+use zelus_core::geometry::FacetShape;
 use zelus_core::model::ModelPart;
 use zelus_core::scalar::Dual;
 
@@ -38,11 +39,11 @@ impl FirstIterateTangent {
     }
 
     /// D and M of a pair with the derivatives that the tangent knows; `None` without overlap.
-    pub fn operators<const NS: usize, const NM: usize, const NU: usize>(
+    pub fn operators<S: FacetShape, M: FacetShape, const NU: usize>(
         self,
-        pair: &PairGeometry<Dual<NU>, NS, NM>,
+        pair: &PairGeometry<Dual<NU>, S, M>,
         settings: &SegmentationSettings,
-    ) -> Option<Operators<Dual<NU>, NS, NM>> {
+    ) -> Option<Operators<Dual<NU>, S, M>> {
         match self {
             Self::Exact => operators(pair, settings).cells(),
             Self::FlatMaster => operators_on_flat_master(pair, settings).cells(),

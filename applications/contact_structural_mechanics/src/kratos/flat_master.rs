@@ -6,57 +6,53 @@
 //! δξ = (GᵀG)⁻¹ Gᵀ (P δx + n δl − Σ N²_l P δx²_l), with G the tangents of the master and P = I − n⊗n. Its vertices keep
 //! a share of the normal motion of the slave nodes they lie on, as the centre of the slave moves with them: the lift l.
 
-use crate::mortar::shape;
 use crate::mortar::{MasterMotion, Operators, Overlap, PairGeometry, SegmentationSettings, operators_by};
+use zelus_core::geometry::FacetShape;
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, value};
 
 /// D and M with this derivative; their values are those of [`operators`](crate::mortar::operators()).
-pub fn operators_on_flat_master<T: Real, const NS: usize, const NM: usize>(
-    pair: &PairGeometry<T, NS, NM>,
+pub fn operators_on_flat_master<T: Real, S: FacetShape, M: FacetShape>(
+    pair: &PairGeometry<T, S, M>,
     settings: &SegmentationSettings,
-) -> Overlap<Operators<T, NS, NM>> {
+) -> Overlap<Operators<T, S, M>> {
     operators_by(pair, settings, &FlatMaster::new(pair))
 }
 
 /// The slave's plane, as the reference program lets it carry points of the master.
-struct FlatMaster<T, const NS: usize> {
+struct FlatMaster<T: Real, S: FacetShape> {
     normal: [f64; 3],
     /// Share of the heights of the slave nodes by which vertices on them are lifted (length).
-    lift: [T; NS],
+    lift: S::Nodal<T>,
 }
 
-impl<T: Real, const NS: usize> FlatMaster<T, NS> {
+impl<T: Real, S: FacetShape> FlatMaster<T, S> {
     /// That of a pair.
-    fn new<const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> Self {
+    fn new<M: FacetShape>(pair: &PairGeometry<T, S, M>) -> Self {
         let normal = value(pair.slave_normal);
-        let lift = pair.slave.map(|x| {
+        let lift = S::map(&pair.slave, |x| {
             let mut height = T::zero();
-            (0..3).for_each(|c| height.add_scaled(x[c], normal[c] / NS as f64));
+            (0..3).for_each(|c| height.add_scaled(x[c], normal[c] / S::NODES as f64));
             height
         });
         Self { normal, lift }
     }
 }
 
-impl<T: Real, const NS: usize> MasterMotion<T, NS> for FlatMaster<T, NS> {
-    fn lift(&self) -> Option<&[T; NS]> {
+impl<T: Real, S: FacetShape> MasterMotion<T, S> for FlatMaster<T, S> {
+    fn lift(&self) -> Option<&S::Nodal<T>> {
         Some(&self.lift)
     }
 
     /// Local coordinates on `master` of its point at `place`, moving as the slave's point `x` lifted by `lift`.
-    fn local<const NM: usize>(&self, master: &[[T; 3]; NM], place: [T; 3], x: [T; 3], lift: T) -> [T; 2] {
-        let nodes = master.map(value);
-        let at = shape::closest_point(&nodes, value(place), shape::centre::<NM>());
-        let (weights, gradients) = (shape::values::<f64, NM>(at), shape::gradients::<NM>(at));
-        let tangent = [0, 1].map(|a| {
-            let mut sum = [0.0; 3];
-            (0..NM).for_each(|l| (0..3).for_each(|c| sum[c] += gradients[l][a] * nodes[l][c]));
-            sum
-        });
+    fn local<M: FacetShape>(&self, master: &M::Nodal<[T; 3]>, place: [T; 3], x: [T; 3], lift: T) -> [T; 2] {
+        let nodes = M::map(master, value);
+        let at = M::closest_point(&nodes, value(place), M::CENTRE);
+        let weights = M::values(at);
+        let tangent = M::tangents(&nodes, at);
         let mut motion: [T; 3] = std::array::from_fn(|c| {
             let mut sum = x[c];
-            (0..NM).for_each(|l| sum.add_scaled(master[l][c], -weights[l]));
+            (0..M::NODES).for_each(|l| sum.add_scaled(master[l][c], -weights[l]));
             sum - sum.value()
         });
         let mut height = T::zero();
@@ -84,9 +80,10 @@ impl<T: Real, const NS: usize> MasterMotion<T, NS> for FlatMaster<T, NS> {
 mod tests {
     use super::*;
     use crate::mortar::{Choices, operators};
+    use zelus_core::geometry::Quadrilateral4;
 
     /// A unit square below one shifted aside whose far side is higher by `rise`.
-    fn pair(rise: f64) -> PairGeometry<f64, 4, 4> {
+    fn pair(rise: f64) -> PairGeometry<f64, Quadrilateral4, Quadrilateral4> {
         let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let place = |[x, y]: [f64; 2]| [x + 0.3, y + 0.2, x * rise];
         PairGeometry {

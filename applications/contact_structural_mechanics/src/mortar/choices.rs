@@ -21,9 +21,10 @@ pub struct Choices {
 mod tests {
     use super::super::{Overlap, PairGeometry, SegmentationSettings, choices_of, operators};
     use super::*;
+    use zelus_core::geometry::Quadrilateral4;
 
     /// Two trapezoids; moved by `x`, a master node leaves the slave across its lower edge.
-    fn pair(x: f64, choices: Choices) -> PairGeometry<f64, 4, 4> {
+    fn pair(x: f64, choices: Choices) -> PairGeometry<f64, Quadrilateral4, Quadrilateral4> {
         let place = |[px, py]: [f64; 2]| [px + 0.4, py + x, 0.1];
         PairGeometry {
             slave: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 1.0, 0.0], [0.0, 1.3, 0.0]],

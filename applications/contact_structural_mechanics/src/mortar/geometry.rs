@@ -1,19 +1,20 @@
 //! The two facets of a contact pair as they stand, and the normals that go with them.
 
 use super::choices::Choices;
+use zelus_core::geometry::FacetShape;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, value};
 
-/// Coordinates and normals of a slave facet with `NS` nodes and a master facet with `NM` nodes.
-/// Current configuration; unit normals point out of their bodies. Planar problems use two-node facets and z = 0.
+/// Coordinates and normals of a slave facet and a master facet.
+/// Current configuration; unit normals point out of their bodies. Planar problems have lines and z = 0.
 #[derive(Debug, Clone, Copy)]
-pub struct PairGeometry<T, const NS: usize, const NM: usize> {
+pub struct PairGeometry<T: Real, S: FacetShape, M: FacetShape> {
     /// Slave nodes.
-    pub slave: [[T; 3]; NS],
+    pub slave: S::Nodal<[T; 3]>,
     /// Master nodes.
-    pub master: [[T; 3]; NM],
+    pub master: M::Nodal<[T; 3]>,
     /// Averaged unit normals at the slave nodes.
-    pub nodal_normals: [[T; 3]; NS],
+    pub nodal_normals: S::Nodal<[T; 3]>,
     /// Unit normal of the plane on which the overlap is cut; it may lag behind the slave facet.
     pub slave_normal: [T; 3],
     /// Unit normal of the plane of the master onto which points are projected; it may lag behind the master facet.
@@ -22,39 +23,36 @@ pub struct PairGeometry<T, const NS: usize, const NM: usize> {
     pub choices: Choices,
 }
 
-/// Number of space dimensions of a pair whose slave has `ns` nodes.
-#[inline]
-pub const fn dimension(ns: usize) -> usize {
-    if ns == 2 { 2 } else { 3 }
-}
-
-impl<const NS: usize, const NM: usize> PairGeometry<f64, NS, NM> {
+impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
     /// Number of displacement unknowns: those of the master nodes, then those of the slave nodes.
-    pub const UNKNOWNS: usize = dimension(NS) * (NS + NM);
+    pub const UNKNOWNS: usize = S::SPACE * (S::NODES + M::NODES);
+
+    /// Number of components of nodal normals.
+    pub const NORMALS: usize = S::SPACE * S::NODES;
 
     /// The same pair with its coordinates as the first variables in the order master, slave, node by node; normals are constant.
     /// Replace a normal by one with a gradient to include its variation.
     #[inline]
-    pub fn seeded<const NU: usize>(&self) -> PairGeometry<Dual<NU>, NS, NM> {
+    pub fn seeded<const NU: usize>(&self) -> PairGeometry<Dual<NU>, S, M> {
         const { assert!(NU >= Self::UNKNOWNS, "one variable per displacement component of the pair") };
-        let dim = dimension(NS);
+        let dim = S::SPACE;
         let seed = |x: [f64; 3], first: usize| {
             std::array::from_fn(|c| if c < dim { Dual::variable(x[c], first + c) } else { Dual::constant(x[c]) })
         };
         PairGeometry {
-            slave: std::array::from_fn(|n| seed(self.slave[n], dim * (NM + n))),
-            master: std::array::from_fn(|n| seed(self.master[n], dim * n)),
+            slave: S::nodal(|n| seed(self.slave[n], dim * (M::NODES + n))),
+            master: M::nodal(|n| seed(self.master[n], dim * n)),
             ..self.as_constants()
         }
     }
 
     /// The same pair in another scalar, without derivatives.
     #[inline]
-    pub fn as_constants<T: Real>(&self) -> PairGeometry<T, NS, NM> {
+    pub fn as_constants<T: Real>(&self) -> PairGeometry<T, S, M> {
         PairGeometry {
-            slave: self.slave.map(constant),
-            master: self.master.map(constant),
-            nodal_normals: self.nodal_normals.map(constant),
+            slave: S::map(&self.slave, constant),
+            master: M::map(&self.master, constant),
+            nodal_normals: S::map(&self.nodal_normals, constant),
             slave_normal: constant(self.slave_normal),
             master_normal: constant(self.master_normal),
             choices: self.choices,
@@ -62,14 +60,14 @@ impl<const NS: usize, const NM: usize> PairGeometry<f64, NS, NM> {
     }
 }
 
-impl<T: Real, const NS: usize, const NM: usize> PairGeometry<T, NS, NM> {
+impl<T: Real, S: FacetShape, M: FacetShape> PairGeometry<T, S, M> {
     /// The same pair without derivatives.
     #[inline]
-    pub fn values(&self) -> PairGeometry<f64, NS, NM> {
+    pub fn values(&self) -> PairGeometry<f64, S, M> {
         PairGeometry {
-            slave: self.slave.map(value),
-            master: self.master.map(value),
-            nodal_normals: self.nodal_normals.map(value),
+            slave: S::map(&self.slave, value),
+            master: M::map(&self.master, value),
+            nodal_normals: S::map(&self.nodal_normals, value),
             slave_normal: value(self.slave_normal),
             master_normal: value(self.master_normal),
             choices: self.choices,

@@ -6,7 +6,7 @@
 //! 3. `segmentation_2d`, `segmentation_3d`: the exact overlap. In the plane an interval of the slave; in space the
 //!    intersection of both facets flattened along the slave's normal, cut into a fan of triangles and put back on the
 //!    true slave surface;
-//! 4. `quadrature`, [`shape`]: Gauss points on each cell; each goes to the master along the interpolated nodal normal
+//! 4. [`points`]: Gauss points on each cell; each goes to the master along the interpolated nodal normal
 //!    n = Σ N¹_j n_j, x² = x¹ + n ((x²₀ − x¹)·n_m)/(n·n_m), and gets its local coordinates there;
 //! 5. [mod@operators]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
 //! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration;
@@ -29,21 +29,22 @@ pub mod gap;
 pub mod geometry;
 pub mod operators;
 pub mod points;
-mod quadrature;
 mod segmentation_2d;
 mod segmentation_3d;
 pub mod settings;
-pub mod shape;
+mod inner;
 pub(crate) mod shapes;
 pub mod slip;
 pub mod turn;
 
 pub use choices::Choices;
 pub use gap::{weighted_gap, weighted_jump};
-pub use geometry::{PairGeometry, dimension};
+pub use geometry::PairGeometry;
+pub use inner::{inner_point, inner_values};
 pub use operators::{Operators, Overlap, choices_of, operators, operators_by};
 pub use points::MasterMotion;
 pub use settings::{IntegrationOrder, SegmentationSettings};
+pub use shapes::{MOST_NODES, carries_contact, condition_name};
 pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential, turned_slip};
 pub use turn::Turn;
 

@@ -11,7 +11,7 @@ use super::geometry::PairGeometry;
 use super::points::{ExactMotion, MasterMotion, Point, Points};
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
-use super::shape;
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::value;
 
@@ -22,12 +22,12 @@ const WORST_CONDITION: f64 = 1e-4 / f64::EPSILON;
 
 /// The operators of a pair.
 /// Row j belongs to the multiplier of slave node j; entries have the unit of a length (lines) or an area (surfaces).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Operators<T, const NS: usize, const NM: usize> {
+#[derive(Debug, Clone, Copy)]
+pub struct Operators<T: Real, S: FacetShape, M: FacetShape> {
     /// D_jk = ∫ Φ_j N¹_k; diagonal whenever the dual functions exist.
-    pub d: [[T; NS]; NS],
+    pub d: S::Nodal<S::Nodal<T>>,
     /// M_jl = ∫ Φ_j N²_l.
-    pub m: [[T; NM]; NS],
+    pub m: S::Nodal<M::Nodal<T>>,
 }
 
 /// Whether the facets of a pair face each other.
@@ -51,23 +51,23 @@ impl<O> Overlap<O> {
     }
 }
 
-/// Computes D and M of a pair: 2–2 nodes in the plane, 3 or 4 nodes a side in space.
+/// Computes D and M of a pair: lines in the plane, triangles and quadrilaterals in space.
 ///
 /// With dual numbers the gradients are exact derivatives of the values, through cells, points and dual functions, as
 /// long as the kinds of the overlap's vertices do not change.
-pub fn operators<T: Real, const NS: usize, const NM: usize>(
-    pair: &PairGeometry<T, NS, NM>,
+pub fn operators<T: Real, S: FacetShape, M: FacetShape>(
+    pair: &PairGeometry<T, S, M>,
     settings: &SegmentationSettings,
-) -> Overlap<Operators<T, NS, NM>> {
+) -> Overlap<Operators<T, S, M>> {
     operators_by(pair, settings, &ExactMotion)
 }
 
 /// The same with the derivatives of another motion of points on the master.
-pub fn operators_by<T: Real, P: MasterMotion<T, NS>, const NS: usize, const NM: usize>(
-    pair: &PairGeometry<T, NS, NM>,
+pub fn operators_by<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape>(
+    pair: &PairGeometry<T, S, M>,
     settings: &SegmentationSettings,
     motion: &P,
-) -> Overlap<Operators<T, NS, NM>> {
+) -> Overlap<Operators<T, S, M>> {
     let mut sums = Sums::new();
     let covered = Points { pair, motion }.visit(settings, |point| sums.add_point(point));
     match covered {
@@ -78,14 +78,14 @@ pub fn operators_by<T: Real, P: MasterMotion<T, NS>, const NS: usize, const NM: 
 }
 
 /// The choices that gave the operators `found` of a pair.
-pub fn choices_of<const NS: usize, const NM: usize>(
-    pair: &PairGeometry<f64, NS, NM>,
+pub fn choices_of<S: FacetShape, M: FacetShape>(
+    pair: &PairGeometry<f64, S, M>,
     settings: &SegmentationSettings,
-    found: &Operators<f64, NS, NM>,
+    found: &Operators<f64, S, M>,
 ) -> Choices {
     let origin = || {
         // Intervals of the plane have no such choice.
-        let polygon = if NS == 2 { None } else { Polygon::new(pair, settings) }?;
+        let polygon = if S::SPACE == 2 { None } else { Polygon::new(pair, settings) }?;
         Some(polygon.local(polygon.vertices()[0]))
     };
     Choices {
@@ -96,52 +96,58 @@ pub fn choices_of<const NS: usize, const NM: usize>(
 }
 
 /// Length or area above which an overlap counts.
-pub(crate) fn least_overlap<T: Real, const NS: usize, const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> f64 {
-    if pair.choices.slivers { 0.0 } else { SLIVER * shape::measure(&pair.slave.map(value)) }
+pub(crate) fn least_overlap<T: Real, S: FacetShape, M: FacetShape>(pair: &PairGeometry<T, S, M>) -> f64 {
+    if pair.choices.slivers { 0.0 } else { SLIVER * S::measure(&S::map(&pair.slave, value)) }
 }
 
-impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
+impl<T: Real, S: FacetShape, M: FacetShape> Operators<T, S, M> {
     /// No overlap at all.
     pub fn zero() -> Self {
-        Self { d: [[T::zero(); NS]; NS], m: [[T::zero(); NM]; NS] }
+        Self { d: S::nodal(|_| S::nodal(|_| T::zero())), m: S::nodal(|_| M::nodal(|_| T::zero())) }
     }
 
     /// The same operators in another scalar, without derivatives.
-    pub fn as_constants<S: Real>(&self) -> Operators<S, NS, NM> {
+    pub fn as_constants<C: Real>(&self) -> Operators<C, S, M> {
         Operators {
-            d: self.d.map(|row| row.map(|x| S::constant(x.value()))),
-            m: self.m.map(|row| row.map(|x| S::constant(x.value()))),
+            d: S::map(&self.d, |row| S::map(&row, |x| C::constant(x.value()))),
+            m: S::map(&self.m, |row| M::map(&row, |x| C::constant(x.value()))),
         }
     }
 
     /// The same operators without derivatives.
-    pub fn values(&self) -> Operators<f64, NS, NM> {
+    pub fn values(&self) -> Operators<f64, S, M> {
         self.as_constants()
     }
 
+    /// Frobenius norms of D and M.
+    pub fn norms(&self) -> [f64; 2] {
+        let values = self.values();
+        [frobenius(values.d.as_slice()), frobenius(values.m.as_slice())]
+    }
+
     /// The change since the operators `previous`.
-    pub fn minus(&self, previous: &Operators<f64, NS, NM>) -> Self {
+    pub fn minus(&self, previous: &Operators<f64, S, M>) -> Self {
         Self {
-            d: std::array::from_fn(|j| std::array::from_fn(|k| self.d[j][k] - previous.d[j][k])),
-            m: std::array::from_fn(|j| std::array::from_fn(|l| self.m[j][l] - previous.m[j][l])),
+            d: S::nodal(|j| S::nodal(|k| self.d[j][k] - previous.d[j][k])),
+            m: S::nodal(|j| M::nodal(|l| self.m[j][l] - previous.m[j][l])),
         }
     }
 
     /// Whether D is diagonal, so that dual functions were in use.
     pub fn is_diagonal(&self) -> bool {
-        (0..NS).all(|j| (0..NS).all(|k| j == k || self.d[j][k].value() == 0.0))
+        (0..S::NODES).all(|j| (0..S::NODES).all(|k| j == k || self.d[j][k].value() == 0.0))
     }
 
     /// (D v¹ − M v²)_j, the weighted jump of a nodal vector field across the pair.
     #[inline]
-    pub fn jump(&self, slave: &[[T; 3]; NS], master: &[[T; 3]; NM]) -> [[T; 3]; NS] {
-        std::array::from_fn(|j| {
+    pub fn jump(&self, slave: &S::Nodal<[T; 3]>, master: &M::Nodal<[T; 3]>) -> S::Nodal<[T; 3]> {
+        S::nodal(|j| {
             let mut sum = [T::zero(); 3];
             for c in 0..3 {
-                for k in 0..NS {
+                for k in 0..S::NODES {
                     sum[c].add_product(self.d[j][k], slave[k][c]);
                 }
-                for l in 0..NM {
+                for l in 0..M::NODES {
                     sum[c].add_product(-self.m[j][l], master[l][c]);
                 }
             }
@@ -151,64 +157,64 @@ impl<T: Real, const NS: usize, const NM: usize> Operators<T, NS, NM> {
 }
 
 /// Integrals gathered over the cells: Me (upper triangle) and ∫ N¹⊗N².
-struct Sums<T, const NS: usize, const NM: usize> {
-    me: [[T; NS]; NS],
-    mixed: [[T; NM]; NS],
+struct Sums<T: Real, S: FacetShape, M: FacetShape> {
+    me: S::Nodal<S::Nodal<T>>,
+    mixed: S::Nodal<M::Nodal<T>>,
 }
 
-impl<T: Real, const NS: usize, const NM: usize> Sums<T, NS, NM> {
+impl<T: Real, S: FacetShape, M: FacetShape> Sums<T, S, M> {
     fn new() -> Self {
-        Self { me: [[T::zero(); NS]; NS], mixed: [[T::zero(); NM]; NS] }
+        Self { me: S::nodal(|_| S::nodal(|_| T::zero())), mixed: S::nodal(|_| M::nodal(|_| T::zero())) }
     }
 
     #[inline]
-    fn add_point(&mut self, point: &Point<T, NS, NM>) {
-        for j in 0..NS {
+    fn add_point(&mut self, point: &Point<T, S, M>) {
+        for j in 0..S::NODES {
             let weighted = point.slave[j] * point.weight;
-            for k in j..NS {
+            for k in j..S::NODES {
                 self.me[j][k].add_product(weighted, point.slave[k]);
             }
-            for l in 0..NM {
+            for l in 0..M::NODES {
                 self.mixed[j][l].add_product(weighted, point.master[l]);
             }
         }
     }
 
     /// D and M from the integrals.
-    fn finish(mut self, choices: Choices) -> Operators<T, NS, NM> {
-        for j in 0..NS {
+    fn finish(mut self, choices: Choices) -> Operators<T, S, M> {
+        for j in 0..S::NODES {
             for k in 0..j {
                 self.me[j][k] = self.me[k][j];
             }
         }
-        let inverse = inverse(self.me.map(|row| row.map(T::value))).filter(|_| !choices.plain);
+        let inverse = inverse::<S>(&S::map(&self.me, |row| S::map(&row, T::value))).filter(|_| !choices.plain);
         let Some(inverse) = inverse else {
             return Operators { d: self.me, m: self.mixed };
         };
         // X = Me⁻¹ ∫ N¹⊗N² on values, then one correction, which brings the derivative.
-        let mut solution = [[0.0; NM]; NS];
-        for j in 0..NS {
-            for l in 0..NM {
-                solution[j][l] = (0..NS).map(|k| inverse[j][k] * self.mixed[k][l].value()).sum();
+        let mut solution = S::nodal(|_| M::nodal(|_| 0.0));
+        for j in 0..S::NODES {
+            for l in 0..M::NODES {
+                solution[j][l] = (0..S::NODES).map(|k| inverse[j][k] * self.mixed[k][l].value()).sum();
             }
         }
         let mut residual = self.mixed;
-        for j in 0..NS {
-            for l in 0..NM {
-                for k in 0..NS {
+        for j in 0..S::NODES {
+            for l in 0..M::NODES {
+                for k in 0..S::NODES {
                     residual[j][l].add_scaled(self.me[j][k], -solution[k][l]);
                 }
             }
         }
-        let mut operators = Operators::zero();
-        for j in 0..NS {
+        let mut operators = Operators::<T, S, M>::zero();
+        for j in 0..S::NODES {
             // The shape functions add up to one, so De is the row sum of Me.
             let mut de = self.me[j][0];
-            (1..NS).for_each(|k| de += self.me[j][k]);
+            (1..S::NODES).for_each(|k| de += self.me[j][k]);
             operators.d[j][j] = de;
-            for l in 0..NM {
+            for l in 0..M::NODES {
                 let mut x = T::constant(solution[j][l]);
-                (0..NS).for_each(|k| x.add_scaled(residual[k][l], inverse[j][k]));
+                (0..S::NODES).for_each(|k| x.add_scaled(residual[k][l], inverse[j][k]));
                 operators.m[j][l] = de * x;
             }
         }
@@ -216,22 +222,26 @@ impl<T: Real, const NS: usize, const NM: usize> Sums<T, NS, NM> {
     }
 }
 
+/// Square root of the sum of the squares of a matrix.
+fn frobenius<R: NodeArray<f64>>(rows: &[R]) -> f64 {
+    rows.iter().flat_map(|row| row.iter()).map(|x| x * x).sum::<f64>().sqrt()
+}
+
 /// Inverse by elimination with row exchanges; `None` if the matrix is too badly conditioned to trust it.
-fn inverse<const N: usize>(matrix: [[f64; N]; N]) -> Option<[[f64; N]; N]> {
-    let frobenius = |m: &[[f64; N]; N]| m.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
-    let mut work = matrix;
-    let mut inverse: [[f64; N]; N] = std::array::from_fn(|j| std::array::from_fn(|k| f64::from(u8::from(j == k))));
-    for pivot in 0..N {
-        let best = (pivot..N).max_by(|&a, &b| work[a][pivot].abs().total_cmp(&work[b][pivot].abs()))?;
-        work.swap(pivot, best);
-        inverse.swap(pivot, best);
+fn inverse<S: FacetShape>(matrix: &S::Nodal<S::Nodal<f64>>) -> Option<S::Nodal<S::Nodal<f64>>> {
+    let mut work = *matrix;
+    let mut inverse = S::nodal(|j| S::nodal(|k| f64::from(u8::from(j == k))));
+    for pivot in 0..S::NODES {
+        let best = (pivot..S::NODES).max_by(|&a, &b| work[a][pivot].abs().total_cmp(&work[b][pivot].abs()))?;
+        work.as_mut_slice().swap(pivot, best);
+        inverse.as_mut_slice().swap(pivot, best);
         let scale = 1.0 / work[pivot][pivot];
-        work[pivot] = work[pivot].map(|x| x * scale);
-        inverse[pivot] = inverse[pivot].map(|x| x * scale);
-        for row in 0..N {
+        work[pivot] = S::map(&work[pivot], |x| x * scale);
+        inverse[pivot] = S::map(&inverse[pivot], |x| x * scale);
+        for row in 0..S::NODES {
             let factor = work[row][pivot];
             if row != pivot && factor != 0.0 {
-                for c in 0..N {
+                for c in 0..S::NODES {
                     work[row][c] -= factor * work[pivot][c];
                     inverse[row][c] -= factor * inverse[pivot][c];
                 }
@@ -239,5 +249,5 @@ fn inverse<const N: usize>(matrix: [[f64; N]; N]) -> Option<[[f64; N]; N]> {
         }
     }
     // Written so that NaN counts as bad.
-    (frobenius(&matrix) * frobenius(&inverse) < WORST_CONDITION).then_some(inverse)
+    (frobenius(matrix.as_slice()) * frobenius(inverse.as_slice()) < WORST_CONDITION).then_some(inverse)
 }

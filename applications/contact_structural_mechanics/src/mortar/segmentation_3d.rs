@@ -6,7 +6,7 @@
 
 use super::geometry::PairGeometry;
 use super::settings::SegmentationSettings;
-use super::shape;
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{cross, dot, normalised, sub, value};
 
@@ -30,25 +30,26 @@ pub(super) enum Vertex {
 }
 
 /// The vertices of an overlap, anticlockwise about the slave's normal.
-pub(super) struct Polygon<T, const NS: usize, const NM: usize> {
-    slave: [[T; 2]; NS],
-    master: [[T; 2]; NM],
+pub(super) struct Polygon<T: Real, S: FacetShape, M: FacetShape> {
+    slave: S::Nodal<[T; 2]>,
+    master: M::Nodal<[T; 2]>,
     vertices: [Vertex; CAPACITY],
     len: usize,
 }
 
-impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
+impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
     /// Intersects the flattened facets; `None` if they are too far apart or share no area.
-    pub(super) fn new(pair: &PairGeometry<T, NS, NM>, settings: &SegmentationSettings) -> Option<Self> {
+    pub(super) fn new(pair: &PairGeometry<T, S, M>, settings: &SegmentationSettings) -> Option<Self> {
         let plane = Plane::new(pair);
         let height = |x: [T; 3]| dot(sub(value(x), plane.origin), value(pair.slave_normal));
         if pair.master.iter().any(|&x| height(x) > settings.distance_threshold) {
             return None;
         }
-        let slave = pair.slave.map(|x| plane.coordinates(x));
-        let master = pair.master.map(|x| plane.coordinates(x));
+        let slave = S::map(&pair.slave, |x| plane.coordinates(x));
+        let master = M::map(&pair.master, |x| plane.coordinates(x));
 
-        let mut list = PointList::new(&slave.map(|p| p.map(T::value)), &master.map(|p| p.map(T::value)));
+        let mut list =
+            PointList::<S, M>::new(S::map(&slave, |p| p.map(T::value)), M::map(&master, |p| p.map(T::value)));
         list.tolerance *= (settings.zero_tolerance_factor * f64::EPSILON / TOLERANCE).max(1.0);
         list.collect();
         if list.len < 3 {
@@ -77,8 +78,8 @@ impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
     /// Where on the slave's edge it crosses the master's, from 0 to 1.
     #[inline]
     fn crossing(&self, slave: usize, master: usize) -> T {
-        let (a, b) = (self.slave[slave], self.slave[(slave + 1) % NS]);
-        let (c, d) = (self.master[master], self.master[(master + 1) % NM]);
+        let (a, b) = (self.slave[slave], self.slave[(slave + 1) % S::CORNERS]);
+        let (c, d) = (self.master[master], self.master[(master + 1) % M::CORNERS]);
         let (along, across) = (minus(b, a), minus(d, c));
         let denominator = cross2(along, across);
         let t = cross2(minus(c, a), across) / denominator;
@@ -87,12 +88,12 @@ impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
     }
 
     /// Mean of numbers at the slave nodes that a vertex lies on or between; zero at nodes of the master.
-    pub(super) fn weigh(&self, vertex: Vertex, numbers: &[T; NS]) -> T {
+    pub(super) fn weigh(&self, vertex: Vertex, numbers: &S::Nodal<T>) -> T {
         match vertex {
             Vertex::Slave(n) => numbers[n],
             Vertex::Crossing { slave, master } => {
                 let t = self.crossing(slave, master).value();
-                numbers[slave] * (1.0 - t) + numbers[(slave + 1) % NS] * t
+                numbers[slave] * (1.0 - t) + numbers[(slave + 1) % S::CORNERS] * t
             }
             Vertex::Master(_) => T::zero(),
         }
@@ -102,15 +103,15 @@ impl<T: Real, const NS: usize, const NM: usize> Polygon<T, NS, NM> {
     #[inline]
     pub(super) fn local(&self, vertex: Vertex) -> [T; 2] {
         match vertex {
-            Vertex::Slave(n) => shape::corner::<NS>(n).map(T::constant),
+            Vertex::Slave(n) => S::corner(n).map(T::constant),
             Vertex::Crossing { slave, master } => {
                 let t = self.crossing(slave, master);
-                let (start, end) = (shape::corner::<NS>(slave), shape::corner::<NS>((slave + 1) % NS));
+                let (start, end) = (S::corner(slave), S::corner((slave + 1) % S::CORNERS));
                 std::array::from_fn(|c| t * (end[c] - start[c]) + start[c])
             }
             Vertex::Master(n) => {
                 let lift = |p: [T; 2]| [p[0], p[1], T::zero()];
-                shape::closest_point(&self.slave.map(lift), lift(self.master[n]), shape::centre::<NS>())
+                S::closest_point(&S::map(&self.slave, lift), lift(self.master[n]), S::CENTRE)
             }
         }
     }
@@ -125,9 +126,9 @@ struct Plane<T> {
 }
 
 impl<T: Real> Plane<T> {
-    fn new<const NS: usize, const NM: usize>(pair: &PairGeometry<T, NS, NM>) -> Self {
+    fn new<S: FacetShape, M: FacetShape>(pair: &PairGeometry<T, S, M>) -> Self {
         let values = pair.values();
-        let origin = shape::combine(&[1.0 / NS as f64; NS], &values.slave);
+        let origin = S::combine(&S::nodal(|_| 1.0 / S::NODES as f64), &values.slave);
         let normal = normalised(values.slave_normal);
         // Project the longest of two edges, so that the axis is never degenerate.
         let in_plane = |a: [f64; 3]| std::array::from_fn(|c| a[c] - dot(a, normal) * normal[c]);
@@ -157,21 +158,21 @@ impl<T: Real> Plane<T> {
 }
 
 /// Vertices under construction, with their places in the plane.
-struct PointList<const NS: usize, const NM: usize> {
-    slave: [[f64; 2]; NS],
-    master: [[f64; 2]; NM],
+struct PointList<S: FacetShape, M: FacetShape> {
+    slave: S::Nodal<[f64; 2]>,
+    master: M::Nodal<[f64; 2]>,
     tolerance: f64,
     points: [[f64; 2]; CAPACITY],
     vertices: [Vertex; CAPACITY],
     len: usize,
 }
 
-impl<const NS: usize, const NM: usize> PointList<NS, NM> {
-    fn new(slave: &[[f64; 2]; NS], master: &[[f64; 2]; NM]) -> Self {
+impl<S: FacetShape, M: FacetShape> PointList<S, M> {
+    fn new(slave: S::Nodal<[f64; 2]>, master: M::Nodal<[f64; 2]>) -> Self {
         Self {
-            slave: *slave,
-            master: *master,
-            tolerance: TOLERANCE * area(slave).abs().sqrt(),
+            slave,
+            master,
+            tolerance: TOLERANCE * area(corners::<S>(&slave)).abs().sqrt(),
             points: [[0.0; 2]; CAPACITY],
             vertices: [Vertex::Slave(0); CAPACITY],
             len: 0,
@@ -181,16 +182,16 @@ impl<const NS: usize, const NM: usize> PointList<NS, NM> {
     /// Lists master nodes inside the slave, then slave nodes inside the master, then crossings of edges.
     fn collect(&mut self) {
         let (slave, master) = (self.slave, self.master);
-        for n in 0..NM {
-            if inside(master[n], &slave, self.tolerance) {
+        for n in 0..M::CORNERS {
+            if inside(master[n], corners::<S>(&slave), self.tolerance) {
                 self.push(master[n], Vertex::Master(n), self.tolerance);
             }
         }
-        if self.len == NM {
+        if self.len == M::CORNERS {
             return;
         }
-        for n in 0..NS {
-            if inside(slave[n], &master, self.tolerance) {
+        for n in 0..S::CORNERS {
+            if inside(slave[n], corners::<M>(&master), self.tolerance) {
                 self.push(slave[n], Vertex::Slave(n), self.tolerance);
             }
         }
@@ -203,11 +204,11 @@ impl<const NS: usize, const NM: usize> PointList<NS, NM> {
     /// Lists the crossings of edges, those of nearly parallel ones or the others.
     fn collect_crossings(&mut self, grazing: bool) {
         let (slave, master) = (self.slave, self.master);
-        for i in 0..NS {
-            let (a, b) = (slave[i], slave[(i + 1) % NS]);
+        for i in 0..S::CORNERS {
+            let (a, b) = (slave[i], slave[(i + 1) % S::CORNERS]);
             let along = minus(b, a);
-            for j in 0..NM {
-                let (c, d) = (master[j], master[(j + 1) % NM]);
+            for j in 0..M::CORNERS {
+                let (c, d) = (master[j], master[(j + 1) % M::CORNERS]);
                 let across = minus(d, c);
                 let denominator = cross2(along, across);
                 let sine = denominator.abs() / (length(along) * length(across));
@@ -273,16 +274,24 @@ fn length(a: [f64; 2]) -> f64 {
     (a[0] * a[0] + a[1] * a[1]).sqrt()
 }
 
+/// The corners of a facet, which span what is cut: edges count as straight.
+#[inline]
+fn corners<S: FacetShape>(nodes: &S::Nodal<[f64; 2]>) -> &[[f64; 2]] {
+    &nodes.as_slice()[..S::CORNERS]
+}
+
 /// Signed area, positive if the nodes run anticlockwise.
-fn area<const N: usize>(polygon: &[[f64; 2]; N]) -> f64 {
-    0.5 * (0..N).map(|n| cross2(polygon[n], polygon[(n + 1) % N])).sum::<f64>()
+fn area(polygon: &[[f64; 2]]) -> f64 {
+    let count = polygon.len();
+    0.5 * (0..count).map(|n| cross2(polygon[n], polygon[(n + 1) % count])).sum::<f64>()
 }
 
 /// Whether a point lies in a convex polygon of either orientation, or within `tolerance` of it.
-fn inside<const N: usize>(point: [f64; 2], polygon: &[[f64; 2]; N], tolerance: f64) -> bool {
+fn inside(point: [f64; 2], polygon: &[[f64; 2]], tolerance: f64) -> bool {
+    let count = polygon.len();
     let sign = area(polygon).signum();
-    (0..N).all(|n| {
-        let edge = minus(polygon[(n + 1) % N], polygon[n]);
+    (0..count).all(|n| {
+        let edge = minus(polygon[(n + 1) % count], polygon[n]);
         sign * cross2(edge, minus(point, polygon[n])) >= -tolerance * length(edge)
     })
 }
@@ -290,9 +299,10 @@ fn inside<const N: usize>(point: [f64; 2], polygon: &[[f64; 2]; N], tolerance: f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zelus_core::geometry::{Quadrilateral4, Triangle3};
 
     fn vertices(slave: [[f64; 2]; 4], master: [[f64; 2]; 4]) -> Vec<Vertex> {
-        let mut list = PointList::new(&slave, &master);
+        let mut list = PointList::<Quadrilateral4, Quadrilateral4>::new(slave, master);
         list.collect();
         list.sort();
         list.vertices[..list.len].to_vec()
@@ -327,7 +337,7 @@ mod tests {
             let moved = |x: [f64; 2]| x.map(|x| x + 0.0137 * f64::from(n));
             let slave = [low, high, [low[0], high[1]]].map(moved);
             let master = [[0.0, 0.0], [0.0, 0.4], [0.5, 0.4]].map(moved);
-            let mut list = PointList::new(&slave, &master);
+            let mut list = PointList::<Triangle3, Triangle3>::new(slave, master);
             list.collect();
             let corners = [low, [0.5, 0.4], [low[0], 0.4]].map(moved);
             for point in &list.points[..list.len] {

@@ -1,18 +1,73 @@
 //! The pairs of shapes that carry contact: the only list of them.
 
-/// What `$make!` gives for the shapes of a slave and a master, from their numbers of nodes, of displacement unknowns, of components
-/// of nodal normals, and of those three kinds of variables with tractions at inner points; `None` for other shapes.
+use zelus_core::geometry::{FacetShape, Shape};
+
+/// Calls the macro in brackets with every pair of shapes that carries contact: slave, master and how the names of its conditions
+/// end, after other arguments.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! with_pairs_of_shapes {
+    ([$($with:tt)*] $($first:tt)*) => {
+        $($with)*! { $($first)*
+            (Line2, Line2, "2D2N")
+            (Triangle3, Triangle3, "3D3N")
+            (Triangle3, Quadrilateral4, "3D3N4N")
+            (Quadrilateral4, Triangle3, "3D4N3N")
+            (Quadrilateral4, Quadrilateral4, "3D4N")
+        }
+    };
+}
+
+/// What `$make!` gives for the types of a slave's and a master's shape; `None` for pairs that carry no contact.
 macro_rules! for_shapes {
-    ($slave:expr, $master:expr, $make:ident) => {{
-        use zelus_core::geometry::Shape;
+    ($slave:expr, $master:expr, $make:ident) => {
+        $crate::with_pairs_of_shapes! { [$crate::mortar::shapes::for_shapes] @ $slave, $master, $make; }
+    };
+    (@ $slave:expr, $master:expr, $make:ident; $(($s:ident, $m:ident, $end:literal))*) => {{
+        use zelus_core::geometry::{self, FacetShape};
         match ($slave, $master) {
-            (Shape::Line2, Shape::Line2) => Some($make!(2, 2, 8, 4, 16)),
-            (Shape::Tri3, Shape::Tri3) => Some($make!(3, 3, 18, 9, 36)),
-            (Shape::Tri3, Shape::Quad4) => Some($make!(3, 4, 21, 9, 39)),
-            (Shape::Quad4, Shape::Tri3) => Some($make!(4, 3, 21, 12, 45)),
-            (Shape::Quad4, Shape::Quad4) => Some($make!(4, 4, 24, 12, 48)),
+            $((<geometry::$s as FacetShape>::SHAPE, <geometry::$m as FacetShape>::SHAPE) => {
+                Some($make!(geometry::$s, geometry::$m, $end))
+            })*
             _ => None,
         }
     }};
 }
 pub(crate) use for_shapes;
+
+macro_rules! list {
+    ($(($s:ident, $m:ident, $end:literal))*) => {
+        [$([<zelus_core::geometry::$s as FacetShape>::SHAPE, <zelus_core::geometry::$m as FacetShape>::SHAPE]),*]
+    };
+}
+
+const PAIRS: &[[Shape; 2]] = &with_pairs_of_shapes! { [list] };
+
+/// Nodes of the largest facet.
+pub const MOST_NODES: usize = {
+    let (mut most, mut at) = (0, 0);
+    while at < PAIRS.len() {
+        let nodes = PAIRS[at][0].nodes();
+        most = if nodes > most { nodes } else { most };
+        at += 1;
+    }
+    most
+};
+
+/// Whether facets of a shape carry contact.
+pub fn carries_contact(shape: Shape) -> bool {
+    PAIRS.as_flattened().contains(&shape)
+}
+
+/// Kratos' name of the condition of a pair of shapes; `stem` is the name up to the shape.
+pub fn condition_name(stem: &str, slave: Shape, master: Shape) -> String {
+    macro_rules! make {
+        ($slave:ty, $master:ty, $end:literal) => {
+            $end
+        };
+    }
+    match for_shapes!(slave, master, make) {
+        Some(end) => format!("{stem}{end}"),
+        None => format!("{stem} of {slave:?} and {master:?}"),
+    }
+}

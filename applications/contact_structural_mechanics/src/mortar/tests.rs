@@ -1,7 +1,8 @@
 //! Properties of the operators over all shape pairs.
 
 use super::*;
-use zelus_core::scalar::Dual;
+use zelus_core::geometry::{FacetShape, Line2, NodeArray, Quadrilateral4, Shape, Triangle3};
+use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{add, cross, dot, normalised, scale, sub};
 
 /// A fixed sequence of numbers in (−1, 1).
@@ -23,27 +24,30 @@ impl Noise {
 }
 
 /// A unit facet at the origin: on the x axis facing up, or in the plane z = 0 facing up.
-fn unit_facet<const N: usize>() -> [[f64; 3]; N] {
-    std::array::from_fn(|n| match N {
-        2 => [1.0 - n as f64, 0.0, 0.0],
-        3 => [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]][n],
+fn unit_facet<S: FacetShape>() -> S::Nodal<[f64; 3]> {
+    S::nodal(|n| match S::SHAPE {
+        Shape::Line2 => [1.0 - n as f64, 0.0, 0.0],
+        Shape::Tri3 => [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]][n],
         _ => [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]][n],
     })
 }
 
 /// The facet run through the other way round, so that it faces the other side.
-fn flipped<const N: usize>(nodes: [[f64; 3]; N]) -> [[f64; 3]; N] {
-    std::array::from_fn(|n| nodes[N - 1 - n])
+fn flipped<S: FacetShape>(nodes: S::Nodal<[f64; 3]>) -> S::Nodal<[f64; 3]> {
+    S::nodal(|n| nodes[S::NODES - 1 - n])
 }
 
 /// A pair with the facets' own normals everywhere.
-fn pair<const NS: usize, const NM: usize>(slave: [[f64; 3]; NS], master: [[f64; 3]; NM]) -> PairGeometry<f64, NS, NM> {
-    let slave_normal = shape::unit_normal(&slave, shape::centre::<NS>());
-    let master_normal = shape::unit_normal(&master, shape::centre::<NM>());
+fn pair<S: FacetShape, M: FacetShape>(
+    slave: S::Nodal<[f64; 3]>,
+    master: M::Nodal<[f64; 3]>,
+) -> PairGeometry<f64, S, M> {
+    let slave_normal = S::unit_normal(&slave, S::CENTRE);
+    let master_normal = M::unit_normal(&master, M::CENTRE);
     PairGeometry {
         slave,
         master,
-        nodal_normals: [slave_normal; NS],
+        nodal_normals: S::nodal(|_| slave_normal),
         slave_normal,
         master_normal,
         choices: Choices::default(),
@@ -51,59 +55,61 @@ fn pair<const NS: usize, const NM: usize>(slave: [[f64; 3]; NS], master: [[f64; 
 }
 
 /// A partly overlapping pair with noise on nodes and normals.
-pub(crate) fn random_pair<const NS: usize, const NM: usize>(seed: u64) -> PairGeometry<f64, NS, NM> {
+pub(crate) fn random_pair<S: FacetShape, M: FacetShape>(seed: u64) -> PairGeometry<f64, S, M> {
     let mut noise = Noise::new(seed);
-    let dim = dimension(NS);
+    let dim = S::SPACE;
     let shift = match dim {
         2 => [0.6 * noise.next(), -0.02, 0.0],
         _ => [0.15 + 0.3 * noise.next(), 0.1 + 0.3 * noise.next(), 0.02],
     };
-    let slave = unit_facet::<NS>().map(|x| add(x, noise.vector(0.06, dim)));
-    let master = flipped(unit_facet::<NM>()).map(|x| add(add(scale(x, 1.1), shift), noise.vector(0.06, dim)));
-    let mut pair = pair(slave, master);
-    pair.nodal_normals = pair.nodal_normals.map(|n| normalised(add(n, noise.vector(0.08, dim))));
+    let slave = S::map(&unit_facet::<S>(), |x| add(x, noise.vector(0.06, dim)));
+    let master = M::map(&flipped::<M>(unit_facet::<M>()), |x| add(add(scale(x, 1.1), shift), noise.vector(0.06, dim)));
+    let mut pair = pair::<S, M>(slave, master);
+    pair.nodal_normals = S::map(&pair.nodal_normals, |n| normalised(add(n, noise.vector(0.08, dim))));
     pair.slave_normal = normalised(add(pair.slave_normal, noise.vector(0.03, dim)));
     pair.master_normal = normalised(add(pair.master_normal, noise.vector(0.03, dim)));
     pair
 }
 
 /// The pair with displacement unknown `variable` (master first, node by node) moved by `step`.
-pub(crate) fn displaced<const NS: usize, const NM: usize>(
-    pair: &PairGeometry<f64, NS, NM>,
+pub(crate) fn displaced<S: FacetShape, M: FacetShape>(
+    pair: &PairGeometry<f64, S, M>,
     variable: usize,
     step: f64,
-) -> PairGeometry<f64, NS, NM> {
-    let (node, c) = (variable / dimension(NS), variable % dimension(NS));
+) -> PairGeometry<f64, S, M> {
+    let (node, c) = (variable / S::SPACE, variable % S::SPACE);
     let mut moved = *pair;
-    if node < NM {
+    if node < M::NODES {
         moved.master[node][c] += step;
     } else {
-        moved.slave[node - NM][c] += step;
+        moved.slave[node - M::NODES][c] += step;
     }
     moved
 }
 
-fn flat<const NS: usize, const NM: usize>(operators: &Operators<f64, NS, NM>) -> Vec<f64> {
-    operators.d.iter().flatten().chain(operators.m.iter().flatten()).copied().collect()
+fn flat<T: Real, S: FacetShape, M: FacetShape>(operators: &Operators<T, S, M>) -> Vec<T> {
+    let (d, m) = (operators.d.iter().flat_map(|row| row.iter()), operators.m.iter().flat_map(|row| row.iter()));
+    d.chain(m).copied().collect()
 }
 
-fn value_of<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> Operators<f64, NS, NM> {
+fn value_of<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, M>) -> Operators<f64, S, M> {
     operators(pair, &SegmentationSettings::default()).cells().expect("the facets overlap")
 }
 
 macro_rules! for_all_shapes {
     ($check:ident) => {
-        $check::<2, 2, 8>();
-        $check::<3, 3, 18>();
-        $check::<3, 4, 21>();
-        $check::<4, 3, 21>();
-        $check::<4, 4, 24>();
+        $crate::with_pairs_of_shapes! { [$crate::mortar::tests::for_all_shapes] $check }
     };
+    ($check:ident $(($s:ident, $m:ident, $end:literal))*) => {{
+        use zelus_core::geometry;
+        $($check::<geometry::$s, geometry::$m, { PairGeometry::<f64, geometry::$s, geometry::$m>::UNKNOWNS }>();)*
+    }};
 }
 pub(crate) use for_all_shapes;
 
-fn derivative_matches_differences<const NS: usize, const NM: usize, const NU: usize>() {
-    for axisymmetric in [None, (NS == 2).then_some(0.7)] {
+fn derivative_matches_differences<S: FacetShape, M: FacetShape, const NU: usize>() {
+    let shapes = [S::SHAPE, M::SHAPE];
+    for axisymmetric in [None, (S::SPACE == 2).then_some(0.7)] {
         for order in 1..=5 {
             let settings = SegmentationSettings {
                 axisymmetric,
@@ -111,15 +117,14 @@ fn derivative_matches_differences<const NS: usize, const NM: usize, const NU: us
                 ..Default::default()
             };
             for seed in 0..if order == 2 { 40 } else { 4 } {
-                let pair = random_pair::<NS, NM>(seed);
+                let pair = random_pair::<S, M>(seed);
                 let Overlap::Cells(dual) = operators(&pair.seeded::<NU>(), &settings) else { continue };
                 let plain = operators(&pair, &settings).cells().unwrap();
                 let scale = flat(&plain).iter().fold(0.0, |a: f64, b| a.max(b.abs()));
                 for (a, b) in flat(&plain).iter().zip(flat(&dual.values())) {
                     assert!((a - b).abs() < 1e-13 * scale, "seed {seed}: {a} {b}");
                 }
-                let gradient: Vec<[f64; NU]> =
-                    dual.d.iter().flatten().chain(dual.m.iter().flatten()).map(|x| x.gradient).collect();
+                let gradient: Vec<[f64; NU]> = flat(&dual).into_iter().map(|x| x.gradient).collect();
                 for variable in 0..NU {
                     let h = 1e-6;
                     let at = |h| flat(&operators(&displaced(&pair, variable, h), &settings).cells().unwrap());
@@ -128,7 +133,7 @@ fn derivative_matches_differences<const NS: usize, const NM: usize, const NU: us
                         let exact = gradient[entry][variable];
                         assert!(
                             (slope - exact).abs() < 1e-6 * slope.abs().max(scale),
-                            "{NS}–{NM} seed {seed} order {order} entry {entry} variable {variable}: {slope} {exact}"
+                            "{shapes:?} seed {seed} order {order} entry {entry} variable {variable}: {slope} {exact}"
                         );
                     }
                 }
@@ -145,7 +150,7 @@ fn operators_have_exact_derivatives() {
 #[test]
 fn normals_may_vary_too() {
     // All normals turn with one parameter; coordinates stay.
-    let pair = random_pair::<4, 4>(3);
+    let pair = random_pair::<Quadrilateral4, Quadrilateral4>(3);
     let turn = [0.03, -0.05, 0.02];
     let turned = |h: f64| {
         let mut moved = pair;
@@ -170,20 +175,21 @@ fn normals_may_vary_too() {
     }
 }
 
-fn partition_of_unity<const NS: usize, const NM: usize, const NU: usize>() {
+fn partition_of_unity<S: FacetShape, M: FacetShape, const NU: usize>() {
+    let shapes = [S::SHAPE, M::SHAPE];
     let mut diagonal = 0;
     for seed in 0..40 {
-        let Some(o) = operators(&random_pair::<NS, NM>(seed), &SegmentationSettings::default()).cells() else {
+        let Some(o) = operators(&random_pair::<S, M>(seed), &SegmentationSettings::default()).cells() else {
             continue;
         };
-        for j in 0..NS {
+        for j in 0..S::NODES {
             let (d, m): (f64, f64) = (o.d[j].iter().sum(), o.m[j].iter().sum());
             assert!((m - d).abs() < 1e-11, "row {j} of seed {seed}: {m} {d}");
         }
-        assert!(NS == 4 || o.is_diagonal());
+        assert!(S::NODES == 4 || o.is_diagonal());
         diagonal += usize::from(o.is_diagonal());
     }
-    assert!(diagonal >= 25, "{NS}–{NM}: {diagonal}");
+    assert!(diagonal >= 25, "{shapes:?}: {diagonal}");
 }
 
 #[test]
@@ -191,8 +197,10 @@ fn d_is_diagonal_and_rows_of_m_add_up_to_it() {
     for_all_shapes!(partition_of_unity);
 }
 
-fn area<const NS: usize, const NM: usize>(pair: &PairGeometry<f64, NS, NM>) -> f64 {
-    operators(pair, &SegmentationSettings::default()).cells().map_or(0.0, |o| o.d.iter().flatten().sum())
+fn area<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, M>) -> f64 {
+    operators(pair, &SegmentationSettings::default())
+        .cells()
+        .map_or(0.0, |o| o.d.iter().flat_map(|row| row.iter()).sum())
 }
 
 #[test]
@@ -201,33 +209,39 @@ fn known_overlap_areas() {
     let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} {b}");
     // A unit square and one turned by 45° with the same centre: a regular octagon.
     let r = 0.5_f64.sqrt();
-    let diamond = flipped([up(0.5 + r, 0.5), up(0.5, 0.5 + r), up(0.5 - r, 0.5), up(0.5, 0.5 - r)]);
-    close(area(&pair(unit_facet::<4>(), diamond)), 2.0 * (2.0_f64.sqrt() - 1.0));
+    let diamond = flipped::<Quadrilateral4>([up(0.5 + r, 0.5), up(0.5, 0.5 + r), up(0.5 - r, 0.5), up(0.5, 0.5 - r)]);
+    close(
+        area(&pair::<Quadrilateral4, Quadrilateral4>(unit_facet::<Quadrilateral4>(), diamond)),
+        2.0 * (2.0_f64.sqrt() - 1.0),
+    );
     // Shifted squares, shifted triangles, a triangle over a square, a small square in a triangle.
-    let shifted = |dx, dy| flipped(unit_facet::<4>()).map(|x| add(x, [dx, dy, 0.2]));
-    close(area(&pair(unit_facet::<4>(), shifted(0.3, -0.4))), 0.7 * 0.6);
-    let triangle = flipped(unit_facet::<3>()).map(|x| add(x, [0.25, 0.25, 0.1]));
-    close(area(&pair(unit_facet::<3>(), triangle)), 0.125);
-    close(area(&pair(unit_facet::<4>(), triangle)), 0.5 - 2.0 * 0.25 * 0.25 / 2.0);
-    let small = flipped(unit_facet::<4>()).map(|x| add(scale(x, 0.3), [0.1, 0.2, 0.0]));
-    close(area(&pair(unit_facet::<3>(), small)), 0.09);
+    let shifted = |dx, dy| flipped::<Quadrilateral4>(unit_facet::<Quadrilateral4>()).map(|x| add(x, [dx, dy, 0.2]));
+    close(area(&pair::<Quadrilateral4, Quadrilateral4>(unit_facet::<Quadrilateral4>(), shifted(0.3, -0.4))), 0.7 * 0.6);
+    let triangle = flipped::<Triangle3>(unit_facet::<Triangle3>()).map(|x| add(x, [0.25, 0.25, 0.1]));
+    close(area(&pair::<Triangle3, Triangle3>(unit_facet::<Triangle3>(), triangle)), 0.125);
+    close(
+        area(&pair::<Quadrilateral4, Triangle3>(unit_facet::<Quadrilateral4>(), triangle)),
+        0.5 - 2.0 * 0.25 * 0.25 / 2.0,
+    );
+    let small = flipped::<Quadrilateral4>(unit_facet::<Quadrilateral4>()).map(|x| add(scale(x, 0.3), [0.1, 0.2, 0.0]));
+    close(area(&pair::<Triangle3, Quadrilateral4>(unit_facet::<Triangle3>(), small)), 0.09);
     // Lines.
     let master = [[0.4, -0.1, 0.0], [1.7, -0.1, 0.0]];
-    close(area(&pair(unit_facet::<2>(), master)), 0.6);
+    close(area(&pair::<Line2, Line2>(unit_facet::<Line2>(), master)), 0.6);
 }
 
-fn planar_patch<const NS: usize, const NM: usize, const NU: usize>() {
+fn planar_patch<S: FacetShape, M: FacetShape, const NU: usize>() {
     // On coincident planes a linear field crosses the interface unchanged: M f(x²) = D f(x¹). D and M are those of one
     // pair, so the slave part outside the overlap must not matter.
     for seed in 0..30 {
-        let mut pair = random_pair::<NS, NM>(seed);
-        let plane = dimension(NS) - 1;
-        pair.slave.iter_mut().chain(&mut pair.master).for_each(|x| x[plane] = 0.0);
+        let mut pair = random_pair::<S, M>(seed);
+        let plane = S::SPACE - 1;
+        pair.slave.iter_mut().chain(pair.master.iter_mut()).for_each(|x| x[plane] = 0.0);
         let up = std::array::from_fn(|c| f64::from(u8::from(c == plane)));
-        (pair.nodal_normals, pair.slave_normal, pair.master_normal) = ([up; NS], up, scale(up, -1.0));
+        (pair.nodal_normals, pair.slave_normal, pair.master_normal) = (S::nodal(|_| up), up, scale(up, -1.0));
         let Some(o) = operators(&pair, &SegmentationSettings::default()).cells() else { continue };
         let field = |x: [f64; 3]| [0.3 + 2.0 * x[0] - 0.7 * x[1], x[0], x[1]];
-        for row in o.jump(&pair.slave.map(field), &pair.master.map(field)) {
+        for row in o.jump(&S::map(&pair.slave, field), &M::map(&pair.master, field)) {
             assert!(row.iter().all(|x| x.abs() < 1e-12), "seed {seed}: {row:?}");
         }
         for g in weighted_gap(&o, &pair.slave, &pair.master, &pair.nodal_normals) {
@@ -241,19 +255,20 @@ fn linear_fields_are_mapped_exactly() {
     for_all_shapes!(planar_patch);
 }
 
-fn rigid<const NS: usize, const NM: usize, const NU: usize>() {
-    let (angle, axis) = if NS == 2 { (0.8, [0.0, 0.0, 1.0]) } else { (1.1, normalised([0.3, -0.5, 0.7])) };
+fn rigid<S: FacetShape, M: FacetShape, const NU: usize>() {
+    let shapes = [S::SHAPE, M::SHAPE];
+    let (angle, axis) = if S::SPACE == 2 { (0.8, [0.0, 0.0, 1.0]) } else { (1.1, normalised([0.3, -0.5, 0.7])) };
     let rotated = |x: [f64; 3]| {
         let (s, c) = f64::sin_cos(angle);
         add(add(scale(x, c), scale(cross(axis, x), s)), scale(axis, dot(axis, x) * (1.0 - c)))
     };
-    let moved = |x: [f64; 3]| add(rotated(x), [3.0, -2.0, if NS == 2 { 0.0 } else { 5.0 }]);
+    let moved = |x: [f64; 3]| add(rotated(x), [3.0, -2.0, if S::SPACE == 2 { 0.0 } else { 5.0 }]);
     for seed in 0..20 {
-        let before = random_pair::<NS, NM>(seed);
-        let after = PairGeometry {
-            slave: before.slave.map(moved),
-            master: before.master.map(moved),
-            nodal_normals: before.nodal_normals.map(rotated),
+        let before = random_pair::<S, M>(seed);
+        let after = PairGeometry::<f64, S, M> {
+            slave: S::map(&before.slave, moved),
+            master: M::map(&before.master, moved),
+            nodal_normals: S::map(&before.nodal_normals, rotated),
             slave_normal: rotated(before.slave_normal),
             master_normal: rotated(before.master_normal),
             choices: before.choices,
@@ -265,11 +280,11 @@ fn rigid<const NS: usize, const NM: usize, const NU: usize>() {
         };
         let scale = flat(&a).iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         for (x, y) in flat(&a).iter().zip(flat(&b)) {
-            assert!((x - y).abs() < 1e-10 * scale, "{NS}–{NM} seed {seed}: {x} {y}");
+            assert!((x - y).abs() < 1e-10 * scale, "{shapes:?} seed {seed}: {x} {y}");
         }
-        let gap_a = weighted_gap(&a, &before.slave, &before.master, &before.nodal_normals);
-        let gap_b = weighted_gap(&b, &after.slave, &after.master, &after.nodal_normals);
-        gap_a.iter().zip(gap_b).for_each(|(x, y)| assert!((x - y).abs() < 1e-11));
+        let gap_a: S::Nodal<f64> = weighted_gap(&a, &before.slave, &before.master, &before.nodal_normals);
+        let gap_b: S::Nodal<f64> = weighted_gap(&b, &after.slave, &after.master, &after.nodal_normals);
+        gap_a.iter().zip(gap_b.iter()).for_each(|(x, y)| assert!((x - y).abs() < 1e-11));
     }
 }
 
@@ -278,42 +293,43 @@ fn rigid_motions_change_nothing() {
     for_all_shapes!(rigid);
 }
 
-fn permuted<const NS: usize, const NM: usize, const NU: usize>() {
+fn permuted<S: FacetShape, M: FacetShape, const NU: usize>() {
+    let shapes = [S::SHAPE, M::SHAPE];
     for seed in 0..20 {
-        let a = random_pair::<NS, NM>(seed);
+        let a = random_pair::<S, M>(seed);
         // Flat facets: on warped ones, and where cells differ, the rule is not exact and depends on the first vertex.
-        let a = if NS == 2 { a } else { flattened(a) };
+        let a = if S::SPACE == 2 { a } else { flattened(a) };
         let mut b = a;
-        if NS > 2 {
-            b.slave.rotate_left(1);
-            b.nodal_normals.rotate_left(1);
-            b.master.rotate_left(NM - 1);
+        if S::SPACE > 2 {
+            b.slave.as_mut_slice().rotate_left(1);
+            b.nodal_normals.as_mut_slice().rotate_left(1);
+            b.master.as_mut_slice().rotate_left(M::NODES - 1);
         }
         let settings =
             SegmentationSettings { integration_order: IntegrationOrder::new(5).unwrap(), ..Default::default() };
         let (Overlap::Cells(x), Overlap::Cells(y)) = (operators(&a, &settings), operators(&b, &settings)) else {
             continue;
         };
-        for j in 0..NS {
-            for l in 0..NM {
-                let (pj, pl) = if NS > 2 { ((j + NS - 1) % NS, (l + 1) % NM) } else { (j, l) };
-                assert!((x.m[j][l] - y.m[pj][pl]).abs() < 1e-12, "{NS}–{NM} seed {seed}");
+        for j in 0..S::NODES {
+            for l in 0..M::NODES {
+                let (pj, pl) = if S::SPACE > 2 { ((j + S::NODES - 1) % S::NODES, (l + 1) % M::NODES) } else { (j, l) };
+                assert!((x.m[j][l] - y.m[pj][pl]).abs() < 1e-12, "{shapes:?} seed {seed}");
             }
         }
     }
 }
 
 /// The same pair as parallelograms or triangles in two parallel planes.
-fn flattened<const NS: usize, const NM: usize>(mut pair: PairGeometry<f64, NS, NM>) -> PairGeometry<f64, NS, NM> {
+fn flattened<S: FacetShape, M: FacetShape>(mut pair: PairGeometry<f64, S, M>) -> PairGeometry<f64, S, M> {
     let square = |x: &mut [[f64; 3]]| {
         x.iter_mut().for_each(|x| x[2] = 0.0);
         if x.len() == 4 {
             x[3] = sub(add(x[0], x[2]), x[1]);
         }
     };
-    square(&mut pair.slave);
-    square(&mut pair.master);
-    (pair.nodal_normals, pair.slave_normal) = ([[0.0, 0.0, 1.0]; NS], [0.0, 0.0, 1.0]);
+    square(pair.slave.as_mut_slice());
+    square(pair.master.as_mut_slice());
+    (pair.nodal_normals, pair.slave_normal) = (S::nodal(|_| [0.0, 0.0, 1.0]), [0.0, 0.0, 1.0]);
     pair.master_normal = [0.0, 0.0, -1.0];
     pair
 }
@@ -323,19 +339,20 @@ fn numbering_of_nodes_does_not_matter() {
     for_all_shapes!(permuted);
 }
 
-fn apart<const NS: usize, const NM: usize, const NU: usize>() {
+fn apart<S: FacetShape, M: FacetShape, const NU: usize>() {
     let far = |dx: f64, dz: f64| {
-        let up = if NS == 2 { [dx, dz, 0.0] } else { [dx, 0.0, dz] };
-        pair(unit_facet::<NS>(), flipped(unit_facet::<NM>()).map(|x| add(x, up)))
+        let up = if S::SPACE == 2 { [dx, dz, 0.0] } else { [dx, 0.0, dz] };
+        pair::<S, M>(unit_facet::<S>(), M::map(&flipped::<M>(unit_facet::<M>()), |x| add(x, up)))
     };
     let settings = SegmentationSettings { distance_threshold: 0.5, ..Default::default() };
-    assert_eq!(operators(&far(3.0, 0.0), &settings), Overlap::None);
-    assert_eq!(operators(&far(1.0, 0.0), &settings), Overlap::None, "facets that touch at an edge");
+    let meet = |dx: f64, dz: f64| !matches!(operators(&far(dx, dz), &settings), Overlap::None);
+    assert!(!meet(3.0, 0.0));
+    assert!(!meet(1.0, 0.0), "facets that touch at an edge");
     // On lines the threshold counts against the normal.
-    let distance = if NS == 2 { -0.6 } else { 0.6 };
-    assert_eq!(operators(&far(0.0, distance), &settings), Overlap::None, "beyond the threshold");
-    assert_ne!(operators(&far(0.0, -distance), &settings), Overlap::None, "the threshold is signed");
-    assert_ne!(operators(&far(0.5, 0.0), &settings), Overlap::None);
+    let distance = if S::SPACE == 2 { -0.6 } else { 0.6 };
+    assert!(!meet(0.0, distance), "beyond the threshold");
+    assert!(meet(0.0, -distance), "the threshold is signed");
+    assert!(meet(0.5, 0.0));
 }
 
 #[test]
@@ -343,24 +360,26 @@ fn nothing_where_facets_do_not_meet() {
     for_all_shapes!(apart);
 }
 
-fn degenerate<const NS: usize, const NM: usize, const NU: usize>() {
+fn degenerate<S: FacetShape, M: FacetShape, const NU: usize>() {
+    let shapes = [S::SHAPE, M::SHAPE];
     // Coincident facets, a node on an edge, a common edge, all with and without noise at rounding level.
     for (dx, scale_by) in [(0.0, 1.0), (0.5, 1.0), (0.25, 0.5), (0.0, 0.5), (-0.5, 2.0), (1.0 - 1e-9, 1.0)] {
         for noise in [0.0, 1e-16, 1e-14, 1e-12, 1e-10] {
             let mut random = Noise::new(7);
-            let master = flipped(unit_facet::<NM>())
-                .map(|x| add(add(scale(x, scale_by), [dx, 0.0, 0.0]), random.vector(noise, dimension(NS))));
-            let pair = pair(unit_facet::<NS>(), master);
+            let master = M::map(&flipped::<M>(unit_facet::<M>()), |x| {
+                add(add(scale(x, scale_by), [dx, 0.0, 0.0]), random.vector(noise, S::SPACE))
+            });
+            let pair = pair::<S, M>(unit_facet::<S>(), master);
             let settings = SegmentationSettings::default();
             let (plain, dual) = (operators(&pair, &settings), operators(&pair.seeded::<NU>(), &settings));
             let Overlap::Cells(dual) = dual else {
                 assert!(!matches!(plain, Overlap::Cells(_)));
                 continue;
             };
-            for x in dual.d.iter().flatten().chain(dual.m.iter().flatten()) {
+            for x in flat(&dual) {
                 assert!(x.value.is_finite());
                 let largest = x.gradient.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-                assert!(largest < 1e3, "{NS}–{NM} {dx} {scale_by} {noise}: {largest}");
+                assert!(largest < 1e3, "{shapes:?} {dx} {scale_by} {noise}: {largest}");
             }
         }
     }
@@ -382,8 +401,9 @@ fn several_masters_cover_a_slave_exactly() {
         for i in 0..count {
             for j in 0..count {
                 let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)].map(|(i, j)| corner(i, j, n, x0));
-                quads += area(&pair(slave, [a, b, c, d]));
-                triangles += area(&pair(slave, [a, b, c])) + area(&pair(slave, [a, c, d]));
+                quads += area(&pair::<Quadrilateral4, Quadrilateral4>(slave, [a, b, c, d]));
+                triangles += area(&pair::<Quadrilateral4, Triangle3>(slave, [a, b, c]))
+                    + area(&pair::<Quadrilateral4, Triangle3>(slave, [a, c, d]));
             }
         }
         // A sliver below the least overlap may be missing.
@@ -391,11 +411,12 @@ fn several_masters_cover_a_slave_exactly() {
     }
 }
 
-fn reference_values<const NS: usize, const NM: usize, const NU: usize>() {
+fn reference_values<S: FacetShape, M: FacetShape, const NU: usize>() {
+    let shapes = [S::SHAPE, M::SHAPE];
     let mut found = 0;
     for line in include_str!("reference_pairs.txt").lines().filter(|line| !line.starts_with('#')) {
         let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
-        if numbers[..2] != [NS as f64, NM as f64] {
+        if numbers[..2] != [S::NODES as f64, M::NODES as f64] {
             continue;
         }
         let mut rest = &numbers[2..];
@@ -404,20 +425,20 @@ fn reference_values<const NS: usize, const NM: usize, const NU: usize>() {
             rest = tail;
             *head
         };
-        let pair = PairGeometry::<f64, NS, NM> {
-            slave: std::array::from_fn(|_| vector()),
-            master: std::array::from_fn(|_| vector()),
-            nodal_normals: std::array::from_fn(|_| vector()),
+        let pair = PairGeometry::<f64, S, M> {
+            slave: S::nodal(|_| vector()),
+            master: M::nodal(|_| vector()),
+            nodal_normals: S::nodal(|_| vector()),
             slave_normal: vector(),
             master_normal: vector(),
             choices: Choices::default(),
         };
         let o = value_of(&pair);
         let gap = weighted_gap(&o, &pair.slave, &pair.master, &pair.nodal_normals);
-        let scale = rest[..NS * NS].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        assert_eq!(rest.len(), NS * (NS + NM + 1));
-        for (entry, (x, reference)) in flat(&o).iter().chain(&gap).zip(rest).enumerate() {
-            assert!((x - reference).abs() < 1e-10 * scale, "{NS}–{NM} entry {entry}: {x} {reference}");
+        let scale = rest[..S::NODES * S::NODES].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        assert_eq!(rest.len(), S::NODES * (S::NODES + M::NODES + 1));
+        for (entry, (x, reference)) in flat(&o).iter().chain(gap.iter()).zip(rest).enumerate() {
+            assert!((x - reference).abs() < 1e-10 * scale, "{shapes:?} entry {entry}: {x} {reference}");
         }
         found += 1;
     }
@@ -433,10 +454,11 @@ fn values_of_the_reference_program() {
 #[test]
 #[ignore = "a measurement"]
 fn cost_of_operators() {
-    fn measure<const NS: usize, const NM: usize, const NU: usize>() {
+    fn measure<S: FacetShape, M: FacetShape, const NU: usize>() {
+        let shapes = [S::SHAPE, M::SHAPE];
         let settings = SegmentationSettings::default();
-        let pairs: Vec<_> = (0..50).map(random_pair::<NS, NM>).collect();
-        let time = |f: &dyn Fn(&PairGeometry<f64, NS, NM>) -> f64| {
+        let pairs: Vec<_> = (0..50).map(random_pair::<S, M>).collect();
+        let time = |f: &dyn Fn(&PairGeometry<f64, S, M>) -> f64| {
             let start = std::time::Instant::now();
             let sum: f64 = (0..40).flat_map(|_| &pairs).map(f).sum();
             (start.elapsed().as_secs_f64() / 2000.0 * 1e6, sum)
@@ -444,7 +466,7 @@ fn cost_of_operators() {
         let (plain, a) = time(&|p| operators(p, &settings).cells().map_or(0.0, |o| o.m[0][0]));
         let (dual, b) = time(&|p| operators(&p.seeded::<NU>(), &settings).cells().map_or(0.0, |o| o.m[0][0].value));
         assert!((a - b).abs() < 1e-9);
-        println!("{NS}–{NM}: {plain:.2} µs plain, {dual:.2} µs dual, ratio {:.1}", dual / plain);
+        println!("{shapes:?}: {plain:.2} µs plain, {dual:.2} µs dual, ratio {:.1}", dual / plain);
     }
     for_all_shapes!(measure);
 }

@@ -1,5 +1,6 @@
 //! How a facet has turned since an earlier state.
 
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, cross, dot, normalised, sub};
 
@@ -15,11 +16,12 @@ pub struct Turn<T> {
 
 impl<T: Real> Turn<T> {
     /// From the nodes of a facet now and before.
-    pub fn of_facet<const N: usize>(now: &[[T; 3]; N], before: &[[f64; 3]; N]) -> Self {
-        let mut turn = Self { normal: normal(now), before: normal(before), cosine: T::one(), sine: T::zero() };
-        let (centre, centre_before) = (centre(now), centre(before));
+    pub fn of_facet<S: FacetShape>(now: &S::Nodal<[T; 3]>, before: &S::Nodal<[f64; 3]>) -> Self {
+        let mut turn =
+            Self { normal: normal::<T, S>(now), before: normal::<f64, S>(before), cosine: T::one(), sine: T::zero() };
+        let (centre, centre_before) = (centre::<T, S>(now), centre::<f64, S>(before));
         let (mut along, mut across) = (T::zero(), T::zero());
-        for (x, x_before) in now.iter().zip(before) {
+        for (x, x_before) in now.iter().zip(before.iter()) {
             let arm = turn.tilt(constant(sub(*x_before, centre_before)));
             let arm_now = sub(*x, centre);
             along += dot(arm, arm_now) - dot(turn.normal, arm) * dot(turn.normal, arm_now);
@@ -47,20 +49,25 @@ impl<T: Real> Turn<T> {
     }
 }
 
-fn centre<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
+fn centre<T: Real, S: FacetShape>(x: &S::Nodal<[T; 3]>) -> [T; 3] {
     let mut sum = [T::zero(); 3];
-    x.iter().for_each(|x| (0..3).for_each(|c| sum[c] += x[c] * (1.0 / N as f64)));
+    x.iter().for_each(|x| (0..3).for_each(|c| sum[c] += x[c] * (1.0 / S::NODES as f64)));
     sum
 }
 
 /// Unit normal: by the diagonals of a quadrilateral, two edges of a triangle; of a line that of its plane.
-fn normal<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
-    if N == 2 { [T::zero(), T::zero(), T::one()] } else { normalised(cross(sub(x[2], x[0]), sub(x[N - 1], x[1]))) }
+fn normal<T: Real, S: FacetShape>(x: &S::Nodal<[T; 3]>) -> [T; 3] {
+    if S::SPACE == 2 {
+        [T::zero(), T::zero(), T::one()]
+    } else {
+        normalised(cross(sub(x[2], x[0]), sub(x[S::CORNERS - 1], x[1])))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zelus_core::geometry::{Line2, Quadrilateral4, Triangle3};
     use zelus_core::vector3::norm;
 
     #[test]
@@ -76,12 +83,13 @@ mod tests {
         let triangle = [[0.0, 0.0, 0.0], [1.0, 0.2, 0.1], [0.3, 0.9, -0.2]];
         let quadrilateral = [[0.0, 0.0, 0.0], [1.0, 0.2, 0.1], [1.1, 1.3, 0.3], [0.3, 0.9, -0.2]];
         let vector = [0.3, -0.5, 0.7];
-        let by_triangle = Turn::of_facet(&triangle.map(move_on), &triangle).apply(vector);
-        let by_quadrilateral = Turn::of_facet(&quadrilateral.map(move_on), &quadrilateral).apply(vector);
+        let by_triangle = Turn::of_facet::<Triangle3>(&triangle.map(move_on), &triangle).apply(vector);
+        let by_quadrilateral =
+            Turn::of_facet::<Quadrilateral4>(&quadrilateral.map(move_on), &quadrilateral).apply(vector);
         for found in [by_triangle, by_quadrilateral] {
             assert!(norm(sub(found, turn(vector))) < 1e-14, "{found:?}");
         }
-        let line = Turn::of_facet(&[[0.0; 3], [c, s, 0.0]], &[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        let line = Turn::of_facet::<Line2>(&[[0.0; 3], [c, s, 0.0]], &[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         assert!(norm(sub(line.apply([0.0, 2.0, 0.0]), [-2.0 * s, 2.0 * c, 0.0])) < 1e-15);
     }
 }

@@ -4,24 +4,24 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::model::ModelPart;
 use zelus_structural_mechanics::variables::NORMAL;
 
 use super::pair::PairKey;
-use crate::interface::{Facet, Interface, centre_normal, positions};
+use crate::interface::{Facet, Interface};
 use crate::mortar::operators::SLIVER;
-use crate::mortar::shape;
 use crate::mortar::shapes::for_shapes;
-use crate::mortar::{Choices, Overlap, PairGeometry, SegmentationSettings, operators};
+use crate::mortar::{Choices, MOST_NODES, Overlap, PairGeometry, SegmentationSettings, operators};
 use crate::search::{Candidate, SearchSettings, candidates};
 
 /// D and M of a pair, in the leading rows and columns (area).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct FacetOperators {
     /// D_jk, slave on slave; diagonal where dual functions are in use.
-    pub d: [[f64; 4]; 4],
+    pub d: [[f64; MOST_NODES]; MOST_NODES],
     /// M_jl, slave on master.
-    pub m: [[f64; 4]; 4],
+    pub m: [[f64; MOST_NODES]; MOST_NODES],
     /// Whether the overlap is a sliver.
     pub sliver: bool,
 }
@@ -29,16 +29,16 @@ pub struct FacetOperators {
 impl FacetOperators {
     /// Row `j` of D⁻¹ M for `slaves` and `masters` nodes: the weights with which the master's values reach the slave node.
     /// They add up to one. D counts as diagonal, which it is where dual functions are in use.
-    pub fn weights(&self, j: usize, slaves: usize, masters: usize) -> [f64; 4] {
+    pub fn weights(&self, j: usize, slaves: usize, masters: usize) -> [f64; MOST_NODES] {
         let d: f64 = self.d[j][..slaves].iter().sum();
-        let mut out = [0.0; 4];
+        let mut out = [0.0; MOST_NODES];
         (0..masters).for_each(|l| out[l] = self.m[j][l] / d);
         out
     }
 
     /// Whether D is diagonal, so that dual functions were in use.
     pub fn is_diagonal(&self) -> bool {
-        (0..4).all(|j| (0..4).all(|k| j == k || self.d[j][k] == 0.0))
+        (0..MOST_NODES).all(|j| (0..MOST_NODES).all(|k| j == k || self.d[j][k] == 0.0))
     }
 
     /// (D v¹ − M v²)_j of nodal vectors.
@@ -72,28 +72,28 @@ pub fn facet_operators(
     settings: &SegmentationSettings,
 ) -> Option<FacetOperators> {
     macro_rules! make {
-        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
-            of_shapes::<$ns, $nm>(part, slave, master, settings)
+        ($slave:ty, $master:ty, $end:literal) => {
+            of_shapes::<$slave, $master>(part, slave, master, settings)
         };
     }
     for_shapes!(slave.shape, master.shape, make)?
 }
 
-fn of_shapes<const NS: usize, const NM: usize>(
+fn of_shapes<S: FacetShape, M: FacetShape>(
     part: &ModelPart,
     slave: &Facet,
     master: &Facet,
     settings: &SegmentationSettings,
 ) -> Option<FacetOperators> {
     let normals = part.nodes.history.values(&NORMAL, 0);
-    let mut buffer = [[0.0; 3]; 4];
+    let normal = |facet: &Facet| Some(facet.normal(part)).filter(|normal| *normal != [0.0; 3]);
     let position = |facet: &Facet, at: usize| part.nodes.current[facet.nodes[at] as usize];
-    let geometry = PairGeometry {
-        slave: std::array::from_fn::<_, NS, _>(|j| position(slave, j)),
-        master: std::array::from_fn::<_, NM, _>(|l| position(master, l)),
-        nodal_normals: std::array::from_fn(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
-        slave_normal: centre_normal(slave.shape, positions(slave, part, &mut buffer))?,
-        master_normal: centre_normal(master.shape, positions(master, part, &mut buffer))?,
+    let geometry = PairGeometry::<f64, S, M> {
+        slave: S::nodal(|j| position(slave, j)),
+        master: M::nodal(|l| position(master, l)),
+        nodal_normals: S::nodal(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
+        slave_normal: normal(slave)?,
+        master_normal: normal(master)?,
         choices: Choices { slivers: settings.slivers, ..Choices::default() },
     };
     let found = match operators(&geometry, settings) {
@@ -101,12 +101,12 @@ fn of_shapes<const NS: usize, const NM: usize>(
         Overlap::Sliver | Overlap::None => return None,
     };
     let mut out = FacetOperators::default();
-    for j in 0..NS {
-        out.d[j][..NS].copy_from_slice(&found.d[j]);
-        out.m[j][..NM].copy_from_slice(&found.m[j]);
+    for j in 0..S::NODES {
+        out.d[j][..S::NODES].copy_from_slice(found.d[j].as_slice());
+        out.m[j][..M::NODES].copy_from_slice(found.m[j].as_slice());
     }
-    let covered: f64 = found.d.as_flattened().iter().sum();
-    out.sliver = covered < SLIVER * shape::measure(&geometry.slave);
+    let covered: f64 = found.d.iter().flat_map(|row| row.iter()).sum();
+    out.sliver = covered < SLIVER * S::measure(&geometry.slave);
     Some(out)
 }
 

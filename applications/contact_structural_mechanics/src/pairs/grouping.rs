@@ -61,10 +61,3 @@ pub fn group_by_surroundings<T>(
 
 /// Numbers of nodes around pairs are multiples of this.
 const PLACES: usize = 2;
-
-/// Kratos' name of the condition of a pair of shapes; `stem` is the name up to the shape.
-pub fn condition_name(stem: &str, slave: Shape, master: Shape) -> String {
-    let dimension = if slave == Shape::Line2 { 2 } else { 3 };
-    let mixed = if slave == master { String::new() } else { format!("{}N", master.nodes()) };
-    format!("{stem}{dimension}D{}N{mixed}", slave.nodes())
-}

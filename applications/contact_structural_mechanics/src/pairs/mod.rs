@@ -10,13 +10,14 @@ mod pair_block;
 mod tying_block;
 
 pub use crate::formulations::Multiplier;
+pub use crate::mortar::condition_name;
 pub use contact_block::{ContactBlock, Present};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
 pub use family::{
     ByNode, Family, FamilyEntry, Friction, PairRequest, TyingFamily, TyingFamilyEntry, find_family, find_tying_family,
     variables_of,
 };
-pub use grouping::{Groups, condition_name, group_by_shapes, group_by_surroundings};
+pub use grouping::{Groups, group_by_shapes, group_by_surroundings};
 pub use nitsche_block::nitsche_block;
 pub use pair::{Integral, Pair, PairKey, Previous};
 pub use pair_block::PairBlock;

@@ -6,7 +6,7 @@ use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::Shape;
+use zelus_core::geometry::{FacetShape, NodeArray, Shape};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, dot};
 
@@ -16,8 +16,8 @@ use super::pair::{Integral, Pair};
 use super::pair_block::PairBlock;
 use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
 use crate::interface::{Bodies, Tractions};
+use crate::mortar::PairGeometry;
 use crate::mortar::shapes::for_shapes;
-use crate::mortar::{PairGeometry, dimension};
 use crate::slave_states::SlaveStates;
 
 /// The block of Nitsche's method for a pair of shapes (slave, master); `None` for shapes that carry no contact.
@@ -28,28 +28,28 @@ pub fn nitsche_block(
     friction: bool,
 ) -> Option<Box<dyn ContactBlock>> {
     macro_rules! make {
-        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
-            NitscheBlock::<$ns, $nm, $nu, $nn, $nv>::boxed(request, friction)
-        };
+        ($slave:ty, $master:ty, $end:literal) => {{
+            const NU: usize = PairGeometry::<f64, $slave, $master>::UNKNOWNS;
+            const NN: usize = PairGeometry::<f64, $slave, $master>::NORMALS;
+            NitscheBlock::<$slave, $master, NU, NN, { NU + 2 * NN }>::boxed(request, friction)
+        }};
     }
     for_shapes!(slave, master, make)
 }
 
-/// Pairs with `NS` slave and `NM` master nodes, `NU` displacement unknowns of the facets, `NN` components of nodal normals,
+/// Pairs of two shapes with `NU` displacement unknowns of the facets, `NN` components of nodal normals,
 /// and `NV` = `NU` + 2 `NN` variables: displacements, normals, and tractions at the inner points of the slave.
 ///
 /// Other nodes of the slave's element are among those around the pair.
-struct NitscheBlock<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> {
-    pairs: PairBlock<Nitsche, NS, NM, NU, NN>,
+struct NitscheBlock<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> {
+    pairs: PairBlock<Nitsche, S, M, NU, NN>,
     bodies: Arc<Bodies>,
 }
 
-impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize>
-    NitscheBlock<NS, NM, NU, NN, NV>
-{
+impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> NitscheBlock<S, M, NU, NN, NV> {
     /// The block of a request, with friction or without.
     fn boxed(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
-        const { assert!(NV == NU + 2 * NN && NN == dimension(NS) * NS, "a variable for each unknown of the formula") };
+        const { assert!(NV == NU + 2 * NN && NN == S::SPACE * S::NODES, "a variable for each unknown of the formula") };
         let (bodies, parameters) = (request.bodies.clone(), request.parameters.clone());
         let friction = friction.then_some(parameters.tangent_factor);
         let formulation = Nitsche { friction, ..parameters.nitsche };
@@ -61,8 +61,8 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         [key.interface, key.slave]
     }
 
-    fn nodes_of_points(&self, at: usize, states: &SlaveStates) -> [NodeOfPoints; NS] {
-        self.pairs.slaves(at).map(|node| {
+    fn nodes_of_points(&self, at: usize, states: &SlaveStates) -> S::Nodal<NodeOfPoints> {
+        S::map(&self.pairs.slaves(at), |node| {
             let own = &states[node];
             let (held, stuck) = (f64::from(u8::from(own.pressed)), f64::from(u8::from(own.stuck)));
             NodeOfPoints { carried: own.last.carried, friction: own.friction, held, stuck }
@@ -73,9 +73,9 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         &self,
         at: usize,
         (view, states): (&StepView<'_>, &SlaveStates),
-        geometry: &PairGeometry<T, NS, NM>,
-        tractions: &[[T; 3]; NS],
-    ) -> Option<PointForces<T, NS, NM>> {
+        geometry: &PairGeometry<T, S, M>,
+        tractions: &S::Nodal<[T; 3]>,
+    ) -> Option<PointForces<T, S, M>> {
         let face = self.bodies.slave_face(self.key(at));
         let nodes = self.nodes_of_points(at, states);
         let previous = self.pairs.previous(at, view, states);
@@ -88,18 +88,18 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
     fn residual(&self, at: usize, view: &StepView<'_>, rhs: &mut [f64]) -> Result<(), EntityError> {
         let key = self.key(at);
         let consistent = self.pairs.formulation().theta != 0.0;
-        let tractions = self.bodies.tractions::<NS>(key, view, consistent)?;
+        let tractions = self.bodies.tractions::<S>(key, view, consistent)?;
         let states = self.pairs.states();
         let geometry = self.pairs.geometry(at, view, states);
         let Some(out) = self.forces(at, (view, states), &geometry, &tractions.values) else { return Ok(()) };
-        let dim = dimension(NS);
-        let facets = out.master.iter().chain(&out.slave).flat_map(|force| &force[..dim]);
+        let dim = S::SPACE;
+        let facets = out.master.iter().chain(out.slave.iter()).flat_map(|force| &force[..dim]);
         rhs.iter_mut().zip(facets).for_each(|(row, force)| *row += force);
         if consistent {
             let unknowns = self.bodies.unknowns(key);
             for (r, &(node, c)) in unknowns.iter().enumerate() {
                 let work = |g: usize| dot(out.by_traction[g], tractions.by[g * unknowns.len() + r]);
-                rhs[self.pairs.first_row(at, node) + c] += (0..NS).map(work).sum::<f64>();
+                rhs[self.pairs.first_row(at, node) + c] += (0..S::NODES).map(work).sum::<f64>();
             }
         }
         Ok(())
@@ -113,8 +113,8 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         (lhs, width): (&mut [f64], usize),
         rhs: &mut [f64],
     ) -> Result<(), EntityError> {
-        let (key, dim) = (self.key(at), dimension(NS));
-        let Tractions { values, by } = self.bodies.tractions::<NS>(key, view, true)?;
+        let (key, dim) = (self.key(at), S::SPACE);
+        let Tractions { values, by } = self.bodies.tractions::<S>(key, view, true)?;
         let states = self.pairs.states();
         let plain = self.pairs.geometry(at, view, states);
         let mut geometry = self.pairs.seeded::<NV>(&plain);
@@ -124,14 +124,14 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
             out
         };
         if self.pairs.parameters().normal_variation.knows_nodes() {
-            geometry.nodal_normals = std::array::from_fn(|j| variable(plain.nodal_normals[j], NU + dim * j));
+            geometry.nodal_normals = S::nodal(|j| variable(plain.nodal_normals[j], NU + dim * j));
         }
-        let tractions = std::array::from_fn(|g| variable(values[g], NU + NN + dim * g));
+        let tractions = S::nodal(|g| variable(values[g], NU + NN + dim * g));
         let Some(out) = self.forces(at, (view, states), &geometry, &tractions) else { return Ok(()) };
 
         // The rows of all local unknowns by the variables of the formula.
         let mut rows = vec![[0.0; NV]; width];
-        let facets = out.master.iter().chain(&out.slave).flat_map(|force| &force[..dim]);
+        let facets = out.master.iter().chain(out.slave.iter()).flat_map(|force| &force[..dim]);
         for (row, force) in facets.enumerate() {
             rhs[row] += force.value;
             rows[row] = force.gradient;
@@ -140,7 +140,7 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         let size = unknowns.len();
         let places: Vec<usize> = unknowns.iter().map(|&(node, c)| self.pairs.first_row(at, node) + c).collect();
         for (r, &row) in places.iter().enumerate() {
-            for g in 0..NS {
+            for g in 0..S::NODES {
                 for c in 0..dim {
                     let factor = by[g * size + r][c];
                     rhs[row] += out.by_traction[g][c].value * factor;
@@ -156,7 +156,7 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
             for (r, &column) in places.iter().enumerate() {
                 let (by_traction, by) = (&derivatives[NU + NN..], &by);
                 let slope = |g: usize| (0..dim).map(move |c| by_traction[dim * g + c] * by[g * size + r][c]);
-                lhs[column] -= (0..NS).flat_map(slope).sum::<f64>();
+                lhs[column] -= (0..S::NODES).flat_map(slope).sum::<f64>();
             }
         }
         if self.pairs.parameters().normal_variation.knows_nodes() {
@@ -164,16 +164,16 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
             self.pairs.spread_turning(at, view, &by_normals, (lhs, width));
         }
         if self.pairs.formulation().theta != 0.0 {
-            let weights = out.by_traction.map(|work| work.map(|w| w.value));
+            let weights = S::map(&out.by_traction, |work| work.map(|w| w.value));
             self.bodies
-                .add_second_derivative(key, view, &weights, |r, s, d| lhs[places[r] * width + places[s]] -= d)?;
+                .add_second_derivative::<S>(key, view, &weights, |r, s, d| lhs[places[r] * width + places[s]] -= d)?;
         }
         Ok(())
     }
 }
 
-impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> EntityBlock
-    for NitscheBlock<NS, NM, NU, NN, NV>
+impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> EntityBlock
+    for NitscheBlock<S, M, NU, NN, NV>
 {
     fn entry(&self) -> &'static EntityKind {
         self.pairs.entry()
@@ -226,8 +226,8 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
     }
 }
 
-impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const NV: usize> ContactBlock
-    for NitscheBlock<NS, NM, NU, NN, NV>
+impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> ContactBlock
+    for NitscheBlock<S, M, NU, NN, NV>
 {
     fn pairs(&self) -> &[Pair] {
         self.pairs.pairs()
@@ -252,11 +252,11 @@ impl<const NS: usize, const NM: usize, const NU: usize, const NN: usize, const N
         let mut integrals = self.pairs.integrate(present);
         integrals.par_iter_mut().enumerate().with_min_len(32).filter(|(_, found)| found.overlapping).for_each(
             |(at, found)| {
-                let Ok(tractions) = self.bodies.tractions::<NS>(self.key(at), view, false) else { return };
+                let Ok(tractions) = self.bodies.tractions::<S>(self.key(at), view, false) else { return };
                 let geometry = self.pairs.geometry(at, view, states);
                 if let Some(forces) = self.forces(at, (view, states), &geometry, &tractions.values) {
-                    found.trial[..NS].copy_from_slice(&forces.slave);
-                    found.carried[..NS].copy_from_slice(&forces.carried);
+                    found.trial[..S::NODES].copy_from_slice(forces.slave.as_slice());
+                    found.carried[..S::NODES].copy_from_slice(forces.carried.as_slice());
                 }
             },
         );

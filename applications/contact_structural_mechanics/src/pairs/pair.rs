@@ -1,8 +1,9 @@
 //! One slave facet and one master facet that overlap.
 
 use serde::{Deserialize, Serialize};
+use zelus_core::geometry::FacetShape;
 
-use crate::mortar::{Choices, Operators};
+use crate::mortar::{Choices, MOST_NODES, Operators};
 
 /// Which facets of which interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -19,18 +20,15 @@ pub struct PairKey {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Previous {
     /// D of the start of the step, in the leading rows and columns.
-    pub d: [[f64; 4]; 4],
+    pub d: [[f64; MOST_NODES]; MOST_NODES],
     /// M of the start of the step.
-    pub m: [[f64; 4]; 4],
+    pub m: [[f64; MOST_NODES]; MOST_NODES],
 }
 
 impl Previous {
     /// D and M of a pair with these numbers of nodes.
-    pub fn operators<const NS: usize, const NM: usize>(&self) -> Operators<f64, NS, NM> {
-        Operators {
-            d: std::array::from_fn(|j| std::array::from_fn(|k| self.d[j][k])),
-            m: std::array::from_fn(|j| std::array::from_fn(|l| self.m[j][l])),
-        }
+    pub fn operators<S: FacetShape, M: FacetShape>(&self) -> Operators<f64, S, M> {
+        Operators { d: S::nodal(|j| S::nodal(|k| self.d[j][k])), m: S::nodal(|j| M::nodal(|l| self.m[j][l])) }
     }
 }
 
@@ -46,11 +44,19 @@ pub struct Pair {
     /// Whether the facets overlap now; a pair that does not is isolated and contributes nothing.
     pub overlapping: bool,
     /// Area that it has of each slave node, in the state integrated last.
-    pub area: [f64; 4],
+    pub area: [f64; MOST_NODES],
     /// Operators at the start of the step.
     pub previous: Previous,
     /// Choices of the integration that are frozen until the step ends.
     pub choices: Choices,
+}
+
+impl Pair {
+    /// A pair that overlaps and remembers nothing, with these normals of its slave and its master.
+    pub fn new(key: PairKey, [slave_normal, master_normal]: [[f64; 3]; 2]) -> Self {
+        let (area, previous, choices) = Default::default();
+        Self { key, slave_normal, master_normal, overlapping: true, area, previous, choices }
+    }
 }
 
 /// What a pair adds to its slave nodes.
@@ -61,15 +67,15 @@ pub struct Integral {
     /// Whether they overlap at all.
     pub facing: bool,
     /// D_jj (area).
-    pub area: [f64; 4],
+    pub area: [f64; MOST_NODES],
     /// Weighted gap, negative in penetration.
-    pub gap: [f64; 4],
+    pub gap: [f64; MOST_NODES],
     /// Weighted slip of the step.
-    pub slip: [[f64; 3]; 4],
+    pub slip: [[f64; 3]; MOST_NODES],
     /// Area times trial traction, where a family carries tractions from state to state.
-    pub trial: [[f64; 3]; 4],
+    pub trial: [[f64; 3]; MOST_NODES],
     /// Area times traction that the body lacks, where integration points decide on friction.
-    pub carried: [[f64; 3]; 4],
+    pub carried: [[f64; 3]; MOST_NODES],
     /// D and M themselves.
     pub operators: Previous,
 }

@@ -1,15 +1,16 @@
 //! A block of pairs of one family and one pair of shapes.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::Shape;
+use zelus_core::geometry::{FacetShape, NodeArray, Shape};
 use zelus_core::model::ScalarVariable;
-use zelus_core::scalar::{Dual, Real};
-use zelus_core::vector3::{add, cross, normalised, scale, sub};
+use zelus_core::scalar::Dual;
+use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_block::{ContactBlock, Present};
@@ -20,7 +21,7 @@ use crate::formulations::{NormalVariation, StepParameters};
 use crate::interface::{Corner, NormalPatches};
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::shapes::for_shapes;
-use crate::mortar::{Choices, Overlap, PairGeometry, choices_of, dimension, operators, weighted_gap};
+use crate::mortar::{Choices, MOST_NODES, Overlap, PairGeometry, choices_of, operators, weighted_gap};
 use crate::slave_states::SlaveStates;
 
 /// The block of a formulation for a pair of shapes (slave, master); `None` for shapes that carry no contact.
@@ -30,17 +31,19 @@ pub(super) fn pair_block<F: Formulation>(
     request: PairRequest,
 ) -> Option<Box<dyn ContactBlock>> {
     macro_rules! make {
-        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
-            PairBlock::<F, $ns, $nm, $nu, $nn>::boxed(request)
-        };
+        ($slave:ty, $master:ty, $end:literal) => {{
+            const NU: usize = PairGeometry::<f64, $slave, $master>::UNKNOWNS;
+            const NN: usize = PairGeometry::<f64, $slave, $master>::NORMALS;
+            PairBlock::<F, $slave, $master, NU, NN>::boxed(request)
+        }};
     }
     for_shapes!(slave, master, make)
 }
 
-/// Pairs with `NS` slave and `NM` master nodes, `NU` displacement unknowns and `NN` components of nodal normals.
+/// Pairs of two shapes with `NU` displacement unknowns and `NN` components of nodal normals.
 ///
 /// Their rows are those of the formulation; nodes around a pair follow as columns, for they turn its normals.
-pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize, const NN: usize> {
+pub struct PairBlock<F, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> {
     entry: &'static EntityKind,
     pairs: Vec<Pair>,
     nodes: Vec<u32>,
@@ -50,9 +53,10 @@ pub struct PairBlock<F, const NS: usize, const NM: usize, const NU: usize, const
     states: Arc<SlaveStates>,
     formulation: F,
     unknowns: Vec<LocalUnknown>,
+    shapes: PhantomData<(S, M)>,
 }
 
-impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> PairBlock<F, NS, NM, NU, NN> {
+impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> PairBlock<F, S, M, NU, NN> {
     /// The block of a request.
     pub fn boxed(request: PairRequest) -> Box<dyn ContactBlock> {
         let formulation = F::new(&request.parameters);
@@ -62,19 +66,19 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
     /// The block of a request with this formulation.
     pub(super) fn new(request: PairRequest, formulation: F) -> Self {
         let PairRequest { entry, pairs, nodes, around, patches, parameters, states, .. } = request;
-        let dim = dimension(NS);
+        let dim = S::SPACE;
         let displacements = |nodes: Range<usize>| {
             nodes.flat_map(move |node| {
                 (0..dim as u8).map(move |c| LocalUnknown { node: node as u8, variable: DISPLACEMENT.component(c) })
             })
         };
-        let mut unknowns: Vec<LocalUnknown> = displacements(around..around + NM + NS).collect();
+        let mut unknowns: Vec<LocalUnknown> = displacements(around..around + M::NODES + S::NODES).collect();
         let multipliers: Vec<ScalarVariable> = F::MULTIPLIER.unknowns(dim);
-        for node in around + NM..around + NM + NS {
+        for node in around + M::NODES..around + M::NODES + S::NODES {
             unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
         }
         unknowns.extend(displacements(0..around));
-        Self { entry, pairs, nodes, around, patches, parameters, states, formulation, unknowns }
+        Self { entry, pairs, nodes, around, patches, parameters, states, formulation, unknowns, shapes: PhantomData }
     }
 
     pub(super) fn parameters(&self) -> &StepParameters {
@@ -87,7 +91,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
 
     /// Row of the first displacement of a node of the `at`-th pair.
     pub(super) fn first_row(&self, at: usize, node: u32) -> usize {
-        let dim = dimension(NS);
+        let dim = S::SPACE;
         let place = self.nodes(at).iter().rposition(|&n| n == node).expect("the node belongs to the pair");
         match place.checked_sub(self.around) {
             Some(place) => dim * place,
@@ -96,27 +100,27 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
     }
 
     fn first(&self, at: usize) -> usize {
-        at * (self.around + NM + NS) + self.around
+        at * (self.around + M::NODES + S::NODES) + self.around
     }
 
-    fn masters(&self, at: usize) -> [u32; NM] {
-        std::array::from_fn(|n| self.nodes[self.first(at) + n])
+    fn masters(&self, at: usize) -> M::Nodal<u32> {
+        M::nodal(|n| self.nodes[self.first(at) + n])
     }
 
-    pub(super) fn slaves(&self, at: usize) -> [u32; NS] {
-        std::array::from_fn(|n| self.nodes[self.first(at) + NM + n])
+    pub(super) fn slaves(&self, at: usize) -> S::Nodal<u32> {
+        S::nodal(|n| self.nodes[self.first(at) + M::NODES + n])
     }
 
     pub(super) fn states(&self) -> &SlaveStates {
         &self.states
     }
 
-    pub(super) fn geometry(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, NS, NM> {
+    pub(super) fn geometry(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, S, M> {
         let pair = &self.pairs[at];
         PairGeometry {
-            slave: self.slaves(at).map(|n| view.nodes.current[n as usize]),
-            master: self.masters(at).map(|n| view.nodes.current[n as usize]),
-            nodal_normals: self.slaves(at).map(|n| states[n].normal),
+            slave: S::map(&self.slaves(at), |n| view.nodes.current[n as usize]),
+            master: M::map(&self.masters(at), |n| view.nodes.current[n as usize]),
+            nodal_normals: S::map(&self.slaves(at), |n| states[n].normal),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
             choices: pair.choices,
@@ -124,14 +128,11 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
     }
 
     /// The pair with displacements as variables, and normals of facets too where the settings ask for it.
-    pub(super) fn seeded<const NV: usize>(
-        &self,
-        geometry: &PairGeometry<f64, NS, NM>,
-    ) -> PairGeometry<Dual<NV>, NS, NM> {
+    pub(super) fn seeded<const NV: usize>(&self, geometry: &PairGeometry<f64, S, M>) -> PairGeometry<Dual<NV>, S, M> {
         let mut seeded = geometry.seeded::<NV>();
         if self.parameters.normal_variation.knows_facets() {
-            seeded.slave_normal = facet_normal(&seeded.slave);
-            seeded.master_normal = facet_normal(&seeded.master);
+            seeded.slave_normal = S::unit_normal(&seeded.slave, S::CENTRE);
+            seeded.master_normal = M::unit_normal(&seeded.master, M::CENTRE);
         }
         seeded
     }
@@ -141,10 +142,10 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
         &self,
         at: usize,
         view: &StepView<'_>,
-        geometry: &PairGeometry<f64, NS, NM>,
-        nodes: &[SlaveNode; NS],
-        multipliers: &[[f64; 3]; NS],
-        history: &F::History<NS, NM>,
+        geometry: &PairGeometry<f64, S, M>,
+        nodes: &S::Nodal<SlaveNode>,
+        multipliers: &S::Nodal<[f64; 3]>,
+        history: &F::History<S, M>,
         (lhs, width): (&mut [f64], usize),
     ) {
         let mut by_normals = [[0.0; NN]; MOST_ROWS];
@@ -158,7 +159,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
             history,
             keep,
         );
-        let rows = width - dimension(NS) * self.around;
+        let rows = width - S::SPACE * self.around;
         self.spread_turning(at, view, &by_normals[..rows], (lhs, width));
     }
 
@@ -170,7 +171,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
         by_normals: &[[f64; NN]],
         (lhs, width): (&mut [f64], usize),
     ) {
-        let dim = dimension(NS);
+        let dim = S::SPACE;
         let own = self.pairs[at].key;
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
@@ -190,7 +191,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
         }
     }
 
-    pub(super) fn previous(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, NS, NM> {
+    pub(super) fn previous(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, S, M> {
         let displacement = &view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns").levels;
         let back = &displacement[self.parameters.levels_back.min(displacement.len() - 1)];
         let position = |n: u32| {
@@ -199,21 +200,21 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
             std::array::from_fn(|c| initial[c] + u[c])
         };
         PairGeometry {
-            slave: self.slaves(at).map(position),
-            master: self.masters(at).map(position),
+            slave: S::map(&self.slaves(at), position),
+            master: M::map(&self.masters(at), position),
             ..self.geometry(at, view, states)
         }
     }
 
     /// Constants of the slave nodes of the `at`-th pair.
-    fn slave_constants(&self, at: usize, states: &SlaveStates) -> [SlaveNode; NS] {
+    fn slave_constants(&self, at: usize, states: &SlaveStates) -> S::Nodal<SlaveNode> {
         let positive = |area: f64| if area > 0.0 { area } else { 1.0 };
         // The bounds of pairs that augment have gaps of their own, which add up to zero if all count alike.
         let by_pair = self.parameters.augmentation == Augmentation::Pair;
         let own = self.pairs[at].area;
         let k = self.parameters.scale_factor;
         let slaves = self.slaves(at);
-        std::array::from_fn(|j| {
+        S::nodal(|j| {
             let node = &states[slaves[j]];
             let area = positive(node.area);
             let stiffness = self.parameters.nodal_stiffness(node.penalty, area);
@@ -236,8 +237,8 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
         })
     }
 
-    fn multipliers(&self, at: usize, view: &StepView<'_>) -> [[f64; 3]; NS] {
-        self.slaves(at).map(|n| F::MULTIPLIER.value(view.nodes, n))
+    fn multipliers(&self, at: usize, view: &StepView<'_>) -> S::Nodal<[f64; 3]> {
+        S::map(&self.slaves(at), |n| F::MULTIPLIER.value(view.nodes, n))
     }
 }
 
@@ -246,23 +247,11 @@ fn vector(column: &[f64], node: u32) -> [f64; 3] {
     [column[at], column[at + 1], column[at + 2]]
 }
 
-/// Rows of the largest pair: displacements and multipliers of two quadrilaterals in space.
-const MOST_ROWS: usize = 36;
+/// Rows of the largest pair: displacements and multipliers of two facets in space.
+const MOST_ROWS: usize = 9 * MOST_NODES;
 
-/// Unit normal of a facet at its centre.
-fn facet_normal<T: Real, const N: usize>(x: &[[T; 3]; N]) -> [T; 3] {
-    match N {
-        2 => {
-            let t = sub(x[1], x[0]);
-            normalised([t[1], -t[0], T::zero()])
-        }
-        4 => normalised(cross(sub(x[2], x[0]), sub(x[3], x[1]))),
-        _ => normalised(cross(sub(x[1], x[0]), sub(x[2], x[0]))),
-    }
-}
-
-impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> EntityBlock
-    for PairBlock<F, NS, NM, NU, NN>
+impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> EntityBlock
+    for PairBlock<F, S, M, NU, NN>
 {
     fn entry(&self) -> &'static EntityKind {
         self.entry
@@ -277,7 +266,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
     }
 
     fn nodes(&self, at: usize) -> &[u32] {
-        let size = self.around + NM + NS;
+        let size = self.around + M::NODES + S::NODES;
         &self.nodes[at * size..(at + 1) * size]
     }
 
@@ -309,7 +298,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
             let multipliers = self.multipliers(at, view);
             let history = F::History::of(self.pairs[at].previous.operators(), &self.previous(at, view, &self.states));
             let settings = &self.parameters.segmentation;
-            let (width, rows) = (out.size, out.size - dimension(NS) * self.around);
+            let (width, rows) = (out.size, out.size - S::SPACE * self.around);
             let (lhs, rhs) = out.entity(slot);
             let rhs = &mut rhs[..rows];
             if want == Want::Both {
@@ -318,7 +307,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
                     &self.formulation,
                     &self.seeded::<NU>(&geometry),
                     settings,
-                    FirstIterateTangent::of(view, dimension(NS)),
+                    FirstIterateTangent::of(view, S::SPACE),
                     &nodes,
                     &multipliers,
                     &history,
@@ -337,8 +326,8 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
     }
 }
 
-impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN: usize> ContactBlock
-    for PairBlock<F, NS, NM, NU, NN>
+impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> ContactBlock
+    for PairBlock<F, S, M, NU, NN>
 {
     fn pairs(&self) -> &[Pair] {
         &self.pairs
@@ -349,7 +338,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
     }
 
     fn slave_nodes(&self, at: usize) -> &[u32] {
-        &self.nodes[self.first(at) + NM..self.first(at) + NM + NS]
+        &self.nodes[self.first(at) + M::NODES..self.first(at) + M::NODES + S::NODES]
     }
 
     fn set_states(&mut self, states: Arc<SlaveStates>) {
@@ -368,7 +357,7 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
                 }
                 let geometry = self.geometry(at, view, states);
                 let found = operators(&geometry, &self.parameters.segmentation);
-                out.facing = found != Overlap::None;
+                out.facing = !matches!(found, Overlap::None);
                 if let Overlap::Cells(operators) = found {
                     out.overlapping = true;
                     let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
@@ -378,17 +367,17 @@ impl<F: Formulation, const NS: usize, const NM: usize, const NU: usize, const NN
                         slave: geometry.slave,
                         master: geometry.master,
                         normals: geometry.nodal_normals,
-                        multipliers: [[0.0; 3]; NS],
+                        multipliers: S::nodal(|_| [0.0; 3]),
                     };
                     let slip = self.formulation.weighted_slip(&pair, &history);
                     let trial = self.formulation.weighted_trial(&pair, &self.slave_constants(at, states), &history);
-                    for j in 0..NS {
+                    for j in 0..S::NODES {
                         out.area[j] = operators.d[j].iter().sum();
                         out.gap[j] = gaps[j];
                         out.slip[j] = slip[j];
                         out.trial[j] = trial.map_or([0.0; 3], |trial| trial[j]);
-                        (0..NS).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
-                        (0..NM).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
+                        (0..S::NODES).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
+                        (0..M::NODES).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
                     }
                 }
                 out

@@ -4,13 +4,13 @@ use std::ops::Range;
 use zelus_core::model::EntityKind;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::Shape;
+use zelus_core::geometry::{FacetShape, Shape};
 use zelus_core::model::ScalarVariable;
 
 use super::facet_operators::FacetPair;
 use crate::formulations::MeshTying;
+use crate::mortar::Operators;
 use crate::mortar::shapes::for_shapes;
-use crate::mortar::{Operators, dimension};
 
 /// What a block of ties is made from.
 pub struct TyingRequest {
@@ -31,10 +31,12 @@ pub struct TyingRequest {
 /// The block of a pair of shapes (slave, master) and any number of tied components; `None` for shapes without ties.
 pub fn tying_block(slave: Shape, master: Shape, request: TyingRequest) -> Option<Box<dyn EntityBlock>> {
     macro_rules! make {
-        ($ns:literal, $nm:literal, $nu:literal, $nn:literal, $nv:literal) => {
+        ($slave:ty, $master:ty, $end:literal) => {
             match request.tied.len() {
-                1 => Some(TyingBlock::<$ns, $nm, 1>::boxed(request)),
-                count if count == dimension($ns) => Some(TyingBlock::<$ns, $nm, { dimension($ns) }>::boxed(request)),
+                1 => Some(TyingBlock::<$slave, $master, 1>::boxed(request)),
+                count if count == <$slave>::SPACE => {
+                    Some(TyingBlock::<$slave, $master, { <$slave>::SPACE }>::boxed(request))
+                }
                 _ => None,
             }
         };
@@ -42,38 +44,36 @@ pub fn tying_block(slave: Shape, master: Shape, request: TyingRequest) -> Option
     for_shapes!(slave, master, make)?
 }
 
-/// Pairs with `NS` slave and `NM` master nodes and `C` tied numbers a node.
-struct TyingBlock<const NS: usize, const NM: usize, const C: usize> {
+/// Pairs of shapes with `C` tied numbers a node.
+struct TyingBlock<S: FacetShape, M: FacetShape, const C: usize> {
     request: TyingRequest,
-    operators: Vec<Operators<f64, NS, NM>>,
+    operators: Vec<Operators<f64, S, M>>,
     unknowns: Vec<LocalUnknown>,
 }
 
-impl<const NS: usize, const NM: usize, const C: usize> TyingBlock<NS, NM, C> {
+impl<S: FacetShape, M: FacetShape, const C: usize> TyingBlock<S, M, C> {
     fn boxed(request: TyingRequest) -> Box<dyn EntityBlock> {
         let row = |node: usize, variable: ScalarVariable| LocalUnknown { node: node as u8, variable };
-        let mut unknowns = Vec::with_capacity(MeshTying::size::<NS, NM, C>());
-        for node in 0..NM + NS {
+        let mut unknowns = Vec::with_capacity(MeshTying::size::<S, M, C>());
+        for node in 0..M::NODES + S::NODES {
             unknowns.extend(request.tied.iter().map(|&variable| row(node, variable)));
         }
-        for node in NM..NM + NS {
+        for node in M::NODES..M::NODES + S::NODES {
             unknowns.extend(request.multipliers.iter().map(|&variable| row(node, variable)));
         }
         let operators = request.pairs.iter().map(|pair| Operators {
-            d: std::array::from_fn(|j| std::array::from_fn(|k| pair.operators.d[j][k])),
-            m: std::array::from_fn(|j| std::array::from_fn(|l| pair.operators.m[j][l])),
+            d: S::nodal(|j| S::nodal(|k| pair.operators.d[j][k])),
+            m: S::nodal(|j| M::nodal(|l| pair.operators.m[j][l])),
         });
         Box::new(Self { operators: operators.collect(), unknowns, request })
     }
 
-    fn values<const N: usize>(view: &StepView<'_>, nodes: &[u32], variables: &[ScalarVariable]) -> [[f64; C]; N] {
-        std::array::from_fn(|n| {
-            std::array::from_fn(|c| view.nodes.history.scalar(variables[c], nodes[n] as usize).unwrap_or(0.0))
-        })
+    fn values<N: FacetShape>(view: &StepView<'_>, nodes: &[u32], variables: &[ScalarVariable]) -> N::Nodal<[f64; C]> {
+        N::nodal(|n| std::array::from_fn(|c| view.nodes.history.scalar(variables[c], nodes[n] as usize).unwrap_or(0.0)))
     }
 }
 
-impl<const NS: usize, const NM: usize, const C: usize> EntityBlock for TyingBlock<NS, NM, C> {
+impl<S: FacetShape, M: FacetShape, const C: usize> EntityBlock for TyingBlock<S, M, C> {
     fn entry(&self) -> &'static EntityKind {
         self.request.entry
     }
@@ -87,7 +87,7 @@ impl<const NS: usize, const NM: usize, const C: usize> EntityBlock for TyingBloc
     }
 
     fn nodes(&self, at: usize) -> &[u32] {
-        &self.request.nodes[at * (NM + NS)..(at + 1) * (NM + NS)]
+        &self.request.nodes[at * (M::NODES + S::NODES)..(at + 1) * (M::NODES + S::NODES)]
     }
 
     fn unknowns(&self) -> &[LocalUnknown] {
@@ -111,17 +111,17 @@ impl<const NS: usize, const NM: usize, const C: usize> EntityBlock for TyingBloc
     ) -> Result<(), EntityError> {
         let formulation = MeshTying { scale_factor: self.request.scale_factor };
         for (slot, at) in range.enumerate() {
-            let (master, slave) = self.nodes(at).split_at(NM);
+            let (master, slave) = self.nodes(at).split_at(M::NODES);
             let (lhs, rhs) = out.entity(slot);
-            formulation.residual::<NS, NM, C>(
+            formulation.residual::<S, M, C>(
                 &self.operators[at],
-                &Self::values(view, master, &self.request.tied),
-                &Self::values(view, slave, &self.request.tied),
-                &Self::values(view, slave, &self.request.multipliers),
+                &Self::values::<M>(view, master, &self.request.tied),
+                &Self::values::<S>(view, slave, &self.request.tied),
+                &Self::values::<S>(view, slave, &self.request.multipliers),
                 rhs,
             );
             if want == Want::Both {
-                formulation.tangent::<NS, NM, C>(&self.operators[at], lhs);
+                formulation.tangent::<S, M, C>(&self.operators[at], lhs);
             }
         }
         Ok(())

@@ -5,7 +5,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, sub};
 
 use super::tree::{Bounds, Tree};
-use crate::interface::{Facet, Interface, Roles, centre_normal, positions};
+use crate::interface::{Facet, Interface, Roles};
 
 /// How a search decides which slave nodes start the step in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
@@ -79,11 +79,6 @@ pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSett
     among(part, interface, &of_role(Roles::Slave), &of_role(Roles::Master), settings)
 }
 
-/// Unit normal of a facet at its centre, zero when it has no area.
-pub(super) fn facet_normal(part: &ModelPart, facet: &Facet) -> [f64; 3] {
-    centre_normal(facet.shape, positions(facet, part, &mut [[0.0; 3]; 4])).unwrap_or([0.0; 3])
-}
-
 /// Candidates between two lists of facets.
 pub(super) fn among(
     part: &ModelPart,
@@ -131,13 +126,12 @@ pub(super) struct Place {
 
 impl Place {
     pub(super) fn of(part: &ModelPart, facet: &Facet) -> Self {
-        let mut buffer = [[0.0; 3]; 4];
-        let points = positions(facet, part, &mut buffer);
+        let points = facet.positions(part);
         let centre: [f64; 3] = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);
         Self {
-            bounds: Bounds::of(points),
+            bounds: Bounds::of(&points),
             centre,
-            normal: centre_normal(facet.shape, points).unwrap_or([0.0; 3]),
+            normal: facet.normal_at(&points),
             radius: points.iter().map(|p| norm(sub(*p, centre))).fold(0.0, f64::max),
         }
     }

@@ -5,8 +5,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, scale, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use super::candidates::facet_normal;
-use crate::interface::{Facet, positions};
+use crate::interface::Facet;
 use crate::variables::NODAL_H;
 
 /// Slack of local coordinates at the edge of the master.
@@ -16,9 +15,8 @@ const EDGE: f64 = 1e-9;
 ///
 /// The distance runs along the node's normal, or along the master's where the first misses.
 pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f64) -> Vec<u32> {
-    let mut buffer = [[0.0; 3]; 4];
-    let points = positions(master, part, &mut buffer);
-    let normal = facet_normal(part, master);
+    let points = master.positions(part);
+    let normal = master.normal_at(&points);
     let normals = part.nodes.history.values(&NORMAL, 0);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     let touches = |node: u32, direction: [f64; 3]| {
@@ -26,7 +24,7 @@ pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f
         let distance = dot(sub(points[0], x), normal) / dot(direction, normal);
         let foot = std::array::from_fn(|c| x[c] + distance * direction[c]);
         let inside = || {
-            local_coordinates(master.shape, points, foot).is_some_and(|at| master.shape.cell().contains(at.xi, EDGE))
+            local_coordinates(master.shape, &points, foot).is_some_and(|at| master.shape.cell().contains(at.xi, EDGE))
         };
         distance.is_finite() && distance <= factor * size && distance >= -size && inside()
     };

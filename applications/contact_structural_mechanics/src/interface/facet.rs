@@ -1,0 +1,85 @@
+//! One piece of a contact surface.
+
+use std::ops::Deref;
+
+use serde::{Deserialize, Serialize};
+use zelus_core::geometry::Shape;
+use zelus_core::geometry::mapping::{domain_size, unit_normal};
+use zelus_core::model::ModelPart;
+
+use crate::mortar::MOST_NODES;
+
+/// Which sides a facet can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Roles {
+    /// Carries multipliers.
+    Slave,
+    /// Is touched.
+    Master,
+    /// Either, to be decided by each search (self contact).
+    Open,
+}
+
+/// Where a facet comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FacetSource {
+    /// A condition of the mesh, by its index.
+    Condition(u32),
+    /// A face of an element, by the index of the element.
+    Face(u32),
+}
+
+/// One piece of a contact surface; its nodes go round so that the normal points out of the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facet {
+    /// Node indices.
+    pub nodes: Vec<u32>,
+    /// One that carries contact.
+    pub shape: Shape,
+    /// What it is part of.
+    pub source: FacetSource,
+    /// Index of the element whose face it is.
+    pub element: u32,
+    /// Properties id with the elastic constants of the body.
+    pub properties: usize,
+    /// Its side.
+    pub role: Roles,
+}
+
+/// Positions of the nodes of a facet.
+pub struct Positions {
+    places: [[f64; 3]; MOST_NODES],
+    count: usize,
+}
+
+impl Deref for Positions {
+    type Target = [[f64; 3]];
+
+    fn deref(&self) -> &[[f64; 3]] {
+        &self.places[..self.count]
+    }
+}
+
+impl Facet {
+    /// Present positions of its nodes.
+    pub fn positions(&self, part: &ModelPart) -> Positions {
+        let mut places = [[0.0; 3]; MOST_NODES];
+        places.iter_mut().zip(&self.nodes).for_each(|(place, &node)| *place = part.nodes.current[node as usize]);
+        Positions { places, count: self.nodes.len() }
+    }
+
+    /// Unit normal at its centre, zero when it has no area.
+    pub fn normal(&self, part: &ModelPart) -> [f64; 3] {
+        self.normal_at(&self.positions(part))
+    }
+
+    /// The same where its nodes are at `places`.
+    pub fn normal_at(&self, places: &[[f64; 3]]) -> [f64; 3] {
+        unit_normal(self.shape, places, self.shape.cell().centre).unwrap_or([0.0; 3])
+    }
+
+    /// Its length or area.
+    pub fn size(&self, part: &ModelPart) -> f64 {
+        domain_size(self.shape, &self.positions(part))
+    }
+}
