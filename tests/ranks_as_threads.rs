@@ -65,6 +65,13 @@ fn contact_in_space() {
     stand_side_by_side("contact_3d/hexahedra_nonmatching");
 }
 
+/// Ranks that have nothing of a variable measure it with the others.
+#[test]
+fn unknowns_of_several_kinds() {
+    stand_side_by_side("mesh_tying/tetrahedra_on_hexahedra");
+    stand_side_by_side("structural/volumetric_strain_swings_3D8N");
+}
+
 #[test]
 fn errors_are_those_of_one_process() {
     let folder = scratch_copy(&root().join("tests/cases/contact_2d/opening"));
