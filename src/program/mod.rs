@@ -3,12 +3,13 @@
 mod catalogue;
 mod kratos_names;
 mod partition;
+mod report;
 mod say;
 mod stop;
 mod terminal;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -17,6 +18,7 @@ use zelus_core::communication::{self, Ranks};
 use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
+use report::Report;
 use say::say;
 use stop::Stop;
 use terminal::Terminal;
@@ -84,43 +86,52 @@ pub fn main() -> ExitCode {
     let ranks = match communication::join() {
         Ok(ranks) => ranks,
         Err(error) => {
-            eprintln!("{}", explain(&error));
+            eprintln!("{}", explain(&error, false));
             return ExitCode::from(error.exit_code());
         }
     };
-    match execute(arguments.command, &ranks) {
+    let mut ran = false;
+    match execute(arguments.command, &ranks, &mut ran) {
         Ok(code) => code,
         Err(error) => {
             let _ = std::io::stdout().flush();
             if ranks.size() > 1 {
-                ranks.end_after_failure(&explain(&error), error.exit_code());
+                ranks.end_after_failure(&explain(&error, ran), error.exit_code());
             }
-            let _ = writeln!(std::io::stderr(), "{}", explain(&error));
+            let _ = writeln!(std::io::stderr(), "{}", explain(&error, ran));
             ExitCode::from(error.exit_code())
         }
     }
 }
 
-fn execute(command: Command, ranks: &Ranks) -> Result<ExitCode> {
+/// Does what is asked; `ran` says afterwards whether a step was made.
+fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
         Command::Run { file, threads, report, like, resume } => {
-            if let Some(path) = &report {
-                check_writable(path)?;
+            let report = report.map(Report);
+            if let Some(report) = &report {
+                report.check(&file)?;
             }
             let stop = Stop::listen()?;
             let also = like.as_ref().map(|like| format!("--like {like} ")).unwrap_or_default();
-            let options = RunOptions { threads, like, ranks: ranks.clone() };
+            let outputs = report.iter().map(|report| report.0.clone()).collect();
+            let options = RunOptions { threads, like, ranks: ranks.clone(), outputs };
             let opened = Simulation::open(&file, &options);
             if !ranks.is_root() {
                 return drive(&mut opened?, &mut Silent, resume, &stop).map(|ended| ended.code());
             }
             let mut terminal = Terminal::new();
-            let (result, run) = match opened {
+            let (result, mut run) = match opened {
                 Ok(mut simulation) => (drive(&mut simulation, &mut terminal, resume, &stop), simulation.into_report()),
                 Err(error) => (Err(error), RunReport::default()),
             };
             terminal.finish(&run, matches!(result, Ok(Ended::Done)));
-            let written = report.map_or(Ok(()), |path| write_report(&path, &run));
+            *ran = !run.steps.is_empty();
+            match &result {
+                Ok(ended) => run.exit_code = ended.exit_code(),
+                Err(error) => run.fail(error),
+            }
+            let written = report.map_or(Ok(()), |report| report.write(&run, result.as_ref().err()));
             let ended = result?;
             written?;
             if let Ended::Stopped { saved, time } = &ended {
@@ -165,8 +176,12 @@ enum Ended {
 }
 
 impl Ended {
+    fn exit_code(&self) -> u8 {
+        if matches!(self, Self::Done) { 0 } else { 5 }
+    }
+
     fn code(&self) -> ExitCode {
-        ExitCode::from(if matches!(self, Self::Done) { 0 } else { 5 })
+        ExitCode::from(self.exit_code())
     }
 }
 
@@ -187,31 +202,15 @@ fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, s
     Ok(Ended::Done)
 }
 
-fn explain(error: &Error) -> String {
+fn explain(error: &Error, ran: bool) -> String {
     match error {
         Error::Input(problems) => {
             let errors = problems.iter().filter(|p| p.severity == zelus_core::diagnostics::Severity::Error).count();
             let s = if errors == 1 { "" } else { "s" };
-            format!("{error}\n\n{errors} error{s} in the input; nothing was run")
+            let done = if ran { "what ran before is written" } else { "nothing was run" };
+            format!("{error}\n\n{errors} error{s} in the input; {done}")
         }
         Error::NotConverged(_) => format!("error[not-converged] {error}"),
         Error::System(_) => format!("error[system] {error}"),
     }
-}
-
-fn check_writable(path: &Path) -> Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if folder.is_dir() {
-        return Ok(());
-    }
-    Err(Error::System(format!(
-        "cannot write the report to {}: there is no folder {}",
-        path.display(),
-        folder.display()
-    )))
-}
-
-fn write_report(path: &Path, report: &RunReport) -> Result<()> {
-    let text = serde_json::to_string_pretty(report).map_err(|e| Error::System(format!("report: {e}")))?;
-    zelus_core::io::replace_own_file(path, |file| file.write_all(text.as_bytes()))
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::State;
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
 use zelus_core::entities::{Interaction, Observer};
-use zelus_core::io::replace_file;
+use zelus_core::io::{FileUse, replace_file};
 use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
@@ -117,6 +117,10 @@ impl Process for IterateOutput {
             }
             writeln!(out, "]\n}}")
         })
+    }
+
+    fn files(&self) -> Vec<FileUse> {
+        vec![FileUse::Writes(self.file.clone())]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

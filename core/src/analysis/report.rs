@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::diagnostics::Error;
 use crate::strategies::StepRecord;
 
 /// Sizes of a problem.
@@ -39,6 +40,11 @@ pub struct RunReport {
     pub sizes: Sizes,
     /// Accepted steps and failed attempts, in order.
     pub steps: Vec<StepRecord>,
+    /// Exit code of the program: 0 done and converged, 2 bad input, 3 not converged, 4 system or solver failure, 5 stopped and
+    /// saved.
+    pub exit_code: u8,
+    /// Why the run ended early, in words.
+    pub errors: Vec<String>,
     /// Notes, in words.
     pub notes: Vec<String>,
     /// Warnings, in words.
@@ -68,6 +74,8 @@ impl Default for RunReport {
             stages: Vec::new(),
             sizes: Sizes::default(),
             steps: Vec::new(),
+            exit_code: 0,
+            errors: Vec::new(),
             notes: Vec::new(),
             warnings: Vec::new(),
             linear_solver: String::new(),
@@ -84,5 +92,14 @@ impl RunReport {
     /// Adds seconds to a phase.
     pub fn add_seconds(&mut self, phase: &str, seconds: f64) {
         *self.seconds.entry(phase.to_owned()).or_insert(0.0) += seconds;
+    }
+
+    /// Puts down why the run ended early.
+    pub fn fail(&mut self, error: &Error) {
+        self.exit_code = error.exit_code();
+        match error {
+            Error::Input(problems) => self.errors.extend(problems.iter().map(ToString::to_string)),
+            other => self.errors.push(other.to_string()),
+        }
     }
 }

@@ -28,6 +28,8 @@ pub struct RunOptions {
     /// The processes that run the deck together, as [`communication::join`](crate::communication::join) gives them; this one
     /// alone by default.
     pub ranks: Ranks,
+    /// Files that the caller will write: none of them may be one that the run reads or writes.
+    pub outputs: Vec<PathBuf>,
 }
 
 /// A deck with its model and the stage under way.
@@ -45,6 +47,7 @@ pub struct Simulation {
     root: String,
     folder: PathBuf,
     like: Option<String>,
+    outputs: Vec<PathBuf>,
     model: Model,
     /// The model as the stage under way found it, where it is not the first.
     before: Option<Model>,
@@ -95,6 +98,7 @@ impl Simulation {
             root: String::new(),
             folder,
             like: options.like.clone(),
+            outputs: options.outputs.clone(),
             model: Model::new(options.ranks.clone()),
             before: None,
             systems: Systems::new(),
@@ -343,7 +347,7 @@ impl Simulation {
         self.before = (self.over > 0).then(|| self.model.clone());
         let (stages, like) = (&self.stages[self.over..], self.like.as_deref());
         let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
-        let stage = Stage::prepare(stages, &self.folder, like, model, systems, report, monitor, more)?;
+        let stage = Stage::prepare(stages, &self.folder, like, model, systems, report, monitor, more, &self.outputs)?;
         stage.root().clone_into(&mut self.root);
         self.stage = Some(stage);
         Ok(())

@@ -19,6 +19,7 @@ use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
 use crate::entities::Interaction;
+use crate::io::{Claim, FileUse, check_files};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
@@ -42,6 +43,9 @@ pub(super) struct Stage {
     first_length: Option<f64>,
     strategy: Box<dyn SolutionStrategy>,
     processes: Vec<Box<dyn Process>>,
+    files: Vec<FileUse>,
+    /// The outputs that no other run may write meanwhile; `None` before the first step.
+    claims: Option<Vec<Claim>>,
     begun: bool,
 }
 
@@ -60,6 +64,7 @@ impl Stage {
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
         more: Vec<Box<dyn Process>>,
+        outputs: &[PathBuf],
     ) -> Result<Self> {
         let start = Instant::now();
         let (stage, later) = stages.split_first().expect("there is a stage to prepare");
@@ -185,6 +190,11 @@ impl Stage {
             let checked = process.check(model, &system, &mut problems);
             problems.absorb(checked);
         }
+        let mut files = files_of(&deck, folder, &processes);
+        files.extend(outputs.iter().cloned().map(FileUse::Writes));
+        if ranks.is_root() {
+            check_files(&files).into_iter().for_each(|problem| problems.push(problem));
+        }
         tell(problems_of_all(&ranks, problems)?.finish()?, report, monitor);
         let (start_time, end_time) = times.expect("checked above");
         report.add_seconds("set up", start.elapsed().as_secs_f64());
@@ -199,6 +209,8 @@ impl Stage {
             first_length: None,
             strategy,
             processes,
+            files,
+            claims: None,
             begun: false,
         })
     }
@@ -211,6 +223,17 @@ impl Stage {
     /// What computes on that part.
     pub(super) fn system(&self) -> &System {
         &self.system
+    }
+
+    /// Keeps other runs from writing what this one does.
+    fn claim(&mut self, ranks: &Ranks) -> Result<()> {
+        let claim = |file: &FileUse| match file {
+            FileUse::Reads(_) => None,
+            FileUse::Writes(path) | FileUse::WritesSeries(path) => Some(Claim::of(path)),
+        };
+        let claims = if ranks.is_root() { self.files.iter().filter_map(claim).collect() } else { Ok(Vec::new()) };
+        self.claims = Some(ranks.agree(claims)?);
+        Ok(())
     }
 
     fn begin(&mut self, model: &mut Model, report: &mut RunReport) -> Result<()> {
@@ -270,6 +293,9 @@ impl Stage {
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
     ) -> Result<bool> {
+        if self.claims.is_none() {
+            self.claim(&model.ranks)?;
+        }
         if !self.begun {
             self.begin(model, report)?;
         }
@@ -521,4 +547,15 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
             .remedy("they are left where they are; remove them from the mesh if that is not meant"),
         );
     }
+}
+
+/// The files of a stage: those that its deck names, and those of its processes.
+fn files_of(deck: &Node, folder: &Path, processes: &[Box<dyn Process>]) -> Vec<FileUse> {
+    let named = |key: &str| deck.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
+    let mut files = vec![FileUse::Reads(deck.place().file)];
+    let mesh = named("solver_settings.model_import_settings.input_filename").map(|name| format!("{name}.mdpa"));
+    let materials = named("solver_settings.material_import_settings.materials_filename").map(str::to_owned);
+    files.extend(mesh.into_iter().chain(materials).map(|name| FileUse::Reads(folder.join(name))));
+    files.extend(processes.iter().flat_map(|process| process.files()));
+    files
 }

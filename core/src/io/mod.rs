@@ -4,6 +4,7 @@ mod container;
 mod import;
 mod materials;
 pub mod mdpa;
+mod outputs;
 mod replace;
 pub mod results;
 #[cfg(test)]
@@ -13,4 +14,5 @@ pub(crate) mod variables;
 pub use container::{path_of_rank, read_saved, write_saved};
 pub use import::{import, read_mesh, read_mesh_of};
 pub use materials::{apply_materials, read_materials};
+pub use outputs::{Claim, FileUse, check_files, of_series};
 pub use replace::{append_to_file, cut_file, length_of, replace_file, replace_own_file};

@@ -8,7 +8,8 @@ use std::path::Path;
 
 /// Writes a file so that a reader sees the old content or the whole new one, never a part.
 ///
-/// Missing folders on the way are made. Of several ranks only the first writes.
+/// Missing folders on the way are made; symbolic links are followed. The new content is on the disk before it takes the place of the
+/// old one. Of several ranks only the first writes.
 ///
 /// # Errors
 /// [`Error::System`] when the disk refuses; the old content is then untouched. With several ranks the error is kept until
@@ -26,6 +27,11 @@ pub fn replace_file(
 /// # Errors
 /// As [`replace_file`], but at once: other ranks know of it when they agree.
 pub fn replace_own_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    let followed = path.canonicalize();
+    let path = followed.as_deref().unwrap_or(path);
+    if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        return Err(Error::System(format!("{}: is no file, and is not replaced", path.display())));
+    }
     let failed = |what: &str, e: io::Error| Error::System(format!("{}: cannot {what}: {e}", path.display()));
     if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs::create_dir_all(folder).map_err(|e| failed("make its folder", e))?;
@@ -35,7 +41,8 @@ pub fn replace_own_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> 
     let written = File::create(&temporary).and_then(|file| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
         fill(&mut writer)?;
-        writer.flush()
+        writer.flush()?;
+        writer.get_ref().sync_data()
     });
     written.and_then(|()| fs::rename(&temporary, path)).map_err(|e| {
         // The first failure is the one to tell; a temporary file that cannot be removed adds nothing to it.

@@ -7,6 +7,7 @@ use zelus_linear_algebra::State;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
+use crate::io::FileUse;
 use crate::model::Model;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::registered_kind;
@@ -116,6 +117,11 @@ pub trait Process: Send {
 
     /// Notes and warnings since they were last asked for; the stage passes them on.
     fn messages(&mut self) -> Vec<Diagnostic> {
+        Vec::new()
+    }
+
+    /// Files that it reads and writes: no output may be an input or another output, and no other run may write it meanwhile.
+    fn files(&self) -> Vec<FileUse> {
         Vec::new()
     }
 

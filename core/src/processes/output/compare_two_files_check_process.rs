@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::place::one_of;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::io::FileUse;
 use crate::model::Model;
 use crate::parameters::Defaults;
 use crate::processes::comparison::is_close;
@@ -108,6 +109,10 @@ impl CompareTwoFiles {
 }
 
 impl Process for CompareTwoFiles {
+    fn files(&self) -> Vec<FileUse> {
+        vec![FileUse::Reads(self.reference.clone())]
+    }
+
     fn finalize(&mut self, model: &mut Model) -> Result<()> {
         if !model.ranks.is_root() {
             return Ok(());

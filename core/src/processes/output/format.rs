@@ -34,7 +34,7 @@ pub trait OutputFormat: Send {
     /// A file that cannot be written.
     fn write(&mut self, shown: &Shown<'_>) -> Result<()>;
 
-    /// Endings of its files: those of earlier runs are removed from the folder.
+    /// Endings of its files, the first being that of each picture; those of an earlier run are removed before the first is written.
     fn endings(&self) -> &'static [&'static str];
 
     /// What it remembers between pictures, for the file of a saved run.

@@ -13,6 +13,7 @@ use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::io::FileUse;
 use crate::model::{Model, ModelPart, Role, SubPart, Table};
 use crate::parameters::Defaults;
 use crate::processes::comparison::{is_close, told};
@@ -169,6 +170,10 @@ impl Process for FromJsonCheck {
     fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
         self.counter.counter = state.take::<SavedCounter>()?.0;
         Ok(())
+    }
+
+    fn files(&self) -> Vec<FileUse> {
+        vec![FileUse::Reads(self.file.clone())]
     }
 
     fn initialize(&mut self, model: &mut Model) -> Result<()> {

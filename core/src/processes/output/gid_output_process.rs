@@ -17,7 +17,7 @@ use crate::diagnostics::{Diagnostic, Result};
 use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
 };
-use crate::io::{append_to_file, cut_file, length_of, replace_file};
+use crate::io::{FileUse, append_to_file, cut_file, length_of, replace_file};
 use crate::model::{Model, ModelPart, Role, SubPart};
 use crate::parameters::{Defaults, Settings};
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -26,7 +26,7 @@ use crate::register;
 /// Where the settings of the files are in `Parameters`.
 const FILES: &str = "postprocess_parameters.result_file_configuration.";
 
-/// Writes the mesh before the loop and results as they come.
+/// Takes the mesh before the loop and writes it with the first results.
 struct GidOutput {
     part: PartPath,
     control: OutputControl,
@@ -44,6 +44,8 @@ struct GidOutput {
     flags: Vec<&'static str>,
     gauss: Vec<GaussQuantity>,
     written: Vec<PathBuf>,
+    /// The meshes of the one file for all steps, until the first is written.
+    first: Option<Vec<(GidKind, Dataset)>>,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
@@ -76,6 +78,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         flags: flag_list(settings, &key("nodal_flags_results"), request.report)?,
         gauss: GaussQuantity::shown(settings, &key("gauss_point_results"), request.report)?,
         written: Vec::new(),
+        first: None,
     }))
 }
 
@@ -126,12 +129,11 @@ impl GidOutput {
     }
 
     /// Writes the file of the mesh; collective.
-    fn write_mesh(&self, part: &ModelPart, selection: &SubPart, label: f64) -> Result<()> {
-        let meshes = self.meshes(part, selection);
-        replace_file(&part.ranks, &self.path(label, "msh"), |out| {
+    fn write_mesh(&self, ranks: &Ranks, meshes: &[(GidKind, Dataset)], label: f64) -> Result<()> {
+        replace_file(ranks, &self.path(label, "msh"), |out| {
             // GiD reads the points of all with the first that has cells.
             let mut with_points = true;
-            for (kind, mesh) in &meshes {
+            for (kind, mesh) in meshes {
                 write_gid_mesh(out, mesh, *kind, with_points)?;
                 with_points &= mesh.cells.is_empty();
             }
@@ -202,7 +204,7 @@ impl Process for GidOutput {
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         if self.single && self.body {
-            self.write_mesh(part, selection, 0.0)?;
+            self.first = Some(self.meshes(part, selection));
         }
         Ok(())
     }
@@ -217,7 +219,10 @@ impl Process for GidOutput {
         let (ids, columns, gauss) = self.results(part, system, selection);
         let path = self.path(label, "res");
         if !self.single {
-            self.write_mesh(part, selection, label)?;
+            self.write_mesh(&part.ranks, &self.meshes(part, selection), label)?;
+        } else if self.written.is_empty() {
+            let meshes = self.first.take().unwrap_or_else(|| self.meshes(part, selection));
+            self.write_mesh(&part.ranks, &meshes, label)?;
         }
         if self.written.contains(&path) {
             append_to_file(&part.ranks, &path, |out| write_gid_step(out, label, &ids, &columns, &gauss))?;
@@ -244,6 +249,10 @@ impl Process for GidOutput {
         self.written = written.into_iter().map(|(path, _)| path).collect();
         self.control.next = next;
         Ok(())
+    }
+
+    fn files(&self) -> Vec<FileUse> {
+        vec![FileUse::WritesSeries(append(&self.base, ".post.res"))]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

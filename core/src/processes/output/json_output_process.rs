@@ -15,7 +15,7 @@ use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::entities::Gauss;
-use crate::io::replace_file;
+use crate::io::{FileUse, replace_file};
 use crate::model::{Fields, Flags, Model, ModelPart, Role, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -335,7 +335,7 @@ impl Process for JsonOutput {
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         self.keys(part, selection);
-        self.write(model)
+        Ok(())
     }
 
     fn end_step(&mut self, model: &mut Model, system: &System) -> Result<()> {
@@ -359,8 +359,13 @@ impl Process for JsonOutput {
         Ok(())
     }
 
+    /// A run that fails before the first step leaves what an earlier one has written.
     fn finalize(&mut self, model: &mut Model) -> Result<()> {
-        self.write(model)
+        if self.series.times.is_empty() && self.file.exists() { Ok(()) } else { self.write(model) }
+    }
+
+    fn files(&self) -> Vec<FileUse> {
+        vec![FileUse::Writes(self.file.clone())]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

@@ -12,7 +12,7 @@ use super::quantity::Quantity;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::{mapping, shape_functions};
-use crate::io::{append_to_file, cut_file, length_of, replace_file};
+use crate::io::{FileUse, append_to_file, cut_file, length_of, replace_file};
 use crate::model::{Model, ModelPart, Role, SubPart};
 use crate::parameters::{Interval, Node, Settings};
 use crate::processes::{Process, ProcessRequest};
@@ -28,6 +28,8 @@ pub(super) struct PointsOutput {
     history: bool,
     quantities: Vec<Quantity>,
     points: Vec<Point>,
+    /// Whether the files hold their heads.
+    begun: bool,
 }
 
 struct Point {
@@ -79,6 +81,7 @@ pub(super) fn points_output(
         history: settings.get_bool("historical_value")?,
         quantities: Quantity::list(settings, "output_variables", request.report)?,
         points: positions.iter().enumerate().map(point).collect(),
+        begun: false,
     }))
 }
 
@@ -178,7 +181,7 @@ impl PointsOutput {
     }
 }
 
-/// Lengths of the files.
+/// Lengths of the files, once there are any.
 #[derive(Serialize, Deserialize)]
 struct SavedLengths(Vec<u64>);
 
@@ -202,17 +205,16 @@ impl Process for PointsOutput {
         Ok(())
     }
 
-    fn before_loop(&mut self, model: &mut Model) -> Result<()> {
-        let (part, _) = self.part.find(model)?;
-        self.points.iter().try_for_each(|point| {
-            replace_file(&part.ranks, &point.file, |out| writeln!(out, "{}", self.head(part, point)))
-        })
-    }
-
     fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
         let (part, _) = self.part.find(model)?;
         if !self.interval.contains(part.info.time) {
             return Ok(());
+        }
+        if !self.begun {
+            self.points.iter().try_for_each(|point| {
+                replace_file(&part.ranks, &point.file, |out| writeln!(out, "{}", self.head(part, point)))
+            })?;
+            self.begun = true;
         }
         let own = self.points.iter().enumerate().filter(|(_, point)| !point.weights.is_empty());
         let mut message = Vec::new();
@@ -235,12 +237,18 @@ impl Process for PointsOutput {
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        Some(Box::new(SavedLengths(self.points.iter().map(|point| length_of(&point.file)).collect())))
+        let begun = self.points.iter().filter(|_| self.begun);
+        Some(Box::new(SavedLengths(begun.map(|point| length_of(&point.file)).collect())))
     }
 
     fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
         let SavedLengths(lengths) = state.take()?;
+        self.begun = !lengths.is_empty();
         self.points.iter().zip(lengths).try_for_each(|(point, length)| cut_file(&model.ranks, &point.file, length))
+    }
+
+    fn files(&self) -> Vec<FileUse> {
+        self.points.iter().map(|point| FileUse::Writes(point.file.clone())).collect()
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

@@ -11,6 +11,7 @@ use super::picture::Picture;
 use super::place::PartPath;
 use crate::assembly::System;
 use crate::diagnostics::{Error, Result};
+use crate::io::{FileUse, of_series};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -24,7 +25,7 @@ struct VtkOutput {
     picture: Picture,
     format: Box<dyn OutputFormat>,
     folder: PathBuf,
-    /// Whether files of earlier runs in the folder are removed.
+    /// Whether pictures of an earlier run are still to be removed.
     clears: bool,
     prefix: String,
     postfix: String,
@@ -69,17 +70,29 @@ impl VtkOutput {
             Unit::Step => part.info.step.to_string(),
             Unit::Time => format!("{:.*}", self.decimals, part.info.time),
         };
-        let series = format!("{}{}{}", self.prefix, path.replace('.', "_"), self.postfix);
+        if self.clears {
+            part.ranks.on_root(|| self.clear(path))?;
+        }
+        let series = self.series(path);
         let folder = &self.folder;
         self.format.write(&Shown { part, data: &mesh.data, folder, series: &series, label: &label })
     }
 
-    /// Removes the pictures of an earlier run, so that no step of it is taken for one of this run.
-    fn clear(&self) -> Result<()> {
+    /// The name of the pictures of a part.
+    fn series(&self, path: &str) -> String {
+        format!("{}{}{}", self.prefix, path.replace('.', "_"), self.postfix)
+    }
+
+    /// Removes the pictures that an earlier run has made of a part, so that none is taken for one of this run.
+    fn clear(&self, path: &str) -> Result<()> {
         let endings = self.format.endings();
+        let series: Vec<String> = endings.iter().map(|ending| format!("{}.{ending}", self.series(path))).collect();
         for entry in std::fs::read_dir(&self.folder).into_iter().flatten().flatten() {
-            let path = entry.path();
-            if path.extension().and_then(|e| e.to_str()).is_some_and(|e| endings.contains(&e)) && path.is_file() {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            let is_old = series.iter().any(|series| *name == *series || of_series(&name, series));
+            if is_old && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+                let path = entry.path();
                 std::fs::remove_file(&path)
                     .map_err(|e| Error::System(format!("{}: cannot be removed: {e}", path.display())))?;
             }
@@ -92,6 +105,7 @@ impl VtkOutput {
 #[derive(Serialize, Deserialize)]
 struct VtkOutputState {
     next: f64,
+    clears: bool,
     format: Option<Box<dyn State>>,
 }
 
@@ -101,10 +115,6 @@ impl State for VtkOutputState {}
 impl Process for VtkOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
-    }
-
-    fn before_loop(&mut self, model: &mut Model) -> Result<()> {
-        if self.clears { model.ranks.on_root(|| self.clear()) } else { Ok(()) }
     }
 
     fn is_output_step(&mut self, model: &Model) -> bool {
@@ -123,18 +133,24 @@ impl Process for VtkOutput {
                 }
             }
         }
+        self.clears = false;
         self.control.written(&part.info);
         Ok(())
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        Some(Box::new(VtkOutputState { next: self.control.next, format: self.format.state() }))
+        Some(Box::new(VtkOutputState { next: self.control.next, clears: self.clears, format: self.format.state() }))
     }
 
     fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
-        let VtkOutputState { next, format } = state.take()?;
-        self.control.next = next;
+        let VtkOutputState { next, clears, format } = state.take()?;
+        (self.control.next, self.clears) = (next, clears);
         format.map_or(Ok(()), |state| self.format.resume(state))
+    }
+
+    fn files(&self) -> Vec<FileUse> {
+        let ending = self.format.endings()[0];
+        vec![FileUse::WritesSeries(self.folder.join(format!("{}.{ending}", self.series(&self.part.path))))]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {
