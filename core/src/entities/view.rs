@@ -38,8 +38,8 @@ pub const NORMALS_OF_FIRST_ITERATION: &str = "NORMALS_OF_FIRST_ITERATION";
 impl StepView<'_> {
     /// Whether the tangent is the reference program's, which leaves terms out, and not the exact one.
     ///
-    /// Contact may keep, for a whole step, the normals there are after its first iteration. What that iteration's tangent
-    /// leaves out then decides a little of the answer, so there the same is left out. Every other tangent is exact.
+    /// Contact may keep, for a whole step, the normals there are after its first iteration. The answer then depends on that
+    /// iterate, and so on the terms its tangent leaves out: the same terms are left out here. Every other tangent is exact.
     pub fn decides_normals(&self) -> bool {
         self.info.nl_iteration == 1 && self.info.is(NORMALS_OF_FIRST_ITERATION)
     }
