@@ -204,7 +204,7 @@ fn multigrid_has_the_answer_of_the_direct_engine() {
     }
 }
 
-/// The limit stands for the memory of the machine: two megabytes hold the levels of multigrid, and no factors.
+/// The limit stands for the memory of the machine: 1.6 megabytes hold the levels of multigrid, and no factors.
 #[test]
 fn a_run_that_does_not_fit_takes_multigrid_or_ends_before_it_starts() {
     let case = "contact_3d/friction_stick";
@@ -213,7 +213,7 @@ fn a_run_that_does_not_fit_takes_multigrid_or_ends_before_it_starts() {
             deck["solver_settings"]["linear_solver_settings"]["memory_limit"] = json!(gigabytes);
         })
     };
-    let run = limited(0.002);
+    let run = limited(0.0016);
     assert!(run.said.contains("warning[memory] ProjectParameters.json:"), "{}", run.said);
     assert!(run.is_solved_by("multigrid"), "{:?}", run.engines);
     let (difference, field) = Run::converged(case, DIRECT, as_it_is).difference(&run);

@@ -237,6 +237,7 @@ fn stages_go_on_from_between() {
             assert!(first.step(&mut Silent).expect("a step"));
         }
         first.save(&saved).expect("a saved run");
+        drop(first);
         let mut second = open(scratch.path(), 1);
         second.load(&saved, &mut Silent).expect("a run to go on with");
         second.run(&mut Silent).expect("the rest");
@@ -294,6 +295,7 @@ fn ranks_go_on_as_many_as_they_were() {
             let mut first = of_rank(&ranks);
             assert!(first.step(&mut Silent).expect("a step"));
             first.save(&saved).expect("a saved run");
+            drop(first);
             let mut second = of_rank(&ranks);
             second.load(&saved, &mut Silent).expect("a run to go on with");
             second.run(&mut Silent).expect("the rest");

@@ -26,6 +26,7 @@ fn what_additions_remember_is_saved() {
         let mut first = open();
         assert!(first.step(&mut Silent).expect("a step"));
         first.save(&saved).expect("a saved run");
+        drop(first);
         let mut second = open();
         second.load(&saved, &mut Silent).expect("a run to go on with");
         second.run(&mut Silent).expect("the rest");

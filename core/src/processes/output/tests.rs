@@ -155,8 +155,9 @@ fn names(folder: &Path) -> Vec<String> {
 fn vtk_files_are_named_and_filled_as_in_kratos() {
     let (folder, mut model) = (tempfile::tempdir().unwrap(), model());
     std::fs::create_dir(folder.path().join("out")).unwrap();
-    std::fs::write(folder.path().join("out/old.vtk"), "").unwrap();
-    std::fs::write(folder.path().join("out/notes.txt"), "").unwrap();
+    for file in ["Structure_0_7.vtk", "Structure_Edge_0_7.500.vtk", "Strange_0_7.vtk", "notes.txt"] {
+        std::fs::write(folder.path().join("out").join(file), "").unwrap();
+    }
     let parameters = r#"{"model_part_name": "Structure", "file_format": "ascii", "folder_name": "out",
         "output_control_type": "time", "output_frequency": 0.2, "output_sub_model_parts": true, "write_ids": true,
         "nodal_solution_step_data_variables": ["DISPLACEMENT"], "nodal_data_value_variables": ["NORMAL"],
@@ -168,7 +169,7 @@ fn vtk_files_are_named_and_filled_as_in_kratos() {
     let parts = ["0.200", "0.400", "0.700", "0.900"]
         .map(|t| [format!("Structure_0_{t}.vtk"), format!("Structure_Edge_0_{t}.vtk")]);
     let mut wanted = parts.concat();
-    wanted.push("notes.txt".into());
+    wanted.extend(["notes.txt".into(), "Strange_0_7.vtk".into()]);
     wanted.sort();
     assert_eq!(names(&folder.path().join("out")), wanted);
     let text = std::fs::read_to_string(folder.path().join("out/Structure_0_0.200.vtk")).unwrap();
