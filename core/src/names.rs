@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn a_name_is_kept_once() {
-        let [first, second] = ["A_NAME", "A_NAME"].map(|name| lasting(name));
+        let [first, second] = ["A_NAME", "A_NAME"].map(lasting);
         assert!(std::ptr::eq(first, second) && first == "A_NAME");
     }
 }
