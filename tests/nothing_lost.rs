@@ -117,7 +117,7 @@ fn two_runs_do_not_write_one_file() {
     assert_eq!(output.status.code(), Some(4), "{}", said(&output));
     assert!(said(&output).contains("upper.json is being written by another run"), "{}", said(&output));
     drop(held);
-    fs::write(scratch.path().join(".upper.json.4711.part"), "left by a killed run").expect("a file");
+    fs::write(scratch.path().join(".upper.json.4194999.part"), "left by a killed run").expect("a file");
     let output = zelus(scratch.path(), &["run", DECK]);
     assert!(output.status.success(), "{}", said(&output));
     let hidden: Vec<_> = contents(scratch.path()).into_keys().filter(|name| name.starts_with(".")).collect();

@@ -136,7 +136,9 @@ impl Claim {
             let half = entry.file_name();
             let half = half.to_string_lossy();
             let left = half.strip_prefix('.').and_then(|half| half.strip_suffix(".part")?.rsplit_once('.'));
-            if left.is_some_and(|(left, _)| left == name || of_series(left, &name)) {
+            let is_own = |left: &str| left == name || of_series(left, &name);
+            let writes = |process: &str| Path::new("/proc").join(process).exists();
+            if left.is_some_and(|(left, process)| is_own(left) && !writes(process)) {
                 // What cannot be removed is in nobody's way.
                 let _ = fs::remove_file(entry.path());
             }
@@ -192,7 +194,9 @@ mod tests {
     fn one_run_has_an_output() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("results.json");
-        for left in [".results.json.77.part", ".results_3.json.77.part", ".results_of_others.json.77.part"] {
+        for left in
+            [".results.json.4194999.part", ".results_3.json.4194999.part", ".results_of_others.json.4194999.part"]
+        {
             fs::write(folder.path().join(left), "half").unwrap();
         }
         let first = Claim::of(&path).unwrap();
