@@ -38,9 +38,7 @@ pub fn write_saved(path: &Path, contents: &impl Serialize) -> Result<()> {
         out.write_all(&VERSION.to_le_bytes())?;
         out.write_all(&(bytes.len() as u64).to_le_bytes())?;
         out.write_all(&crc32fast::hash(&bytes).to_le_bytes())?;
-        out.write_all(&bytes)?;
-        out.flush()?;
-        out.get_ref().sync_all()
+        out.write_all(&bytes)
     })
 }
 
