@@ -19,7 +19,7 @@ use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
 use crate::entities::Interaction;
-use crate::io::{Claim, FileUse, check_files};
+use crate::io::{Claim, FileUse, check_files, mesh_file};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
@@ -227,12 +227,8 @@ impl Stage {
 
     /// Keeps other runs from writing what this one does.
     fn claim(&mut self, ranks: &Ranks) -> Result<()> {
-        let claim = |file: &FileUse| match file {
-            FileUse::Reads(_) => None,
-            FileUse::Writes(path) | FileUse::WritesSeries(path) => Some(Claim::of(path)),
-        };
-        let claims = if ranks.is_root() { self.files.iter().filter_map(claim).collect() } else { Ok(Vec::new()) };
-        self.claims = Some(ranks.agree(claims)?);
+        let outputs = self.files.iter().filter_map(FileUse::output).filter(|_| ranks.is_root());
+        self.claims = Some(ranks.agree(outputs.map(Claim::of).collect())?);
         Ok(())
     }
 
@@ -553,9 +549,9 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
 fn files_of(deck: &Node, folder: &Path, processes: &[Box<dyn Process>]) -> Vec<FileUse> {
     let named = |key: &str| deck.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
     let mut files = vec![FileUse::Reads(deck.place().file)];
-    let mesh = named("solver_settings.model_import_settings.input_filename").map(|name| format!("{name}.mdpa"));
-    let materials = named("solver_settings.material_import_settings.materials_filename").map(str::to_owned);
-    files.extend(mesh.into_iter().chain(materials).map(|name| FileUse::Reads(folder.join(name))));
+    let mesh = named("solver_settings.model_import_settings.input_filename").map(|name| mesh_file(&folder.join(name)));
+    let materials = named("solver_settings.material_import_settings.materials_filename").map(|name| folder.join(name));
+    files.extend(mesh.into_iter().chain(materials).map(FileUse::Reads));
     files.extend(processes.iter().flat_map(|process| process.files()));
     files
 }

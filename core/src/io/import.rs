@@ -5,7 +5,7 @@ mod constraints;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashMap;
 
@@ -36,16 +36,21 @@ pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
     Ok(warnings)
 }
 
+/// The mdpa file that a deck names, with or without ending.
+pub fn mesh_file(named: &Path) -> PathBuf {
+    let mut name = named.as_os_str().to_owned();
+    if named.extension().is_none_or(|ending| ending != "mdpa") {
+        name.push(".mdpa");
+    }
+    name.into()
+}
+
 /// Reads the mdpa file that a deck names at `place`, with or without ending, into `part`; gives the warnings.
 ///
 /// # Errors
 /// No such file; as [`read_mesh`].
 pub fn read_mesh_of(path: &Path, place: &Place, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
-    let mut name = path.as_os_str().to_owned();
-    if path.extension().is_none_or(|ending| ending != "mdpa") {
-        name.push(".mdpa");
-    }
-    let path = Path::new(&name);
+    let path = &mesh_file(path);
     if !path.is_file() {
         return Err(Diagnostic::error("missing-file", format!("there is no mesh file {}", path.display()))
             .at(place.clone())

@@ -1,5 +1,6 @@
 //! Whether the files of a run can be written without a loss, asked before anything is solved.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,9 @@ const LONGEST: usize = 255;
 const LABEL: usize = 40;
 /// What a disk must have left to begin with, in bytes.
 const LEAST_SPACE: usize = 1 << 16;
+
+/// Folders, and why nothing can be written to them.
+type Tried = BTreeMap<PathBuf, std::result::Result<(), String>>;
 
 /// A file that a run reads or writes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,33 +42,35 @@ impl FileUse {
             Self::Reads(path) | Self::Writes(path) | Self::WritesSeries(path) => path,
         }
     }
+
+    /// The path, where something is written.
+    pub fn output(&self) -> Option<&Path> {
+        (!matches!(self, Self::Reads(_))).then(|| self.path())
+    }
 }
 
 /// Why files cannot be used so: outputs that are inputs, other outputs or no files, and places where nothing can be written.
 pub fn check_files(files: &[FileUse]) -> Vec<Diagnostic> {
     let mut problems = Vec::new();
     let whole: Vec<PathBuf> = files.iter().map(|file| resolved(file.path())).collect();
+    let mut folders = BTreeMap::new();
     for (at, file) in files.iter().enumerate() {
-        if matches!(file, FileUse::Reads(_)) {
-            continue;
-        }
-        let shown = file.path().display();
+        let Some(path) = file.output() else { continue };
+        let shown = path.display();
         let mut problem = |fact: String, remedy: &str| {
             problems.push(Diagnostic::error("output-file", fact).remedy(remedy));
         };
-        let read =
-            files.iter().zip(&whole).any(|(other, path)| matches!(other, FileUse::Reads(_)) && *path == whole[at]);
-        if read {
+        let same = |other: &usize| whole[*other] == whole[at];
+        if (0..files.len()).filter(same).any(|other| files[other].output().is_none()) {
             problem(format!("{shown} is read by the run, and would be replaced"), "give the output another name");
         }
-        if whole[..at].iter().zip(files).any(|(path, other)| !matches!(other, FileUse::Reads(_)) && *path == whole[at])
-        {
+        if (0..at).filter(same).any(|other| files[other].output().is_some()) {
             problem(format!("{shown} is written twice by the run"), "give each output a name of its own");
         }
         let label = if matches!(file, FileUse::WritesSeries(_)) { LABEL } else { 0 };
-        if file.path().file_name().is_some_and(|name| name.len() + label > LONGEST) {
+        if path.file_name().is_some_and(|name| name.len() + label > LONGEST) {
             problem(format!("{shown}: the name is too long"), "names of files have at most 255 bytes");
-        } else if let Err(fact) = can_be_written(file, &whole[at]) {
+        } else if let Err(fact) = can_be_written(file, &whole[at], &mut folders) {
             problem(format!("{shown}: {fact}"), "name a file in a folder that can be written to");
         }
     }
@@ -81,7 +87,8 @@ fn resolved(path: &Path) -> PathBuf {
     folder.zip(name).map_or(absolute.clone(), |(folder, name)| resolved(folder).join(name))
 }
 
-fn can_be_written(file: &FileUse, whole: &Path) -> std::result::Result<(), String> {
+/// Whether a file can be written; `folders` are those that were tried before.
+fn can_be_written(file: &FileUse, whole: &Path, folders: &mut Tried) -> std::result::Result<(), String> {
     if let (FileUse::Writes(_), Ok(found)) = (file, fs::metadata(whole))
         && !found.is_file()
     {
@@ -91,6 +98,11 @@ fn can_be_written(file: &FileUse, whole: &Path) -> std::result::Result<(), Strin
         return Err("it is a link to nothing".to_owned());
     }
     let Some(folder) = whole.ancestors().skip(1).find(|folder| folder.exists()) else { return Ok(()) };
+    folders.entry(folder.to_owned()).or_insert_with(|| takes_files(folder)).clone()
+}
+
+/// Writes a file to a folder and removes it.
+fn takes_files(folder: &Path) -> std::result::Result<(), String> {
     if !folder.is_dir() {
         return Err(format!("{} is no folder", folder.display()));
     }
