@@ -34,19 +34,14 @@ impl Checkpoints {
     ///
     /// # Errors
     /// Stages that are not there; keys of another type.
-    pub(super) fn new(deck: &Node, stages: &mut [StageDeck], folder: &Path) -> Result<Self> {
+    pub(super) fn new(deck: &Node, stages: &[StageDeck], folder: &Path) -> Result<Self> {
         let setting = |key: &str| deck.get_path(&format!("orchestrator.settings.{key}")).filter(|node| !node.is_null());
         let names: Vec<String> = stages.iter().map(|stage| stage.name.clone()).collect();
         let after = match setting("stage_checkpoints") {
             None => Vec::new(),
             Some(wanted) => match &wanted.value {
-                Value::Bool(all) => {
-                    if *all {
-                        names.clone()
-                    } else {
-                        Vec::new()
-                    }
-                }
+                Value::Bool(true) => names.clone(),
+                Value::Bool(false) => Vec::new(),
                 _ => wanted.array()?.iter().map(|name| Ok(name.str()?.to_owned())).collect::<Result<Vec<String>>>()?,
             },
         };

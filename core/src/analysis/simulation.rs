@@ -89,8 +89,8 @@ impl Simulation {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Error::System(format!("cannot start threads: {error}")))?;
         let mut report = RunReport { threads: pool.current_num_threads(), ..RunReport::default() };
-        let mut stages = stages(deck, &mut report)?;
-        let checkpoints = Checkpoints::new(deck, &mut stages, &folder)?;
+        let stages = stages(deck, &mut report)?;
+        let checkpoints = Checkpoints::new(deck, &stages, &folder)?;
         Ok(Self {
             stages,
             over: 0,

@@ -118,10 +118,8 @@ fn own_settings(object: &Node) -> Option<Defaults> {
     let name = object.get("solver_type").and_then(|node| node.as_str()?.rsplit('.').next()).unwrap_or_default();
     match registry::find::<LinearSolverEntry>(name) {
         None if !name.is_empty() => None,
-        entry => {
-            let own = entry.map(|entry| entry.defaults).filter(|text| !text.is_empty());
-            Defaults::parse(name, own.unwrap_or("{}")).ok()
-        }
+        Some(entry) if !entry.defaults.is_empty() => Defaults::parse(name, entry.defaults).ok(),
+        _ => Some(Defaults::free_form(name)),
     }
 }
 
