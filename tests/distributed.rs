@@ -763,17 +763,11 @@ fn a_killed_rank_ends_all() {
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn work_of_contact_is_counted_once() {
     const MATERIAL: [f64; 3] = [1.0, 0.2, 1.0];
-    let mut boxes = Boxes::new(2);
-    let faces = ["x-", "x+", "y-", "y+"].map(|face| (face, "Skin"));
-    boxes.add("Block", [[0.0; 3], [1.0; 3]], [8; 3], 0.35, &faces, |_| [0.009, -0.012, 0.0]);
-    let lowest = boxes.nodes.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min) - 0.1;
-    let ground = [[-2.0, lowest - 0.5, 0.0], [4.0, lowest, 0.0]];
-    boxes.add("Ground", ground, [12, 1, 0], 0.0, &[("y+", "Top")], |_| [0.0; 3]);
+    let boxes = Boxes::thrown_on_coarse_ground(0.35);
     let work = |ranks: usize| -> Vec<f64> {
         let folder = tempfile::tempdir().expect("a scratch folder");
-        let (process, fixed) = (("alm_contact_process", &json!({})), [("Ground", [true; 3])]);
         let settings = json!({"contact_settings": {"largest_energy_gain": 0.0}});
-        boxes.write(folder.path(), MATERIAL, &[("Top", "Skin")], &fixed, [0.8, 40.0], &settings, process);
+        boxes.write_thrown(folder.path(), MATERIAL, 40.0, &settings);
         let output = distributed(folder.path(), ranks, &["run", DECK, "--report", "report.json"]);
         assert!(output.status.success(), "{ranks} ranks: {}", said(&output));
         let report = read_json(&folder.path().join("report.json")).expect("the report");

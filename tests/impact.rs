@@ -290,16 +290,8 @@ fn friction_makes_no_energy_where_a_thrown_block_rolls() {
 
 /// A block turned by `angle` that is thrown on a coarser ground, which is the slave; the results and what the program says.
 fn coarse_slave(angle: f64, settings: &Value) -> (Boxes, (Option<Results>, String)) {
-    let mut boxes = Boxes::new(2);
-    let faces = ["x-", "x+", "y-", "y+"].map(|face| (face, "Skin"));
-    boxes.add("Block", [[0.0; 3], [1.0; 3]], [8; 3], angle, &faces, |_| [0.009, -0.012, 0.0]);
-    let lowest = boxes.nodes.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min) - 0.1;
-    let ground = [[-2.0, lowest - 0.5, 0.0], [4.0, lowest, 0.0]];
-    boxes.add("Ground", ground, [12, 1, 0], 0.0, &[("y+", "Top")], |_| [0.0; 3]);
-    let outcome = attempt(&boxes, |folder| {
-        let (process, fixed) = (("alm_contact_process", &json!({})), [("Ground", [true; 3])]);
-        boxes.write(folder, [1.0, 0.2, 1.0], &[("Top", "Skin")], &fixed, [0.8, 128.0], settings, process);
-    });
+    let boxes = Boxes::thrown_on_coarse_ground(angle);
+    let outcome = attempt(&boxes, |folder| boxes.write_thrown(folder, [1.0, 0.2, 1.0], 128.0, settings));
     (boxes, outcome)
 }
 

@@ -107,6 +107,24 @@ impl Boxes {
         });
     }
 
+    /// A block "Block" turned by `angle` that is thrown on a coarser ground "Ground": a corner goes in between the nodes of
+    /// the ground.
+    pub fn thrown_on_coarse_ground(angle: f64) -> Self {
+        let mut boxes = Self::new(2);
+        let faces = ["x-", "x+", "y-", "y+"].map(|face| (face, "Skin"));
+        boxes.add("Block", [[0.0; 3], [1.0; 3]], [8; 3], angle, &faces, |_| [0.009, -0.012, 0.0]);
+        let lowest = boxes.nodes.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min) - 0.1;
+        let ground = [[-2.0, lowest - 0.5, 0.0], [4.0, lowest, 0.0]];
+        boxes.add("Ground", ground, [12, 1, 0], 0.0, &[("y+", "Top")], |_| [0.0; 3]);
+        boxes
+    }
+
+    /// Writes their deck up to `end`, in which the ground is the slave.
+    pub fn write_thrown(&self, folder: &Path, material: [f64; 3], end: f64, solver: &Value) {
+        let (process, fixed) = (("alm_contact_process", &json!({})), [("Ground", [true; 3])]);
+        self.write(folder, material, &[("Top", "Skin")], &fixed, [0.8, end], solver, process);
+    }
+
     /// Writes mesh, materials and deck: contact of `slave` on `master`, both named when the boxes were added. The `fixed` hold
     /// parts in some directions; `solver` and `contact` are further settings.
     #[allow(clippy::too_many_arguments, reason = "a deck has many parts")]
