@@ -8,6 +8,7 @@ mod inertia;
 mod massless;
 mod ranks;
 mod saved;
+mod shares;
 mod tangents;
 
 use std::time::Instant;
@@ -18,6 +19,7 @@ use zelus_linear_algebra::{Csr, Symmetry};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 pub use saved::AssemblerState;
+pub use shares::Push;
 
 use self::ranks::{Carriers, carriers_of_all};
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};

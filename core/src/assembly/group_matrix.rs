@@ -43,19 +43,19 @@ impl GroupMatrix {
         Self { matrix: Csr::from_pattern(&adjacency), numbers, runs, lonely: lonely.to_vec() }
     }
 
-    /// Evaluates the entities of `blocks` and hands each one's unknowns and local system (tangent, right-hand side) on,
-    /// in their order.
+    /// Evaluates the entities of `blocks` and hands on, in their order, the place of each one's block, its place there, its
+    /// unknowns and its local system (tangent, right-hand side).
     fn each(
         &self,
         blocks: &[&dyn EntityBlock],
         view: &StepView<'_>,
         want: Want,
-        mut add: impl FnMut(&dyn EntityBlock, usize, &[u32], &[f64], &[f64]),
+        mut add: impl FnMut(usize, usize, &[u32], &[f64], &[f64]),
     ) -> Result<(), EntityError> {
-        for ((block, numbers), runs) in blocks.iter().zip(&self.numbers).zip(&self.runs) {
+        for (place, ((block, numbers), runs)) in blocks.iter().zip(&self.numbers).zip(&self.runs).enumerate() {
             let size = block.unknowns().len();
             each_of_runs(*block, view, runs, want, |at, lhs, rhs| {
-                add(*block, at, &numbers[at * size..(at + 1) * size], lhs, rhs);
+                add(place, at, &numbers[at * size..(at + 1) * size], lhs, rhs);
             })?;
         }
         Ok(())
@@ -71,9 +71,22 @@ impl GroupMatrix {
         view: &StepView<'_>,
         rhs: &mut [f64],
     ) -> Result<(), EntityError> {
-        self.each(blocks, view, Want::Residual, |_, _, numbers, _, local| {
+        self.each_residual(blocks, view, |_, _, numbers, local| {
             numbers.iter().zip(local).for_each(|(&number, value)| rhs[number as usize] += value);
         })
+    }
+
+    /// Hands on each entity's block and place there, its unknowns and its right-hand side.
+    ///
+    /// # Errors
+    /// The first entity that cannot be computed.
+    pub fn each_residual(
+        &self,
+        blocks: &[&dyn EntityBlock],
+        view: &StepView<'_>,
+        mut add: impl FnMut(usize, usize, &[u32], &[f64]),
+    ) -> Result<(), EntityError> {
+        self.each(blocks, view, Want::Residual, |block, at, numbers, _, local| add(block, at, numbers, local))
     }
 
     /// Recomputes the matrix.
@@ -85,7 +98,7 @@ impl GroupMatrix {
         matrix.zero();
         let mut places = Vec::new();
         let result = self.each(blocks, view, Want::Both, |block, at, rows, lhs, _| {
-            if block.is_active(at, view) {
+            if blocks[block].is_active(at, view) {
                 for (i, &row) in rows.iter().enumerate() {
                     let columns = matrix.row(row as usize).0;
                     // Unknowns of a node have rows with the same columns.

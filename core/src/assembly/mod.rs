@@ -15,7 +15,9 @@ mod redistribution;
 mod supports;
 mod system;
 
-pub use assembler::{Assembler, AssemblerState, AssemblySeconds, Inertia, damped_by_properties, strongest_damping};
+pub use assembler::{
+    Assembler, AssemblerState, AssemblySeconds, Inertia, Push, damped_by_properties, strongest_damping,
+};
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};

@@ -40,7 +40,7 @@ pub enum Want {
     Residual,
     /// Tangent (minus the derivative of the right-hand side) and right-hand side.
     Both,
-    /// Only the external forces of a [`Tangent::Constant`] block, e.g. body forces.
+    /// Only the external forces, e.g. body forces, of a block that has some apart ([`EntityBlock::has_external`]).
     External,
 }
 
@@ -177,7 +177,7 @@ pub trait EntityBlock: Send + Sync {
         out: &mut LocalSystems,
     ) -> Result<(), EntityError>;
 
-    /// Whether a [`Tangent::Constant`] block has external forces of its own in this step.
+    /// Whether the block has external forces of its own in this step, and gives them apart ([`Want::External`]).
     fn has_external(&self, _view: &StepView<'_>) -> bool {
         false
     }

@@ -1,9 +1,12 @@
 //! What acts between bodies and changes with the state: contact above all.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::State;
 
 use super::block::EntityBlock;
+use super::pair_state::PairState;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{ModelPart, ScalarVariable};
 
@@ -123,6 +126,11 @@ pub trait Interaction: Send + Sync {
         Vec::new()
     }
 
+    /// The pairs of bodies it acts between, as they are in a converged state; the same on every rank.
+    fn pairs(&self, _part: &ModelPart) -> Vec<PairState> {
+        Vec::new()
+    }
+
     /// Notes and warnings since they were last asked for; the stage passes them on.
     fn messages(&mut self) -> Vec<Diagnostic> {
         Vec::new()
@@ -168,6 +176,12 @@ pub trait Coupling {
 
     /// Blocks that act now.
     fn blocks(&self) -> Vec<&dyn EntityBlock>;
+
+    /// Of the `at`-th entity of the `block`-th of [`Coupling::blocks`]: the place of its pair in [`Interaction::pairs`], and which
+    /// of its nodes are of the second side; `None` where it acts on something else.
+    fn pair_of(&self, _block: usize, _at: usize) -> Option<(usize, Range<usize>)> {
+        None
+    }
 
     /// Changes whenever the connectivity of [`Coupling::blocks`] does.
     fn graph_version(&self) -> u64;

@@ -8,6 +8,7 @@ mod constraint_entry;
 mod face_point;
 mod interaction;
 mod kernel;
+mod pair_state;
 mod registered;
 mod view;
 
@@ -18,6 +19,7 @@ pub use interaction::{
     ActiveSet, Coupling, FirstIterate, Interaction, Massless, MasslessNodes, Observer, Outer, Retry, SetChange,
 };
 pub use kernel::{Gather, Kernel, KernelBlock};
+pub use pair_state::PairState;
 pub use registered::{
     BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, kind_names, require_kind,
 };

@@ -235,6 +235,8 @@ impl ArcLength {
             }
             if verdict.converged && change.count() == 0 {
                 self.newton.keep_reactions(part, system, &residual);
+                let more: Vec<f64> = load.iter().map(|q| (factor - 1.0) * q).collect();
+                self.newton.keep_balance(part, system, &residual, Some(&more))?;
                 self.pending = Some((factor, step, iteration));
                 return Ok((records, None));
             }
@@ -256,6 +258,7 @@ impl SolutionStrategy for ArcLength {
     ) -> Result<StepRecord> {
         let mut record = recorded(part, system, |part, system| self.iterate(part, system, monitor))?;
         if let Some((factor, ..)) = &self.pending {
+            record.balance = self.newton.balance.take();
             record.interactions.push(("load factor".to_owned(), *factor));
         }
         Ok(record)
@@ -270,6 +273,7 @@ impl SolutionStrategy for ArcLength {
                 *radius = grown.clamp(self.settings.least * *first, self.settings.most * *first);
             }
         }
+        self.newton.account.accept();
         accept(part, system)
     }
 

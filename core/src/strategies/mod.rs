@@ -4,7 +4,9 @@
 //! nothing; [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each
 //! iteration, see [`crate::entities::ActiveSet::after_update`].
 
+mod account;
 mod arc_length;
+mod balance;
 mod bdf_scheme;
 mod bossak_scheme;
 mod builder;
@@ -37,6 +39,7 @@ mod scheme;
 mod strategy;
 
 pub use arc_length::{ARC_LENGTH, ArcLength, ArcLengthSettings};
+pub use balance::{Balance, Energies, PairBalance, Sums, UnknownBalance};
 pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
 pub use builder::{Builder, BuilderEntry};

@@ -15,6 +15,8 @@ use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 pub(super) use references::References;
 
+use super::account::Account;
+use super::balance::Balance;
 use super::condensing;
 use super::criterion::{ConvergenceCriterion, Measures, Verdict};
 use super::gathered::Gathered;
@@ -76,6 +78,9 @@ pub struct NewtonRaphson {
     /// Whether the run has been warned that multipliers are not condensed.
     warned_of_multipliers: bool,
     pub(super) messages: Vec<Diagnostic>,
+    pub(super) account: Account,
+    /// Balance of the step that has just converged.
+    pub(super) balance: Option<Balance>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -86,6 +91,7 @@ struct NewtonState {
     scheme: Option<Box<dyn State>>,
     solver: Option<Box<dyn State>>,
     assembler: AssemblerState,
+    account: Account,
 }
 
 #[typetag::serde(name = "newton_raphson")]
@@ -111,12 +117,13 @@ impl SolutionStrategy for NewtonRaphson {
             scheme: self.scheme.state(),
             solver: self.solver.state(),
             assembler: self.assembler.state(),
+            account: self.account.clone(),
         }))
     }
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
-        let NewtonState { failed, warned, scheme, solver, assembler } = state.take()?;
-        self.failed = failed;
+        let NewtonState { failed, warned, scheme, solver, assembler, account } = state.take()?;
+        (self.failed, self.account) = (failed, account);
         [self.warned, self.warned_of_multipliers] = warned;
         self.assembler.resume(part, system, assembler);
         scheme.map_or(Ok(()), |state| self.scheme.resume(state))?;
@@ -134,7 +141,8 @@ impl SolutionStrategy for NewtonRaphson {
         self.coarse = None;
         let record = recorded(part, system, |part, system| self.iterate(part, system, monitor));
         self.failed = !record.as_ref().is_ok_and(|record| record.converged);
-        Ok(StepRecord { singular: self.singular, coarse: self.coarse.take(), ..record? })
+        let (coarse, balance) = (self.coarse.take(), self.balance.take());
+        Ok(StepRecord { singular: self.singular, coarse, balance, ..record? })
     }
 
     fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
@@ -148,6 +156,7 @@ impl SolutionStrategy for NewtonRaphson {
         if self.scheme.has_inertia() && !system.interactions.is_empty() {
             self.measure_energy(part, system)?;
         }
+        self.account.accept();
         let start = Instant::now();
         let accepted = accept(part, system);
         self.phases.since("accept", start);
@@ -179,6 +188,8 @@ impl NewtonRaphson {
             solver_place: None,
             warned_of_multipliers: false,
             messages: Vec::new(),
+            account: Account::default(),
+            balance: None,
         }
     }
 
@@ -198,6 +209,22 @@ impl NewtonRaphson {
         let condensing = if let Multipliers::Condense(settings) = multipliers { Some(settings) } else { None };
         self.gathered.petsc =
             Some(super::owned_rows::OwnedRows::new(self.assembler.ranks(), communicator, settings, condensing));
+    }
+
+    /// Keeps the balance of a converged state; `more` are loads that the assembler does not know of. Collective.
+    pub(super) fn keep_balance(
+        &mut self,
+        part: &ModelPart,
+        system: &System,
+        residual: &[f64],
+        more: Option<&[f64]>,
+    ) -> Result<()> {
+        let start = Instant::now();
+        let inertia = self.scheme.inertia(part, &system.dofs);
+        let balance = self.account.balance(part, system, &mut self.assembler, residual, inertia.as_ref(), more)?;
+        self.balance = Some(balance);
+        self.phases.since("balance", start);
+        Ok(())
     }
 
     /// Notes the energy of the present state where it is the largest so far.

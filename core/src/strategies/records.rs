@@ -1,5 +1,6 @@
 //! What a step leaves behind for the log and the report of the run.
 
+use super::balance::Balance;
 use super::criterion::Check;
 use super::linear_solve::Solved;
 use crate::entities::SetChange;
@@ -77,6 +78,9 @@ pub struct StepRecord {
     pub coarse: Option<String>,
     /// Numbers of the interactions by name, e.g. active nodes.
     pub interactions: Vec<(String, f64)>,
+    /// What acts, holds and is left over, where it converged by iteration.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub balance: Option<Balance>,
 }
 
 impl StepRecord {

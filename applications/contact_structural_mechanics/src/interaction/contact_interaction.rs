@@ -1,11 +1,13 @@
 //! The contact of all pairs of a deck: search at step start, gaps and active set in every iteration.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
-    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, Outer, Retry, SetChange,
+    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, Outer, PairState, Retry,
+    SetChange,
 };
 use zelus_core::model::{ModelPart, ScalarVariable};
 use zelus_core::{Result, State};
@@ -15,17 +17,21 @@ use super::activation::Start;
 use super::bearable_penalty::BearablePenalty;
 use super::contact_settings::ContactSettings;
 use super::contact_state::{ContactState, RememberedContact};
+use super::decision::slip;
 use super::friction;
 use super::impact::near_nodes;
 use super::outer_loops::OuterLoops;
+use super::pair_states::{heat, pair_states};
 use super::points;
 use super::reach::Reach;
 use super::set_stage::SetStage;
+use super::setup::Setup;
 use super::step_parameters::StepParameters;
 use crate::flags::CONTACT;
 use crate::interface::{Bodies, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
 use crate::penalty_adaptation::Growth;
+use crate::slave_states::SlaveState;
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, KEEP_MASS};
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
@@ -218,6 +224,16 @@ impl Interaction for ContactInteraction {
         out
     }
 
+    fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
+        let ContactState { setup: Setup { settings, parameters, resolution, .. }, pairing, states, .. } = &self.contact;
+        let multiplier = settings.family.multiplier;
+        let of_node = |node: u32, state: &SlaveState| {
+            heat(state.traction, slip(&part.nodes, node, state, multiplier, parameters), state.area)
+        };
+        let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.family.frictional());
+        pair_states(&pairing.interfaces, parts, states, frictional, resolution.length, of_node)
+    }
+
     fn messages(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.contact.messages)
     }
@@ -251,6 +267,10 @@ impl Coupling for ContactInteraction {
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
         self.contact.pairing.as_entities()
+    }
+
+    fn pair_of(&self, block: usize, at: usize) -> Option<(usize, Range<usize>)> {
+        self.contact.pairing.pair_of(block, at)
     }
 
     fn graph_version(&self) -> u64 {

@@ -24,6 +24,7 @@ mod mpc_relations;
 mod mpc_settings;
 mod nodal_sums;
 mod outer_loops;
+mod pair_states;
 mod pairing;
 mod penalty_ramp;
 mod points;

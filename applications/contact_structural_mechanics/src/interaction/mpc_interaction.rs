@@ -6,12 +6,13 @@
 //! against the slip ([`slider_forces`](super::slider_forces)).
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, require_kind};
+use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, PairState, Retry, SetChange, require_kind};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role};
-use zelus_core::vector3::{dot, scale};
+use zelus_core::vector3::{dot, norm, scale};
 use zelus_core::{Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
@@ -22,6 +23,7 @@ use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_relation::{Hold, NodeRelation, can_follow};
 use super::mpc_relations::Relations;
 use super::mpc_settings::{MpcKind, MpcSettings};
+use super::pair_states::pair_states;
 use super::reach::Reach;
 use crate::active_set::SlipRule;
 use crate::flags::{CONTACT, MASTER, SLAVE};
@@ -30,7 +32,7 @@ use crate::interface::{
     warnings_of_pairs,
 };
 use crate::pairs::{Friction, condition_name};
-use crate::slave_states::{Columns, SlaveStates};
+use crate::slave_states::{Columns, SlaveState, SlaveStates};
 use crate::solver::UPDATE_EACH_ITERATION;
 use crate::variables::{NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 
@@ -358,6 +360,23 @@ impl Interaction for MpcInteraction {
         vec![("pairs", self.relations.pairs.len() as f64), ("active nodes", self.states.count_active() as f64)]
     }
 
+    fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
+        let parts = (&self.settings.parts, &self.settings.slaves);
+        let friction = self.settings.kind == MpcKind::Frictional;
+        let of_node = |node: u32, state: &SlaveState| {
+            // What friction adds to the force of the constraint goes with the pressure or is the slider's own.
+            let bound = state.friction.at(dot(reaction(part, node), state.normal) / state.area);
+            norm(state.weighted_slip) * bound
+        };
+        let (holds, least) = (friction || self.settings.ties(), resolved_length(part, &self.states.slaves()));
+        let mut out = pair_states(&self.interfaces, parts, &self.states, holds, least, of_node);
+        for (interface, pair) in self.interfaces.iter().zip(&mut out) {
+            let held = interface.nodes_of(Roles::Slave).into_iter().filter(|&node| self.states[node].active);
+            pair.constraint_forces = held.map(|node| (node, reaction(part, node))).collect();
+        }
+        out
+    }
+
     fn messages(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.messages)
     }
@@ -378,6 +397,12 @@ impl Interaction for MpcInteraction {
 impl Coupling for MpcInteraction {
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
         self.friction.sliders.iter().map(|forces| forces as &dyn EntityBlock).collect()
+    }
+
+    fn pair_of(&self, block: usize, at: usize) -> Option<(usize, Range<usize>)> {
+        let (slave, masters) = self.friction.sliders.get(block)?.nodes(at).split_last()?;
+        let is_of = |interface: &Interface| interface.nodes_of(Roles::Slave).binary_search(slave).is_ok();
+        Some((self.interfaces.iter().position(is_of)?, 0..masters.len()))
     }
 
     fn graph_version(&self) -> u64 {

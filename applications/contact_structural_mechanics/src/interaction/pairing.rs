@@ -2,6 +2,7 @@
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -128,6 +129,14 @@ impl Pairing {
 
     pub(super) fn keys(&self) -> Vec<PairKey> {
         self.blocks.iter().flat_map(|block| block.pairs().iter().map(|pair| pair.key)).collect()
+    }
+
+    /// The interface of a pair of a block, and which of the block's nodes are its masters.
+    pub(super) fn pair_of(&self, block: usize, at: usize) -> Option<(usize, Range<usize>)> {
+        let block = self.blocks.get(block)?;
+        let key = block.pairs().get(at)?.key;
+        let slaves = block.nodes(at).len() - block.slave_nodes(at).len();
+        Some((key.interface as usize, slaves - self.master(key).nodes.len()..slaves))
     }
 
     fn facet(&self, interface: u32, facet: u32) -> &Facet {

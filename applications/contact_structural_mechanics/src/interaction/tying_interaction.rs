@@ -1,10 +1,11 @@
 //! Meshes that do not match, tied by multipliers: D and M of a pair are those of the moment it is made.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};
+use zelus_core::entities::{Coupling, EntityBlock, Interaction, PairState, require_kind};
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
 use zelus_core::parameters::Interval;
@@ -12,6 +13,7 @@ use zelus_core::{Result, State};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::holding::Holding;
+use super::pair_states::name;
 use crate::flags::CONTACT;
 use crate::interface::{
     Fixed, Interface, NodalNormals, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals,
@@ -62,6 +64,8 @@ pub struct TyingInteraction {
     slaves: Vec<u32>,
     pairs: BTreeMap<PairKey, FacetOperators>,
     blocks: Vec<Box<dyn EntityBlock>>,
+    /// Of each block, the facets of its entities.
+    keys: Vec<Vec<PairKey>>,
     scale_factor: f64,
     graph: u64,
     holding: Holding,
@@ -101,6 +105,7 @@ impl TyingInteraction {
             interfaces,
             pairs: BTreeMap::new(),
             blocks: Vec::new(),
+            keys: Vec::new(),
             scale_factor: 1.0,
             graph: 1,
             holding: Holding::default(),
@@ -122,7 +127,9 @@ impl TyingInteraction {
         let pairs = self.pairs.iter().map(|(&key, &operators)| FacetPair { key, operators });
         let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
         self.blocks.clear();
+        self.keys.clear();
         for ((slave, master), (pairs, nodes)) in groups {
+            self.keys.push(pairs.iter().map(|pair| pair.key).collect());
             let name = condition_name("MeshTyingMortarCondition", slave, master);
             let request = TyingRequest {
                 entry: require_kind(Role::Condition, &name)?,
@@ -316,6 +323,16 @@ impl Interaction for TyingInteraction {
         vec![("tied pairs", if self.blocks.is_empty() { 0.0 } else { self.pairs.len() as f64 })]
     }
 
+    fn pairs(&self, _part: &ModelPart) -> Vec<PairState> {
+        let parts = (&self.settings.parts, &self.settings.slaves);
+        let of_pair = |interface: &Interface| {
+            let nodes = interface.nodes_of(Roles::Slave).len();
+            let [open, sticking] = if self.blocks.is_empty() { [nodes, 0] } else { [0, nodes] };
+            PairState { name: name(&interface.key, parts), open, sticking, ..PairState::default() }
+        };
+        self.interfaces.iter().map(of_pair).collect()
+    }
+
     fn messages(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.messages)
     }
@@ -333,6 +350,14 @@ impl Coupling for TyingInteraction {
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
         self.blocks.iter().map(AsRef::as_ref).collect()
+    }
+
+    fn pair_of(&self, block: usize, at: usize) -> Option<(usize, Range<usize>)> {
+        let key = self.keys.get(block)?.get(at)?;
+        Some((
+            key.interface as usize,
+            0..self.interfaces[key.interface as usize].facets[key.master as usize].nodes.len(),
+        ))
     }
 
     fn graph_version(&self) -> u64 {

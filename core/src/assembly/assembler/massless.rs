@@ -50,16 +50,29 @@ impl Assembler {
     }
 
     fn own_energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
-        let (u, v) = (self.values(part, system), system.dofs.column(&part.nodes.history, FIRST, 0));
-        self.mass(part, system)?;
+        let u = self.values(part, system);
         let mut forces = vec![0.0; u.len()];
         for (block, numbers) in system.elements.iter().zip(&self.element_numbers) {
             add_residual(block.as_ref(), numbers, &part.view(), Want::Residual, &mut forces)?;
         }
-        let mut momentum = vec![0.0; u.len()];
+        Ok(0.5 * product(&forces, &u).abs() + self.own_kinetic_energy(part, system)?)
+    }
+
+    /// Kinetic energy of the present velocities; collective.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn kinetic_energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
+        let own = self.own_kinetic_energy(part, system);
+        Ok(part.ranks.total(part.ranks.agree(own)?))
+    }
+
+    fn own_kinetic_energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
+        let v = system.dofs.column(&part.nodes.history, FIRST, 0);
+        let mut momentum = vec![0.0; v.len()];
+        self.mass(part, system)?;
         self.mul_subtract(self.mass.as_ref().expect("just made"), &v, &mut momentum);
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        Ok(0.5 * product(&forces, &u).abs() + 0.5 * product(&momentum, &v).abs())
+        Ok(0.5 * product(&momentum, &v).abs())
     }
 
     /// Makes present velocities and accelerations of massless unknowns those of the nodes below.
@@ -126,4 +139,8 @@ impl Assembler {
         system.dofs.write_column(&mut part.nodes.history, column, level, &values);
         Ok(())
     }
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -89,6 +89,7 @@ impl NewtonRaphson {
                 Turn::Failed(why) => return Ok((step.records, Some(why))),
                 Turn::Converged => {
                     self.keep_reactions(part, system, &step.residual);
+                    self.keep_balance(part, system, &step.residual, None)?;
                     return Ok((step.records, None));
                 }
             }

@@ -1,0 +1,62 @@
+//! What became of the slave nodes of each pair of a deck, for the balance of a step.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use zelus_core::entities::PairState;
+use zelus_core::vector3::norm;
+
+use crate::interface::{Interface, Roles};
+use crate::node_state::NodeState;
+use crate::slave_states::{SlaveState, SlaveStates};
+
+/// Parts of each pair of a deck by key: all of them, and those on the slave side.
+pub(super) type Parts<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
+
+/// The pairs of these interfaces; nodes in contact slide where there is no friction, and `heat` is what a slave node that slides
+/// has dissipated in the step. No depth up to `least` counts. A node of several pairs counts in the first.
+pub(super) fn pair_states(
+    interfaces: &[Interface],
+    parts: Parts<'_>,
+    states: &SlaveStates,
+    frictional: bool,
+    least: f64,
+    heat: impl Fn(u32, &SlaveState) -> f64,
+) -> Vec<PairState> {
+    let mut counted = BTreeSet::new();
+    let of_pair = |interface: &Interface| {
+        let mut out = PairState { name: name(&interface.key, parts), ..PairState::default() };
+        for node in interface.nodes_of(Roles::Slave).into_iter().filter(|node| counted.insert(*node)) {
+            let state = &states[node];
+            match state.contact() {
+                NodeState::Inactive => out.open += 1,
+                NodeState::Stick if frictional => out.sticking += 1,
+                NodeState::Stick | NodeState::Slip => out.slipping += 1,
+            }
+            if frictional && state.contact() == NodeState::Slip {
+                out.dissipated += heat(node, state);
+            }
+            let depth = -state.gap().unwrap_or(0.0);
+            if depth > out.deepest.map_or(least, |(_, deepest)| deepest) {
+                out.deepest = Some((node, depth));
+            }
+        }
+        out
+    };
+    interfaces.iter().map(of_pair).collect()
+}
+
+/// What friction with this traction has dissipated over this slip on the area of a node.
+pub(super) fn heat(traction: [f64; 3], slip: [f64; 3], area: f64) -> f64 {
+    norm(traction) * norm(slip) * area
+}
+
+/// Name of a pair for reports: its key, the slave parts and those they meet.
+pub(super) fn name(key: &str, (parts, slaves): Parts<'_>) -> String {
+    let all = parts.get(key).map_or(&[][..], Vec::as_slice);
+    let own = slaves.get(key).map_or(&[][..], Vec::as_slice);
+    let others: Vec<&str> = all.iter().filter(|part| !own.contains(part)).map(String::as_str).collect();
+    match (own.is_empty(), others.is_empty()) {
+        (false, false) => format!("{key}: {} on {}", own.join(" and "), others.join(" and ")),
+        _ => format!("{key}: {}", all.join(" and ")),
+    }
+}

@@ -1,0 +1,89 @@
+//! The balance of an accepted step: what acts, what holds, what is left over, and where the energy went.
+
+use serde::{Deserialize, Serialize};
+
+/// Balance of forces, states of contact and energies at the end of an accepted step.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Balance {
+    /// Sums by unknown that has reactions, e.g. forces and moments of displacements.
+    pub unknowns: Vec<UnknownBalance>,
+    /// The pairs of bodies of all interactions.
+    pub pairs: Vec<PairBalance>,
+    /// Energies since the stage began.
+    pub energies: Energies,
+}
+
+/// Sums of what acts on one unknown, over all nodes: loads + elements + interactions + inertia + reactions = 0 but for what is
+/// out of balance.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct UnknownBalance {
+    /// The unknown, e.g. DISPLACEMENT.
+    pub unknown: String,
+    /// Sums of the components.
+    pub forces: Sums,
+    /// Sums of moments about `centre`, in the present configuration; `None` for unknowns that move nothing.
+    pub moments: Option<Sums>,
+    /// Centre of the box around the initial mesh.
+    pub centre: [f64; 3],
+}
+
+/// What adds up to nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sums {
+    /// External forces of conditions and elements.
+    pub loads: [f64; 3],
+    /// What supports and constraints to fixed unknowns carry.
+    pub reactions: [f64; 3],
+    /// Internal forces: nothing but where elements hold to the ground, or turn around an axis.
+    pub elements: [f64; 3],
+    /// Interactions on both sides: nothing where they act between bodies.
+    pub interactions: [f64; 3],
+    /// Minus what inertia and damping take up.
+    pub inertia: [f64; 3],
+    /// What is left over on unknowns that nothing holds, and between the sides of pairs.
+    pub out_of_balance: [f64; 3],
+    /// Its size by that of the largest of the others, a pair's among them.
+    pub relative: f64,
+}
+
+/// One pair of bodies.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct PairBalance {
+    /// Key in the deck, and parts.
+    pub name: String,
+    /// Force on the first (slave) side.
+    pub force: [f64; 3],
+    /// Its moment about the centre.
+    pub moment: [f64; 3],
+    /// Sum of the forces on both sides.
+    pub out_of_balance: [f64; 3],
+    /// Slave nodes without contact.
+    pub open: usize,
+    /// Slave nodes that stick.
+    pub sticking: usize,
+    /// Slave nodes that slide.
+    pub slipping: usize,
+    /// Depth of the node that is deepest in the other side (length).
+    pub penetration: f64,
+    /// Id of that node.
+    pub penetration_node: Option<usize>,
+    /// Energy that friction has turned into heat since the stage began.
+    pub dissipated: f64,
+}
+
+/// Energies since the stage began, of unknowns that have inertia; works by the trapezoidal rule over steps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energies {
+    /// Work against internal forces: strain energy, and what materials have dissipated.
+    pub stored: f64,
+    /// Work of loads.
+    pub loads: f64,
+    /// Work of supports that move.
+    pub supports: f64,
+    /// Work of interactions on both sides.
+    pub interactions: f64,
+    /// Heat of friction.
+    pub dissipated: f64,
+    /// Kinetic energy at the end of the step.
+    pub kinetic: f64,
+}
