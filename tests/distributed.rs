@@ -699,7 +699,7 @@ fn a_rank_that_fails_alone_ends_all() {
 fn ranks_with_different_meshes_do_not_run() {
     let (one, other) = (case("contact_2d/nonmatching"), case("contact_2d/matching"));
     let output = one_each(one.path(), other.path());
-    fails(&output, 4, "the ranks have read different meshes");
+    fails(&output, 4, "the ranks have read different files");
 }
 
 #[test]
@@ -711,10 +711,16 @@ fn ranks_with_different_settings_do_not_run() {
             "StructuralMaterials.json",
             "\"POISSON_RATIO\": 0.3",
             "\"POISSON_RATIO\": 0.31",
-            "the ranks have read different materials",
+            "the ranks have read different files",
         ),
+        ("load.csv", "1.0, -2.0", "1.0, -2.5", "load.csv"),
     ] {
         let (one, other) = (case("contact_2d/nonmatching"), case("contact_2d/nonmatching"));
+        for folder in [&one, &other] {
+            std::fs::write(folder.path().join("load.csv"), "0.0, 0.0\n1.0, -2.0\n").expect("a table");
+            let table = "\"modulus\": {\"name\": \"csv_table\", \"filename\": \"load.csv\"}";
+            change(folder.path(), DECK, "\"modulus\": 1000000.0", table);
+        }
         change(other.path(), file, find, with);
         let output = one_each(one.path(), other.path());
         fails(&output, 4, says);

@@ -4,6 +4,8 @@
 //! coupling of an interface, with stamps that tell what changed; [`create`] makes a [`LinearSolver`] for it. Every answer has
 //! passed a check of its true residual, and none depends on the number of threads.
 
+pub mod address_space;
+
 mod state;
 
 mod csr;

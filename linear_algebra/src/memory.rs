@@ -6,6 +6,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::address_space;
+
 /// Entries of a row, on average, from which on factors fill like those of solids in space.
 const MANY_ENTRIES: usize = 40;
 /// Numbers of a factor in space for each `n^(4/3)`.
@@ -48,13 +50,15 @@ pub(crate) fn incomplete(equations: usize, entries: usize) -> u64 {
     INCOMPLETE * entries as u64 + VECTORS * equations as u64
 }
 
-/// Bytes that this process may still take: what the machine has free, within the limits of its control groups; `None` where the
-/// system does not say.
+/// Bytes that this process may still take: what the machine has free, within the limits of its control groups and of its addresses,
+/// of which threads have their share; `None` where the system does not say.
 pub fn available() -> Option<u64> {
     let machine = fs::read_to_string("/proc/meminfo").ok().and_then(|text| free_of_machine(&text));
     let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let limits = folders(&groups).into_iter().filter_map(|folder| free_of_group(&folder));
-    machine.into_iter().chain(limits).min()
+    let threads = rayon::current_num_threads() as u64 * address_space::workspace();
+    let addresses = address_space::left().map(|left| left.saturating_sub(threads));
+    machine.into_iter().chain(limits).chain(addresses).min()
 }
 
 fn free_of_machine(meminfo: &str) -> Option<u64> {

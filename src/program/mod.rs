@@ -2,11 +2,14 @@
 
 mod catalogue;
 mod kratos_names;
+mod log;
 mod partition;
+mod progress;
 mod report;
 mod say;
 mod stop;
 mod terminal;
+mod warnings;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -18,10 +21,11 @@ use zelus_core::communication::{self, Ranks};
 use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
+use log::Log;
 use report::Report;
 use say::say;
 use stop::Stop;
-use terminal::Terminal;
+use terminal::{Level, Terminal};
 
 /// Multiphysics finite elements: runs Kratos contact decks unmodified.
 #[derive(Debug, Parser)]
@@ -57,6 +61,15 @@ enum Command {
         /// none was saved.
         #[arg(long)]
         resume: bool,
+        /// Say nothing but warnings and errors.
+        #[arg(short, long, conflicts_with = "verbose")]
+        quiet: bool,
+        /// Also say who solved how, which nodes changed their state, and where the time went.
+        #[arg(short, long)]
+        verbose: bool,
+        /// Write all that --verbose says, with the seconds since the start, to this file as well.
+        #[arg(long, value_name = "FILE")]
+        log: Option<PathBuf>,
     },
     /// Check everything about a deck that can be known without solving.
     Check {
@@ -107,30 +120,37 @@ pub fn main() -> ExitCode {
 /// Does what is asked; `ran` says afterwards whether a step was made.
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
-        Command::Run { file, threads, report, like, resume } => {
+        Command::Run { file, threads, report, like, resume, quiet, verbose, log } => {
             let report = report.map(Report);
             if let Some(report) = &report {
                 report.check(&file)?;
             }
             let stop = Stop::listen()?;
             let also = like.as_ref().map(|like| format!("--like {like} ")).unwrap_or_default();
-            let outputs = report.iter().map(|report| report.0.clone()).collect();
+            let outputs = report.iter().map(|report| &report.0).chain(&log).cloned().collect();
             let options = RunOptions { threads, like, ranks: ranks.clone(), outputs };
-            let opened = Simulation::open(&file, &options);
             if !ranks.is_root() {
-                return drive(&mut opened?, &mut Silent, resume, &stop).map(|ended| ended.code());
+                let mut simulation = Simulation::open(&file, &options)?;
+                return drive(&mut simulation, &mut Silent, resume, &stop).map(|ended| ended.code());
             }
-            let mut terminal = Terminal::new();
-            let (result, mut run) = match opened {
+            let level = match (quiet, verbose) {
+                (true, _) => Level::Quiet,
+                (_, true) => Level::Verbose,
+                _ => Level::Usual,
+            };
+            let log = log.map(|log| Log::begin(&log, &file)).transpose()?;
+            let mut terminal = Terminal::new(level, log);
+            let (result, mut run) = match Simulation::open(&file, &options) {
                 Ok(mut simulation) => (drive(&mut simulation, &mut terminal, resume, &stop), simulation.into_report()),
                 Err(error) => (Err(error), RunReport::default()),
             };
-            terminal.finish(&run, matches!(result, Ok(Ended::Done)));
             *ran = !run.steps.is_empty();
             match &result {
                 Ok(ended) => run.exit_code = ended.exit_code(),
                 Err(error) => run.fail(error),
             }
+            let failed = result.as_ref().err().map(|error| explain(error, *ran));
+            terminal.finish(&run, failed.as_deref());
             let written = report.map_or(Ok(()), |report| report.write(&run, result.as_ref().err()));
             let ended = result?;
             written?;
@@ -146,7 +166,7 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
         Command::Check { file, like } => {
             let options = RunOptions { like, ranks: ranks.clone(), ..RunOptions::default() };
             let mut monitor: Box<dyn Monitor> =
-                if ranks.is_root() { Box::new(Terminal::new()) } else { Box::new(Silent) };
+                if ranks.is_root() { Box::new(Terminal::new(Level::Usual, None)) } else { Box::new(Silent) };
             let mut simulation = Simulation::open(&file, &options)?;
             simulation.check(monitor.as_mut())?;
             if !ranks.is_root() {

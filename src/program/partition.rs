@@ -11,6 +11,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::partition::{Counts, Partition, RankCounts, Repeats, Traffic, partition};
 use zelus_core::{Error, Result};
 
+use super::report::check_output;
 use super::say::say;
 
 /// Up to this number of ranks every rank has its line.
@@ -43,6 +44,9 @@ pub(super) struct Arguments {
 
 /// Cuts the mesh, prints the table and writes the files asked for.
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    for (what, path) in [("the partition", &arguments.json), ("the picture", &arguments.vtu)] {
+        path.iter().try_for_each(|path| check_output(what, path, &[&arguments.file]))?;
+    }
     let DeckMesh { part, surfaces, common } = read_deck_mesh(&arguments.file)?;
     let cut = partition(&part, &surfaces, arguments.ranks)?;
     let counts = Counts::new(&part, &cut, &common);

@@ -11,6 +11,22 @@ use zelus_core::{Error, Result};
 /// A key that every report has.
 const MARK: &str = "\"laid_defaults\"";
 
+/// Refuses a file that the command line names as an output: in no folder, or one that is an input or cannot be written.
+///
+/// # Errors
+/// The reason, before anything is read.
+pub(super) fn check_output(what: &str, path: &Path, inputs: &[&Path]) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        let missing = format!("cannot write {what} to {}: there is no folder {}", path.display(), folder.display());
+        return Err(Error::System(missing));
+    }
+    let mut files: Vec<FileUse> = inputs.iter().map(|input| FileUse::Reads((*input).to_owned())).collect();
+    files.push(FileUse::Writes(path.to_owned()));
+    let problems = check_files(&files);
+    if problems.is_empty() { Ok(()) } else { Err(Error::Input(problems)) }
+}
+
 /// The report of a run, to be written at its end.
 #[derive(Debug)]
 pub(super) struct Report(pub PathBuf);
@@ -22,21 +38,14 @@ impl Report {
     /// The reason, before anything is read.
     pub(super) fn check(&self, deck: &Path) -> Result<()> {
         let path = &self.0;
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            let missing =
-                format!("cannot write the report to {}: there is no folder {}", path.display(), folder.display());
-            return Err(Error::System(missing));
-        }
-        let mut problems = check_files(&[FileUse::Reads(deck.to_owned()), FileUse::Writes(path.clone())]);
+        check_output("the report", path, &[deck])?;
         let is_strange = |text: Vec<u8>| !text.is_empty() && !String::from_utf8_lossy(&text).contains(MARK);
-        if problems.is_empty() && std::fs::read(path).is_ok_and(is_strange) {
+        if std::fs::read(path).is_ok_and(is_strange) {
             let fact = format!("{} is no report of an earlier run, and would be replaced", path.display());
-            problems.push(
-                Diagnostic::error("output-file", fact).remedy("give the report another name, or remove the file"),
-            );
+            let problem = Diagnostic::error("output-file", fact);
+            return Err(problem.remedy("give the report another name, or remove the file").into());
         }
-        if problems.is_empty() { Ok(()) } else { Err(Error::Input(problems)) }
+        Ok(())
     }
 
     /// Writes the report, unless the run has ended since files would have been lost.

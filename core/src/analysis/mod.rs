@@ -18,6 +18,7 @@ mod sharing;
 mod simulation;
 mod solver;
 mod stage;
+mod threads;
 mod time_stepping;
 mod unheeded;
 

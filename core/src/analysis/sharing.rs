@@ -1,10 +1,13 @@
-//! Who computes what: the mesh of a stage shared among the ranks, once they are seen to have read the same files.
+//! Who computes what: the mesh of a stage shared among the ranks, which must have read the same files.
 
 use std::hash::{Hash, Hasher};
+use std::path::Path;
 
 use super::solver::has_inertia;
+use crate::communication::Ranks;
 use crate::diagnostics::{Error, Result};
-use crate::model::{ModelPart, Properties, Share};
+use crate::io::FileUse;
+use crate::model::{ModelPart, Share};
 use crate::parameters::Node;
 use crate::partition::{Partition, Surface, common_nodes, everywhere, keep_share, partition, surfaces};
 use crate::strategies::Monitor;
@@ -13,7 +16,7 @@ use crate::strategies::Monitor;
 /// own elements with their nodes, and all of the interfaces. `decks` are this stage and those after it.
 ///
 /// # Errors
-/// Ranks that have read different files; a mesh that cannot be cut.
+/// A mesh that cannot be cut.
 pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, monitor: &mut dyn Monitor) -> Result<()> {
     let ranks = part.ranks.size();
     if ranks == 1 {
@@ -74,46 +77,32 @@ fn cut_on_rank_0(part: &ModelPart, deck: &Node, ranks: usize) -> Result<Partitio
     }))
 }
 
+/// Errors when the ranks have not read the same settings; collective.
+pub(super) fn read_the_same_deck(ranks: &Ranks, deck: &Node) -> Result<()> {
+    let mut hasher = rustc_hash::FxHasher::default();
+    deck.to_json().to_string().hash(&mut hasher);
+    if ranks.is_same(hasher.finish()) { Ok(()) } else { Err(different("decks")) }
+}
+
 /// Errors when the ranks have not read the same files; collective.
-pub(super) fn read_the_same(part: &ModelPart, deck: &Node) -> Result<()> {
-    // Once a mesh is shared out, ranks have different parts of it.
-    let mesh = if part.share.is_none() { of_mesh(part) } else { 0 };
-    for (what, number) in [("meshes", mesh), ("materials", of_materials(part)), ("decks", of_deck(deck))] {
-        if !part.ranks.is_same(number) {
-            return Err(Error::System(format!(
-                "the ranks have read different {what}\n    give all of them the same files, e.g. in a shared folder"
-            )));
+pub(super) fn read_the_same_files(ranks: &Ranks, files: &[FileUse]) -> Result<()> {
+    if ranks.size() == 1 {
+        return Ok(());
+    }
+    let mut inputs: Vec<&Path> = files.iter().filter_map(FileUse::input).collect();
+    inputs.sort_unstable();
+    inputs.dedup();
+    for path in inputs {
+        let checksum =
+            std::fs::read(path).map_or(0, |bytes| u64::from(crc32fast::hash(&bytes)) | (bytes.len() as u64) << 32);
+        if !ranks.is_same(checksum) {
+            return Err(different(&format!("files {}", path.display())));
         }
     }
     Ok(())
 }
 
-/// A number that differs where decks differ.
-fn of_deck(deck: &Node) -> u64 {
-    let mut hasher = rustc_hash::FxHasher::default();
-    deck.to_json().to_string().hash(&mut hasher);
-    hasher.finish()
-}
-
-/// A number that differs where properties differ, wherever they stand.
-fn of_materials(part: &ModelPart) -> u64 {
-    let mut hasher = rustc_hash::FxHasher::default();
-    for properties in part.properties.values() {
-        format!("{:?}", Properties { place: None, ..properties.clone() }).hash(&mut hasher);
-    }
-    hasher.finish()
-}
-
-/// A number that differs where meshes differ.
-fn of_mesh(part: &ModelPart) -> u64 {
-    let mut hasher = rustc_hash::FxHasher::default();
-    part.nodes.ids.hash(&mut hasher);
-    part.nodes.initial.iter().flatten().for_each(|x| x.to_bits().hash(&mut hasher));
-    for table in [&part.elements, &part.conditions] {
-        table.ids.hash(&mut hasher);
-        table.properties.hash(&mut hasher);
-        (0..table.len() as u32).for_each(|at| table.nodes(at).hash(&mut hasher));
-    }
-    part.constraints.len().hash(&mut hasher);
-    hasher.finish()
+fn different(what: &str) -> Error {
+    let remedy = "give all of them the same files, e.g. in a shared folder";
+    Error::System(format!("the ranks have read different {what}\n    {remedy}"))
 }

@@ -9,8 +9,9 @@ use super::deck::{StageDeck, open, stages};
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of};
 use super::stage::{Stage, Systems};
+use super::threads;
 use crate::assembly::System;
-use crate::communication::{Ranks, fair_threads};
+use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::io::{path_of_rank, read_saved, write_saved};
 use crate::model::{Model, ModelPart};
@@ -85,9 +86,7 @@ impl Simulation {
     }
 
     fn new(deck: &Node, folder: PathBuf, options: &RunOptions) -> Result<Self> {
-        let threads = options.threads.unwrap_or_else(fair_threads);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|error| Error::System(format!("cannot start threads: {error}")))?;
+        let (pool, fewer) = threads::pool(options.threads)?;
         let mut report = RunReport { threads: pool.current_num_threads(), ..RunReport::default() };
         let stages = stages(deck, &mut report)?;
         let checkpoints = Checkpoints::new(deck, &stages, &folder)?;
@@ -105,7 +104,7 @@ impl Simulation {
             more: Vec::new(),
             pool: Arc::new(pool),
             report,
-            untold: Vec::new(),
+            untold: fewer.into_iter().collect(),
             checkpoints,
             pointer: None,
         })
@@ -349,6 +348,7 @@ impl Simulation {
         let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
         let stage = Stage::prepare(stages, &self.folder, like, model, systems, report, monitor, more, &self.outputs)?;
         stage.root().clone_into(&mut self.root);
+        monitor.begin_stage(&stage.plan(stages.len(), self.stages.len()));
         self.stage = Some(stage);
         Ok(())
     }

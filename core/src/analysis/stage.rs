@@ -11,7 +11,7 @@ use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
 use super::saved::Saved;
 use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
-use super::sharing::{distribute, read_the_same};
+use super::sharing::{distribute, read_the_same_deck, read_the_same_files};
 use super::solver::{SolverSettings, check_dimensions};
 use super::time_stepping::TimeStepping;
 use super::unheeded::{check_tolerances, warn_of_extensions, warn_of_unheeded};
@@ -23,9 +23,9 @@ use crate::io::{Claim, FileUse, check_files, mesh_file};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
-use crate::processes::Process;
+use crate::processes::{Process, tables_of};
 use crate::strategies::unknowns_of_all;
-use crate::strategies::{Monitor, SolutionStrategy, StepRecord};
+use crate::strategies::{Monitor, Plan, SolutionStrategy, StepRecord};
 
 /// The systems of earlier stages by their root parts: what elements remember goes on with them.
 pub(super) type Systems = BTreeMap<String, System>;
@@ -66,6 +66,7 @@ impl Stage {
         more: Vec<Box<dyn Process>>,
         outputs: &[PathBuf],
     ) -> Result<Self> {
+        monitor.phase("read");
         let start = Instant::now();
         let (stage, later) = stages.split_first().expect("there is a stage to prepare");
         let mut problems = Report::new();
@@ -137,6 +138,7 @@ impl Stage {
             return Err(finish(problems));
         }
         report.add_seconds("read", start.elapsed().as_secs_f64());
+        monitor.phase("set up");
         let start = Instant::now();
         complete_part_names(&mut deck, &root, model, &mut problems);
         let mut decks = vec![deck.clone()];
@@ -146,9 +148,9 @@ impl Stage {
             decks.push(deck);
         }
         let changes = later.iter().any(|later| !later.modelers.is_empty());
-        if model.ranks.size() > 1 {
-            read_the_same(model.root(&root)?, &deck)?;
-        }
+        let inputs = inputs_of(stage, &deck, folder);
+        read_the_same_deck(&model.ranks, &deck)?;
+        read_the_same_files(&model.ranks, &inputs)?;
         distribute(model.root_mut(&root)?, &decks, changes, monitor)?;
         let ranks = model.ranks.clone();
         let mut processes = make_processes(&deck, folder, model, &mut problems);
@@ -190,7 +192,9 @@ impl Stage {
             let checked = process.check(model, &system, &mut problems);
             problems.absorb(checked);
         }
-        let mut files = files_of(&deck, folder, &processes);
+        let mut files: Vec<FileUse> = processes.iter().flat_map(|process| process.files()).collect();
+        read_the_same_files(&ranks, &files)?;
+        files.extend(inputs);
         files.extend(outputs.iter().cloned().map(FileUse::Writes));
         if ranks.is_root() {
             check_files(&files).into_iter().for_each(|problem| problems.push(problem));
@@ -213,6 +217,12 @@ impl Stage {
             claims: None,
             begun: false,
         })
+    }
+
+    /// What it is going to do, as the first of the `left` stages of `all`.
+    pub(super) fn plan(&self, left: usize, all: usize) -> Plan {
+        let (start, end) = (self.start_time, self.end_time);
+        Plan { stage: all - left + 1, stages: all, start, end, steps: self.stepping.count(start, end) }
     }
 
     /// Name of the part that it solves for.
@@ -435,6 +445,7 @@ impl Stage {
 
     fn accept(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
         self.strategy.accept_step(model.root_mut(&self.root)?, &mut self.system)?;
+        monitor.phase("output");
         let start = Instant::now();
         let ranks = model.ranks.clone();
         for process in &mut self.processes {
@@ -545,13 +556,18 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
     }
 }
 
-/// The files of a stage: those that its deck names, and those of its processes.
-fn files_of(deck: &Node, folder: &Path, processes: &[Box<dyn Process>]) -> Vec<FileUse> {
+/// What a stage reads: deck, meshes, materials and tables.
+fn inputs_of(stage: &StageDeck, deck: &Node, folder: &Path) -> Vec<FileUse> {
     let named = |key: &str| deck.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
-    let mut files = vec![FileUse::Reads(deck.place().file)];
     let mesh = named("solver_settings.model_import_settings.input_filename").map(|name| mesh_file(&folder.join(name)));
     let materials = named("solver_settings.material_import_settings.materials_filename").map(|name| folder.join(name));
-    files.extend(mesh.into_iter().chain(materials).map(FileUse::Reads));
-    files.extend(processes.iter().flat_map(|process| process.files()));
-    files
+    let of_modeler = |modeler: &Node| {
+        let parameters = modeler.get("parameters").or_else(|| modeler.get("Parameters"))?;
+        parameters.get("input_filename")?.as_str().map(|name| mesh_file(&folder.join(name)))
+    };
+    let meshes = stage.modelers.iter().filter_map(of_modeler);
+    let mut files = vec![deck.place().file];
+    files.extend(mesh.into_iter().chain(materials).chain(meshes));
+    tables_of(deck, &mut files);
+    files.into_iter().map(FileUse::Reads).collect()
 }

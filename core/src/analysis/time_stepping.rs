@@ -6,6 +6,8 @@ use crate::parameters::{Interval, Node};
 
 /// Share of a step that sums of step lengths may be off by.
 const ROUND_OFF: f64 = 1e-9;
+/// Steps beyond which they are not counted ahead.
+const MOST_COUNTED: usize = 1_000_000;
 
 /// Steps of the deck: their lengths, and whether the last one ends at `end_time`.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +74,16 @@ impl TimeStepping {
             LastStep::Shortened if beyond >= -ROUND_OFF * length => end,
             _ => time + length,
         }
+    }
+
+    /// Steps from `time` to `end`, where they can be counted.
+    pub fn count(&self, mut time: f64, end: f64) -> Option<usize> {
+        let mut steps = 0;
+        while time < end && steps < MOST_COUNTED {
+            time = self.target(time, self.next(time).ok()?, end);
+            steps += 1;
+        }
+        (time >= end).then_some(steps)
     }
 
     /// Length of the step that begins at `time`.
@@ -165,6 +177,9 @@ mod tests {
     fn sums_of_steps_meet_the_end() {
         let tenths = ends(r#"{ "time_step": 0.1 }"#, 1.0);
         assert_eq!((tenths.len(), tenths[9]), (10, 1.0));
+        let tenths = Document::from_str(r#"{ "time_step": 0.1 }"#, "deck.json").expect("JSON").root;
+        let tenths = TimeStepping::from_node(&tenths, &mut Report::new()).expect("steps");
+        assert_eq!([tenths.count(0.0, 1.0), tenths.count(0.5, 1.0), tenths.count(0.0, 1e9)], [Some(10), Some(5), None]);
         assert_eq!(ends(r#"{ "time_step": 1.1 }"#, 1.0), [1.1]);
         let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
         assert!(thirds.len() == 4 && thirds[3] > 1.19);

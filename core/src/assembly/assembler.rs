@@ -5,6 +5,7 @@
 //! tangents of follower forces are small and not symmetric.
 
 mod inertia;
+mod infinite;
 mod massless;
 mod ranks;
 mod saved;

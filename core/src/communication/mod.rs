@@ -54,7 +54,7 @@ fn neighbours() -> usize {
 }
 
 /// Cores this process may use.
-fn cores() -> usize {
+pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 

@@ -43,6 +43,11 @@ impl FileUse {
         }
     }
 
+    /// The path, where something is read.
+    pub fn input(&self) -> Option<&Path> {
+        matches!(self, Self::Reads(_)).then(|| self.path())
+    }
+
     /// The path, where something is written.
     pub fn output(&self) -> Option<&Path> {
         (!matches!(self, Self::Reads(_))).then(|| self.path())

@@ -5,12 +5,13 @@
 //! Values are linear between times. Nearness is that of the initial positions, of entities that of their centres.
 
 use crate::processes::ProcessEntry;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::assign_to_entities::{Container, centre};
 use super::process::{Process, ProcessRequest};
 use super::target::{Target, read_text, scalar_variable};
 use crate::diagnostics::{Diagnostic, Place, Result};
+use crate::io::FileUse;
 use crate::model::{Fields, Model, ModelPart, ScalarVariable, SubPart, Table};
 use crate::parameters::{Document, Node, Settings};
 use crate::register;
@@ -32,7 +33,8 @@ struct AssignScalarInput {
     sites: Vec<(Site, Table)>,
     /// Members of each container with their site, once the mesh is there.
     members: Vec<Vec<(u32, usize)>>,
-    file: Place,
+    place: Place,
+    file: PathBuf,
 }
 
 fn build(
@@ -65,7 +67,8 @@ fn build(
         history: settings.get_bool("historical")?,
         sites,
         members: Vec::new(),
-        file: settings.key_place("file"),
+        place: settings.key_place("file"),
+        file: path,
     }))
 }
 
@@ -157,7 +160,7 @@ impl AssignScalarInput {
                     let anywhere = part.ranks.gather_numbers(&here).into_iter().find_map(|x| x.try_into().ok());
                     anywhere.ok_or_else(|| {
                         let fact = format!("the file names {id}, which the mesh does not have");
-                        Diagnostic::error("unknown-id", fact).at(self.file.clone())
+                        Diagnostic::error("unknown-id", fact).at(self.place.clone())
                     })?
                 }
             });
@@ -177,6 +180,10 @@ impl AssignScalarInput {
 }
 
 impl Process for AssignScalarInput {
+    fn files(&self) -> Vec<FileUse> {
+        vec![FileUse::Reads(self.file.clone())]
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root(&self.target.path)?;
         let selection = self.target.selection(&part.tree)?;

@@ -33,4 +33,5 @@ pub use local_axes::LocalAxes;
 pub use output::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
+pub(crate) use scalar_value::tables_of;
 pub use target::Target;

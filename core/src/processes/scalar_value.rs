@@ -1,6 +1,6 @@
 //! A value that a deck gives as a number, a function of space and time, or a table over time.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use serde::Deserialize;
@@ -79,6 +79,22 @@ impl ScalarValue {
     }
 }
 
+/// The tables that the values of a deck name, as far as they name one.
+pub(crate) fn tables_of(deck: &Node, files: &mut Vec<PathBuf>) {
+    if deck.get("name").and_then(Node::as_str) == Some("csv_table")
+        && let Some(name) = deck.get("filename").and_then(Node::as_str)
+    {
+        files.push(table_file(deck, name));
+    }
+    let members = deck.as_object().into_iter().flat_map(|members| members.iter().map(|member| &member.node));
+    members.chain(deck.as_array().into_iter().flatten()).for_each(|inner| tables_of(inner, files));
+}
+
+/// The file of a table, whose name is relative to the folder of the deck.
+fn table_file(node: &Node, name: &str) -> PathBuf {
+    node.place().file.parent().unwrap_or(Path::new("")).join(name)
+}
+
 fn read_csv(node: &Node) -> Result<Table> {
     let defaults = match &*CSV_DEFAULTS {
         Ok(defaults) => defaults,
@@ -86,8 +102,7 @@ fn read_csv(node: &Node) -> Result<Table> {
     };
     let settings = Settings::check(node, defaults)?.0;
     let csv: CsvSettings = settings.parse()?;
-    let place = settings.place();
-    let path = place.file.parent().unwrap_or(Path::new("")).join(&csv.filename);
+    let path = table_file(node, &csv.filename);
     let unreadable = |e: std::io::Error| {
         Diagnostic::error("unreadable-file", format!("cannot read the table {}: {e}", path.display()))
             .at(settings.key_place("filename"))

@@ -61,6 +61,6 @@ pub use measure::{Form, Measure, Tolerance};
 pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use phases::Phases;
 pub use pseudo_static_scheme::PseudoStaticScheme;
-pub use records::{IterationRecord, Monitor, Silent, StepRecord};
+pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
 pub use strategy::{SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest};

@@ -294,12 +294,18 @@ impl NewtonRaphson {
         })
     }
 
-    /// The first unknown that is no number any more, or whose residual is not; collective.
+    /// The first unknown that is no number any more, or whose residual is not, and who gives it; collective.
     pub(super) fn first_infinite(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Option<String> {
         let values = self.assembler.values(part, system);
-        let broken = (0..values.len() as u32)
-            .find(|&n| !(residual[n as usize].is_finite() && values[n as usize].is_finite()))
-            .map(|n| format!("{} or its residual is no longer finite", Meaning::of(&system.dofs, &part.nodes, n)));
+        let broken = (0..values.len()).find(|&n| !(residual[n].is_finite() && values[n].is_finite())).map(|n| {
+            let unknown = Meaning::of(&system.dofs, &part.nodes, n as u32);
+            if !values[n].is_finite() {
+                return format!("{unknown} is {}", values[n]);
+            }
+            let giver = self.assembler.first_infinite_entity(part, system);
+            let giver = giver.map(|giver| format!("; the first to give such forces is {giver}")).unwrap_or_default();
+            format!("the residual of {unknown} is {}{giver}", residual[n])
+        });
         part.ranks.first_to_say(broken)
     }
 

@@ -103,8 +103,27 @@ impl StepRecord {
     }
 }
 
+/// What a stage is going to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plan {
+    /// Its number, from 1.
+    pub stage: usize,
+    /// Stages in all.
+    pub stages: usize,
+    /// The time it begins at.
+    pub start: f64,
+    /// The time it ends at.
+    pub end: f64,
+    /// Steps, where none is cut and the deck says how long they are.
+    pub steps: Option<usize>,
+}
+
 /// Watches a run; the program prints, tests stay silent.
 pub trait Monitor: Send {
+    /// A stage is ready to run.
+    fn begin_stage(&mut self, _plan: &Plan) {}
+    /// What is done from now on, e.g. `assemble`.
+    fn phase(&mut self, _phase: &'static str) {}
     /// A step begins.
     fn begin_step(&mut self, _step: usize, _time: f64, _delta_time: f64) {}
     /// An iteration is done.

@@ -7,6 +7,9 @@ use crate::diagnostics::{Diagnostic, did_you_mean};
 use crate::model::Role;
 use crate::registry::instead_of;
 
+/// Sub model parts may be nested this deep.
+const DEPTH: usize = 100;
+
 const PART_BLOCKS: [&str; 9] = [
     "SubModelPartData",
     "SubModelPartTables",
@@ -348,7 +351,17 @@ impl Reader<'_> {
                 "SubModelPartConditions" => self.ids(inner, &mut part.conditions),
                 "SubModelPartGeometries" => self.ids(inner, &mut part.geometries),
                 "SubModelPartConstraints" => self.ids(inner, &mut part.constraints),
-                "SubModelPart" => self.sub_model_part(inner, &mut part.parts),
+                "SubModelPart" if self.depth == DEPTH => {
+                    let fact = format!("sub model parts are nested more than {DEPTH} deep");
+                    let remedy = "an `End SubModelPart` may be missing above";
+                    self.problems.push(line, Diagnostic::error("nested-too-deep", fact).remedy(remedy));
+                    self.skip_block(inner);
+                }
+                "SubModelPart" => {
+                    self.depth += 1;
+                    self.sub_model_part(inner, &mut part.parts);
+                    self.depth -= 1;
+                }
                 _ => {
                     self.unknown_block(&kind, line, &PART_BLOCKS);
                     self.skip_block(inner);

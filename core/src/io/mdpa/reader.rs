@@ -44,6 +44,7 @@ pub fn read_bytes(bytes: &[u8], path: &Path, names: &EntityNames) -> Result<(Mdp
         problems: Problems::new(path),
         document: MdpaDocument { file: path.to_owned(), ..Default::default() },
         lines: Lines::default(),
+        depth: 0,
     };
     reader.file();
     let Reader { mut problems, mut document, lines, .. } = reader;
@@ -65,6 +66,8 @@ pub(super) struct Reader<'a> {
     pub(super) problems: Problems<'a>,
     pub(super) document: MdpaDocument,
     pub(super) lines: Lines,
+    /// How many sub model parts the one being read stands in.
+    pub(super) depth: usize,
 }
 
 const BLOCKS: [&str; 14] = [

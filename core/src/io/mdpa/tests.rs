@@ -216,3 +216,14 @@ fn speed_of_reading() {
         megabytes / seconds
     );
 }
+
+#[test]
+fn sub_model_parts_are_nested_so_deep_and_no_deeper() {
+    let nested = |depth: usize| {
+        let open: String = (0..depth).map(|at| format!("Begin SubModelPart P{at}\n")).collect();
+        problems(&format!("{open}{}", "End SubModelPart\n".repeat(depth)))
+    };
+    assert_eq!(nested(101), Vec::<String>::new());
+    assert_eq!(nested(102), ["102 nested-too-deep"]);
+    assert_eq!(nested(50_000), ["102 nested-too-deep"]);
+}

@@ -108,7 +108,9 @@ impl Expression {
         Self::parse(text).map_err(|e| {
             let start = node.place();
             let place = Place { column: start.column + e.column, ..start };
-            let problem = Diagnostic::error("invalid-expression", format!("in \"{text}\": {}", e.fact)).at(place);
+            let problem =
+                Diagnostic::error("invalid-expression", format!("in \"{}\": {}", excerpt(text, e.column), e.fact))
+                    .at(place);
             problem.remedy(e.remedy.unwrap_or_else(|| "write e.g. \"2.0*t + sin(pi*X)\"".into())).into()
         })
     }
@@ -217,6 +219,18 @@ impl<'de> serde::Deserialize<'de> for Expression {
         let text = String::deserialize(deserializer)?;
         Self::parse(&text).map_err(serde::de::Error::custom)
     }
+}
+
+/// What of a long text stands around a column, which counts from 1.
+fn excerpt(text: &str, column: u32) -> String {
+    const REACH: usize = 60;
+    let [length, at] = [text.chars().count(), column as usize - 1];
+    if length <= 2 * REACH {
+        return text.to_owned();
+    }
+    let (begin, end) = (at.saturating_sub(REACH), (at + REACH).min(length));
+    let within: String = text.chars().skip(begin).take(end - begin).collect();
+    format!("{}{within}{}", if begin > 0 { "…" } else { "" }, if end < length { "…" } else { "" })
 }
 
 #[cfg(test)]

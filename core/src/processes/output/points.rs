@@ -28,6 +28,8 @@ pub(super) struct PointsOutput {
     history: bool,
     quantities: Vec<Quantity>,
     points: Vec<Point>,
+    /// Where the points were read from, if they were.
+    source: Option<PathBuf>,
     /// Whether the files hold their heads.
     begun: bool,
 }
@@ -81,6 +83,7 @@ pub(super) fn points_output(
         history: settings.get_bool("historical_value")?,
         quantities: Quantity::list(settings, "output_variables", request.report)?,
         points: positions.iter().enumerate().map(point).collect(),
+        source: settings.node().get("csv_file_path").and_then(Node::as_str).map(|name| request.folder.join(name)),
         begun: false,
     }))
 }
@@ -248,7 +251,8 @@ impl Process for PointsOutput {
     }
 
     fn files(&self) -> Vec<FileUse> {
-        self.points.iter().map(|point| FileUse::Writes(point.file.clone())).collect()
+        let read = self.source.iter().cloned().map(FileUse::Reads);
+        read.chain(self.points.iter().map(|point| FileUse::Writes(point.file.clone()))).collect()
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

@@ -80,7 +80,11 @@ impl NewtonRaphson {
         system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<IterationRecord>, Option<String>)> {
+        monitor.phase("search");
         let mut step = self.begin_step(part, system)?;
+        if let Some(what) = self.first_infinite(part, system, &step.residual) {
+            return Ok((Vec::new(), Some(format!("the step cannot begin: {what}"))));
+        }
         let mut iteration = 0;
         while iteration < step.last || (iteration < step.most && contracts(&step.records, step.most - iteration)) {
             iteration += 1;
@@ -157,7 +161,7 @@ impl NewtonRaphson {
         if !self.settings.linear {
             part.info.nl_iteration = iteration;
         }
-        let solved = match self.solve_tangent(iteration, step, part, system) {
+        let solved = match self.solve_tangent(iteration, step, part, system, monitor) {
             Ok(solved) => solved,
             Err(failed) => return self.give_up(failed, iteration, &step.residual, part, system),
         };
@@ -166,7 +170,11 @@ impl NewtonRaphson {
         }
         let condition =
             if part.info.is(super::CONDITION_NUMBER) { self.condition_number(part, system, monitor) } else { None };
+        monitor.phase("states and residual");
         let increment = self.take(&solved, step, part, system)?;
+        if let Some(what) = self.first_infinite(part, system, &step.residual) {
+            return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
+        }
         // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
         // serves for what the interactions take from it and nothing else.
         let restart =
@@ -224,9 +232,10 @@ impl NewtonRaphson {
         step: &mut Step,
         part: &mut ModelPart,
         system: &mut System,
+        monitor: &mut dyn Monitor,
     ) -> Result<Solved, Failed> {
         let constraints = constraints_version(&system.interactions);
-        let mut solved = self.solve_once(iteration, step, part, system);
+        let mut solved = self.solve_once(iteration, step, part, system, monitor);
         while matches!(solved, Err(Failed::Singular(_))) && restrain_free_bodies(&mut system.interactions, part) {
             if constraints != constraints_version(&system.interactions) {
                 self.lay_out(part, system)?;
@@ -236,7 +245,7 @@ impl NewtonRaphson {
             if iteration == 1 {
                 step.references.start.clear();
             }
-            solved = self.solve_once(iteration, step, part, system);
+            solved = self.solve_once(iteration, step, part, system, monitor);
         }
         let (Err(Failed::Singular(why) | Failed::Inaccurate(why)), None, Some(amount)) =
             (&solved, step.relaxed, step.relaxation)
@@ -256,7 +265,9 @@ impl NewtonRaphson {
         step: &mut Step,
         part: &mut ModelPart,
         system: &mut System,
+        monitor: &mut dyn Monitor,
     ) -> Result<Solved, Failed> {
+        monitor.phase("assemble");
         let inertia = self.scheme.inertia(part, &system.dofs);
         self.assembler.tangents(part, system, inertia.as_ref())?;
         if let Some(amount) = step.relaxed {
@@ -273,6 +284,7 @@ impl NewtonRaphson {
             observe(&mut system.interactions, part, 0, &rhs);
         }
         self.solver.aim(step.needed());
+        monitor.phase("solve");
         self.solve(part, system, &rhs)
     }
 
