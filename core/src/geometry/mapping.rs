@@ -4,6 +4,8 @@
 //! caller's choice. Normals: a line a → b in the plane has n = (t_y, −t_x), to the right of the direction of travel; a
 //! surface has t_1 × t_2. Faces as listed in the reference cells thus point outward.
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::{Shape, ShapeTable, local_gradients, shape_functions};
 use crate::vector3::{add, cross, dot, norm, scale, sub};
 
@@ -150,18 +152,15 @@ pub fn local_coordinates(shape: Shape, x: &[Vec3], point: Vec3) -> Option<Projec
     for _ in 0..60 {
         let (image, t, second) = derivatives(shape, x, xi);
         let r = sub(image, point);
-        let (gradient, mut full, mut gauss) = ([0, 1, 2].map(|k| dot(t[k], r)), [[0.0; 3]; 3], [[0.0; 3]; 3]);
-        for k in 0..3 {
-            for l in 0..3 {
-                gauss[k][l] = if k >= dim || l >= dim { f64::from(k == l) } else { dot(t[k], t[l]) };
-                full[k][l] = gauss[k][l] + if k < dim && l < dim { dot(r, second[k][l]) } else { 0.0 };
-            }
-        }
-        let positive = |m: &[[f64; 3]; 3]| m[0][0] > 0.0 && m[0][0] * m[1][1] > m[0][1] * m[1][0];
+        let gradient = Vector3::from_fn(|k, _| dot(t[k], r));
+        let inside = |k, l| k < dim && l < dim;
+        let gauss = Matrix3::from_fn(|k, l| if inside(k, l) { dot(t[k], t[l]) } else { f64::from(k == l) });
+        let full = gauss + Matrix3::from_fn(|k, l| if inside(k, l) { dot(r, second[k][l]) } else { 0.0 });
+        let positive = |m: &Matrix3<f64>| m[(0, 0)] > 0.0 && m[(0, 0)] * m[(1, 1)] > m[(0, 1)] * m[(1, 0)];
         // a solid has no residual at its root, and away from a minimum the full Hessian points the wrong way
-        let matrix = if dim < 3 && positive(&full) { &full } else { &gauss };
-        let step = solve3(matrix, gradient)?;
-        let size = norm(step);
+        let matrix = if dim < 3 && positive(&full) { full } else { gauss };
+        let step = matrix.try_inverse()? * gradient;
+        let size = step.norm();
         let damping = if size > 2.0 { 2.0 / size } else { 1.0 };
         for k in 0..dim {
             xi[k] -= damping * step[k];
@@ -192,11 +191,4 @@ fn derivatives(shape: Shape, x: &[Vec3], xi: [f64; 3]) -> (Vec3, [Vec3; 3], [[Ve
         [0, 1, 2].map(|k| scale(sub(after[k], before[k]), 0.5))
     });
     (position(shape, x, xi), tangents(shape, x, xi), second)
-}
-
-/// Solution of the 3×3 system `a x = b` by cofactors, or `None` when `a` is singular.
-fn solve3(a: &[Vec3; 3], b: Vec3) -> Option<Vec3> {
-    let (c0, c1, c2) = (cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1]));
-    let det = dot(a[0], c0);
-    (det != 0.0 && det.is_finite()).then(|| [0, 1, 2].map(|i| (b[0] * c0[i] + b[1] * c1[i] + b[2] * c2[i]) / det))
 }

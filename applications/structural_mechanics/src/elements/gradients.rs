@@ -3,7 +3,7 @@
 use zelus_core::entities::{Gather, StepView};
 use zelus_core::model::Variable;
 
-use crate::tensor::{IDENTITY, Tensor, determinant, inverse, pairs};
+use crate::tensor::{IDENTITY, Tensor, inverse, pairs};
 
 /// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
 pub(super) fn gradient<const NODES: usize, const DIM: usize>(
@@ -25,7 +25,7 @@ pub(super) fn gradient<const NODES: usize, const DIM: usize>(
 pub(super) fn padded<const DIM: usize>(a: &[[f64; DIM]; DIM]) -> Tensor {
     let mut out = IDENTITY;
     for i in 0..DIM {
-        out[i][..DIM].copy_from_slice(&a[i]);
+        (0..DIM).for_each(|j| out[(i, j)] = a[i][j]);
     }
     out
 }
@@ -40,18 +40,19 @@ pub(super) fn physical_gradients<const NODES: usize, const DIM: usize>(
     let dn = local.map(|dn| {
         let mut out = [0.0; DIM];
         for (a, out) in out.iter_mut().enumerate() {
-            *out = (0..DIM).map(|k| dn[k] * inverse[k][a]).sum();
+            *out = (0..DIM).map(|k| dn[k] * inverse[(k, a)]).sum();
         }
         out
     });
-    (dn, determinant(&jacobian))
+    (dn, jacobian.determinant())
 }
 
 /// The rows of B of one node: derivatives of Green's and Lagrange's strain under F with respect to its displacements, of the
 /// small strain where F is the unit tensor.
 pub(super) fn strain_rows<const DIM: usize, const S: usize>(f: &Tensor, dn: &[f64; DIM]) -> [[f64; DIM]; S] {
-    pairs::<S>()
-        .map(|(p, q)| std::array::from_fn(|a| if p == q { f[a][p] * dn[p] } else { f[a][p] * dn[q] + f[a][q] * dn[p] }))
+    pairs::<S>().map(|(p, q)| {
+        std::array::from_fn(|a| if p == q { f[(a, p)] * dn[p] } else { f[(a, p)] * dn[q] + f[(a, q)] * dn[p] })
+    })
 }
 
 /// Three numbers a node of a column, zeros when nothing has added it.

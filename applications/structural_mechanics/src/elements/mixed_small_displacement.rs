@@ -17,7 +17,7 @@ use zelus_core::entities::Want;
 use super::gradients::{gradient, padded, strain_rows};
 use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use crate::laws::{ConstitutiveLaw, Matrix, StrainState, StressMeasure};
-use crate::tensor::{IDENTITY, determinant, inverse, strain_vector};
+use crate::tensor::{IDENTITY, Tensor, inverse, strain_vector};
 
 /// Small strain whose volumetric part is that of the nodes.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ fn flexibility<const NODES: usize, const DIM: usize, const S: usize>(d: &Matrix<
         }
     }
     let flexibility = inverse(&padded(&sum));
-    (0..DIM).map(|a| flexibility[a][a]).sum()
+    (0..DIM).map(|a| flexibility[(a, a)]).sum()
 }
 
 impl VolumetricForm for MixedSmallDisplacement {
@@ -54,17 +54,16 @@ impl VolumetricForm for MixedSmallDisplacement {
         history: &'a [f64],
     ) -> Result<StrainState<'a, S>, String> {
         let grad_u = gradient(&values.u, &at.dn);
-        let mut h = [[0.0; 3]; 3];
+        let mut h = Tensor::zeros();
         for a in 0..DIM {
             for b in 0..DIM {
-                h[a][b] = 0.5 * (grad_u[a][b] + grad_u[b][a]);
+                h[(a, b)] = 0.5 * (grad_u[a][b] + grad_u[b][a]);
             }
         }
         let share = excess(at, values) / DIM as f64;
-        (0..DIM).for_each(|a| h[a][a] += share);
-        let mut f = h;
-        (0..3).for_each(|a| f[a][a] += 1.0);
-        let det_f = determinant(&f);
+        (0..DIM).for_each(|a| h[(a, a)] += share);
+        let f = IDENTITY + h;
+        let det_f = f.determinant();
         if !law.is_linear() && (det_f <= 0.0 || det_f.is_nan()) {
             return Err(format!("turned inside out at Gauss point {} (det F = {det_f:.3e})", at.g + 1));
         }

@@ -19,7 +19,7 @@ use zelus_core::entities::Want;
 use super::gradients::{gradient, padded, strain_rows};
 use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
 use crate::laws::{ConstitutiveLaw, StrainState, StressMeasure};
-use crate::tensor::{Tensor, determinant, inverse, product, strain_vector, stress_tensor, transposed};
+use crate::tensor::{IDENTITY, Tensor, inverse, strain_vector, stress_tensor};
 
 /// Share of μ/(μ + κ) that is τ_θ.
 const TAU_THETA: f64 = 0.1;
@@ -40,7 +40,7 @@ impl Motion {
         let mut f = gradient(&values.u, &at.dn);
         (0..DIM).for_each(|a| f[a][a] += 1.0);
         let f = padded(&f);
-        Self { f, j: determinant(&f), theta: at.n.iter().zip(&values.theta).map(|(n, theta)| n * theta).sum() }
+        Self { f, j: f.determinant(), theta: at.n.iter().zip(&values.theta).map(|(n, theta)| n * theta).sum() }
     }
 
     /// ((1 + θ)/J)^{1/d}, by which F is stretched.
@@ -70,10 +70,8 @@ impl VolumetricForm for MixedTotalLagrangian {
         }
         let mut f = motion.f;
         let stretch = motion.stretch(DIM);
-        f[..DIM].iter_mut().for_each(|row| row[..DIM].iter_mut().for_each(|x| *x *= stretch));
-        let mut strain = product(&transposed(&f), &f);
-        (0..3).for_each(|a| strain[a][a] -= 1.0);
-        let strain = strain_vector::<S>(&strain).map(|e| 0.5 * e);
+        (0..DIM).for_each(|a| (0..DIM).for_each(|b| f[(a, b)] *= stretch));
+        let strain = strain_vector::<S>(&(f.transpose() * f - IDENTITY)).map(|e| 0.5 * e);
         Ok(StrainState { strain, f, det_f: 1.0 + motion.theta, small: false, pressure: 0.0, history })
     }
 
@@ -92,9 +90,9 @@ impl VolumetricForm for MixedTotalLagrangian {
         let motion = Motion::new(at, values);
         let (f, j, theta) = (&motion.f, motion.j, motion.theta);
         let back = inverse(f);
-        let h = at
-            .dn
-            .map(|dn| -> [f64; DIM] { std::array::from_fn(|a| j * (0..DIM).map(|b| back[b][a] * dn[b]).sum::<f64>()) });
+        let h = at.dn.map(|dn| -> [f64; DIM] {
+            std::array::from_fn(|a| j * (0..DIM).map(|b| back[(b, a)] * dn[b]).sum::<f64>())
+        });
         for i in 0..NODES {
             (0..DIM).for_each(|a| rhs[i * step + a] += weight * at.n[i] * matter.body[a]);
             rhs[i * step + DIM] += weight * bulk * tau_u * dot(&h[i], &matter.body);
@@ -107,14 +105,15 @@ impl VolumetricForm for MixedTotalLagrangian {
         let s = stress_tensor(&matter.law.stress(state, StressMeasure::Pk2, wanted));
         let excess = theta - j + 1.0;
         // S ∇N_i, and what is out of balance but for the body force: κ Σ θ_i h_i
-        let pulled = at.dn.map(|dn| -> [f64; DIM] { std::array::from_fn(|a| (0..DIM).map(|b| s[a][b] * dn[b]).sum()) });
+        let pulled =
+            at.dn.map(|dn| -> [f64; DIM] { std::array::from_fn(|a| (0..DIM).map(|b| s[(a, b)] * dn[b]).sum()) });
         let mut load = matter.body;
         for (h, theta) in h.iter().zip(&values.theta) {
             load.iter_mut().zip(h).for_each(|(sum, h)| *sum += bulk * theta * h);
         }
         for i in 0..NODES {
             for a in 0..DIM {
-                let force: f64 = (0..DIM).map(|b| f[a][b] * pulled[i][b]).sum();
+                let force: f64 = (0..DIM).map(|b| f[(a, b)] * pulled[i][b]).sum();
                 rhs[i * step + a] -= weight * (force - bulk * tau_theta * excess * h[i][a]);
             }
             let sub = tau_u * (dot(&h[i], &load) - dot(&h[i], &matter.body));
@@ -126,7 +125,7 @@ impl VolumetricForm for MixedTotalLagrangian {
         let dim = DIM as f64;
         let scale = motion.stretch(DIM).powi(2);
         // F is that of the displacements alone: C = Fᵀ F as a strain vector
-        let c: [f64; S] = strain_vector(&product(&transposed(f), f));
+        let c: [f64; S] = strain_vector(&(f.transpose() * f));
         let b = at.dn.map(|dn| strain_rows::<DIM, S>(f, &dn));
         // D times the change of the law's strain with the volume at fixed displacements, of 1 + θ to its first power
         let swollen: [f64; S] = std::array::from_fn(|s| scale / dim * dot(&d[s], &c));

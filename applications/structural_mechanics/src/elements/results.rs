@@ -119,12 +119,12 @@ fn vector<const S: usize>(values: &[f64; S], ring: bool, out: &mut Vec<f64>) {
 
 fn tensor<const S: usize>(values: &Tensor, out: &mut Vec<f64>) {
     let dim = if S == 3 { 2 } else { 3 };
-    values[..dim].iter().for_each(|row| out.extend_from_slice(&row[..dim]));
+    (0..dim).for_each(|i| out.extend((0..dim).map(|j| values[(i, j)])));
 }
 
 fn von_mises<const S: usize>(stress: &[f64; S]) -> f64 {
     let t = stress_tensor(stress);
     // with s_zz = 0 this is the plane formula sqrt(sx² − sx sy + sy² + 3 txy²)
-    let normal = (t[0][0] - t[1][1]).powi(2) + (t[1][1] - t[2][2]).powi(2) + (t[2][2] - t[0][0]).powi(2);
-    (0.5 * normal + 3.0 * (t[0][1].powi(2) + t[1][2].powi(2) + t[0][2].powi(2))).sqrt()
+    let normal = (t[(0, 0)] - t[(1, 1)]).powi(2) + (t[(1, 1)] - t[(2, 2)]).powi(2) + (t[(2, 2)] - t[(0, 0)]).powi(2);
+    (0.5 * normal + 3.0 * (t[(0, 1)].powi(2) + t[(1, 2)].powi(2) + t[(0, 2)].powi(2))).sqrt()
 }

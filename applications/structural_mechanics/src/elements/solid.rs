@@ -23,7 +23,7 @@ use super::material::Material;
 use super::results;
 use super::stiffness::add_stiffness;
 use crate::laws::{LawFactory, MakesLaw, StrainState};
-use crate::tensor::{inverse, product, stress_vector, transposed};
+use crate::tensor::{inverse, stress_vector};
 use crate::variables::VOLUME_ACCELERATION;
 
 /// Solid element with `NODES` nodes in `DIM` dimensions and `S` strains (3 plane, 4 axisymmetric or plane B-bar, 6 solid).
@@ -163,7 +163,7 @@ where
             add_stiffness(point.weight, &d, &b, whole, &mut upper);
             if F::CONSTANT_PRESSURE {
                 let f = inverse(&point.state.f);
-                let inverse_c = stress_vector::<S>(&product(&f, &transposed(&f)));
+                let inverse_c = stress_vector::<S>(&(f * f.transpose()));
                 for (row, k) in b.iter().zip(inverse_c) {
                     let factor = point.weight * point.state.det_f * k;
                     of_volume.iter_mut().zip(row).for_each(|(sum, b)| *sum += factor * b);

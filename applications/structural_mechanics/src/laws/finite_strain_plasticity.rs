@@ -16,10 +16,11 @@ use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
 use zelus_core::register;
 
+use super::hyper_elastic::right_cauchy_green;
 use super::j2::{J2, Return};
 use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
 use super::small_strain_plasticity::{answer, remember, remembered};
-use crate::tensor::{IDENTITY, Tensor, cholesky, congruent, eigen, pairs, product, strain_tensor, transposed};
+use crate::tensor::{IDENTITY, Tensor, cholesky, congruent, eigen, pairs};
 
 /// Relative distance of eigenvalues below which their difference quotient is the derivative.
 const CLOSE: f64 = 1e-5;
@@ -36,29 +37,22 @@ struct Trial {
     dilation: f64,
     /// dev ε_A.
     dev: [f64; 3],
-    /// M_A as rows.
+    /// M_A as columns.
     axes: Tensor,
     turn: Return,
-}
-
-/// 1 + `a` times `factor`.
-fn beside_one(a: &Tensor, factor: f64) -> Tensor {
-    std::array::from_fn(|i| std::array::from_fn(|j| IDENTITY[i][j] + factor * a[i][j]))
 }
 
 impl FiniteStrainPlasticity {
     fn trial<const S: usize>(&self, state: &StrainState<'_, S>) -> Trial {
         let (g, alpha) = remembered(state.history);
-        let l = cholesky(&beside_one(&g, 1.0));
-        let c = beside_one(&strain_tensor(&state.strain), 2.0);
-        let (squares, vectors) = eigen(&congruent(&transposed(&l), &c));
+        let l = cholesky(&(IDENTITY + g));
+        let (squares, vectors) = eigen(&congruent(&l.transpose(), &right_cauchy_green(state)));
+        let squares: [f64; 3] = squares.into();
         let logs = squares.map(|s| 0.5 * s.ln());
         let dilation: f64 = logs.iter().sum();
         let dev = logs.map(|e| e - dilation / 3.0);
         let q = 2.0 * self.0.mu * (1.5 * dev.iter().map(|e| e * e).sum::<f64>()).sqrt();
-        // rows of vectors are N_A, so rows of vectors · Lᵀ are L N_A
-        let axes = product(&vectors, &transposed(&l));
-        Trial { squares, dilation, dev, axes, turn: self.0.turn_back(q, alpha) }
+        Trial { squares, dilation, dev, axes: l * vectors, turn: self.0.turn_back(q, alpha) }
     }
 
     /// τ_A.
@@ -71,13 +65,11 @@ impl FiniteStrainPlasticity {
         let two_mu = 2.0 * self.0.mu;
         let size: f64 = trial.dev.iter().map(|e| e * e).sum();
         let lost = if trial.turn.delta > 0.0 { two_mu * trial.turn.lost / size } else { 0.0 };
-        std::array::from_fn(|a| {
-            std::array::from_fn(|b| {
-                let same = IDENTITY[a][b];
-                let slope =
-                    self.0.bulk + two_mu * trial.turn.kept * (same - 1.0 / 3.0) - lost * (trial.dev[a] * trial.dev[b]);
-                (slope - 2.0 * tau[a] * same) / (trial.squares[a] * trial.squares[b])
-            })
+        Tensor::from_fn(|a, b| {
+            let same = IDENTITY[(a, b)];
+            let slope =
+                self.0.bulk + two_mu * trial.turn.kept * (same - 1.0 / 3.0) - lost * (trial.dev[a] * trial.dev[b]);
+            (slope - 2.0 * tau[a] * same) / (trial.squares[a] * trial.squares[b])
         })
     }
 
@@ -91,22 +83,22 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainPlasticity {
         let trial = self.trial(state);
         let (m, squares, tau) = (&trial.axes, &trial.squares, self.kirchhoff(&trial));
         let s: [f64; 3] = std::array::from_fn(|a| tau[a] / squares[a]);
-        let dyads: [[f64; S]; 3] = std::array::from_fn(|a| pairs::<S>().map(|(i, j)| m[a][i] * m[a][j]));
+        let dyads: [[f64; S]; 3] = std::array::from_fn(|a| pairs::<S>().map(|(i, j)| m[(i, a)] * m[(j, a)]));
         if let Some(tangent) = tangent {
             let d = self.principal_tangent(&trial, &tau);
             *tangent = [[0.0; S]; S];
             for a in 0..3 {
                 for b in 0..3 {
-                    add_dyad(d[a][b], &dyads[a], &dyads[b], tangent);
+                    add_dyad(d[(a, b)], &dyads[a], &dyads[b], tangent);
                 }
                 for b in a + 1..3 {
                     let distance = squares[a] - squares[b];
                     let shear = if distance.abs() > CLOSE * squares[a] {
                         2.0 * (s[a] - s[b]) / distance
                     } else {
-                        0.5 * (d[a][a] - d[a][b] - d[b][a] + d[b][b])
+                        0.5 * (d[(a, a)] - d[(a, b)] - d[(b, a)] + d[(b, b)])
                     };
-                    let mixed = pairs::<S>().map(|(i, j)| m[a][i] * m[b][j] + m[b][i] * m[a][j]);
+                    let mixed = pairs::<S>().map(|(i, j)| m[(i, a)] * m[(j, b)] + m[(i, b)] * m[(j, a)]);
                     add_dyad(0.5 * shear, &mixed, &mixed, tangent);
                 }
             }
@@ -129,13 +121,8 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainPlasticity {
         let trial = self.trial(state);
         let alpha = remembered(state.history).1 + trial.turn.delta;
         let share = trial.dev.map(|e| (2.0 * (trial.turn.kept - 1.0) * e).exp());
-        let g: Tensor = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                let sum: f64 = (0..3).map(|a| share[a] * trial.axes[a][i] * trial.axes[a][j]).sum();
-                sum - IDENTITY[i][j]
-            })
-        });
-        remember(&g, alpha, history);
+        let g = congruent(&trial.axes, &Tensor::from_diagonal(&share.into()));
+        remember(&(g - IDENTITY), alpha, history);
     }
 
     /// The plastic strain is ½ ln C_p.
@@ -147,10 +134,8 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainPlasticity {
             return true;
         }
         let (g, alpha) = remembered(state.history);
-        let (values, vectors) = eigen(&beside_one(&g, 1.0));
-        let plastic: Tensor = std::array::from_fn(|i| {
-            std::array::from_fn(|j| (0..3).map(|a| -0.5 * values[a].ln() * vectors[a][i] * vectors[a][j]).sum())
-        });
+        let (values, vectors) = eigen(&(IDENTITY + g));
+        let plastic = congruent(&vectors, &Tensor::from_diagonal(&values.map(|value| -0.5 * value.ln())));
         answer::<S>(&plastic, alpha, variable, out)
     }
 }

@@ -8,7 +8,7 @@ use zelus_core::model::Properties;
 
 use super::elastic::{Elasticity, multiply, quadratic_energy};
 use super::law::{ConstitutiveLaw, Matrix, StrainState};
-use crate::tensor::{congruent, inverse, strain_tensor, strain_vector, transposed};
+use crate::tensor::{congruent, inverse, strain_tensor, strain_vector};
 
 /// Linear law with a constant matrix.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +42,7 @@ impl<const S: usize, const PUSHED: bool> ConstitutiveLaw<S> for Hooke<S, PUSHED>
         if !PUSHED {
             return state.strain;
         }
-        strain_vector(&congruent(&transposed(&inverse(&state.f)), &strain_tensor(&state.strain)))
+        strain_vector(&congruent(&inverse(&state.f).transpose(), &strain_tensor(&state.strain)))
     }
 }
 

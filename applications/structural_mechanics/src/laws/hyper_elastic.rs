@@ -25,13 +25,7 @@ pub struct HyperElastic {
 
 /// C = 1 + 2E.
 pub(super) fn right_cauchy_green<const S: usize>(state: &StrainState<'_, S>) -> Tensor {
-    let mut c = strain_tensor(&state.strain);
-    for i in 0..3 {
-        for j in 0..3 {
-            c[i][j] = IDENTITY[i][j] + 2.0 * c[i][j];
-        }
-    }
-    c
+    IDENTITY + 2.0 * strain_tensor(&state.strain)
 }
 
 impl<const S: usize> ConstitutiveLaw<S> for HyperElastic {
@@ -42,12 +36,12 @@ impl<const S: usize> ConstitutiveLaw<S> for HyperElastic {
         if let Some(tangent) = tangent {
             for (row, (i, j)) in tangent.iter_mut().zip(pairs) {
                 for (entry, (p, q)) in row.iter_mut().zip(pairs) {
-                    *entry = self.lambda * k[i][j] * volume[p][q]
-                        + (self.mu - pressure) * (k[i][p] * k[j][q] + k[i][q] * k[j][p]);
+                    *entry = self.lambda * k[(i, j)] * volume[(p, q)]
+                        + (self.mu - pressure) * (k[(i, p)] * k[(j, q)] + k[(i, q)] * k[(j, p)]);
                 }
             }
         }
-        pairs.map(|(i, j)| self.mu * (IDENTITY[i][j] - k[i][j]) + pressure * k[i][j])
+        pairs.map(|(i, j)| self.mu * (IDENTITY[(i, j)] - k[(i, j)]) + pressure * k[(i, j)])
     }
 
     fn is_symmetric(&self, small: bool) -> bool {
@@ -56,7 +50,7 @@ impl<const S: usize> ConstitutiveLaw<S> for HyperElastic {
 
     fn energy(&self, state: &StrainState<'_, S>) -> f64 {
         let (c, log) = (right_cauchy_green(state), state.det_f.ln());
-        0.5 * self.lambda * log * log - self.mu * log + 0.5 * self.mu * (c[0][0] + c[1][1] + c[2][2] - 3.0)
+        0.5 * self.lambda * log * log - self.mu * log + 0.5 * self.mu * (c.trace() - 3.0)
     }
 }
 

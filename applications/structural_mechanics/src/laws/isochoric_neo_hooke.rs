@@ -34,25 +34,25 @@ impl IsochoricNeoHooke {
 impl<const S: usize> ConstitutiveLaw<S> for IsochoricNeoHooke {
     fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
         let (pairs, c) = (pairs::<S>(), right_cauchy_green(state));
-        let (k, third) = (inverse(&c), (c[0][0] + c[1][1] + c[2][2]) / 3.0);
+        let (k, third) = (inverse(&c), c.trace() / 3.0);
         let mu = self.mu * state.det_f.powf(-2.0 / 3.0);
         let volume = state.pressure * state.det_f;
         if let Some(tangent) = tangent {
             for (row, (i, j)) in tangent.iter_mut().zip(pairs) {
                 for (entry, (p, q)) in row.iter_mut().zip(pairs) {
-                    let (both, crossed) = (k[i][j] * k[p][q], k[i][p] * k[j][q] + k[i][q] * k[j][p]);
-                    let mixed = IDENTITY[i][j] * k[p][q] + k[i][j] * IDENTITY[p][q];
+                    let (both, crossed) = (k[(i, j)] * k[(p, q)], k[(i, p)] * k[(j, q)] + k[(i, q)] * k[(j, p)]);
+                    let mixed = IDENTITY[(i, j)] * k[(p, q)] + k[(i, j)] * IDENTITY[(p, q)];
                     *entry = mu * (2.0 / 3.0 * (third * both - mixed) + third * crossed) - volume * (both - crossed);
                 }
             }
         }
-        pairs.map(|(i, j)| mu * (IDENTITY[i][j] - third * k[i][j]) - volume * k[i][j])
+        pairs.map(|(i, j)| mu * (IDENTITY[(i, j)] - third * k[(i, j)]) - volume * k[(i, j)])
     }
 
     /// Without the part of the volume, which is the element's.
     fn energy(&self, state: &StrainState<'_, S>) -> f64 {
         let c = right_cauchy_green(state);
-        0.5 * self.mu * (state.det_f.powf(-2.0 / 3.0) * (c[0][0] + c[1][1] + c[2][2]) - 3.0)
+        0.5 * self.mu * (state.det_f.powf(-2.0 / 3.0) * c.trace() - 3.0)
     }
 
     fn bulk_of_element(&self) -> Option<f64> {

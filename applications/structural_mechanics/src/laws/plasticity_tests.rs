@@ -38,12 +38,11 @@ where
 
 /// A state of Green–Lagrange strain with this history; `f` is only there for measures other than PK2.
 fn state<const S: usize>(strain: [f64; S], f: Tensor, history: &[f64]) -> StrainState<'_, S> {
-    StrainState { strain, f, det_f: determinant(&f), small: false, pressure: 0.0, history }
+    StrainState { strain, f, det_f: f.determinant(), small: false, pressure: 0.0, history }
 }
 
 fn green<const S: usize>(f: &Tensor) -> [f64; S] {
-    let c = product(&transposed(f), f);
-    strain_vector(&std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (c[i][j] - IDENTITY[i][j]))))
+    strain_vector(&(0.5 * (f.transpose() * f - IDENTITY)))
 }
 
 /// What is remembered after the strain, starting from `history`.
@@ -67,7 +66,7 @@ where
         }
         // the last rounds: equal stretches, and the state just accepted
         let strain: [f64; S] = match round {
-            18 => strain_vector(&[[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, -0.01]]),
+            18 => strain_vector(&Tensor::from_diagonal(&[0.01, 0.01, -0.01].into())),
             _ => std::array::from_fn(|_| 0.05 * random.next()),
         };
         let mut d = [[0.0; S]; S];
@@ -142,7 +141,7 @@ fn a_bar_follows_the_closed_form_through_loading_and_unloading() {
         assert!(near(stress[0], expected, 1e-12) && size(&stress[1..]) < 1e-12, "{strain}: {stress:?} {expected}");
         history = advanced(law.as_ref(), whole, &history);
         let (tensor, own) = remembered(&history);
-        assert!(near(own, alpha, 1e-14) && near(tensor[0][0], plastic, 1e-14) && near(trace(&tensor), 0.0, 1e-15));
+        assert!(near(own, alpha, 1e-14) && near(tensor[(0, 0)], plastic, 1e-14) && near(tensor.trace(), 0.0, 1e-15));
     }
 }
 
@@ -159,8 +158,7 @@ fn a_stretched_bar_follows_the_closed_form_in_logarithms() {
         assert!(near(stress[0] * stretch * stretch, expected, 1e-11), "{log}: {} {expected}", stress[0]);
         history = advanced(law.as_ref(), whole, &history);
         let (g, own) = remembered(&history);
-        let whole = std::array::from_fn(|i| std::array::from_fn(|j| g[i][j] + IDENTITY[i][j]));
-        assert!(near(own, alpha, 1e-13) && near(determinant(&whole), 1.0, 1e-13));
+        assert!(near(own, alpha, 1e-13) && near((IDENTITY + g).determinant(), 1.0, 1e-13));
         let mut out = Vec::new();
         assert!(law.internal(&state([0.0; 6], IDENTITY, &history), "PLASTIC_STRAIN_VECTOR", &mut out));
         assert!(near(out[0], plastic, 1e-13) && near(out[1], -0.5 * plastic, 1e-13));
@@ -172,14 +170,13 @@ fn a_stretched_bar_follows_the_closed_form_in_logarithms() {
 fn finite_strain_does_not_see_rotations() {
     let law = law::<6>(FINITE, SATURATING);
     let mut random = Random(32);
-    let mut deform =
-        || -> Tensor { std::array::from_fn(|i| std::array::from_fn(|j| IDENTITY[i][j] + 0.3 * random.next())) };
+    let mut deform = || IDENTITY + Tensor::from_fn(|_, _| 0.3 * random.next());
     let (s, c) = 0.8_f64.sin_cos();
-    let turn = product(&[[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], &[[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]);
+    let turn = Tensor::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0) * Tensor::new(1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c);
     let (first, second) = (deform(), deform());
     let history = advanced(law.as_ref(), green(&first), &[0.0; 7]);
     assert!(remembered(&history).1 > 0.0);
-    let turned = product(&turn, &second);
+    let turned = turn * second;
     let (mut a, mut b) = ([[0.0; 6]; 6], [[0.0; 6]; 6]);
     let cauchy = |f: &Tensor, d| law.stress(&state(green(f), *f, &history), StressMeasure::Cauchy, Some(d));
     let (plain, other) = (cauchy(&second, &mut a), cauchy(&turned, &mut b));
@@ -188,11 +185,11 @@ fn finite_strain_does_not_see_rotations() {
     let pushed = push_forward(&a, &turn, 1.0);
     assert!((0..6).all(|v| (0..6).all(|w| near(b[v][w], pushed[v][w], 1e-11 * E))));
     // a rotation before the first step turns what is remembered with it
-    let earlier = product(&first, &turn);
+    let earlier = first * turn;
     let before = advanced(law.as_ref(), green(&earlier), &[0.0; 7]);
-    let carried = congruent(&transposed(&turn), &remembered(&history).0);
+    let carried = congruent(&turn.transpose(), &remembered(&history).0);
     let found = remembered(&before).0;
-    assert!((0..3).all(|i| (0..3).all(|j| near(found[i][j], carried[i][j], 1e-12))));
+    assert!((0..3).all(|i| (0..3).all(|j| near(found[(i, j)], carried[(i, j)], 1e-12))));
 }
 
 #[test]

@@ -13,7 +13,7 @@ use zelus_core::register;
 
 use super::j2::{J2, Return};
 use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
-use crate::tensor::{Tensor, deviator, norm, pairs, strain_tensor, strain_vector, stress_tensor, stress_vector, trace};
+use crate::tensor::{Tensor, deviator, pairs, strain_tensor, strain_vector, stress_tensor, stress_vector};
 
 /// Von Mises plasticity under small strain.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,10 +56,9 @@ impl SmallStrainPlasticity {
     fn trial<const S: usize>(&self, state: &StrainState<'_, S>) -> Trial {
         let (plastic, alpha) = remembered(state.history);
         let strain = strain_tensor(&state.strain);
-        let dev = deviator(&strain);
-        let s: Tensor = std::array::from_fn(|i| std::array::from_fn(|j| 2.0 * self.0.mu * (dev[i][j] - plastic[i][j])));
-        let size = norm(&s);
-        Trial { s, size, dilation: trace(&strain), turn: self.0.turn_back(1.5_f64.sqrt() * size, alpha) }
+        let s = 2.0 * self.0.mu * (deviator(&strain) - plastic);
+        let size = s.norm();
+        Trial { s, size, dilation: strain.trace(), turn: self.0.turn_back(1.5_f64.sqrt() * size, alpha) }
     }
 
     fn boxed<const S: usize>(properties: &Properties) -> Result<Box<dyn ConstitutiveLaw<S>>> {
@@ -79,11 +78,11 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
                     let symmetric = 0.5 * (unit(i, p) * unit(j, q) + unit(i, q) * unit(j, p));
                     let volume = unit(i, j) * unit(p, q);
                     *entry = self.0.bulk * volume + two_mu * turn.kept * (symmetric - volume / 3.0)
-                        - lost * (s[i][j] * s[p][q]);
+                        - lost * (s[(i, j)] * s[(p, q)]);
                 }
             }
         }
-        pairs.map(|(i, j)| self.0.bulk * dilation * unit(i, j) + turn.kept * s[i][j])
+        pairs.map(|(i, j)| self.0.bulk * dilation * unit(i, j) + turn.kept * s[(i, j)])
     }
 
     /// The elastic part: ½ K tr²(ε) + ‖dev σ‖²/4μ.
@@ -104,9 +103,7 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
         let Trial { s, turn, .. } = self.trial(state);
         let (mut plastic, alpha) = remembered(state.history);
         let share = (1.0 - turn.kept) / (2.0 * self.0.mu);
-        for (row, s) in plastic.iter_mut().zip(&s) {
-            row.iter_mut().zip(s).for_each(|(e, s)| *e += share * s);
-        }
+        plastic += share * s;
         remember(&plastic, alpha + turn.delta, history);
     }
 

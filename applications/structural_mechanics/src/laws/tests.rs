@@ -21,23 +21,16 @@ where
 
 /// A state with deformation gradient `f`.
 fn state<const S: usize>(f: Tensor) -> StrainState<'static, S> {
-    let c = product(&transposed(&f), &f);
-    let strain = strain_vector(&c.map(|row| row.map(|v| 0.5 * v)));
-    let unit = strain_vector::<S>(&IDENTITY);
-    let mut green = strain;
-    green.iter_mut().zip(unit).for_each(|(e, one)| *e -= 0.5 * one);
-    StrainState { strain: green, f, det_f: determinant(&f), small: false, pressure: 0.0, history: &[] }
+    let strain = strain_vector(&(0.5 * (f.transpose() * f - IDENTITY)));
+    StrainState { strain, f, det_f: f.determinant(), small: false, pressure: 0.0, history: &[] }
 }
 
 /// A random deformation gradient whose out-of-plane part suits `S` strains.
 fn gradient<const S: usize>(random: &mut Random, amount: f64) -> Tensor {
     let mut f = IDENTITY;
-    for (i, row) in f.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().enumerate() {
-            let plane = i < 2 && j < 2;
-            if S == 6 || plane || (S == 4 && i == j) {
-                *entry += amount * random.next();
-            }
+    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+        if S == 6 || (i < 2 && j < 2) || (S == 4 && i == j) {
+            f[(i, j)] += amount * random.next();
         }
     }
     f
@@ -45,7 +38,7 @@ fn gradient<const S: usize>(random: &mut Random, amount: f64) -> Tensor {
 
 fn rotation(angle: f64) -> Tensor {
     let (s, c) = angle.sin_cos();
-    [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
+    Tensor::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
 }
 
 /// dS/dE by differences of a law whose J follows the strain, against its tangent; and S = dW/dE.
@@ -60,13 +53,8 @@ where
         let at = |t: usize, step: f64| {
             let mut strain = base.strain;
             strain[t] += step;
-            let mut c = strain_tensor(&strain);
-            for i in 0..3 {
-                for j in 0..3 {
-                    c[i][j] = IDENTITY[i][j] + 2.0 * c[i][j];
-                }
-            }
-            StrainState { strain, f: base.f, det_f: determinant(&c).sqrt(), small: false, pressure: 0.0, history: &[] }
+            let c = IDENTITY + 2.0 * strain_tensor(&strain);
+            StrainState { strain, f: base.f, det_f: c.determinant().sqrt(), small: false, pressure: 0.0, history: &[] }
         };
         let mut d = [[0.0; S]; S];
         let stress = law.pk2(&base, Some(&mut d));
@@ -93,7 +81,7 @@ where
     let mut random = Random(6);
     let f = gradient::<S>(&mut random, 0.2);
     let r = rotation(0.7);
-    let (plain, turned) = (state::<S>(f), state::<S>(product(&r, &f)));
+    let (plain, turned) = (state::<S>(f), state::<S>(r * f));
     let (a, b) = (law.pk2(&plain, None), law.pk2(&turned, None));
     assert!((0..S).all(|s| near(a[s], b[s], 1e-12 * E)), "{name}");
     if law.ignores_measure(false) {
@@ -130,13 +118,8 @@ fn rotations_do_not_strain() {
 #[test]
 fn small_strains_agree_with_hooke() {
     let mut random = Random(7);
-    let mut f = gradient::<6>(&mut random, 1e-7);
-    for i in 0..3 {
-        for j in 0..i {
-            f[i][j] = f[j][i];
-        }
-    }
-    let state = state::<6>(f);
+    let f = gradient::<6>(&mut random, 1e-7);
+    let state = state::<6>(0.5 * (f + f.transpose()));
     let linear = law::<6>("LinearElastic3DLaw").pk2(&state, None);
     for name in ["KirchhoffSaintVenant3DLaw", "HyperElastic3DLaw"] {
         let stress = law::<6>(name).stress(&state, StressMeasure::Cauchy, None);
@@ -147,7 +130,7 @@ fn small_strains_agree_with_hooke() {
 #[test]
 fn hooke_in_one_direction() {
     // free lateral strain −ν ε gives σ = E ε
-    let (f, e) = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 1e-3);
+    let (f, e) = (IDENTITY, 1e-3);
     let solid = StrainState {
         strain: [e, -NU * e, -NU * e, 0.0, 0.0, 0.0],
         f,
@@ -169,7 +152,7 @@ fn hooke_in_one_direction() {
 fn closed_forms_of_a_stretch() {
     // F = diag(l, 1, 1)
     let l: f64 = 1.3;
-    let state = state::<6>([[l, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let state = state::<6>(Tensor::from_diagonal(&[l, 1.0, 1.0].into()));
     let (lambda, mu) = (E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), 0.5 * E / (1.0 + NU));
     let neo = law::<6>("HyperElastic3DLaw").stress(&state, StressMeasure::Cauchy, None);
     assert!(near(neo[0], (mu * (l * l - 1.0) + lambda * l.ln()) / l, 1e-12));

@@ -12,7 +12,7 @@ use crate::elements::formulation::Formulation;
 use crate::elements::gradients::{gradient, nodal_vectors, padded, physical_gradients};
 use crate::elements::material::Material;
 use crate::laws::StrainState;
-use crate::tensor::{IDENTITY, Tensor, determinant, inverse, pairs, product, strain_vector, stress_tensor, transposed};
+use crate::tensor::{IDENTITY, Tensor, inverse, pairs, strain_vector, stress_tensor};
 
 /// One Gauss point of one element.
 pub(super) struct Point<'a, const NODES: usize, const DIM: usize, const S: usize> {
@@ -112,11 +112,11 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         initial: &[[f64; 3]; NODES],
     ) -> (Deformation<S>, [[f64; DIM]; NODES]) {
         let mut f = IDENTITY;
-        let mut h = [[0.0; 3]; 3];
+        let mut h = Tensor::zeros();
         for a in 0..DIM {
             for b in 0..DIM {
-                h[a][b] = if F::FINITE { grad_u[a][b] } else { 0.5 * (grad_u[a][b] + grad_u[b][a]) };
-                f[a][b] += h[a][b];
+                h[(a, b)] = if F::FINITE { grad_u[a][b] } else { 0.5 * (grad_u[a][b] + grad_u[b][a]) };
+                f[(a, b)] += h[(a, b)];
             }
         }
         let mut excess = [[0.0; DIM]; NODES];
@@ -129,20 +129,20 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 }
             }
             (0..3).for_each(|a| {
-                h[a][a] += more;
-                f[a][a] += more;
+                h[(a, a)] += more;
+                f[(a, a)] += more;
             });
         }
         if Self::AXISYMMETRIC {
-            h[2][2] = radius(n, u) / radius(n, initial);
-            f[2][2] += h[2][2];
+            h[(2, 2)] = radius(n, u) / radius(n, initial);
+            f[(2, 2)] += h[(2, 2)];
         }
         let mut strain = strain_vector(&h);
         if F::FINITE {
-            let square = strain_vector::<S>(&product(&transposed(&h), &h));
+            let square = strain_vector::<S>(&(h.transpose() * h));
             strain.iter_mut().zip(square).for_each(|(e, q)| *e += 0.5 * q);
         }
-        let det_f = determinant(&f);
+        let det_f = f.determinant();
         (Deformation { strain, f, det_f }, excess)
     }
 
@@ -163,14 +163,13 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         if let Some([reference, old]) = &motion.ahead {
             let f = |u| {
                 let mut f = padded(&gradient(u, &dn));
-                (0..DIM).for_each(|a| f[a][a] += 1.0);
+                (0..DIM).for_each(|a| f[(a, a)] += 1.0);
                 f
             };
-            let since = product(&f(u), &inverse(&f(reference)));
-            let total = product(&since, &f(old));
+            let total = f(u) * inverse(&f(reference)) * f(old);
             for a in 0..DIM {
                 for b in 0..DIM {
-                    grad_u[a][b] = total[a][b] - IDENTITY[a][b];
+                    grad_u[a][b] = total[(a, b)] - IDENTITY[(a, b)];
                 }
             }
         }
@@ -215,10 +214,10 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         for (row, (p, q)) in b.iter_mut().zip(pairs::<S>()) {
             for (i, dn) in point.dn.iter().enumerate() {
                 if p >= DIM {
-                    row[i * DIM] = if total { point.state.f[2][2] } else { 1.0 } * point.hoop[i];
+                    row[i * DIM] = if total { point.state.f[(2, 2)] } else { 1.0 } * point.hoop[i];
                 } else if total {
                     for a in 0..DIM {
-                        let f = &point.state.f[a];
+                        let f = point.state.f.row(a);
                         row[i * DIM + a] = if p == q { f[p] * dn[p] } else { f[p] * dn[q] + f[q] * dn[p] };
                     }
                 } else if p == q {
@@ -245,14 +244,14 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         for i in 0..NODES {
             let mut traction = [0.0; DIM];
             for (b, t) in traction.iter_mut().enumerate() {
-                *t = point.weight * (0..DIM).map(|a| point.dn[i][a] * s[a][b]).sum::<f64>();
+                *t = point.weight * (0..DIM).map(|a| point.dn[i][a] * s[(a, b)]).sum::<f64>();
             }
             for j in i..NODES {
                 let k: f64 = (0..DIM).map(|b| traction[b] * point.dn[j][b]).sum();
                 for a in 0..DIM {
                     lhs[i * DIM + a][j * DIM + a] += k;
                 }
-                lhs[i * DIM][j * DIM] += point.weight * s[2][2] * point.hoop[i] * point.hoop[j];
+                lhs[i * DIM][j * DIM] += point.weight * s[(2, 2)] * point.hoop[i] * point.hoop[j];
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The traction on a face of a solid element, t = P·N with P = F S, and its derivative by the displacements of the nodes:
 //! δt = (δF S + F δS)·N, δS = D δE, δE = sym(Fᵀ δF). For small displacements P is the stress, δt = (D sym δF)·N.
 
+use nalgebra::Vector3;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{FacePoint, Gather};
 use zelus_core::geometry::{local_gradients, shape_functions};
@@ -11,10 +12,10 @@ use crate::elements::formulation::Formulation;
 use crate::elements::gradients::{gradient, physical_gradients};
 use crate::elements::material::Material;
 use crate::laws::{StrainState, StressMeasure};
-use crate::tensor::{Tensor, product, strain_vector, stress_tensor, transposed};
+use crate::tensor::{Tensor, strain_vector, stress_tensor};
 
 fn along(tensor: &Tensor, normal: [f64; 3]) -> [f64; 3] {
-    tensor.map(|row| row[0] * normal[0] + row[1] * normal[1] + row[2] * normal[2])
+    (tensor * Vector3::from(normal)).into()
 }
 
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
@@ -64,14 +65,14 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             let around = if Self::AXISYMMETRIC { n.map(|n| n / r) } else { [0.0; NODES] };
             for (r, by) in by.iter_mut().enumerate() {
                 let (i, a) = (r / DIM, r % DIM);
-                let mut change = [[0.0; 3]; 3];
-                change[a][..DIM].copy_from_slice(&dn[i]);
+                let mut change = Tensor::zeros();
+                (0..DIM).for_each(|b| change[(a, b)] = dn[i][b]);
                 if a == 0 {
-                    change[2][2] += around[i];
+                    change[(2, 2)] += around[i];
                 }
-                (0..3).for_each(|c| change[c][c] += excess[i][a]);
+                (0..3).for_each(|c| change[(c, c)] += excess[i][a]);
                 let strain: [f64; S] =
-                    if F::FINITE { strain_vector(&product(&transposed(&f), &change)) } else { strain_vector(&change) };
+                    if F::FINITE { strain_vector(&(f.transpose() * change)) } else { strain_vector(&change) };
                 let stiffened = d.map(|row| row.iter().zip(&strain).map(|(d, e)| d * e).sum::<f64>());
                 let mut traction = along(&stress_tensor(&stiffened), point.normal).map(|t| t * material.thickness);
                 if F::FINITE {
