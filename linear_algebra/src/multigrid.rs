@@ -1,6 +1,7 @@
 //! The engine of big systems: Krylov iteration on the whole system, multigrid on what its constraints leave.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -30,8 +31,10 @@ const CHANGED: f64 = 0.01;
 const DRIFT: f64 = 10.0;
 
 /// A hierarchy, and how well it did when it was new.
+#[derive(Clone, Serialize, Deserialize)]
 struct Hierarchy {
-    levels: (Multigrid, f64),
+    /// The levels, and the size their matrix was divided by.
+    levels: Arc<(Multigrid, f64)>,
     bulk_graph: u64,
     /// What the nodes with multipliers prescribed.
     prescribed: Vec<(u32, u32)>,
@@ -85,6 +88,8 @@ struct Learnt {
 #[derive(Serialize, Deserialize)]
 struct MultigridState {
     learnt: Learnt,
+    /// That of an earlier matrix than the last.
+    hierarchy: Option<Hierarchy>,
     stand_in: Option<Box<dyn State>>,
 }
 
@@ -124,7 +129,7 @@ impl MultigridSolver {
         if !self.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.suits(system, constrained)) {
             self.hierarchy = None;
             self.hierarchy = Some(Hierarchy {
-                levels: constrained.hierarchy(system),
+                levels: Arc::new(constrained.hierarchy(system)),
                 bulk_graph: system.bulk_graph,
                 prescribed: constrained.prescribed(),
                 is_old: false,
@@ -226,19 +231,19 @@ impl LinearSolver for MultigridSolver {
 
     fn forget(&mut self) {
         self.stand_in.forget();
-        self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old);
-        if let Some(hierarchy) = &mut self.hierarchy {
+        if let Some(hierarchy) = self.hierarchy.as_mut().filter(|hierarchy| !hierarchy.is_old) {
             (hierarchy.is_bound, hierarchy.first, hierarchy.last) = (true, None, 0.0);
         }
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        Some(Box::new(MultigridState { learnt: self.learnt.clone(), stand_in: self.stand_in.state() }))
+        let hierarchy = self.hierarchy.clone().filter(|hierarchy| hierarchy.is_old);
+        Some(Box::new(MultigridState { learnt: self.learnt.clone(), hierarchy, stand_in: self.stand_in.state() }))
     }
 
     fn resume(&mut self, state: Box<dyn State>) -> Result<(), WrongState> {
-        let MultigridState { learnt, stand_in } = state.take()?;
-        self.learnt = learnt;
+        let MultigridState { learnt, hierarchy, stand_in } = state.take()?;
+        (self.learnt, self.hierarchy) = (learnt, hierarchy);
         stand_in.map_or(Ok(()), |state| self.stand_in.resume(state))
     }
 

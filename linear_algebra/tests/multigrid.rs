@@ -3,7 +3,9 @@
 mod samples;
 
 use samples::{Brick, Contact, clamped_box, contact};
-use zelus_linear_algebra::{Engine, Layout, MultigridSettings, SolveReport, Symmetry, System, create};
+use zelus_linear_algebra::{
+    Engine, Layout, LinearSolver, MultigridSettings, SolveReport, State, Symmetry, System, create,
+};
 
 /// Largest difference from the answer of the direct engine, as a share of the largest value.
 const AGREE: f64 = 1e-8;
@@ -135,4 +137,37 @@ fn the_bits_do_not_depend_on_the_threads() {
         pool.install(|| multigrid(&system, &rhs).0)
     };
     assert!(run(1) == run(3));
+}
+
+/// Steps of two solves each, whose matrices differ in a few diagonals; the engine's state goes through a file after the third.
+#[test]
+fn levels_of_earlier_matrices_are_part_of_the_state() {
+    let (bulk, layout) = clamped_box(10);
+    let engine = || Engine::Multigrid(MultigridSettings { least: [0; 2], ..MultigridSettings::default() });
+    let solve = |solver: &mut dyn LinearSolver, step: u64| {
+        let mut x = vec![0.0; bulk.rows];
+        solver.forget();
+        for bulk_values in [2 * step, 2 * step + 1] {
+            let mut changed = bulk.clone();
+            for i in (0..bulk.rows).step_by(50) {
+                let at = changed.find(i, i).expect("a diagonal");
+                changed.values[at] *= 1.0 + 0.01 * bulk_values as f64;
+            }
+            let system = System { bulk_values, ..System::bulk(&layout, &changed, Symmetry::PositiveDefinite) };
+            x.fill(0.0);
+            solver.solve(&system, &load(bulk.rows), &mut x).expect("regular");
+        }
+        x
+    };
+    let mut one = create(engine());
+    (0..3).for_each(|step| drop(solve(one.as_mut(), step)));
+    let state = one.state().expect("a state");
+    let file = rmp_serde::to_vec_named(&state).expect("a state is written");
+    let state: Box<dyn State> = rmp_serde::from_slice(&file).expect("a state is read");
+    let mut other = create(engine());
+    other.resume(state).expect("a state of its own");
+    let mut fresh = create(engine());
+    let [one, other, fresh] = [&mut one, &mut other, &mut fresh].map(|solver| solve(solver.as_mut(), 3));
+    assert!(one == other);
+    assert!(one != fresh, "the levels in use are earlier ones");
 }

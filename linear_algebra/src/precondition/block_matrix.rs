@@ -1,6 +1,7 @@
 //! Sparse matrices of small dense blocks, in single precision: what the levels of multigrid are made of.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::csr::Csr;
 
@@ -11,7 +12,7 @@ const ROWS_PER_TASK: usize = 512;
 const TAIL: usize = 8;
 
 /// A matrix of `rows × columns` blocks of `height × width` entries, by rows with ascending block columns.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct BlockMatrix {
     pub(super) rows: usize,
     pub(super) columns: usize,

@@ -6,6 +6,8 @@
 
 use std::sync::{Arc, Mutex};
 
+use serde::{Deserialize, Serialize};
+
 use super::aggregation::{NONE, coarsen};
 use super::block_matrix::{BlockMatrix, BlockRow, Into, multiplier};
 use crate::check;
@@ -27,14 +29,34 @@ const DEGREE: usize = 2;
 /// Share of the spectrum that the smoother damps, counted from above.
 const DAMPED_FROM: f32 = 0.1;
 
+#[derive(Serialize, Deserialize)]
+#[serde(from = "SavedLevel")]
 struct Level {
     matrix: BlockMatrix,
     /// Inverse diagonal blocks, by rows.
+    #[serde(skip_serializing)]
     inverse: Vec<f32>,
     /// Upper bound of the spectrum of `D⁻¹ A`.
+    #[serde(skip_serializing)]
     radius: f32,
     prolongation: BlockMatrix,
+    #[serde(skip_serializing)]
     restriction: BlockMatrix,
+}
+
+/// What a level is made of again.
+#[derive(Deserialize)]
+struct SavedLevel {
+    matrix: BlockMatrix,
+    prolongation: BlockMatrix,
+}
+
+impl From<SavedLevel> for Level {
+    fn from(SavedLevel { matrix, prolongation }: SavedLevel) -> Self {
+        let (inverse, radius) = spectrum(&matrix);
+        let restriction = prolongation.transpose();
+        Self { matrix, inverse, radius, prolongation, restriction }
+    }
 }
 
 /// Vectors of a level during a cycle.
@@ -46,18 +68,45 @@ struct Vectors {
 }
 
 /// The hierarchy.
+#[derive(Serialize, Deserialize)]
+#[serde(from = "SavedMultigrid")]
 pub(crate) struct Multigrid {
     levels: Vec<Level>,
-    /// Factorised matrix of the last level; `None` when it has no equations.
-    coarsest: Option<Factor>,
+    coarsest: BlockMatrix,
+    /// Of the coarsest matrix; `None` when it has no equations.
+    #[serde(skip_serializing)]
+    factor: Option<Factor>,
+    #[serde(skip_serializing)]
     vectors: Mutex<Vec<Vectors>>,
+}
+
+/// What a hierarchy is made of again.
+#[derive(Deserialize)]
+struct SavedMultigrid {
+    levels: Vec<Level>,
+    coarsest: BlockMatrix,
+}
+
+impl From<SavedMultigrid> for Multigrid {
+    fn from(SavedMultigrid { levels, coarsest }: SavedMultigrid) -> Self {
+        let matrices = levels.iter().map(|level| &level.matrix).chain([&coarsest]);
+        let vectors = matrices.map(|matrix| {
+            let rows = equations(matrix);
+            Vectors { b: vec![0.0; rows], x: vec![0.0; rows], step: vec![0.0; rows] }
+        });
+        let vectors = Mutex::new(vectors.collect());
+        Self { levels, factor: factorise(&coarsest), coarsest, vectors }
+    }
+}
+
+fn equations(matrix: &BlockMatrix) -> usize {
+    matrix.rows * matrix.height
 }
 
 impl Multigrid {
     /// Builds the hierarchy on `matrix`, whose near-null vectors have one entry for each of its rows.
     pub(super) fn new(mut matrix: BlockMatrix, mut near_null_space: Vec<Vec<f64>>) -> Self {
         let mut levels: Vec<Level> = Vec::new();
-        let equations = |matrix: &BlockMatrix| matrix.rows * matrix.height;
         while equations(&matrix) > COARSEST && levels.len() < LEVELS {
             let Some(coarse) = coarsen(&matrix, &near_null_space) else { break };
             if coarse.aggregates * near_null_space.len() * 4 > equations(&matrix) * 3 {
@@ -68,10 +117,7 @@ impl Multigrid {
             matrix = next;
             near_null_space = coarse.modes;
         }
-        let size = |rows: usize| Vectors { b: vec![0.0; rows], x: vec![0.0; rows], step: vec![0.0; rows] };
-        let mut vectors: Vec<Vectors> = levels.iter().map(|l| size(equations(&l.matrix))).collect();
-        vectors.push(size(equations(&matrix)));
-        Self { levels, coarsest: factorise(&matrix), vectors: Mutex::new(vectors) }
+        SavedMultigrid { levels, coarsest: matrix }.into()
     }
 
     /// Replaces `x` by an approximation of `A⁻¹ x`.
@@ -90,7 +136,7 @@ impl Multigrid {
         let (here, below) = vectors.split_first_mut().expect("vectors of each level");
         let Some(level) = self.levels.get(depth) else {
             let mut x: Vec<f64> = here.b.iter().map(|&b| f64::from(b)).collect();
-            if let Some(factor) = &self.coarsest {
+            if let Some(factor) = &self.factor {
                 factor.solve(&mut x, |_| {});
             }
             here.x.iter_mut().zip(x).for_each(|(to, x)| *to = x as f32);
@@ -131,8 +177,7 @@ fn factorise(matrix: &BlockMatrix) -> Option<Factor> {
 impl Level {
     /// A level with this tentative prolongation, and the matrix of the next one.
     fn new(matrix: BlockMatrix, aggregate: &[u32], aggregates: usize, tentative: &[f32]) -> (Self, BlockMatrix) {
-        let inverse = inverse_diagonal(&matrix);
-        let radius = SAFETY * spectral_radius(&matrix, &inverse);
+        let (inverse, radius) = spectrum(&matrix);
         let omega = 4.0 / 3.0 * SAFETY / radius;
         let (height, width) = (matrix.height, tentative.len() / (matrix.rows * matrix.height).max(1));
         let (size, wide) = (height * height, height * width);
@@ -235,6 +280,13 @@ fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
         }
     }
     out
+}
+
+/// Inverse diagonal blocks, and the upper bound of the spectrum of `D⁻¹ A`.
+fn spectrum(matrix: &BlockMatrix) -> (Vec<f32>, f32) {
+    let inverse = inverse_diagonal(matrix);
+    let radius = SAFETY * spectral_radius(matrix, &inverse);
+    (inverse, radius)
 }
 
 /// Spectral radius of `D⁻¹ A` by power iteration, from below.
