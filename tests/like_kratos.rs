@@ -47,6 +47,7 @@ const WEIGHTS: Witness = Test { file: "mpc_contact.rs", name: "weights_by_facets
 const SIDES: Witness = Test { file: "mpc_contact.rs", name: "sides_are_exchanged_where_supports_hold_the_slaves" };
 const BESIDE: Witness = Test { file: "like_kratos.rs", name: "nodes_beside_the_master_bear_nothing" };
 const ENERGY: Witness = Test { file: "impact.rs", name: "energy_that_a_coarse_slave_makes_is_accepted_by_name" };
+const DEPTH: Witness = Test { file: "soundness.rs", name: "soft_penalties_are_refused_beyond_a_share_of_the_mesh" };
 const IMPACTS: Witness = Test { file: "impact.rs", name: "without_redistribution_energy_grows" };
 
 const WITNESSES: &[(&str, &str, Witness)] = &[
@@ -78,6 +79,7 @@ const WITNESSES: &[(&str, &str, Witness)] = &[
     (SOLVER, "contact_stabilisation", IMPACTS),
     (SOLVER, "impact_energy_tolerance", IMPACTS),
     (SOLVER, "largest_energy_gain", ENERGY),
+    (SOLVER, "largest_penetration", DEPTH),
     (SOLVER, "edge_normals", Case { folder: "contact_3d/skin_detection", like: false, changes: Results(1e-2) }),
     (MPC_SOLVER, "update_each_nl_iteration", case("mpc/pressed_and_opened", Results(1e-2))),
 ];

@@ -11,6 +11,7 @@ use super::edges::turn_edges;
 use super::friction;
 use super::holding::Holding;
 use super::integration::integrate;
+use super::pair_states::settle_all;
 use super::pairing::{Pairing, PairingState};
 use super::points;
 use super::setup::Setup;
@@ -56,8 +57,10 @@ impl ContactState {
     pub(super) fn new(settings: ContactSettings, part: &mut ModelPart) -> Result<Self> {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
+        let mut messages = warnings_of_pairs(&settings.slaves, &interfaces);
+        messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
         Ok(Self {
-            messages: warnings_of_pairs(&settings.slaves, &interfaces),
+            messages,
             pairing: Pairing::new(interfaces, part, settings.nodal_normals),
             setup: Setup::new(settings),
             states: SlaveStates::default(),

@@ -23,7 +23,7 @@ use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_relation::{Hold, NodeRelation, can_follow};
 use super::mpc_relations::Relations;
 use super::mpc_settings::{MpcKind, MpcSettings};
-use super::pair_states::pair_states;
+use super::pair_states::{pair_states, settle_all};
 use super::reach::Reach;
 use crate::active_set::SlipRule;
 use crate::flags::{CONTACT, MASTER, SLAVE};
@@ -87,8 +87,12 @@ impl MpcInteraction {
     pub fn new(settings: MpcSettings, part: &mut ModelPart) -> Result<Self> {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
+        let mut messages = warnings_of_pairs(&settings.slaves, &interfaces);
+        if !settings.ties() {
+            messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
+        }
         Ok(Self {
-            messages: warnings_of_pairs(&settings.slaves, &interfaces),
+            messages,
             settings,
             interfaces,
             states: SlaveStates::default(),

@@ -14,8 +14,9 @@ use super::step_search::StepSearch;
 use super::uzawa::Uzawa;
 use super::work::ContactWork;
 use crate::pairs::Multiplier;
-use crate::solver::ENSURE_CONTACT;
-use crate::variables::WEIGHTED_GAP;
+use crate::slave_states::SlaveStates;
+use crate::solver::{ENSURE_CONTACT, LARGEST_PENETRATION};
+use crate::variables::{NODAL_H, WEIGHTED_GAP};
 
 /// The loops of a step.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -105,6 +106,9 @@ impl OuterLoops {
         {
             return Ok(Outer::Failed(why));
         }
+        if let Some(why) = too_deep(part, &contact.states) {
+            return Ok(Outer::Failed(why));
+        }
         if part.info.is(ENSURE_CONTACT) && contact.states.count_active() == 0 {
             return Err(zelus_core::Error::NotConverged(
                 "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
@@ -143,4 +147,21 @@ impl OuterLoops {
     pub(super) fn has_alternative(&self, contact: &ContactState) -> bool {
         contact.setup.ramps_friction() && self.friction_ramp.comes_next()
     }
+}
+
+/// Why a state cannot be accepted in which a node in contact is too deep in the master.
+fn too_deep(part: &ModelPart, states: &SlaveStates) -> Option<String> {
+    let most = part.info.value_or(LARGEST_PENETRATION, 0.0);
+    let sizes = part.nodes.values.values(&NODAL_H, 0);
+    let share = |node: u32, depth: f64| depth / sizes[node as usize];
+    let depths = states.iter().filter(|(_, state)| state.active);
+    let depths = depths.map(|(node, state)| (node, -state.gap().unwrap_or(0.0)));
+    let deep: Vec<(u32, f64)> = depths.filter(|&(node, depth)| most > 0.0 && share(node, depth) > most).collect();
+    let (node, depth) = deep.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
+    Some(format!(
+        "{} slave nodes in contact are inside the master by more than {most} of their mesh size, node {} by {depth:.3e} ({:.2} of          it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use          alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
+        deep.len(),
+        part.nodes.ids[node as usize],
+        share(node, depth)
+    ))
 }

@@ -1,13 +1,17 @@
-//! What became of the slave nodes of each pair of a deck, for the balance of a step.
+//! The pairs of a deck by name: how they begin, and what became of their slave nodes in a step.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::PairState;
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::norm;
 
 use crate::interface::{Interface, Roles};
 use crate::node_state::NodeState;
+use crate::search::settle;
 use crate::slave_states::{SlaveState, SlaveStates};
+use crate::solver::{ADJUST_INITIAL, ADJUST_TOLERANCE};
 
 /// Parts of each pair of a deck by key: all of them, and those on the slave side.
 pub(super) type Parts<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
@@ -59,4 +63,10 @@ pub(super) fn name(key: &str, (parts, slaves): Parts<'_>) -> String {
         (false, false) => format!("{key}: {} on {}", own.join(" and "), others.join(" and ")),
         _ => format!("{key}: {}", all.join(" and ")),
     }
+}
+
+/// Before the first step: moves slave nodes onto their masters where the deck asks for it, or tells which lie inside them.
+pub(super) fn settle_all(part: &mut ModelPart, interfaces: &[Interface], parts: Parts<'_>) -> Vec<Diagnostic> {
+    let tolerance = part.info.is(ADJUST_INITIAL).then(|| part.info.value_or(ADJUST_TOLERANCE, 0.0));
+    interfaces.iter().filter_map(|of| settle(part, of, &name(&of.key, parts), tolerance)).collect()
 }

@@ -203,4 +203,11 @@ pub const DEVIATIONS: &[Deviation] = &[
         here: "a step that brings it to a tenth of the energy of motion is refused",
         source: "no counterpart",
     },
+    Deviation {
+        of: &[SOLVER],
+        key: "largest_penetration",
+        kratos: "nodes in contact may be in the master by any depth",
+        here: "a state in which one is by a fifth of its mesh size is refused",
+        source: "no counterpart",
+    },
 ];

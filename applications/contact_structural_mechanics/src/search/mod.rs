@@ -5,6 +5,7 @@ mod direct_check;
 mod prediction;
 mod reach;
 mod self_contact;
+mod start;
 mod tree;
 
 pub use candidates::{Candidate, GapCheck, SearchDistance, SearchSettings, WithinStep, candidates};
@@ -12,4 +13,5 @@ pub use direct_check::touching_nodes;
 pub use prediction::predicted_positions;
 pub use reach::{warn_of_late_pairs, warn_of_reach};
 pub use self_contact::assign_roles;
+pub use start::settle;
 pub use tree::{Bounds, Tree};

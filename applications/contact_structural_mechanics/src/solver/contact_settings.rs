@@ -21,6 +21,12 @@ pub const AVERAGED_EDGES: &str = "AVERAGED_EDGES";
 pub const KEEP_MASS: &str = "KEEP_MASS";
 /// Share of the energy of motion that contact may make before a step is refused; 0: any.
 pub const LARGEST_ENERGY_GAIN: &str = "LARGEST_ENERGY_GAIN";
+/// Depth of a node in contact, in mesh sizes, beyond which no state is accepted; 0: any.
+pub const LARGEST_PENETRATION: &str = "LARGEST_PENETRATION";
+/// Slave nodes begin on their masters.
+pub const ADJUST_INITIAL: &str = "ADJUST_INITIAL";
+/// Distance, in mesh sizes, from which they are moved there.
+pub const ADJUST_TOLERANCE: &str = "ADJUST_TOLERANCE";
 /// Factor of explicit steps while there is contact.
 pub const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
 
@@ -54,6 +60,7 @@ register! { SolverExtensionEntry "contact_settings",
             }
             for (key, wanted, mark) in [
                 ("ensure_contact", true, ENSURE_CONTACT),
+                ("adjust_initial", true, ADJUST_INITIAL),
                 ("compute_dynamic_factor", true, COMPUTE_DYNAMIC_FACTOR),
                 ("condn_convergence_criterion", true, CONDITION_NUMBER),
                 ("use_mixed_ulm_solver", true, CONDENSE_MULTIPLIERS),
@@ -89,6 +96,8 @@ register! { SolverExtensionEntry "contact_settings",
             for (key, name, usual) in [
                 ("impact_energy_tolerance", IMPACT_TOLERANCE, "1e-3"),
                 ("largest_energy_gain", LARGEST_ENERGY_GAIN, "0.1"),
+                ("largest_penetration", LARGEST_PENETRATION, "0.2"),
+                ("adjust_tolerance", ADJUST_TOLERANCE, "0.1"),
             ] {
                 let share = settings.get_f64(key)?;
                 if share < 0.0 {

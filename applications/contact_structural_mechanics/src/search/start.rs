@@ -1,0 +1,152 @@
+//! How the sides of contact lie to each other before anything runs: nodes inside other bodies, and moving them out without strain.
+
+use rayon::prelude::*;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::geometry::mapping::local_coordinates;
+use zelus_core::model::ModelPart;
+use zelus_core::vector3::{add, dot, norm, scale, sub};
+
+use super::direct_check::distance_along;
+use super::tree::{Bounds, Tree};
+use crate::interface::{Facet, Interface, Roles, find_nodal_h};
+use crate::variables::NODAL_H;
+
+/// Cosine beyond which a node and a facet face each other.
+const FACING: f64 = 0.1;
+/// Mesh sizes around a node in which its master is looked for first.
+const NEAR: f64 = 2.0;
+/// Depth in mesh sizes that goes without a word: facets of curved surfaces overlap by as much.
+const SILENT: f64 = 0.02;
+/// Share of a cell by which a point must be inside.
+const INSIDE: f64 = 1e-6;
+/// Distance in mesh sizes that is none.
+const ROUND_OFF: f64 = 1e-12;
+
+/// A slave node before the first step.
+struct Place {
+    node: u32,
+    /// Unit normal out of its body.
+    normal: [f64; 3],
+    /// Way along the normal to the master (length), negative inside it.
+    distance: f64,
+    size: f64,
+}
+
+/// What became of the slave nodes of an interface, named `name`, before the first step.
+///
+/// Where `tolerance` is given, nodes whose distance is at most that many mesh sizes are moved onto the master, with their initial
+/// positions: without strain. Deeper ones, and all without it, are told. Collective.
+pub fn settle(part: &mut ModelPart, interface: &Interface, name: &str, tolerance: Option<f64>) -> Option<Diagnostic> {
+    if interface.open || part.info.step > 0 {
+        return None;
+    }
+    find_nodal_h(part);
+    let places = places(part, interface);
+    if let Some(tolerance) = tolerance {
+        return adjust(part, &places, name, tolerance);
+    }
+    let deep: Vec<&Place> = places.iter().filter(|at| at.distance < -SILENT * at.size).collect();
+    let mut inside = inside(part, &deep);
+    part.ranks.any_of(&mut inside);
+    let deep: Vec<&Place> = deep.into_iter().zip(inside).filter_map(|(at, inside)| inside.then_some(at)).collect();
+    let deepest = deep.iter().min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.node.cmp(&b.node)))?;
+    let x = part.nodes.initial[deepest.node as usize];
+    let fact = format!(
+        "contact pair {name}: {} slave nodes lie inside the other body before the first step, node {} at ({}, {}, {}) deepest, by {:.3e}: \
+         {:.2} of its mesh size",
+        deep.len(),
+        part.nodes.ids[deepest.node as usize],
+        x[0],
+        x[1],
+        x[2],
+        -deepest.distance,
+        -deepest.distance / deepest.size
+    );
+    let remedy = if -deepest.distance > deepest.size {
+        "move the bodies apart in the mesh: what lies in another body by more than an element may stay there, unseen by contact"
+    } else {
+        "the first step pushes them out, which strains the bodies: leave it where a press fit is meant, else set \
+         \"adjust_initial\": true in \"contact_settings\", or mend the mesh"
+    };
+    Some(Diagnostic::warning("initial-penetration", fact).remedy(remedy))
+}
+
+fn adjust(part: &mut ModelPart, places: &[Place], name: &str, tolerance: f64) -> Option<Diagnostic> {
+    let moves = |at: &&Place| (ROUND_OFF * at.size..=tolerance * at.size).contains(&at.distance.abs());
+    let moved: Vec<&Place> = places.iter().filter(moves).collect();
+    for at in &moved {
+        let node = at.node as usize;
+        let to = add(part.nodes.initial[node], scale(at.normal, at.distance));
+        (part.nodes.initial[node], part.nodes.current[node]) = (to, to);
+    }
+    let farthest = moved.iter().max_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()))?;
+    let [inside, gaps] = [true, false].map(|is| moved.iter().filter(|at| (at.distance < 0.0) == is).count());
+    let fact = format!(
+        "contact pair {name}: {inside} slave nodes inside the master and {gaps} before it are moved onto it without strain, node {} \
+         farthest, by {:.3e}",
+        part.nodes.ids[farthest.node as usize],
+        farthest.distance.abs()
+    );
+    Some(Diagnostic::note("adjusted-initial", fact))
+}
+
+/// The slave nodes that face a master facet along their normals, ascending.
+fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
+    let of_role = |role: Roles| interface.facets.iter().filter(move |facet| facet.role == role);
+    let masters: Vec<&Facet> = of_role(Roles::Master).collect();
+    let bounds: Vec<Bounds> = masters.iter().map(|facet| Bounds::of(&facet.positions(part))).collect();
+    let all: Vec<[f64; 3]> = interface.nodes.iter().map(|&node| part.nodes.current[node as usize]).collect();
+    let whole = Bounds::of(&all);
+    let extent = norm(sub(whole.high, whole.low));
+    let tree = Tree::new(bounds);
+    let nodes = interface.nodes_of(Roles::Slave);
+    let mut normals = vec![[0.0; 3]; nodes.len()];
+    for facet in of_role(Roles::Slave) {
+        for node in &facet.nodes {
+            let at = nodes.binary_search(node).expect("a node of a slave facet");
+            normals[at] = add(normals[at], facet.normal(part));
+        }
+    }
+    let sizes = part.nodes.values.values(&NODAL_H, 0);
+    let place = |(&node, normal): (&u32, &[f64; 3])| {
+        let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
+        let normal = scale(*normal, norm(*normal).recip());
+        let way = |reach: f64| {
+            let line = Bounds::of(&[add(x, scale(normal, -reach)), add(x, scale(normal, reach))]);
+            let met = tree.meeting(&line.grown(ROUND_OFF * extent)).into_iter().filter_map(|master| {
+                let facet = masters[master as usize];
+                let faces = dot(facet.normal(part), normal) < -FACING && !facet.nodes.contains(&node);
+                distance_along(&facet.positions(part), facet, x, normal).filter(|_| faces)
+            });
+            met.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        };
+        let distance = way(NEAR * size).or_else(|| way(extent))?;
+        distance.is_finite().then_some(Place { node, normal, distance, size })
+    };
+    nodes.par_iter().zip(&normals).with_min_len(64).filter_map(place).collect()
+}
+
+/// Of each place, whether it is inside an element of this rank that the node is not part of.
+fn inside(part: &ModelPart, places: &[&Place]) -> Vec<bool> {
+    if places.is_empty() {
+        return Vec::new();
+    }
+    let cells: Vec<u32> = (0..part.elements.len() as u32)
+        .filter(|&at| part.elements.kinds[at as usize].cell.is_some_and(|shape| shape.dim() == part.info.domain_size))
+        .collect();
+    let corners = |at: u32| -> Vec<[f64; 3]> {
+        part.elements.nodes(at).iter().map(|&node| part.nodes.current[node as usize]).collect()
+    };
+    let tree = Tree::new(cells.iter().map(|&at| Bounds::of(&corners(at))).collect());
+    let is_inside = |place: &&Place| {
+        let x = part.nodes.current[place.node as usize];
+        tree.meeting(&Bounds::of(&[x])).into_iter().map(|near| cells[near as usize]).any(|at| {
+            let Some(shape) = part.elements.kinds[at as usize].cell else { return false };
+            !part.elements.nodes(at).contains(&place.node)
+                && local_coordinates(shape, &corners(at), x).is_some_and(|found| {
+                    shape.cell().contains(found.xi, INSIDE) && found.distance < INSIDE * place.size
+                })
+        })
+    };
+    places.par_iter().with_min_len(16).map(is_inside).collect()
+}
