@@ -1,11 +1,14 @@
-//! The program: `zelus run`, `check`, `partition`, `list`, `describe`.
+//! The program: `zelus run`, `check`, `partition`, `diff`, `list`, `describe`.
 
 mod catalogue;
+mod diff;
 mod kratos_names;
 mod log;
+mod matching;
 mod partition;
 mod progress;
 mod report;
+mod results;
 mod say;
 mod stop;
 mod terminal;
@@ -33,7 +36,7 @@ use terminal::{Level, Terminal};
     name = "zelus",
     version,
     about,
-    after_help = "Exit codes: 0 done and converged, 2 bad input, 3 not converged \
+    after_help = "Exit codes: 0 done and converged, 1 results differ (diff), 2 bad input, 3 not converged \
     (what converged is written), 4 system or solver failure, 5 stopped by a signal after a step and saved \
     (go on with --resume)."
 )]
@@ -81,6 +84,8 @@ enum Command {
     },
     /// Cut the mesh of a deck for several ranks and say what each has, whom it meets and what it sends.
     Partition(partition::Arguments),
+    /// Compare two result sets by node and field; exit code 0 where they are equal, 1 where not.
+    Diff(diff::Arguments),
     /// List the registered names, of all kinds or of one.
     List {
         /// A kind, e.g. process or condition.
@@ -184,6 +189,7 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
             Ok(ExitCode::SUCCESS)
         }
         Command::Partition(arguments) => partition::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Diff(arguments) => diff::run(&arguments),
         Command::List { kind } => catalogue::list(kind.as_deref()).map(|()| ExitCode::SUCCESS),
         Command::Describe { name } => catalogue::describe(&name).map(|()| ExitCode::SUCCESS),
     }

@@ -80,6 +80,29 @@ pub enum Values {
     Whole(Vec<i32>),
 }
 
+impl Values {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Real(values) => values.len(),
+            Self::Whole(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One of them.
+    pub fn get(&self, at: usize) -> f64 {
+        match self {
+            Self::Real(values) => values[at],
+            Self::Whole(values) => values[at].into(),
+        }
+    }
+}
+
 impl Column {
     /// A column of real numbers.
     pub fn real(name: impl Into<String>, components: usize, values: Vec<f64>) -> Self {

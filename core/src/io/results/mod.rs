@@ -1,4 +1,4 @@
-//! Result files from plain arrays: legacy VTK, VTU with its PVD series, PVTU, GiD.
+//! Result files from plain arrays: legacy VTK, VTU with its PVD series, PVTU, GiD; VTU is also read.
 //!
 //! A [`Dataset`] is what a picture shows: points, cells, named columns. The writers know nothing of models.
 
@@ -7,6 +7,7 @@ mod gid;
 mod number;
 mod pieces;
 mod pvtu;
+mod read;
 #[cfg(test)]
 mod tests;
 mod vtk;
@@ -15,5 +16,6 @@ mod vtu;
 pub use dataset::{Cells, Column, Dataset, Values};
 pub use gid::{GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step};
 pub use pvtu::write_pvtu;
+pub use read::{read_pvd, read_vtu, vtu_of};
 pub use vtk::{VtkFormat, write_vtk};
 pub use vtu::{write_piece, write_pvd, write_vtu};

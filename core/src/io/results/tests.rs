@@ -190,3 +190,29 @@ fn gid_files_name_meshes_results_and_points() {
         Result \"VON_MISES_STRESS\" \"Kratos\" 0.5 Scalar OnGaussPoints \"triangle3_1gp_element\"\nValues\n7 3.5\nEnd Values\n";
     assert_eq!(String::from_utf8(out).unwrap(), wanted);
 }
+
+#[test]
+fn what_was_written_is_read_and_what_is_damaged_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtu");
+    let mut data = data();
+    for shape in Shape::ALL {
+        let points = (0..shape.nodes() as u32).map(|at| at % 4);
+        data.cells.push(11, 0, shape, points);
+    }
+    data.cells.properties.fill(0);
+    data.cells.ids = (0..data.cells.len()).map(|at| at + 3).collect();
+    data.cell_data = vec![Column::ids("KRATOS_ELEMENT_ID", &data.cells.ids)];
+    write_vtu(&Ranks::default(), &path, &data).unwrap();
+    assert_eq!(read_vtu(&path).unwrap(), data);
+    let bytes = std::fs::read(&path).unwrap();
+    for cut in (0..bytes.len()).step_by(7) {
+        let _ = vtu_of(&bytes[..cut]);
+        let mut damaged = bytes.clone();
+        damaged[cut] = damaged[cut].wrapping_add(1 + (cut % 250) as u8);
+        let _ = vtu_of(&damaged);
+    }
+    assert!(vtu_of(&bytes[..bytes.len() / 2]).is_err());
+    write_pvd(&Ranks::default(), &folder.path().join("a.pvd"), &[(0.5, "a.vtu".to_owned())]).unwrap();
+    assert_eq!(read_pvd(&folder.path().join("a.pvd")).unwrap(), [(0.5, path)]);
+}
