@@ -27,10 +27,12 @@ struct Library;
 
 use zelus_constrained_optimization as _;
 use zelus_contact_structural_mechanics as _;
+use zelus_convection_diffusion as _;
 use zelus_structural_mechanics as _;
 
 pub use zelus_constrained_optimization as constrained_optimization;
 pub use zelus_contact_structural_mechanics as contact_structural_mechanics;
+pub use zelus_convection_diffusion as convection_diffusion;
 pub use zelus_core as core;
 pub use zelus_core::analysis::{RunOptions, RunReport, Simulation};
 pub use zelus_core::strategies::{Monitor, Silent};

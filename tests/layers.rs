@@ -4,24 +4,26 @@
 use std::path::{Path, PathBuf};
 
 /// Crates whose `lib.rs` lists its modules from what is used to what uses.
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     "core/src",
     "linear_algebra/src",
     "petsc/src",
     "applications/structural_mechanics/src",
     "applications/contact_structural_mechanics/src",
     "applications/constrained_optimization/src",
+    "applications/convection_diffusion/src",
     "src",
 ];
 
 /// Variables, flags and keys of applications.
-const PHYSICS: [&str; 24] = [
+const PHYSICS: [&str; 25] = [
     "DISPLACEMENT",
     "VELOCITY",
     "ACCELERATION",
     "REACTION",
     "ROTATION",
     "TEMPERATURE",
+    "CONDUCTIVITY",
     "PRESSURE",
     "VOLUME_ACCELERATION",
     "MIDDLE_VELOCITY",

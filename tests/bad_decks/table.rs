@@ -205,7 +205,7 @@ pub const BAD_DECKS: &[BadDeck] = &[
         "NodalData DISPLACMENT_Y",
         &["DISPLACMENT_Y", "DISPLACEMENT"],
     ),
-    mesh("nodal variable without storage", "NodalData DISPLACEMENT_Y", "NodalData TEMPERATURE", &["TEMPERATURE"]),
+    mesh("nodal variable without storage", "NodalData DISPLACEMENT_Y", "NodalData HUMIDITY", &["HUMIDITY"]),
     mesh("sub part twice", "SubModelPart Nothing", "SubModelPart Slave", &["Slave"]),
     // mesh: ids
     mesh("node twice at two places", "2 1.0 0.0 0.0", "1 1.0 0.0 0.0", &["mesh.mdpa:9", "1"]),

@@ -36,10 +36,10 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     size(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
-/// A cell of a shape, distorted by `amount`, at positive x so that it may turn about the y axis.
+/// A cell of a shape, distorted by `amount`, at positive x and y so that it may turn about either axis.
 pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec<Vec3> {
     let place = |p: &Vec3| {
-        let x = [4.0 + p[0] + 0.3 * p[1] + 0.1 * p[2], 0.1 * p[0] + 0.8 * p[1] - 1.0, 0.1 * p[0] + 0.7 * p[2]];
+        let x = [4.0 + p[0] + 0.3 * p[1] + 0.1 * p[2], 0.1 * p[0] + 0.8 * p[1] + 2.0, 0.1 * p[0] + 0.7 * p[2]];
         let noise = random.vector(amount, space);
         std::array::from_fn(|a| if a < space { x[a] + noise[a] } else { 0.0 })
     };
@@ -48,7 +48,9 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
 
 /// Properties of every specimen. Yielding begins far below the strains that are looked at: differences taken across its
 /// beginning are no derivatives.
-const USUAL: [(&str, f64); 7] = [
+const USUAL: [(&str, f64); 9] = [
+    ("CONDUCTIVITY", 0.7),
+    ("SPECIFIC_HEAT", 2.0),
     ("YOUNG_MODULUS", 100.0),
     ("POISSON_RATIO", 0.3),
     ("THICKNESS", 0.5),

@@ -15,5 +15,6 @@ register! { SolverEntry "ConstrainedOptimization",
         variables: &[("POSITION", 1)],
         scheme: |_| Ok("static".to_owned()),
         adapt: |defaults| defaults.require(&["model_part_name", "model_import_settings"]),
+        adopt: |_, _, _| Ok(()),
     },
 }

@@ -64,8 +64,6 @@ register_variable! {
     kind VISCOUS_PARAMETER: Scalar = "Without effect: viscosity of laws of Kelvin and Maxwell, which no law here has.";
     kind DELAY_TIME: Scalar = "Without effect: time of relaxation, which no law here has.";
     kind THERMAL_EXPANSION_COEFFICIENT: Scalar = "Without effect: strain per temperature, which no law here has.";
-    kind CONDUCTIVITY: Scalar = "Without effect: heat conductivity, which no law here has.";
-    kind SPECIFIC_HEAT: Scalar = "Without effect: heat capacity per mass, which no law here has.";
     kind REFERENCE_TEMPERATURE: Scalar = "Without effect: temperature without thermal strain, which no law here has.";
     kind ROTATION: Vector3 = "Not computed: nodes have no rotations.";
     kind REACTION_MOMENT: Vector3 = "Not computed: nodes have no rotations.";

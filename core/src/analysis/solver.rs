@@ -51,6 +51,10 @@ pub struct SolverDefinition {
     pub scheme: fn(&Settings) -> Result<String>,
     /// Names the deprecated spellings of settings.
     pub adapt: fn(Defaults) -> Defaults,
+    /// Makes the part as read, with its materials, what the solver computes on.
+    ///
+    /// An error names what of mesh or settings does not fit.
+    pub adopt: fn(&Settings, &mut ModelPart, &mut Report) -> Result<()>,
 }
 
 /// What an application registers for a nested object of `solver_settings`.
@@ -186,6 +190,14 @@ impl SolverSettings {
             part.info.values.insert(name, value);
         }
         Ok(())
+    }
+
+    /// Lets the solver make the part what it computes on.
+    ///
+    /// # Errors
+    /// What of mesh or settings does not fit.
+    pub fn adopt(&self, part: &mut ModelPart, report: &mut Report) -> Result<()> {
+        (self.definition.adopt)(&self.settings, part, report)
     }
 
     /// How steps that fail are cut.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::dof_table::DofTable;
 use crate::diagnostics::{Diagnostic, Report, Result};
-use crate::entities::{BlockRequest, EntityBlock, Interaction, block_factory};
+use crate::entities::{BlockRequest, EntityBlock, Interaction, block_factory, is_place};
 use crate::model::{EntityKind, EntityTable, ModelPart, Role};
 
 /// Unknowns of a model part, the blocks over its entities, and what acts between bodies.
@@ -34,6 +34,12 @@ impl System {
             let is_own = |at: usize| part.evaluates(role, at);
             for (entry, members) in groups(table, is_own) {
                 let Some(make) = block_factory(entry) else {
+                    if is_place(entry) {
+                        let fact = format!("{} {} has no physics", entry.name, table.ids[members[0] as usize]);
+                        let remedy = "name an element in the mesh, or use a solver that puts its own there";
+                        report.push(Diagnostic::error("no-physics", fact).remedy(remedy));
+                        continue;
+                    }
                     let fact = format!(
                         "{} {} of the mesh is a pair, which a search makes",
                         entry.name, table.ids[members[0] as usize]

@@ -57,6 +57,11 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// The rows of the local system.
     fn unknowns() -> [LocalUnknown; SIZE];
 
+    /// The rows of the local systems of this block, where its variables are chosen by the deck.
+    fn own_unknowns(&self) -> [LocalUnknown; SIZE] {
+        Self::unknowns()
+    }
+
     /// The kernel for one block.
     ///
     /// # Errors
@@ -203,15 +208,16 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
         let table = request.table;
         let nodes =
             request.members.iter().map(|&m| table.nodes(m).try_into().expect("registered node count")).collect();
+        let kernel = K::new(request)?;
         Ok(Box::new(Self {
             entry: request.entry,
-            kernel: K::new(request)?,
+            unknowns: kernel.own_unknowns().to_vec(),
+            kernel,
             ids: request.members.iter().map(|&m| table.ids[m as usize]).collect(),
             properties: request.members.iter().map(|&m| table.properties[m as usize]).collect(),
             members: request.members.clone(),
             nodes,
             states: Vec::new(),
-            unknowns: K::unknowns().to_vec(),
         }))
     }
 

@@ -21,6 +21,7 @@ pub use interaction::{
 pub use kernel::{Gather, Kernel, KernelBlock};
 pub use pair_state::PairState;
 pub use registered::{
-    BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, kind_names, require_kind,
+    BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, is_place, kind_names,
+    require_kind,
 };
 pub use view::{NORMALS_OF_FIRST_ITERATION, StepView};

@@ -19,6 +19,8 @@ pub enum Build {
     Block(BlockFactory),
     /// Blocks of the pairs that a search makes; a mesh cannot have them.
     Pairs,
+    /// Nothing: a place of the mesh where a solver puts elements of its own.
+    Place,
 }
 
 /// Declares the entries of one table.
@@ -112,7 +114,13 @@ pub fn kind_names(role: Role) -> Vec<&'static str> {
     }
 }
 
-/// What makes blocks of a registered kind; `None` for one that is not, and for pairs.
+/// Whether a kind is a place of the mesh without physics.
+pub fn is_place(kind: &EntityKind) -> bool {
+    kind.role == Role::Element
+        && registry::find::<ElementEntry>(kind.name).is_some_and(|entry| matches!(entry.build, Build::Place))
+}
+
+/// What makes blocks of a registered kind; `None` for one that is not, for pairs and for places.
 pub fn block_factory(kind: &EntityKind) -> Option<BlockFactory> {
     let build = match kind.role {
         Role::Element => registry::find::<ElementEntry>(kind.name)?.build,
@@ -120,7 +128,7 @@ pub fn block_factory(kind: &EntityKind) -> Option<BlockFactory> {
     };
     match build {
         Build::Block(make) => Some(make),
-        Build::Pairs => None,
+        Build::Pairs | Build::Place => None,
     }
 }
 

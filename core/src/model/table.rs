@@ -22,11 +22,25 @@ impl Table {
             [] => 0.0,
             [only] => only[1],
             points => {
-                let right = points.partition_point(|p| p[0] < x).clamp(1, points.len() - 1);
-                let ([x0, y0], [x1, y1]) = (points[right - 1], points[right]);
-                if x1 == x0 { y0 } else { y0 + (y1 - y0) * (x - x0) / (x1 - x0) }
+                let [x0, y0] = points[self.right_of(x) - 1];
+                y0 + self.slope(x) * (x - x0)
             }
         }
+    }
+
+    /// The derivative at `x`, at a point that on its left; 0 where two points stand above each other.
+    pub fn slope(&self, x: f64) -> f64 {
+        if self.points.len() < 2 {
+            return 0.0;
+        }
+        let right = self.right_of(x);
+        let ([x0, y0], [x1, y1]) = (self.points[right - 1], self.points[right]);
+        if x1 == x0 { 0.0 } else { (y1 - y0) / (x1 - x0) }
+    }
+
+    /// The point at the right end of the piece that `x` is on.
+    fn right_of(&self, x: f64) -> usize {
+        self.points.partition_point(|p| p[0] < x).clamp(1, self.points.len() - 1)
     }
 }
 

@@ -81,7 +81,9 @@ impl Measure {
     /// # Errors
     /// Settings of another type.
     pub fn of_all(settings: &Settings, form: Form) -> Result<Self> {
-        Self::read(settings, form, Block::All, form.word())
+        // Heat has no displacements: its increments have tolerances of another name.
+        let is_other = form == Form::Increment && settings.node().get("solution_relative_tolerance").is_some();
+        Self::read(settings, form, Block::All, if is_other { "solution" } else { form.word() })
     }
 
     /// Measures, and says whether that is good enough; collective.

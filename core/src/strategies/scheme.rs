@@ -34,6 +34,12 @@ pub trait Scheme: Send {
         self.is_static()
     }
 
+    /// Whether prescribed values are in the fields before the first iteration, as where no element minds a jump; they enter
+    /// through the tangent otherwise.
+    fn begins_at_prescribed(&self) -> bool {
+        false
+    }
+
     /// Step start: first guess of the unknowns that are free.
     ///
     /// # Errors

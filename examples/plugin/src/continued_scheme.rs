@@ -54,5 +54,6 @@ register! { SolverEntry "Continued",
         explicit: false,
         scheme: |_| Ok("continued".to_owned()),
         adapt: zelus::structural_mechanics::solvers::adapt,
+        adopt: |_, _, _| Ok(()),
     },
 }

@@ -31,7 +31,7 @@ pub(super) fn padded<const DIM: usize>(a: &[[f64; DIM]; DIM]) -> Tensor {
 }
 
 /// Gradients with respect to the positions `x`, and the determinant of the map from the reference cell.
-pub(super) fn physical_gradients<const NODES: usize, const DIM: usize>(
+pub fn physical_gradients<const NODES: usize, const DIM: usize>(
     x: &[[f64; 3]; NODES],
     local: &[[f64; DIM]; NODES],
 ) -> ([[f64; DIM]; NODES], f64) {

@@ -31,6 +31,7 @@ mod truss;
 mod updated_lagrangian;
 
 pub use formulation::Formulation;
+pub use gradients::physical_gradients;
 pub use mixed_small_displacement::MixedSmallDisplacement;
 pub use mixed_total_lagrangian::MixedTotalLagrangian;
 pub use mixed_volumetric_strain::{MixedVolumetricStrain, VolumetricForm};

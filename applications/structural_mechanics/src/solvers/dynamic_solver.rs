@@ -37,5 +37,6 @@ register! { SolverEntry "Dynamic",
             settings.get_str("scheme_type").map(str::to_owned)
         },
         adapt: super::adapt,
+        adopt: |_, _, _| Ok(()),
     },
 }

@@ -14,5 +14,6 @@ register! { SolverEntry "ExplicitDynamic",
         explicit: true,
         scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
         adapt: super::adapt,
+        adopt: |_, _, _| Ok(()),
     },
 }

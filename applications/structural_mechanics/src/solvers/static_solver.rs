@@ -15,5 +15,6 @@ register! { SolverEntry "Static",
         explicit: false,
         scheme: |_| Ok("static".to_owned()),
         adapt: super::adapt,
+        adopt: |_, _, _| Ok(()),
     },
 }

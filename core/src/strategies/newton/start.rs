@@ -46,6 +46,11 @@ impl NewtonRaphson {
             nodes.iter().for_each(|&node| part.nodes.follow(node as usize));
             return Ok(vec![0.0; targets.len()]);
         }
+        if self.scheme.begins_at_prescribed() {
+            impose_constraints(&mut part.nodes, &part.constraints);
+            self.scheme.update(part);
+            return Ok(vec![0.0; targets.len()]);
+        }
         for (number, dof) in system.dofs.dofs().iter().enumerate() {
             if self.assembler.equations().is_fixed(number)
                 && let Some(field) = part.nodes.history.get_mut(dof.variable.column)

@@ -1,0 +1,99 @@
+//! Which columns of the nodes the balance of heat reads: `convection_diffusion_variables`.
+
+use zelus_core::diagnostics::Result;
+use zelus_core::model::{ModelPart, Named, PropertyValue, ScalarVariable, VariableKind, named};
+use zelus_core::parameters::Settings;
+
+/// The object of the solver settings that names them.
+const SETTINGS: &str = "convection_diffusion_variables";
+
+/// Keys, the variables they name unless told otherwise, and whether these are vectors.
+const USUAL: [(&str, &str, bool); 8] = [
+    ("unknown_variable", "TEMPERATURE", false),
+    ("density_variable", "DENSITY", false),
+    ("diffusion_variable", "CONDUCTIVITY", false),
+    ("specific_heat_variable", "SPECIFIC_HEAT", false),
+    ("volume_source_variable", "HEAT_FLUX", false),
+    ("surface_source_variable", "FACE_HEAT_FLUX", false),
+    ("velocity_variable", "VELOCITY", true),
+    ("mesh_velocity_variable", "MESH_VELOCITY", true),
+];
+
+/// Names of the columns; `None` where the deck switches one off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Columns {
+    /// What is solved for.
+    pub unknown: ScalarVariable,
+    /// Mass per volume; 1 where switched off.
+    pub density: Option<&'static str>,
+    /// Flux per gradient; 0 where switched off.
+    pub diffusion: Option<&'static str>,
+    /// Heat per mass; 1 where switched off.
+    pub specific_heat: Option<&'static str>,
+    /// Source per volume.
+    pub volume_source: Option<&'static str>,
+    /// Source per area.
+    pub surface_source: Option<&'static str>,
+    /// Velocity that carries heat.
+    pub velocity: Option<&'static str>,
+    /// Velocity of the mesh, which that one is relative to.
+    pub mesh_velocity: Option<&'static str>,
+}
+
+impl Columns {
+    /// Those of a part; the usual ones where no solver has named others.
+    pub fn of(part: &ModelPart) -> Self {
+        let [unknown, density, diffusion, specific_heat, volume_source, surface_source, velocity, mesh_velocity] =
+            USUAL.map(|(key, usual, _)| {
+                let name = match part.data.get(&stored(key)) {
+                    Some(PropertyValue::Text(name)) => name,
+                    _ => usual,
+                };
+                named(name).map(|variable| variable.column().0)
+            });
+        let column = unknown.expect("checked when it was stored");
+        Self {
+            unknown: ScalarVariable { column, component: None },
+            density,
+            diffusion,
+            specific_heat,
+            volume_source,
+            surface_source,
+            velocity,
+            mesh_velocity,
+        }
+    }
+
+    /// Takes the names that the settings of a solver give, and adds their columns to the nodes.
+    ///
+    /// # Errors
+    /// Names of no variables, or of vectors for numbers and the reverse.
+    pub fn store(settings: &Settings, part: &mut ModelPart) -> Result<()> {
+        for (key, usual, is_vector) in USUAL {
+            let path = format!("{SETTINGS}.{key}");
+            let name = settings.get_str(&path)?;
+            let fits = match named(name) {
+                Some(Named::Whole(_, VariableKind::Scalar)) => !is_vector,
+                Some(Named::Whole(_, VariableKind::Vector3)) => is_vector,
+                _ => false,
+            };
+            let is_off = name.is_empty() && key != "unknown_variable";
+            if !fits && !is_off {
+                let wanted = if is_vector { "a vector of three" } else { "one number" };
+                let problem =
+                    settings.error(&path, "unknown-variable", format!("{name:?} is no variable that is {wanted}"));
+                return Err(problem.remedy(format!("write \"{usual}\"")).into());
+            }
+            part.data.insert(stored(key), PropertyValue::Text(name.to_owned()));
+            if let Some(variable) = named(name) {
+                part.nodes.history.add_named(variable.column().0, if is_vector { 3 } else { 1 });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The name of a choice among the data of the part.
+fn stored(key: &str) -> String {
+    format!("{SETTINGS}.{key}")
+}

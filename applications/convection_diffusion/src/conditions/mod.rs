@@ -1,0 +1,5 @@
+//! Conditions: what passes through the boundary.
+
+mod face;
+
+pub use face::{DATA, Face};

@@ -1,0 +1,145 @@
+//! The balance of heat at a point: what the shape functions and their gradients are multiplied by.
+//!
+//! ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q is weighted by N_i + τ v·∇N_i (SUPG): the residual is −∫ (N_i a + ∇N_i·b) with
+//! a = ρc (T − T₀)/Δt + ρc v·(θ ∇T + (1 − θ) ∇T₀) − Q and b = k (θ ∇T + (1 − θ) ∇T₀) + τ v a, where
+//! τ = ρc/(ρc (β/Δt + 2|v|/h) + 4k/h²). ρc of the rate is the mean of those at both ends of the step, which for linear tables is
+//! the heat the step stores. Against wiggles across the flow Codina's cross-wind diffusion adds D to k: D = α I + (max(α − ρcτ|v|², 0) − α)
+//! v⊗v/|v|² with α = C h |r|/|g|, r the residual and g = (∇T + ∇T₀)/2.
+
+use std::f64::consts::PI;
+
+use zelus_core::model::ProcessInfo;
+use zelus_core::scalar::Real;
+
+use crate::coefficient::Local;
+
+/// What the whole step shares.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// Its length in time.
+    pub length: f64,
+    /// Weight of its end in conduction and convection, 0 to 1.
+    pub theta: f64,
+    /// β of the stabilisation.
+    pub dynamic_tau: f64,
+    /// C of the cross-wind diffusion.
+    pub cross_wind: f64,
+    /// Gradients below this have no cross-wind diffusion (temperature per length).
+    pub least_gradient: f64,
+    /// Whether the cross-wind diffusion is that of the iterate: a step of one linear solve.
+    pub frozen: bool,
+}
+
+/// Value of the step data: weight of the end of the step.
+pub const THETA: &str = "THETA";
+/// Value of the step data: β of the stabilisation.
+pub const DYNAMIC_TAU: &str = "DYNAMIC_TAU";
+/// Value of the step data: factor of the cross-wind diffusion.
+pub const CROSS_WIND: &str = "CROSS_WIND_STABILIZATION_FACTOR";
+/// Value of the step data: gradients below it have no cross-wind diffusion.
+pub const LEAST_GRADIENT: &str = "CROSS_WIND_LEAST_GRADIENT";
+/// Mark of the step data: each step is one linear solve.
+pub const LINEAR: &str = "LINEAR_HEAT";
+
+impl Step {
+    /// As the step data say.
+    pub fn of(info: &ProcessInfo) -> Self {
+        Self {
+            length: info.delta_time,
+            theta: info.value_or(THETA, 0.5),
+            dynamic_tau: info.value_or(DYNAMIC_TAU, 1.0),
+            cross_wind: info.value_or(CROSS_WIND, 0.0),
+            least_gradient: info.value_or(LEAST_GRADIENT, 0.0),
+            frozen: info.is(LINEAR),
+        }
+    }
+}
+
+/// What is known of a point before its temperature.
+#[derive(Clone, Copy)]
+pub struct Point<'a, const NODES: usize> {
+    /// Step, with the weights of its ends.
+    pub step: Step,
+    /// Shape functions.
+    pub n: &'a [f64; NODES],
+    /// Heat conductivity.
+    pub conductivity: &'a Local<'a, NODES>,
+    /// Density.
+    pub density: &'a Local<'a, NODES>,
+    /// Specific heat.
+    pub specific_heat: &'a Local<'a, NODES>,
+    /// Whether heat is stored.
+    pub stores: bool,
+    /// Temperature at the beginning of the step.
+    pub old: f64,
+    /// Its gradient.
+    pub old_gradient: [f64; 3],
+    /// Velocity relative to the mesh.
+    pub velocity: [f64; 3],
+    /// Power per volume.
+    pub source: f64,
+    /// Size of the element along the flow (length).
+    pub size: f64,
+    /// Distance from the axis, in a body of revolution.
+    pub radius: Option<f64>,
+}
+
+impl<const NODES: usize> Point<'_, NODES> {
+    /// What volumes are multiplied by: the way round the axis.
+    pub fn round(&self) -> f64 {
+        self.radius.map_or(1.0, |radius| 2.0 * PI * radius)
+    }
+
+    /// Heat capacity per volume.
+    fn capacity<R: Real>(&self, temperature: R) -> R {
+        self.density.mean(temperature) * self.specific_heat.mean(temperature)
+    }
+
+    /// The factors a of the shape functions and b of their gradients at a temperature and gradient.
+    pub fn balance<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, [R; 3]) {
+        let Self { step, old, old_gradient, velocity, .. } = *self;
+        let (end, begin) = (step.theta, 1.0 - step.theta);
+        let (k, k_old) = (self.conductivity.at(self.n, temperature), self.conductivity.at(self.n, old));
+        let (c, c_old) = match self.stores {
+            true => (self.capacity(temperature), self.capacity(old)),
+            false => (R::zero(), 0.0),
+        };
+        let rate = if self.stores { (temperature - old) / step.length } else { R::zero() };
+        let now_along = along(velocity, gradient);
+        let old_along = along(velocity, old_gradient);
+        let a = (c + c_old) * 0.5 * rate + c * now_along * end + c_old * old_along * begin - self.source;
+        let mut b: [R; 3] = std::array::from_fn(|i| k * gradient[i] * end + k_old * old_gradient[i] * begin);
+        let speed = along(velocity, velocity).sqrt();
+        let inverse =
+            c * (step.dynamic_tau / step.length + 2.0 * speed / self.size) + k * (4.0 / (self.size * self.size));
+        if speed == 0.0 || inverse.value() <= 0.0 {
+            return (a, b);
+        }
+        let tau = c / inverse;
+        // What conduction towards the axis adds to the strong form.
+        let strong = self.radius.map_or(a, |radius| a - b[1] / radius);
+        (0..3).for_each(|i| b[i] += tau * strong * velocity[i]);
+        if step.cross_wind > 0.0 {
+            let present = (temperature, gradient);
+            let frozen = (R::constant(temperature.value()), gradient.map(|g| R::constant(g.value())));
+            let (t, g) = if step.frozen { frozen } else { present };
+            let mean: [R; 3] = std::array::from_fn(|i| (g[i] + old_gradient[i]) * 0.5);
+            let slope = mean.iter().fold(R::zero(), |sum, g| sum + *g * *g);
+            if slope.value() > step.least_gradient * step.least_gradient {
+                let residual = c * ((t - old) / step.length + along(velocity, mean) - self.source);
+                let across = residual.abs() / slope.sqrt() * (step.cross_wind * self.size);
+                let left = across - c * tau * (speed * speed);
+                let left = if left.value() > 0.0 { left } else { R::zero() };
+                let weighted: [R; 3] = std::array::from_fn(|i| gradient[i] * end + old_gradient[i] * begin);
+                let stream = along(velocity, weighted) * (left - across) / (speed * speed);
+                (0..3).for_each(|i| b[i] += across * weighted[i] + stream * velocity[i]);
+            }
+        }
+        (a, b)
+    }
+}
+
+/// v·g.
+fn along<R: Real>(velocity: [f64; 3], gradient: [R; 3]) -> R {
+    velocity.iter().zip(gradient).fold(R::zero(), |sum, (v, g)| sum + g * *v)
+}

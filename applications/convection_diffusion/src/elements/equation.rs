@@ -1,0 +1,202 @@
+//! The kernel of all elements of heat: the balance at the points of a Gauss rule.
+//!
+//! Gradients are those of each point: quadrilaterals and hexahedra are integrated in full, where Kratos takes their gradients
+//! at one point. Nodes stand where the mesh is, so that bodies that have moved conduct as they are.
+
+use std::marker::PhantomData;
+
+use zelus_core::diagnostics::Result;
+use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::{Shape, ShapeTable};
+use zelus_core::scalar::{Dual, Real};
+use zelus_structural_mechanics::elements::physical_gradients;
+
+use super::balance::{Point, Step};
+use super::place::{full_order, stream_size};
+use crate::coefficient::Coefficient;
+use crate::columns::Columns;
+
+/// Which terms of the balance a kind of element has.
+pub trait Terms: Send + Sync + 'static {
+    /// Storage and convection.
+    const TRANSIENT: bool;
+    /// The value at the beginning of the step is that which was carried along, sources are left out, ends weigh alike.
+    const CARRIED: bool = false;
+    /// A body of revolution about the x axis: y is the radius.
+    const AXISYMMETRIC: bool = false;
+}
+
+/// The elements of one block.
+pub struct Equation<T, const NODES: usize, const DIM: usize> {
+    columns: Columns,
+    conductivity: Coefficient,
+    density: Coefficient,
+    specific_heat: Coefficient,
+    rule: &'static ShapeTable,
+    terms: PhantomData<fn() -> T>,
+}
+
+impl<T: Terms, const NODES: usize, const DIM: usize> Equation<T, NODES, DIM> {
+    /// A column of nodal numbers, zero where there is none.
+    fn scalars(entity: &Gather<'_, NODES>, view: &StepView<'_>, column: Option<&str>, level: usize) -> [f64; NODES] {
+        match column.map_or(&[][..], |column| view.nodes.history.level(column, level)) {
+            [] => [0.0; NODES],
+            values => entity.scalars(values),
+        }
+    }
+
+    /// Velocity relative to the mesh, between both ends of the step.
+    fn velocities(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>, theta: f64) -> [[f64; 3]; NODES] {
+        let mut out = [[0.0; 3]; NODES];
+        if !T::TRANSIENT || T::CARRIED {
+            return out;
+        }
+        for (column, sign) in [(self.columns.velocity, 1.0), (self.columns.mesh_velocity, -1.0)] {
+            for (level, share) in [(0, theta), (1, 1.0 - theta)] {
+                let values = column.map_or(&[][..], |column| view.nodes.history.level(column, level));
+                if values.is_empty() {
+                    continue;
+                }
+                for (out, v) in out.iter_mut().zip(entity.vectors(values)) {
+                    (0..3).for_each(|a| out[a] += sign * share * v[a]);
+                }
+            }
+        }
+        out
+    }
+}
+
+impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Equation<T, NODES, DIM> {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; NODES] {
+        std::array::from_fn(|node| LocalUnknown { node: node as u8, variable: crate::variables::TEMPERATURE.scalar() })
+    }
+
+    fn own_unknowns(&self) -> [LocalUnknown; NODES] {
+        std::array::from_fn(|node| LocalUnknown { node: node as u8, variable: self.columns.unknown })
+    }
+
+    fn new(request: &BlockRequest<'_>) -> Result<Self> {
+        let columns = Columns::of(request.part);
+        let first = request.members.first().map(|&member| request.table.properties[member as usize]);
+        let properties = first.and_then(|id| request.part.properties.get(&id));
+        let coefficient = |column, off| Coefficient::new(column, properties, columns.unknown.column, off);
+        let shape = Shape::of(DIM, NODES).expect("elements are registered for known shapes only");
+        Ok(Self {
+            conductivity: coefficient(columns.diffusion, 0.0),
+            density: coefficient(columns.density, 1.0),
+            specific_heat: coefficient(columns.specific_heat, 1.0),
+            columns,
+            rule: ShapeTable::get(shape, full_order(shape)),
+            terms: PhantomData,
+        })
+    }
+
+    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        let inverted = |dn| physical_gradients::<NODES, DIM>(&entity.current, dn).1 <= 0.0;
+        if self.rule.dn::<NODES, DIM>().iter().any(inverted) {
+            return Err("it is inverted".to_owned());
+        }
+        if T::AXISYMMETRIC && entity.current.iter().any(|x| x[1] < 0.0) {
+            return Err("it reaches across the axis of revolution, which is x: y is the radius".to_owned());
+        }
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        let varies = [&self.conductivity, &self.density, &self.specific_heat].iter().any(|own| own.varies());
+        if varies || T::TRANSIENT && !T::CARRIED { Tangent::General } else { Tangent::Symmetric }
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        (): &(),
+        view: &StepView<'_>,
+        _want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; NODES],
+    ) -> Result<(), String> {
+        let mut step = Step::of(view.info);
+        if T::CARRIED {
+            step.theta = 0.5;
+        } else if !T::TRANSIENT {
+            step.theta = 1.0;
+        }
+        let unknown = self.columns.unknown.column;
+        let now = Self::scalars(entity, view, Some(unknown), 0);
+        let old = match T::CARRIED {
+            true => Self::scalars(entity, view, Some("PROJECTED_SCALAR1"), 0),
+            false => Self::scalars(entity, view, Some(unknown), 1),
+        };
+        let source = Self::scalars(entity, view, self.columns.volume_source.filter(|_| !T::CARRIED), 0);
+        let velocity = self.velocities(entity, view, step.theta);
+        let [conductivity, density, specific_heat] = [&self.conductivity, &self.density, &self.specific_heat]
+            .map(|own| own.in_element(entity, view.nodes, &now));
+        if let Some(name) = self.conductivity.unknown_in(&conductivity) {
+            let id = entity.properties.id;
+            return Err(format!(
+                "its properties {id} have no {name} (\"Variables\" of the materials), and no process sets it"
+            ));
+        }
+        let size = stream_size(self.rule.shape(), &entity.current);
+        for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
+            let (dn, determinant) = physical_gradients(&entity.current, &self.rule.dn::<NODES, DIM>()[g]);
+            if determinant <= 0.0 {
+                return Err("it is inverted".to_owned());
+            }
+            let value = |nodal: &[f64; NODES]| n.iter().zip(nodal).map(|(n, value)| n * value).sum::<f64>();
+            let slope = |nodal: &[f64; NODES]| {
+                let mut out = [0.0; 3];
+                (0..NODES).for_each(|i| (0..DIM).for_each(|a| out[a] += dn[i][a] * nodal[i]));
+                out
+            };
+            let part = |a: usize| (0..NODES).map(|i| n[i] * velocity[i][a]).sum();
+            let point = Point {
+                step,
+                n,
+                conductivity: &conductivity,
+                density: &density,
+                specific_heat: &specific_heat,
+                stores: T::TRANSIENT,
+                old: value(&old),
+                old_gradient: slope(&old),
+                velocity: std::array::from_fn(|a| if a < DIM { part(a) } else { 0.0 }),
+                source: value(&source),
+                size,
+                radius: T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][1]).sum()),
+            };
+            let weight = self.rule.weight(g) * determinant * point.round();
+            let (t, gradient) = (value(&now), slope(&now));
+            if lhs.is_empty() {
+                let (a, b) = point.balance(t, gradient);
+                for i in 0..NODES {
+                    rhs[i] -= weight * (n[i] * a + dot(&dn[i], &b));
+                }
+                continue;
+            }
+            let derivatives = |at: usize, value: f64| Dual::<4>::variable(value, at);
+            let (a, b) = point.balance(derivatives(0, t), std::array::from_fn(|i| derivatives(i + 1, gradient[i])));
+            let flux = b.map(|b| b.value());
+            let by = |d: &Dual<4>, j: usize| {
+                d.gradient[0] * n[j] + (0..DIM).map(|k| d.gradient[k + 1] * dn[j][k]).sum::<f64>()
+            };
+            for i in 0..NODES {
+                rhs[i] -= weight * (n[i] * a.value() + dot(&dn[i], &flux));
+            }
+            for j in 0..NODES {
+                let (da, db) = (by(&a, j), b.each_ref().map(|b| by(b, j)));
+                for i in 0..NODES {
+                    lhs[i * NODES + j] += weight * (n[i] * da + dot(&dn[i], &db));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The sum of products over the directions of the element.
+fn dot<const DIM: usize>(gradient: &[f64; DIM], flux: &[f64; 3]) -> f64 {
+    gradient.iter().zip(flux).map(|(g, b)| g * b).sum()
+}

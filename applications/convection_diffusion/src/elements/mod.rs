@@ -1,0 +1,10 @@
+//! Elements: the balance of heat over a body.
+
+mod balance;
+mod equation;
+mod place;
+mod registered;
+
+pub use balance::{CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, Point, Step, THETA};
+pub use equation::{Equation, Terms};
+pub use place::full_order;

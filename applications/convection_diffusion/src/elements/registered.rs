@@ -1,0 +1,137 @@
+//! The names of the elements.
+
+use zelus_core::entities::{Build, ElementEntry, KernelBlock};
+use zelus_core::geometry::Shape;
+use zelus_core::register;
+
+use super::equation::{Equation, Terms};
+
+/// Storage, convection, conduction and sources.
+pub struct ConvectionDiffusion;
+
+impl Terms for ConvectionDiffusion {
+    const TRANSIENT: bool = true;
+}
+
+/// Conduction and sources: always the state at rest.
+pub struct Laplacian;
+
+impl Terms for Laplacian {
+    const TRANSIENT: bool = false;
+}
+
+/// Storage and conduction after the temperature has been carried along.
+pub struct Diffusion;
+
+impl Terms for Diffusion {
+    const TRANSIENT: bool = true;
+    const CARRIED: bool = true;
+}
+
+/// [`ConvectionDiffusion`] of a body of revolution.
+pub struct Revolution;
+
+impl Terms for Revolution {
+    const TRANSIENT: bool = true;
+    const AXISYMMETRIC: bool = true;
+}
+
+macro_rules! elements {
+    ($name:literal, $terms:ty, $about:literal, $source:literal; $($suffix:literal: $nodes:literal, $dim:literal $(, $alias:literal)*;)+) => {
+        $(register! { ElementEntry concat!($name, $suffix),
+            aliases: &[$($alias),*],
+            about: $about,
+            source: $source,
+            cell: Shape::of($dim, $nodes),
+            space: $dim,
+            build: Build::Block(KernelBlock::<Equation<$terms, $nodes, $dim>, $nodes, $nodes>::boxed),
+        })+
+    };
+}
+
+elements! { "EulerianConvDiff", ConvectionDiffusion,
+"heat that is stored, conducted and carried by VELOCITY less MESH_VELOCITY; stabilised along the flow, where asked across it",
+"ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q, weighted by N + τ v·∇N";
+"2D3N": 3, 2, "EulerianConvDiff2D";
+"2D4N": 4, 2;
+"2D6N": 6, 2;
+"2D8N": 8, 2;
+"2D9N": 9, 2;
+"3D4N": 4, 3, "EulerianConvDiff3D";
+"3D6N": 6, 3;
+"3D8N": 8, 3;
+"3D10N": 10, 3;
+"3D15N": 15, 3;
+"3D20N": 20, 3;
+"3D27N": 27, 3;
+}
+
+elements! { "LaplacianElement", Laplacian,
+"heat that is conducted, without storage: the state at rest whatever the solver",
+"∇·(k ∇T) + Q = 0";
+"2D3N": 3, 2;
+"2D4N": 4, 2;
+"2D6N": 6, 2;
+"2D8N": 8, 2;
+"2D9N": 9, 2;
+"3D4N": 4, 3;
+"3D6N": 6, 3;
+"3D8N": 8, 3;
+"3D10N": 10, 3;
+"3D15N": 15, 3;
+"3D20N": 20, 3;
+"3D27N": 27, 3;
+}
+
+elements! { "EulerianDiffusion", Diffusion,
+"the second half of a semi-implicit step: conduction from PROJECTED_SCALAR1, which was carried along",
+"ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2)";
+"2D3N": 3, 2;
+"2D4N": 4, 2;
+"2D6N": 6, 2;
+"2D8N": 8, 2;
+"2D9N": 9, 2;
+"3D4N": 4, 3;
+"3D6N": 6, 3;
+"3D8N": 8, 3;
+"3D10N": 10, 3;
+"3D15N": 15, 3;
+"3D20N": 20, 3;
+"3D27N": 27, 3;
+}
+
+elements! { "AxisymmetricEulerianConvectionDiffusion", Revolution,
+"EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring",
+"ρc (∂T/∂t + v·∇T) = (1/y) ∇·(y k ∇T) + Q, weighted by N + τ v·∇N";
+"2D3N": 3, 2;
+"2D4N": 4, 2;
+"2D6N": 6, 2;
+"2D8N": 8, 2;
+"2D9N": 9, 2;
+}
+
+macro_rules! places {
+    ($($name:literal: $nodes:literal, $dim:literal;)+) => {
+        $(register! { ElementEntry $name,
+            about: "a place of the mesh without physics; a solver of heat puts its elements there",
+            cell: Shape::of($dim, $nodes),
+            space: $dim,
+            build: Build::Place,
+        })+
+    };
+}
+
+places! {
+"Element2D3N": 3, 2;
+"Element2D4N": 4, 2;
+"Element2D6N": 6, 2;
+"Element2D8N": 8, 2;
+"Element2D9N": 9, 2;
+"Element3D4N": 4, 3;
+"Element3D6N": 6, 3;
+"Element3D8N": 8, 3;
+"Element3D10N": 10, 3;
+"Element3D15N": 15, 3;
+"Element3D20N": 20, 3;
+"Element3D27N": 27, 3;
+}

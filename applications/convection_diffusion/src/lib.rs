@@ -1,0 +1,14 @@
+//! Heat: conduction, convection by a given velocity, storage, and exchange with the surroundings.
+//!
+//! [`elements`] integrate the balance of heat over a body, [`conditions`] over its boundary; [`solvers`] march it through
+//! time. Everything registers itself by the name Kratos gives it. A module uses only those above it in the list below.
+
+pub mod variables;
+pub mod columns;
+pub mod coefficient;
+pub mod elements;
+pub mod conditions;
+mod processes;
+pub mod scheme;
+pub mod adoption;
+pub mod solvers;

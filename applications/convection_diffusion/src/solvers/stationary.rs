@@ -1,0 +1,21 @@
+//! The solver of heat at rest.
+
+use zelus_core::analysis::{SolverDefinition, SolverEntry};
+use zelus_core::register;
+
+use crate::scheme::SCHEME;
+
+register! { SolverEntry "stationary",
+    aliases: &["Stationary"],
+    about: "heat at rest at each time; with elements that store heat, a step of the implicit Euler scheme: let it be long",
+    defaults: include_str!("../../../../configs/solvers/stationary.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/stationary.json"))],
+    build: SolverDefinition {
+        variant: |_| None,
+        variables: &super::VARIABLES,
+        explicit: false,
+        scheme: |_| Ok(SCHEME.to_owned()),
+        adapt: super::adapt,
+        adopt: |settings, part, report| super::take_up(settings, [1.0, 0.0, 0.0, 0.0], part, report),
+    },
+}

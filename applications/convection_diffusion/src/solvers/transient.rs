@@ -1,0 +1,41 @@
+//! The solver of heat in time.
+
+use zelus_core::analysis::{SolverDefinition, SolverEntry};
+use zelus_core::register;
+
+use crate::adoption::warn_of_no_storage;
+use crate::scheme::SCHEME;
+
+register! { SolverEntry "transient",
+    aliases: &["Transient"],
+    about: "heat in time: stored, conducted, carried and exchanged",
+    defaults: include_str!("../../../../configs/solvers/transient.json"),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/transient.json"))],
+    build: SolverDefinition {
+        variant: |_| None,
+        variables: &super::VARIABLES,
+        explicit: false,
+        scheme: |settings| {
+            let method = settings.get_str("time_integration_method")?;
+            if method == "implicit" {
+                return Ok(SCHEME.to_owned());
+            }
+            let problem = settings.error("time_integration_method", "time-integration", format!("\"time_integration_method\" is \"{method}\""));
+            Err(problem.remedy("use \"implicit\"").into())
+        },
+        adapt: super::adapt,
+        adopt: |settings, part, report| {
+            let read = |key: &str| settings.get_f64(&format!("transient_parameters.{key}"));
+            let theta = read("theta")?;
+            if !(0.5..=1.0).contains(&theta) {
+                let problem = settings.error("transient_parameters.theta", "invalid-value", format!("\"theta\" is {theta}"));
+                return Err(problem.remedy("from 0.5, of second order, to 1: below, steps must be short to be stable").into());
+            }
+            let cross_wind = ["cross_wind_stabilization_factor", "cross_wind_least_gradient"];
+            let parameters = [theta, read("dynamic_tau")?, read(cross_wind[0])?, read(cross_wind[1])?];
+            super::take_up(settings, parameters, part, report)?;
+            warn_of_no_storage(part, report);
+            Ok(())
+        },
+    },
+}

@@ -1,0 +1,215 @@
+//! Heat against closed forms: conduction, storage, convection, radiation; and that nothing but physics changes an answer.
+
+mod slab;
+#[path = "../support/mod.rs"]
+mod support;
+
+use serde_json::json;
+use slab::{Deck, Slab, material};
+use std::f64::consts::PI;
+use support::{Results, said, zelus};
+
+/// The last temperature at the lower node of a column.
+fn last(results: &Results, slab: &Slab, column: usize) -> f64 {
+    results.nodal("TEMPERATURE", results.len() - 1)[&(slab.node(column, 0) as u64)]
+}
+
+/// A deck whose storage is negligible.
+fn at_rest(conductivity: f64) -> Deck {
+    Deck::new("stationary", 1e12, 1e12, conductivity)
+}
+
+fn held(deck: Deck, left: f64, right: f64) -> Deck {
+    deck.assign("Left", "TEMPERATURE", json!(left), true).assign("Right", "TEMPERATURE", json!(right), true)
+}
+
+#[test]
+fn a_table_of_conductivity_acts() {
+    let slab = Slab::new(20);
+    let mut deck = held(at_rest(1.0), 100.0, 0.0).set("residual_relative_tolerance", json!(1e-12));
+    deck.materials[0]["Material"]["Tables"] = json!({"k": {"input_variable": "TEMPERATURE", "output_variable": "CONDUCTIVITY",
+        "data": [[0.0, 1.0], [100.0, 3.0]]}});
+    let results = deck.run(&slab);
+    // T + T²/100 = 200 (1 − x); linear elements are exact at the nodes for the integral of the conductivity.
+    for column in 0..=20 {
+        let s = 200.0 * (1.0 - column as f64 / 20.0);
+        let exact = 50.0 * ((1.0 + s / 25.0).sqrt() - 1.0);
+        assert!((last(&results, &slab, column) - exact).abs() < 1e-9, "{column}: {}", last(&results, &slab, column));
+    }
+}
+
+#[test]
+fn each_element_has_its_own_material() {
+    for triangles in [false, true] {
+        for element in ["EulerianConvDiff", "LaplacianElement"] {
+            let slab = Slab { triangles, ..Slab::new(8) };
+            let mut deck =
+                held(at_rest(1.0), 100.0, 0.0).set("element_replace_settings", json!({"element_name": element}));
+            deck.materials = vec![material("Near", 1, 10.0), material("Far", 2, 1.0)];
+            let results = deck.run(&slab);
+            assert!((last(&results, &slab, 4) - 1000.0 / 11.0).abs() < 1e-8, "{element}");
+            let fed = results.nodal("REACTION_FLUX", 0);
+            let flow: f64 = (0..2).map(|row| fed[&(slab.node(0, row) as u64)]).sum();
+            assert!((flow - 0.1 * 10.0 * (100.0 - 1000.0 / 11.0) / 0.5).abs() < 1e-8, "{flow}");
+        }
+    }
+}
+
+#[test]
+fn a_wall_radiates_and_convects_as_its_balance_says() {
+    let slab = Slab { triangles: true, ..Slab::new(5) };
+    let deck = at_rest(1.2)
+        .assign("Left", "TEMPERATURE", json!(900.0), true)
+        .starts(json!(300.0))
+        .process(
+            "apply_thermal_face_process",
+            json!({"model_part_name": "Heat.Right", "ambient_temperature": 300.0, "add_ambient_radiation": true, "emissivity": 0.8,
+                "add_ambient_convection": true, "convection_coefficient": 20.0}),
+        )
+        .set("residual_relative_tolerance", json!(1e-12));
+    let results = deck.run(&slab);
+    let out = |t: f64| 1.2 * (900.0 - t) - 20.0 * (t - 300.0) - 0.8 * 5.67e-8 * (t.powi(4) - 300f64.powi(4));
+    let (mut low, mut high) = (300.0, 900.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if out(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    assert!((last(&results, &slab, 5) - low).abs() < 1e-8, "{} {low}", last(&results, &slab, 5));
+}
+
+/// A sine in a slab with cold ends, by the weights θ: each step multiplies it by (1 − (1 − θ) λ Δt)/(1 + θ λ Δt), with the
+/// eigenvalue λ = 6k/h² (1 − cos πh)/(2 + cos πh) of linear elements.
+#[test]
+fn a_sine_decays_as_scheme_and_mesh_say() {
+    let slab = Slab::new(10);
+    let (k, dt, steps) = (0.2, 0.05, 8);
+    for theta in [0.5, 0.7, 1.0] {
+        let deck = held(Deck::new("transient", dt, dt * steps as f64, k), 0.0, 0.0)
+            .starts(json!("sin(3.14159265358979312*x)"))
+            .set("transient_parameters", json!({"theta": theta}));
+        let results = deck.run(&slab);
+        let phase = (PI * 0.1).cos();
+        let eigenvalue = 600.0 * k * (1.0 - phase) / (2.0 + phase);
+        let factor = (1.0 - (1.0 - theta) * eigenvalue * dt) / (1.0 + theta * eigenvalue * dt);
+        let exact = factor.powi(steps);
+        assert!((last(&results, &slab, 5) - exact).abs() < 1e-12, "θ = {theta}: {}", last(&results, &slab, 5) - exact);
+    }
+}
+
+/// A slab of one temperature, whose ends become cold: T = Σ 4/(nπ) exp(−n²π²kt) sin nπx, n odd.
+#[test]
+fn a_slab_cools_as_the_series_says() {
+    let (k, end) = (1.0, 0.1);
+    let error = |cells: usize| {
+        let slab = Slab::new(cells);
+        let steps = cells * cells / 10;
+        let deck = held(Deck::new("transient", end / steps as f64, end, k), 0.0, 0.0)
+            .starts(json!(1.0))
+            .set("transient_parameters", json!({"theta": 1.0}));
+        let results = deck.run(&slab);
+        let series = |x: f64| -> f64 {
+            let term = |n: f64| 4.0 / (n * PI) * (-(n * PI).powi(2) * k * end).exp() * (n * PI * x).sin();
+            (0..20).map(|i| term(f64::from(2 * i + 1))).sum()
+        };
+        (last(&results, &slab, cells / 2) - series(0.5)).abs()
+    };
+    let [coarse, fine] = [error(20), error(40)];
+    assert!(fine < 2e-3 && coarse / fine > 3.5, "{coarse:e} {fine:e}");
+}
+
+/// A boundary layer at the end that a flow meets: T = (exp(Pe x) − 1)/(exp(Pe) − 1).
+#[test]
+fn a_flow_makes_a_boundary_layer() {
+    let error = |cells: usize| {
+        let slab = Slab { triangles: true, height: 1.0 / cells as f64, ..Slab::new(cells) };
+        let velocity = json!({"model_part_name": "Heat.Body", "variable_name": "VELOCITY", "value": [10.0, 0.0, 0.0],
+            "constrained": false, "interval": [0.0, "End"]});
+        let deck = held(Deck::new("transient", 1e9, 1e9, 1.0), 0.0, 1.0)
+            .process("assign_vector_variable_process", velocity)
+            .set("transient_parameters", json!({"theta": 1.0, "dynamic_tau": 0.0}));
+        let results = deck.run(&slab);
+        let exact = |x: f64| ((10.0 * x).exp() - 1.0) / (10f64.exp() - 1.0);
+        (0..=cells).map(|c| (last(&results, &slab, c) - exact(c as f64 / cells as f64)).abs()).fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [error(80), error(160)];
+    assert!(fine < 2e-3 && coarse / fine > 3.0, "{coarse:e} {fine:e}");
+}
+
+/// Sources, radiation and storage at once.
+fn everything() -> Deck {
+    Deck::new("transient", 0.02, 0.1, 1.5)
+        .assign("Left", "TEMPERATURE", json!(400.0), true)
+        .assign("Body", "HEAT_FLUX", json!(300.0), false)
+        .assign("Right", "FACE_HEAT_FLUX", json!(-50.0), false)
+        .starts(json!(300.0))
+        .process(
+            "apply_thermal_face_process",
+            json!({"model_part_name": "Heat.Right", "ambient_temperature": 280.0, "add_ambient_radiation": true, "emissivity": 0.9}),
+        )
+        .set("residual_relative_tolerance", json!(1e-11))
+}
+
+#[test]
+fn place_and_numbers_of_a_mesh_change_nothing() {
+    let usual = Slab { rows: 2, triangles: true, ..Slab::new(9) };
+    let expected = everything().run(&usual);
+    for other in [Slab { angle: 0.7, ..usual }, Slab { reversed: true, ..usual }] {
+        let found = everything().run(&other);
+        for column in 0..=9 {
+            let [a, b] = [last(&expected, &usual, column), last(&found, &other, column)];
+            assert!((a - b).abs() < 1e-9 * a.abs(), "column {column}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let slab = Slab { rows: 8, ..Slab::new(80) };
+    let [one, four] = ["1", "4"]
+        .map(|threads| everything().run_with(&slab, &["run", "ProjectParameters.json", "--threads", threads]));
+    for quantity in ["TEMPERATURE", "REACTION_FLUX"] {
+        for step in 0..one.len() {
+            let bits = |results: &Results| {
+                results.nodal(quantity, step).values().map(|value| value.to_bits()).collect::<Vec<_>>()
+            };
+            assert_eq!(bits(&one), bits(&four), "{quantity}");
+        }
+    }
+}
+
+/// What leaves and what is fed add up: REACTION_FLUX of the support balances sources and faces at rest.
+#[test]
+fn supports_feed_what_leaves() {
+    let slab = Slab { rows: 3, ..Slab::new(6) };
+    let deck = at_rest(2.0)
+        .assign("Left", "TEMPERATURE", json!(10.0), true)
+        .assign("Body", "HEAT_FLUX", json!(100.0), false)
+        .assign("Right", "FACE_HEAT_FLUX", json!(40.0), false);
+    let fed: f64 = deck.run(&slab).nodal("REACTION_FLUX", 0).values().sum();
+    assert!((fed + 100.0 * 0.1 + 40.0 * 0.1).abs() < 1e-10, "{fed}");
+}
+
+#[test]
+fn what_is_missing_is_said() {
+    let says = |deck: &Deck, code: i32, word: &str| {
+        let scratch = tempfile::tempdir().unwrap();
+        deck.write(scratch.path(), &Slab::new(3));
+        let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+        assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+        assert!(said(&output).contains(word), "{}", said(&output));
+    };
+    let mut nothing = held(at_rest(1.0), 1.0, 0.0);
+    nothing.materials[0]["Material"]["Variables"] = json!({"DENSITY": 1.0});
+    says(&nothing, 3, "have no CONDUCTIVITY");
+    let mut light = held(Deck::new("transient", 1.0, 1.0, 1.0), 1.0, 0.0);
+    light.materials[0]["Material"]["Variables"] = json!({"CONDUCTIVITY": 1.0});
+    says(&light, 0, "no DENSITY");
+    says(
+        &held(at_rest(1.0), 1.0, 0.0).set("element_replace_settings", json!({"element_name": "NoElement"})),
+        2,
+        "NoElement2D4N",
+    );
+    says(&held(at_rest(1.0), 1.0, 0.0).set("skip_entities_replace_and_check", json!(true)), 2, "has no physics");
+    let theta = Deck::new("transient", 1.0, 1.0, 1.0).set("transient_parameters", json!({"theta": 0.2}));
+    says(&held(theta, 1.0, 0.0), 2, "theta");
+}
