@@ -118,3 +118,138 @@ fn soft_penalties_are_refused_beyond_a_share_of_the_mesh() {
     let (code, said) = run(soft(0.0).path(), "run");
     assert_eq!(code, Some(0), "{said}");
 }
+
+/// Lists the first entity of a block once more under another id, with its nodes going round from another one, also in a part.
+fn list_again(folder: &Path, block: &str, id: usize, part: &str, list: &str) {
+    let path = folder.join("mesh.mdpa");
+    let mesh = std::fs::read_to_string(&path).expect("the mesh");
+    let mut lines: Vec<String> = mesh.lines().map(str::to_owned).collect();
+    let header = lines.iter().position(|line| line.starts_with(block)).expect("the block");
+    let words: Vec<String> = lines[header + 1].split_whitespace().map(str::to_owned).collect();
+    let mut nodes = words[2..].to_vec();
+    nodes.rotate_left(1);
+    lines.insert(header + 1, format!("{id} {} {}", words[1], nodes.join(" ")));
+    let part = lines.iter().position(|line| line.trim() == format!("Begin SubModelPart {part}")).expect("the part");
+    let list = part + lines[part..].iter().position(|line| line.trim() == format!("Begin {list}")).expect("a list");
+    lines.insert(list + 1, id.to_string());
+    std::fs::write(path, lines.join("\n")).expect("the mesh");
+}
+
+#[test]
+fn entities_listed_twice_are_named() {
+    let scratch = case("contact_2d/matching", |_| {});
+    list_again(scratch.path(), "Begin Elements", 901, "Lower", "SubModelPartElements");
+    let (code, said) = run(scratch.path(), "check");
+    assert_eq!(code, Some(0), "{said}");
+    let words =
+        ["warning[listed-twice]", "1 elements have the nodes of others", " 901 with those of 1:", "counts twice"];
+    words.iter().for_each(|words| assert!(said.contains(words), "{words}: {said}"));
+
+    let scratch = case("contact_2d/matching", |_| {});
+    list_again(scratch.path(), "Begin Conditions LineLoad", 902, "Top", "SubModelPartConditions");
+    let (_, said) = run(scratch.path(), "check");
+    assert!(said.contains("warning[listed-twice]") && said.contains("902 with those of"), "{said}");
+}
+
+#[test]
+fn two_values_of_one_unknown_are_named() {
+    let scratch = case("contact_2d/matching", |deck| {
+        let supports = deck["processes"]["constraints_process_list"].as_array_mut().expect("a list");
+        let mut other = supports[0].clone();
+        other["Parameters"]["value"] = json!([null, "0.001*t", null]);
+        supports.push(other);
+    });
+    let (code, said) = run(scratch.path(), "check");
+    assert_eq!(code, Some(0), "{said}");
+    let words = ["warning[contradicting-values]", "DISPLACEMENT_Y", "the first is node 1: 0 by", "which wins"];
+    words.iter().for_each(|words| assert!(said.contains(words), "{words}: {said}"));
+}
+
+#[test]
+fn what_holds_a_body_is_said_before_the_run() {
+    let without = |name: &'static str, keep: usize| {
+        case(name, move |deck| {
+            deck["processes"]["constraints_process_list"].as_array_mut().expect("a list").truncate(keep);
+        })
+    };
+    // The upper block lies on the lower one; both are guided across.
+    let (_, said) = run(case("contact_2d/matching", |_| {}).path(), "check");
+    assert!(said.contains("[held-by-contact]") && said.contains("part Upper"), "{said}");
+    assert!(!said.contains("held-by-nothing") && !said.contains("part Lower"), "{said}");
+    // Without its guides nothing keeps it from sliding, and the lower one with it.
+    let (code, said) = run(without("contact_2d/matching", 1).path(), "check");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("warning[held-by-nothing]") && said.contains("support it in all directions"), "{said}");
+    // With friction it is that.
+    let (_, said) = run(without("contact_2d/friction_slide", 1).path(), "check");
+    assert!(said.contains("note[held-by-friction]") && said.contains("part Upper"), "{said}");
+    // A body without contact.
+    let (_, said) = run(without("structural/self_weight", 0).path(), "check");
+    assert!(said.contains("warning[held-by-nothing]") && said.contains("6 rigid motions"), "{said}");
+}
+
+#[test]
+fn whole_bodies_as_contact_parts_are_named() {
+    let scratch = case("contact_2d/matching", |deck| {
+        let process = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
+        process["contact_model_part"] = json!({"0": ["Lower", "Upper"]});
+        process["assume_master_slave"] = json!({"0": ["Upper"]});
+    });
+    let (_, said) = run(scratch.path(), "check");
+    assert!(said.contains("warning[whole-body]") && said.contains("\"Upper\""), "{said}");
+}
+
+#[test]
+fn a_step_that_fails_says_where_and_leaves_its_last_iterate() {
+    let scratch = case("contact_2d/matching", |deck| {
+        deck["solver_settings"]["max_iteration"] = json!(1);
+        deck["solver_settings"]["contact_settings"]["adaptative_strategy"] = json!(true);
+        deck["solver_settings"]["contact_settings"]["max_number_splits"] = json!(0);
+        // It pulls: all nodes leave contact.
+        deck["processes"]["loads_process_list"][0]["Parameters"]["modulus"] = json!(-1e6);
+        let vtu = json!({"python_module": "vtu_output_process", "kratos_module": "KratosMultiphysics", "Parameters": {
+            "model_part_name": "Structure", "output_path": "pictures",
+            "nodal_solution_step_data_variables": ["DISPLACEMENT"]
+        }});
+        deck["output_processes"] = json!({"pictures": [vtu]});
+    });
+    let (code, said) = run(scratch.path(), "run");
+    assert_eq!(code, Some(3), "{said}");
+    for words in ["largest residual", " at (", " of part ", "still changes: node", "its last iterate, no result, is in"]
+    {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let pictures = |folder: &str| {
+        let entries = std::fs::read_dir(scratch.path().join(folder)).into_iter().flatten().flatten();
+        entries.filter(|entry| entry.path().extension().is_some_and(|ending| ending == "vtu")).count()
+    };
+    assert_eq!((pictures("pictures"), pictures("pictures_last_iterate")), (0, 1));
+    // A run that gets on leaves none.
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    deck["solver_settings"]["max_iteration"] = json!(30);
+    deck["processes"]["loads_process_list"][0]["Parameters"]["modulus"] = json!(1e6);
+    std::fs::write(path, deck.to_string()).expect("the deck");
+    let (code, said) = run(scratch.path(), "run");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(pictures("pictures") > 0 && pictures("pictures_last_iterate") == 0);
+}
+
+#[test]
+fn elements_that_turn_inside_out_are_named_with_their_places() {
+    let scratch = case("contact_2d/matching", |deck| {
+        deck["solver_settings"]["contact_settings"]["adaptative_strategy"] = json!(true);
+        deck["solver_settings"]["contact_settings"]["max_number_splits"] = json!(0);
+        let supports = deck["processes"]["constraints_process_list"].as_array_mut().expect("a list");
+        let mut top = supports[0].clone();
+        top["Parameters"]["model_part_name"] = json!("Structure.Top");
+        top["Parameters"]["value"] = json!([null, "-2.5*t", null]);
+        supports.push(top);
+    });
+    let path = scratch.path().join("mesh.mdpa");
+    let mesh = std::fs::read_to_string(&path).expect("the mesh");
+    std::fs::write(path, mesh.replace("SmallDisplacementElement2D4N", "TotalLagrangianElement2D4N")).expect("the mesh");
+    let (code, said) = run(scratch.path(), "run");
+    assert_ne!(code, Some(0), "{said}");
+    assert!(said.contains("elements are inside out, the first is TotalLagrangianElement2D4N"), "{said}");
+}

@@ -8,11 +8,15 @@ use serde_json::{Value, json};
 use support::{read_json, root, said, scratch_copy, zelus};
 
 const DECK: &str = "ProjectParameters.json";
-const CODES: [&str; 11] = [
+const CODES: [&str; 16] = [
     "acts-on-nothing",
+    "contradicting-values",
     "duplicate-key",
+    "held-by-nothing",
+    "initial-penetration",
     "interval-reversed",
     "invalid-tolerance",
+    "listed-twice",
     "negative-friction",
     "no-friction",
     "repeated-properties",
@@ -20,6 +24,7 @@ const CODES: [&str; 11] = [
     "slave-in-two-pairs",
     "slaves-without-pair",
     "unknown-key-ignored",
+    "whole-body",
 ];
 
 /// A deck with one mistake.
@@ -297,7 +302,13 @@ fn good_decks_hear_none_of_it() {
     for deck in decks {
         let output = zelus(deck.parent().expect("a folder"), &["check", DECK]);
         let said = said(&output);
-        let heard = CODES.iter().filter(|code| said.contains(&format!("[{code}]")));
+        // A shrink fit begins with bodies inside each other; nodes of the boundary that are pulled are prescribed twice.
+        let own = deck.parent().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let meant = |code: &str| {
+            [("initial-penetration", "shrink_fit"), ("contradicting-values", "mixture_of_layers")]
+                .contains(&(code, own.as_deref().unwrap_or_default()))
+        };
+        let heard = CODES.iter().filter(|code| said.contains(&format!("[{code}]")) && !meant(code));
         wrong.extend(heard.map(|code| format!("{}: {code}", deck.display())));
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

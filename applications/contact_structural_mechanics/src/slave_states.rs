@@ -202,6 +202,16 @@ impl SlaveStates {
         self.slots.get(node as usize).is_some_and(|&slot| slot != NONE && self.states[slot as usize].active)
     }
 
+    /// The state of a slave node in a word; `None` for other nodes.
+    pub fn word(&self, node: u32) -> Option<&'static str> {
+        self.slaves.binary_search(&node).ok()?;
+        Some(match self[node].contact() {
+            NodeState::Inactive => "is open",
+            NodeState::Stick => "is in contact and does not slide",
+            NodeState::Slip => "is in contact and slides",
+        })
+    }
+
     /// Slave nodes in contact.
     pub fn count_active(&self) -> usize {
         self.iter().filter(|(_, state)| state.active).count()

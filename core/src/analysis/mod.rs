@@ -5,6 +5,7 @@
 //! A [`Simulation`] reads `ProjectParameters.json` and makes the steps of its stage, or, in the form with an orchestrator, of its
 //! stages one after another on one model.
 
+mod bodies;
 mod checkpoints;
 mod cutting;
 mod deck;
@@ -15,6 +16,7 @@ mod report;
 mod saved;
 mod saved_run;
 mod sharing;
+mod soundness;
 mod simulation;
 mod solver;
 mod stage;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::bodies::tell_what_holds;
 use super::cutting::{Cutting, Lengths};
 use super::deck::{StageDeck, check_top_level, import, make_processes, root_name};
 use super::like::{lay_defaults, program};
@@ -12,7 +13,8 @@ use super::report::{RunReport, Sizes};
 use super::saved::Saved;
 use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
 use super::sharing::{distribute, read_the_same_deck, read_the_same_files};
-use super::solver::{SolverSettings, check_dimensions};
+use super::solver::{SolverSettings, TimeScheme, check_dimensions};
+use super::soundness::{prescriptions, warn_of_contradictions, warn_of_twins};
 use super::time_stepping::TimeStepping;
 use super::unheeded::{check_tolerances, warn_of_extensions, warn_of_unheeded};
 use crate::assembly::System;
@@ -192,6 +194,14 @@ impl Stage {
             let checked = process.check(model, &system, &mut problems);
             problems.absorb(checked);
         }
+        let (start_time, end_time) = times.expect("checked above");
+        let part = model.root(&root)?;
+        warn_of_twins(part, &mut problems);
+        warn_of_contradictions(part, &processes, [0.5 * (start_time + end_time), end_time], &mut problems);
+        if matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static()) && part.info.step == 0 {
+            let prescribed = prescriptions(part, &processes, 0.5 * (start_time + end_time));
+            tell_what_holds(part, &system, &prescribed, &mut problems);
+        }
         let mut files: Vec<FileUse> = processes.iter().flat_map(|process| process.files()).collect();
         read_the_same_files(&ranks, &files)?;
         files.extend(inputs);
@@ -200,7 +210,6 @@ impl Stage {
             check_files(&files).into_iter().for_each(|problem| problems.push(problem));
         }
         tell(problems_of_all(&ranks, problems)?.finish()?, report, monitor);
-        let (start_time, end_time) = times.expect("checked above");
         report.add_seconds("set up", start.elapsed().as_secs_f64());
         Ok(Self {
             name: stage.name.clone(),
@@ -394,15 +403,19 @@ impl Stage {
                     _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
                     Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
                 };
+                let kept = self.keep_last_iterate(model);
                 if record.singular {
-                    return Err(Error::System(format!("step {} to time {to}: {failure}\n    {tried}", record.step)));
+                    return Err(Error::System(format!(
+                        "step {} to time {to}: {failure}\n    {tried}{kept}",
+                        record.step
+                    )));
                 }
                 let written = match from > self.start_time {
                     true => format!("results up to time {from} are written"),
                     false => "no step has converged".to_owned(),
                 };
                 return Err(Error::NotConverged(format!(
-                    "step {} to time {to}: {failure}\n    {tried}; {written}. Try {}, or look at the nodes named",
+                    "step {} to time {to}: {failure}\n    {tried}; {written}{kept}. Try {}, or look at the nodes named",
                     record.step,
                     self.strategy.remedy()
                 )));
@@ -412,6 +425,19 @@ impl Stage {
             saved.restore(model.root_mut(&self.root)?, &mut self.system);
             failed = Some(record);
         }
+    }
+
+    /// Writes the state of a step that has failed, apart from results, and says where; collective.
+    fn keep_last_iterate(&mut self, model: &mut Model) -> String {
+        let mut said = String::new();
+        for process in &mut self.processes {
+            match model.ranks.clone().agree(process.print_last_iterate(model, &self.system)) {
+                Ok(Some(folder)) => said += &format!("; its last iterate, no result, is in {}", folder.display()),
+                Ok(None) => {}
+                Err(error) => said += &format!("; its last iterate cannot be written: {error}"),
+            }
+        }
+        said
     }
 
     fn attempt(

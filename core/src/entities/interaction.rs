@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::State;
 
 use super::block::EntityBlock;
+use super::join::Join;
 use super::pair_state::PairState;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{ModelPart, ScalarVariable};
@@ -129,6 +130,16 @@ pub trait Interaction: Send + Sync {
     /// The pairs of bodies it acts between, as they are in a converged state; the same on every rank.
     fn pairs(&self, _part: &ModelPart) -> Vec<PairState> {
         Vec::new()
+    }
+
+    /// Before the first step: where it joins bodies; `None` when it does not know.
+    fn joins(&self, _part: &ModelPart) -> Option<Vec<Join>> {
+        None
+    }
+
+    /// What it does now at a node of its own (index), in a word: "is open", "sticks", "slides"; `None` at other nodes.
+    fn node_state(&self, _node: u32) -> Option<&'static str> {
+        None
     }
 
     /// Notes and warnings since they were last asked for; the stage passes them on.

@@ -7,6 +7,7 @@ mod block;
 mod constraint_entry;
 mod face_point;
 mod interaction;
+mod join;
 mod kernel;
 mod pair_state;
 mod registered;
@@ -18,6 +19,7 @@ pub use face_point::FacePoint;
 pub use interaction::{
     ActiveSet, Coupling, FirstIterate, Interaction, Massless, MasslessNodes, Observer, Outer, Retry, SetChange,
 };
+pub use join::Join;
 pub use kernel::{Gather, Kernel, KernelBlock};
 pub use pair_state::PairState;
 pub use registered::{

@@ -5,6 +5,7 @@
 //! the same unknown wins, and fixities of the mesh file on the same unknown last one step only.
 
 use super::local_axes::LocalAxes;
+use super::prescription::Prescription;
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
@@ -121,6 +122,28 @@ impl Process for AssignToNodes {
             warnings.push(warning);
         }
         Ok(())
+    }
+
+    fn prescribes(&self, part: &ModelPart, time: f64) -> Vec<Prescription> {
+        let is_here = self.target.path.split('.').next() == Some(part.tree.name.as_str());
+        let Some(selection) = self.target.selection(&part.tree).ok().filter(|_| is_here) else { return Vec::new() };
+        if !self.target.interval.contains(time) {
+            return Vec::new();
+        }
+        let of_component = |component: &NodalComponent| {
+            let value = |&node: &u32| {
+                let at = node as usize;
+                let here = SpaceTime { current: part.nodes.current[at], initial: part.nodes.initial[at], time };
+                let here = self.axes.as_ref().map_or(here, |axes| axes.map(&here));
+                (node, component.value.as_ref().map(|value| value.value(&here)))
+            };
+            Prescription {
+                by: format!("{} on {}", self.target.process, self.target.path),
+                variable: component.variable,
+                values: selection.nodes.iter().map(value).collect(),
+            }
+        };
+        self.components.iter().filter(|component| component.fixed).map(of_component).collect()
     }
 
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {

@@ -5,6 +5,7 @@
 //! unknowns, [`AssignToEntities`] for data of conditions and elements.
 
 mod output;
+mod prescription;
 mod process;
 mod scalar_value;
 mod local_axes;
@@ -31,6 +32,7 @@ pub use assign_to_entities::{AssignToEntities, Container, EntityComponent};
 pub use assign_to_nodes::{AssignToNodes, NodalComponent};
 pub use local_axes::LocalAxes;
 pub use output::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};
+pub use prescription::Prescription;
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
 pub(crate) use scalar_value::tables_of;

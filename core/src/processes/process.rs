@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::State;
 
+use super::prescription::Prescription;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
 use crate::io::FileUse;
-use crate::model::Model;
+use crate::model::{Model, ModelPart};
 use crate::parameters::{Defaults, Node, Settings};
 use crate::registered_kind;
 use crate::registry::Entry;
@@ -42,6 +43,11 @@ pub trait Process: Send {
     /// As [`Process::initialize`].
     fn check(&self, _model: &Model, _system: &System, _warnings: &mut Report) -> Result<()> {
         Ok(())
+    }
+
+    /// Unknowns of a root part that it fixes at a time, with their values, as far as that is known before the run.
+    fn prescribes(&self, _part: &ModelPart, _time: f64) -> Vec<Prescription> {
+        Vec::new()
     }
 
     /// All is ready, time is still zero (Kratos: `ExecuteBeforeSolutionLoop`).
@@ -87,6 +93,14 @@ pub trait Process: Send {
     /// A file that cannot be written.
     fn print_output(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
         Ok(())
+    }
+
+    /// Writes the state of a step that has failed, apart from results; gives where. On several ranks it is collective.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    fn print_last_iterate(&mut self, _model: &mut Model, _system: &System) -> Result<Option<PathBuf>> {
+        Ok(None)
     }
 
     /// Where the whole run is to be saved now; asked after each step of the deck, and remembered by its state as done.

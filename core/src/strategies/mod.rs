@@ -37,6 +37,7 @@ mod records;
 mod residual_criterion;
 mod scheme;
 mod strategy;
+mod whereabouts;
 
 pub use arc_length::{ARC_LENGTH, ArcLength, ArcLengthSettings};
 pub use balance::{Balance, Energies, PairBalance, Sums, UnknownBalance};
@@ -64,3 +65,4 @@ pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
 pub use strategy::{SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest};
+pub(crate) use whereabouts::body_of;

@@ -27,6 +27,7 @@ use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded};
+use super::whereabouts::whereabouts;
 use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::ModelPart;
@@ -34,6 +35,9 @@ use crate::register;
 
 /// Mark of the step data: the condition number of every system is computed.
 pub const CONDITION_NUMBER: &str = "CONDN_CONVERGENCE_CRITERION";
+
+/// Nodes that a message of a failure describes.
+const DESCRIBED: usize = 4;
 
 /// Value of the step data: the largest energy that bodies in motion have had.
 pub const ENERGY_OF_MOTION: &str = "ENERGY_OF_MOTION";
@@ -395,7 +399,8 @@ impl NewtonRaphson {
         let largest = part.ranks.gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
         let said = worst.filter(|&n| size(n) >= largest).map(|n| {
             let value = balanced[n as usize];
-            format!("; largest residual {value:.3e} at {}", Meaning::of(&system.dofs, &part.nodes, n))
+            let at = whereabouts(part, system.dofs.dofs()[n as usize].node);
+            format!("; largest residual {value:.3e} at {}{at}", Meaning::of(&system.dofs, &part.nodes, n))
         });
         part.ranks.first_to_say(said)
     }
@@ -413,7 +418,9 @@ impl NewtonRaphson {
         let last = records.last();
         let cycling = last.filter(|r| r.active_set_changes + r.stick_slip_changes > 0).map(|r| {
             let nodes: Vec<String> = r.changed_nodes.iter().map(ToString::to_string).collect();
-            format!("; the contact state of nodes {} still changes", nodes.join(" "))
+            let described: Vec<String> =
+                r.changed_nodes.iter().take(DESCRIBED).filter_map(|&id| state_of(part, system, id)).collect();
+            format!("; the contact state of nodes {} still changes: {}", nodes.join(" "), described.join("; "))
         });
         format!(
             "not converged in {} iterations{}{}",
@@ -422,6 +429,13 @@ impl NewtonRaphson {
             cycling.unwrap_or_default()
         )
     }
+}
+
+/// Where a node is and what interactions say of its state, where one does.
+fn state_of(part: &ModelPart, system: &System, id: usize) -> Option<String> {
+    let node = part.nodes.ids.binary_search(&id).ok()? as u32;
+    let state = system.interactions.iter().find_map(|interaction| interaction.node_state(node))?;
+    Some(format!("node {id}{} {state}", whereabouts(part, node)))
 }
 
 register! { StrategyEntry "newton_raphson",

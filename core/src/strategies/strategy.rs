@@ -12,6 +12,7 @@ use super::newton::{NewtonRaphson, NewtonSettings};
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
+use super::whereabouts::inside_out;
 use crate::assembly::{Assembler, System};
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::{Interaction, SetChange};
@@ -224,7 +225,8 @@ where
         }
         Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => {
             let iteration = part.info.nl_iteration;
-            record.failure = Some(format!("in iteration {iteration}, {}", Error::Input(problems)));
+            let inverted = inside_out(part).map_or(String::new(), |which| format!("; {which}"));
+            record.failure = Some(format!("in iteration {iteration}, {}{inverted}", Error::Input(problems)));
         }
         Err(error) => return Err(error),
     }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
-    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Massless, MasslessNodes, Outer, PairState, Retry,
-    SetChange,
+    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Join, Massless, MasslessNodes, Outer, PairState,
+    Retry, SetChange,
 };
 use zelus_core::model::{ModelPart, ScalarVariable};
 use zelus_core::{Result, State};
@@ -21,7 +21,7 @@ use super::decision::slip;
 use super::friction;
 use super::impact::near_nodes;
 use super::outer_loops::OuterLoops;
-use super::pair_states::{heat, pair_states};
+use super::pair_states::{heat, joins, pair_states};
 use super::points;
 use super::reach::Reach;
 use super::set_stage::SetStage;
@@ -232,6 +232,14 @@ impl Interaction for ContactInteraction {
         };
         let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.family.frictional());
         pair_states(&pairing.interfaces, parts, states, frictional, resolution.length, of_node)
+    }
+
+    fn node_state(&self, node: u32) -> Option<&'static str> {
+        self.contact.states.word(node)
+    }
+
+    fn joins(&self, part: &ModelPart) -> Option<Vec<Join>> {
+        joins(part, &self.contact.pairing.interfaces, false, self.contact.setup.settings.family.frictional())
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {

@@ -10,7 +10,9 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, PairState, Retry, SetChange, require_kind};
+use zelus_core::entities::{
+    ActiveSet, Coupling, EntityBlock, Interaction, Join, PairState, Retry, SetChange, require_kind,
+};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role};
 use zelus_core::vector3::{dot, norm, scale};
 use zelus_core::{Result, State};
@@ -23,7 +25,7 @@ use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_relation::{Hold, NodeRelation, can_follow};
 use super::mpc_relations::Relations;
 use super::mpc_settings::{MpcKind, MpcSettings};
-use super::pair_states::{pair_states, settle_all};
+use super::pair_states::{joins, pair_states, settle_all};
 use super::reach::Reach;
 use crate::active_set::SlipRule;
 use crate::flags::{CONTACT, MASTER, SLAVE};
@@ -379,6 +381,14 @@ impl Interaction for MpcInteraction {
             pair.constraint_forces = held.map(|node| (node, reaction(part, node))).collect();
         }
         out
+    }
+
+    fn node_state(&self, node: u32) -> Option<&'static str> {
+        self.states.word(node)
+    }
+
+    fn joins(&self, part: &ModelPart) -> Option<Vec<Join>> {
+        joins(part, &self.interfaces, self.settings.ties(), self.settings.kind == MpcKind::Frictional)
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {

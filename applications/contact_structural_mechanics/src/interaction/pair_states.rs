@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::PairState;
+use zelus_core::entities::{Join, PairState};
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::norm;
 
-use crate::interface::{Interface, Roles};
+use crate::interface::{Interface, Roles, notes_of_bodies};
 use crate::node_state::NodeState;
-use crate::search::settle;
+use crate::search::{facing, settle};
 use crate::slave_states::{SlaveState, SlaveStates};
 use crate::solver::{ADJUST_INITIAL, ADJUST_TOLERANCE};
 
@@ -65,8 +65,19 @@ pub(super) fn name(key: &str, (parts, slaves): Parts<'_>) -> String {
     }
 }
 
+/// Where these interfaces join bodies before the first step; `None` where each search decides on their sides.
+pub(super) fn joins(part: &ModelPart, interfaces: &[Interface], tied: bool, friction: bool) -> Option<Vec<Join>> {
+    if interfaces.iter().any(|interface| interface.open) {
+        return None;
+    }
+    let places = interfaces.iter().flat_map(|interface| facing(part, interface));
+    Some(places.map(|(nodes, normal)| Join { nodes, normal: (!tied).then_some(normal), friction }).collect())
+}
+
 /// Before the first step: moves slave nodes onto their masters where the deck asks for it, or tells which lie inside them.
 pub(super) fn settle_all(part: &mut ModelPart, interfaces: &[Interface], parts: Parts<'_>) -> Vec<Diagnostic> {
     let tolerance = part.info.is(ADJUST_INITIAL).then(|| part.info.value_or(ADJUST_TOLERANCE, 0.0));
-    interfaces.iter().filter_map(|of| settle(part, of, &name(&of.key, parts), tolerance)).collect()
+    let mut out = notes_of_bodies(part, parts.0);
+    out.extend(interfaces.iter().filter_map(|of| settle(part, of, &name(&of.key, parts), tolerance)));
+    out
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{Coupling, EntityBlock, Interaction, PairState, require_kind};
+use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, require_kind};
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
 use zelus_core::parameters::Interval;
@@ -13,7 +13,7 @@ use zelus_core::{Result, State};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::holding::Holding;
-use super::pair_states::name;
+use super::pair_states::{joins, name};
 use crate::flags::CONTACT;
 use crate::interface::{
     Fixed, Interface, NodalNormals, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals,
@@ -331,6 +331,10 @@ impl Interaction for TyingInteraction {
             PairState { name: name(&interface.key, parts), open, sticking, ..PairState::default() }
         };
         self.interfaces.iter().map(of_pair).collect()
+    }
+
+    fn joins(&self, part: &ModelPart) -> Option<Vec<Join>> {
+        joins(part, &self.interfaces, true, false)
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {

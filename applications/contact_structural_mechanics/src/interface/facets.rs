@@ -188,6 +188,24 @@ fn assign_roles(
     Ok(())
 }
 
+/// What is said of contact parts that hold elements: their whole skin is taken, or the conditions that they hold beside.
+pub fn notes_of_bodies(part: &ModelPart, parts: &BTreeMap<String, Vec<String>>) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    for (key, name) in parts.iter().flat_map(|(key, list)| list.iter().map(move |name| (key, name))) {
+        let Some(own) = part.part(name).ok().filter(|own| !own.elements.is_empty()) else { continue };
+        let is_facet = |at: &&u32| part.conditions.kinds[**at as usize].cell.is_some_and(|shape| shape.dim() > 0);
+        let conditions = own.conditions.iter().filter(is_facet).count();
+        let what = match conditions {
+            0 => "its whole skin is taken for contact".to_owned(),
+            _ => format!("of its skin the {conditions} conditions in it are taken for contact, loads among them"),
+        };
+        let fact = format!("contact part {name:?} of pair \"{key}\" holds elements: {what}");
+        let remedy = "name a part of the surface that may touch, by its conditions or its nodes";
+        out.push(Diagnostic::warning("whole-body", fact).remedy(remedy));
+    }
+    out
+}
+
 /// Warnings of slaves that no pair has, and of surfaces that are slaves in two.
 pub fn warnings_of_pairs(slaves: &BTreeMap<String, Vec<String>>, interfaces: &[Interface]) -> Vec<Diagnostic> {
     let mut out = Vec::new();

@@ -13,5 +13,5 @@ pub use direct_check::touching_nodes;
 pub use prediction::predicted_positions;
 pub use reach::{warn_of_late_pairs, warn_of_reach};
 pub use self_contact::assign_roles;
-pub use start::settle;
+pub use start::{facing, settle};
 pub use tree::{Bounds, Tree};

@@ -25,6 +25,8 @@ const ROUND_OFF: f64 = 1e-12;
 /// A slave node before the first step.
 struct Place {
     node: u32,
+    /// A node of its master.
+    master: u32,
     /// Unit normal out of its body.
     normal: [f64; 3],
     /// Way along the normal to the master (length), negative inside it.
@@ -90,6 +92,11 @@ fn adjust(part: &mut ModelPart, places: &[Place], name: &str, tolerance: f64) ->
     Some(Diagnostic::note("adjusted-initial", fact))
 }
 
+/// Slave nodes of an interface that face a master along their normals: the node, one of the master, the normal.
+pub fn facing(part: &ModelPart, interface: &Interface) -> Vec<([u32; 2], [f64; 3])> {
+    places(part, interface).into_iter().map(|at| ([at.node, at.master], at.normal)).collect()
+}
+
 /// The slave nodes that face a master facet along their normals, ascending.
 fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
     let of_role = |role: Roles| interface.facets.iter().filter(move |facet| facet.role == role);
@@ -116,12 +123,13 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
             let met = tree.meeting(&line.grown(ROUND_OFF * extent)).into_iter().filter_map(|master| {
                 let facet = masters[master as usize];
                 let faces = dot(facet.normal(part), normal) < -FACING && !facet.nodes.contains(&node);
-                distance_along(&facet.positions(part), facet, x, normal).filter(|_| faces)
+                let distance = distance_along(&facet.positions(part), facet, x, normal).filter(|_| faces)?;
+                Some((distance, facet.nodes[0]))
             });
-            met.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+            met.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         };
-        let distance = way(NEAR * size).or_else(|| way(extent))?;
-        distance.is_finite().then_some(Place { node, normal, distance, size })
+        let (distance, master) = way(NEAR * size).or_else(|| way(extent))?;
+        distance.is_finite().then_some(Place { node, master, normal, distance, size })
     };
     nodes.par_iter().zip(&normals).with_min_len(64).filter_map(place).collect()
 }

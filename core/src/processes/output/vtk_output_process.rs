@@ -1,6 +1,6 @@
 //! Pictures for ParaView: `vtk_output_process` in Kratos' legacy form, `vtu_output_process` compressed with a PVD series.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::State;
@@ -24,7 +24,11 @@ struct VtkOutput {
     control: OutputControl,
     picture: Picture,
     format: Box<dyn OutputFormat>,
+    /// The same for the last iterate of a step that has failed.
+    format_of_failure: Box<dyn OutputFormat>,
     folder: PathBuf,
+    /// Whether that folder is the pictures' own.
+    in_folder: bool,
     /// Whether pictures of an earlier run are still to be removed.
     clears: bool,
     prefix: String,
@@ -54,7 +58,9 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
         control: OutputControl::new(settings, "")?,
         picture: Picture::new(settings, request.report)?,
         format: (format.build)(settings)?,
+        format_of_failure: (format.build)(settings)?,
         folder,
+        in_folder,
         clears: in_folder,
         prefix: settings.get_str("custom_name_prefix")?.to_owned(),
         postfix: settings.get_str("custom_name_postfix")?.to_owned(),
@@ -64,6 +70,30 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
 }
 
 impl VtkOutput {
+    /// Folder of the last iterate of a step that has failed.
+    fn folder_of_failure(&self) -> PathBuf {
+        let Some(name) = self.folder.file_name().filter(|_| self.in_folder) else {
+            return self.folder.join("last_iterate");
+        };
+        self.folder.with_file_name(format!("{}_last_iterate", name.to_string_lossy()))
+    }
+
+    /// Writes the part, and its sub parts where the deck asks for them.
+    fn write_all(&mut self, model: &Model, system: &System) -> Result<()> {
+        let path = self.part.path.clone();
+        let (part, selection) = self.part.find(model)?;
+        self.write(part, system, selection, &path)?;
+        if self.sub_parts {
+            for (name, child) in &selection.children {
+                let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
+                if part.ranks.any(is_here) {
+                    self.write(part, system, child, &format!("{path}.{name}"))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn write(&mut self, part: &ModelPart, system: &System, selection: &SubPart, path: &str) -> Result<()> {
         let mesh = self.picture.draw(part, system, selection);
         let label = match self.control.unit {
@@ -71,7 +101,9 @@ impl VtkOutput {
             Unit::Time => format!("{:.*}", self.decimals, part.info.time),
         };
         if self.clears {
-            part.ranks.on_root(|| self.clear(path))?;
+            part.ranks.on_root(|| {
+                [self.folder.clone(), self.folder_of_failure()].iter().try_for_each(|own| self.clear(own, path))
+            })?;
         }
         let series = self.series(path);
         let folder = &self.folder;
@@ -84,10 +116,10 @@ impl VtkOutput {
     }
 
     /// Removes the pictures that an earlier run has made of a part, so that none is taken for one of this run.
-    fn clear(&self, path: &str) -> Result<()> {
+    fn clear(&self, folder: &Path, path: &str) -> Result<()> {
         let endings = self.format.endings();
         let series: Vec<String> = endings.iter().map(|ending| format!("{}.{ending}", self.series(path))).collect();
-        for entry in std::fs::read_dir(&self.folder).into_iter().flatten().flatten() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let name = entry.file_name();
             let name = name.to_string_lossy();
             let is_old = series.iter().any(|series| *name == *series || of_series(&name, series));
@@ -122,20 +154,21 @@ impl Process for VtkOutput {
     }
 
     fn print_output(&mut self, model: &mut Model, system: &System) -> Result<()> {
-        let path = self.part.path.clone();
-        let (part, selection) = self.part.find(model)?;
-        self.write(part, system, selection, &path)?;
-        if self.sub_parts {
-            for (name, child) in &selection.children {
-                let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
-                if part.ranks.any(is_here) {
-                    self.write(part, system, child, &format!("{path}.{name}"))?;
-                }
-            }
-        }
+        self.write_all(model, system)?;
         self.clears = false;
-        self.control.written(&part.info);
+        self.control.written(&self.part.find(model)?.0.info);
         Ok(())
+    }
+
+    fn print_last_iterate(&mut self, model: &mut Model, system: &System) -> Result<Option<PathBuf>> {
+        let (folder, failed) = (self.folder.clone(), self.folder_of_failure());
+        let clears = std::mem::replace(&mut self.clears, false);
+        self.folder.clone_from(&failed);
+        std::mem::swap(&mut self.format, &mut self.format_of_failure);
+        let written = self.write_all(model, system);
+        std::mem::swap(&mut self.format, &mut self.format_of_failure);
+        (self.folder, self.clears) = (folder, clears);
+        written.map(|()| Some(failed))
     }
 
     fn state(&self) -> Option<Box<dyn State>> {

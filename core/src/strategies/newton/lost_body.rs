@@ -2,7 +2,8 @@
 
 use super::NewtonRaphson;
 use crate::assembly::{System, reach};
-use crate::model::{ModelPart, SubPart};
+use crate::model::ModelPart;
+use crate::strategies::whereabouts::whereabouts;
 
 impl NewtonRaphson {
     /// Why a static state is no answer, `begin` being the unknowns at the start of the step: the node that has gone farthest
@@ -19,20 +20,12 @@ impl NewtonRaphson {
         let gone = gone.map(|(n, dof)| ((now[n] - begin[n]).abs(), dof.node)).filter(|(motion, _)| *motion > reach);
         let farthest = gone.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let said = farthest.map(|(motion, node)| {
-            let (id, body) = (part.nodes.ids[node as usize], body_of(&part.tree, node));
-            let of = body.map_or(String::new(), |name| format!(" of part {name}"));
+            let (id, at) = (part.nodes.ids[node as usize], whereabouts(part, node));
             format!(
-                "node {id}{of} has gone {motion:.1e} far, the model reaches {reach:.1e}: nothing holds its body; support it, or \
+                "node {id}{at} has gone {motion:.1e} far, the model reaches {reach:.1e}: nothing holds its body; support it, or \
                  check that contact holds it from the first step"
             )
         });
         part.ranks.first_to_say(said)
     }
-}
-
-/// The smallest part with elements that holds a node.
-fn body_of(part: &SubPart, node: u32) -> Option<&str> {
-    let holds = |part: &&SubPart| !part.elements.is_empty() && part.nodes.binary_search(&node).is_ok();
-    let smallest = part.children.values().filter(holds).min_by_key(|part| part.nodes.len())?;
-    body_of(smallest, node).or(Some(&smallest.name))
 }

@@ -1,0 +1,112 @@
+//! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values.
+
+use rustc_hash::FxHashMap;
+
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart};
+use crate::processes::{Prescription, Process};
+
+/// Difference of two values that are the same, as a share of the larger.
+const SAME: f64 = 1e-12;
+
+/// Warns of solid elements, and of conditions of one kind, on the same nodes as others: their stiffness, mass and loads count
+/// twice.
+pub(super) fn warn_of_twins(part: &ModelPart, problems: &mut Report) {
+    for (role, table) in [(Role::Element, &part.elements), (Role::Condition, &part.conditions)] {
+        let solid = |at: u32| table.kinds[at as usize].cell.is_some_and(|cell| cell.dim() == part.info.domain_size);
+        let wanted = |at: u32| if role == Role::Element { solid(at) } else { table.kinds[at as usize].cell.is_some() };
+        // Two loads of one surface are two conditions, in parts of their own.
+        let mut twins = twins(table, wanted);
+        twins.retain(|pair| role == Role::Element || share_part(&part.tree, pair));
+        let Some(&[first, second]) = twins.first() else { continue };
+        let word = if role == Role::Element { "elements" } else { "conditions" };
+        let (kind, ids) = (table.kinds[second as usize].name, &table.ids);
+        let fact = format!(
+            "{} {word} have the nodes of others, the first is {kind} {} with those of {}: what they do counts twice",
+            twins.len(),
+            ids[second as usize],
+            ids[first as usize]
+        );
+        let remedy = "take them out of the mesh, unless bodies or loads are meant to lie over each other";
+        problems.push(Diagnostic::warning("listed-twice", fact).remedy(remedy));
+    }
+}
+
+/// Whether the smallest part that holds the later of two conditions, below this one, holds both.
+fn share_part(part: &SubPart, [earlier, later]: &[u32; 2]) -> bool {
+    let holds = |part: &SubPart, at: &u32| part.conditions.binary_search(at).is_ok();
+    let below = part.children.values().filter(|child| holds(child, later)).min_by_key(|child| child.conditions.len());
+    below.is_some_and(|child| {
+        holds(child, earlier) && (share_part(child, &[*earlier, *later]) || is_smallest(child, later))
+    })
+}
+
+fn is_smallest(part: &SubPart, at: &u32) -> bool {
+    part.children.values().all(|child| child.conditions.binary_search(at).is_err())
+}
+
+/// Entities with the nodes of an earlier one, conditions of the same kind: the earlier and the later.
+fn twins(table: &EntityTable, wanted: impl Fn(u32) -> bool) -> Vec<[u32; 2]> {
+    let mut first: FxHashMap<(&str, u32, u64), u32> = FxHashMap::default();
+    let mut out = Vec::new();
+    for at in (0..table.len() as u32).filter(|&at| wanted(at)) {
+        let nodes = table.nodes(at);
+        let kind = if table.kinds[at as usize].role == Role::Element { "" } else { table.kinds[at as usize].name };
+        let least = nodes.iter().copied().min().unwrap_or(0);
+        let key = (kind, least, nodes.iter().map(|&node| u64::from(node).pow(2)).sum());
+        let earlier = *first.entry(key).or_insert(at);
+        let sorted = |of: u32| {
+            let mut nodes = table.nodes(of).to_vec();
+            nodes.sort_unstable();
+            nodes
+        };
+        if earlier != at && sorted(earlier) == sorted(at) {
+            out.push([earlier, at]);
+        }
+    }
+    out
+}
+
+/// What the processes prescribe on a root part at a time, in their order.
+pub(super) fn prescriptions(part: &ModelPart, processes: &[Box<dyn Process>], time: f64) -> Vec<Prescription> {
+    processes.iter().flat_map(|process| process.prescribes(part, time)).collect()
+}
+
+/// Warns of unknowns that two processes fix at different values at one of these times: the later process wins.
+pub(super) fn warn_of_contradictions(
+    part: &ModelPart,
+    processes: &[Box<dyn Process>],
+    times: [f64; 2],
+    problems: &mut Report,
+) {
+    for time in times {
+        let all = prescriptions(part, processes, time);
+        let mut known: FxHashMap<(ScalarVariable, u32), (usize, f64)> = FxHashMap::default();
+        // First node, its two values and the number of nodes, by what contradicts what.
+        let mut found: Vec<([usize; 2], u32, [f64; 2], usize)> = Vec::new();
+        for (at, own) in all.iter().enumerate() {
+            for &(node, value) in &own.values {
+                let Some(value) = value else { continue };
+                let Some((before, other)) = known.insert((own.variable, node), (at, value)) else { continue };
+                if (value - other).abs() <= SAME * value.abs().max(other.abs()) {
+                    continue;
+                }
+                match found.iter_mut().find(|(pair, ..)| *pair == [before, at]) {
+                    Some((.., count)) => *count += 1,
+                    None => found.push(([before, at], node, [other, value], 1)),
+                }
+            }
+        }
+        for ([before, at], node, [other, value], count) in &found {
+            let fact = format!(
+                "at time {time}, {} nodes get two values of {}, the first is node {}: {other} by {} and {value} by {}, which wins",
+                count, all[*at].variable, part.nodes.ids[*node as usize], all[*before].by, all[*at].by
+            );
+            let remedy = "take the nodes out of one of the parts, or leave the unknown to one of the processes";
+            problems.push(Diagnostic::warning("contradicting-values", fact).remedy(remedy));
+        }
+        if !found.is_empty() {
+            return;
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Where nodes and elements are, as messages name them.
+
+use rayon::prelude::*;
+
+use crate::geometry::mapping::is_inverted;
+use crate::model::{ModelPart, SubPart};
+
+/// Place of a node in the initial mesh and the smallest part with elements that holds it: " at (x, y, z) of part Body".
+pub(super) fn whereabouts(part: &ModelPart, node: u32) -> String {
+    let [x, y, z] = part.nodes.initial[node as usize];
+    let of = body_of(&part.tree, node).map_or(String::new(), |name| format!(" of part {name}"));
+    format!(" at ({x}, {y}, {z}){of}")
+}
+
+/// The smallest part with elements that holds a node.
+pub(crate) fn body_of(part: &SubPart, node: u32) -> Option<&str> {
+    let holds = |part: &&SubPart| !part.elements.is_empty() && part.nodes.binary_search(&node).is_ok();
+    let smallest = part.children.values().filter(holds).min_by_key(|part| part.nodes.len())?;
+    body_of(smallest, node).or(Some(&smallest.name))
+}
+
+/// The elements that are inside out in the present configuration, in words; collective.
+pub(super) fn inside_out(part: &ModelPart) -> Option<String> {
+    let (elements, space) = (&part.elements, part.info.domain_size);
+    let is_so = |&at: &u32| {
+        elements.kinds[at as usize].cell.filter(|shape| shape.dim() == space).is_some_and(|shape| {
+            let nodes = elements.nodes(at).iter();
+            let places: Vec<[f64; 3]> = nodes.map(|&node| part.nodes.current[node as usize]).collect();
+            is_inverted(shape, space, &places)
+        })
+    };
+    let found: Vec<u32> = (0..elements.len() as u32).into_par_iter().with_min_len(1024).filter(is_so).collect();
+    let said = found.first().map(|&at| {
+        let (kind, id, node) = (elements.kinds[at as usize].name, elements.ids[at as usize], elements.nodes(at)[0]);
+        format!("{} elements are inside out, the first is {kind} {id}{}", found.len(), whereabouts(part, node))
+    });
+    part.ranks.first_to_say(said)
+}
