@@ -64,11 +64,11 @@ def mutate_json(text, dice):
         elif what == 2:
             owner[key] = copy.deepcopy(at(document, dice.choice(list(places(document)))))
         elif what == 3 and isinstance(owner, list):
-            owner.insert(key, owner[key])
+            owner.insert(key, copy.deepcopy(owner[key]))
         elif what == 4 and isinstance(owner[key], (int, float)) and not isinstance(owner[key], bool):
             owner[key] = owner[key] * dice.choice([-1, 0, 1e-6, 1e6, 1.1, 0.9, 1e30])
         else:
-            owner[key] = dice.choice(STRANGE)
+            owner[key] = copy.deepcopy(dice.choice(STRANGE))
     return json.dumps(document, indent=1)
 
 

@@ -61,10 +61,20 @@ pub fn available() -> Option<u64> {
     machine.into_iter().chain(limits).chain(addresses).min()
 }
 
-fn free_of_machine(meminfo: &str) -> Option<u64> {
-    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+/// Most bytes that this process has held so far; `None` where the system does not say.
+pub fn largest() -> Option<u64> {
+    kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
+}
+
+/// Bytes that a line of a file of the system states.
+fn kilobytes(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
     Some(kilobytes * 1024)
+}
+
+fn free_of_machine(meminfo: &str) -> Option<u64> {
+    kilobytes(meminfo, "MemAvailable:")
 }
 
 /// The folders of the control groups that bound the memory of a process, from what /proc/self/cgroup says of it.

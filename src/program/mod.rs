@@ -1,7 +1,8 @@
-//! The program: `zelus run`, `check`, `partition`, `diff`, `list`, `describe`.
+//! The program: `zelus run`, `check`, `partition`, `diff`, `report`, `list`, `describe`.
 
 mod catalogue;
 mod diff;
+mod html;
 mod kratos_names;
 mod log;
 mod matching;
@@ -10,6 +11,7 @@ mod progress;
 mod report;
 mod results;
 mod say;
+mod skin;
 mod stop;
 mod terminal;
 mod warnings;
@@ -86,6 +88,8 @@ enum Command {
     Partition(partition::Arguments),
     /// Compare two result sets by node and field; exit code 0 where they are equal, 1 where not.
     Diff(diff::Arguments),
+    /// Write a page about a run: convergence, contact, forces, energies, times, warnings, and the mesh to turn and zoom.
+    Report(html::Arguments),
     /// List the registered names, of all kinds or of one.
     List {
         /// A kind, e.g. process or condition.
@@ -190,6 +194,7 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
         }
         Command::Partition(arguments) => partition::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Diff(arguments) => diff::run(&arguments),
+        Command::Report(arguments) => html::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::List { kind } => catalogue::list(kind.as_deref()).map(|()| ExitCode::SUCCESS),
         Command::Describe { name } => catalogue::describe(&name).map(|()| ExitCode::SUCCESS),
     }

@@ -55,6 +55,9 @@ pub struct RunReport {
     pub parameters: BTreeMap<String, f64>,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
+    /// Most bytes of memory that the process has held so far; 0 where the system does not say.
+    #[serde(default)]
+    pub memory: u64,
     /// Threads used.
     pub threads: usize,
     /// Files and folders a user would open.
@@ -81,6 +84,7 @@ impl Default for RunReport {
             linear_solver: String::new(),
             parameters: BTreeMap::new(),
             seconds: BTreeMap::new(),
+            memory: 0,
             threads: 0,
             outputs: Vec::new(),
             converged: false,

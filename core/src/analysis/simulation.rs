@@ -389,6 +389,7 @@ impl Simulation {
         let (start, pool) = (Instant::now(), Arc::clone(&self.pool));
         let result = pool.install(|| work(self));
         self.report.add_seconds("total", start.elapsed().as_secs_f64());
+        self.report.memory = zelus_linear_algebra::memory::largest().unwrap_or_default();
         result
     }
 }

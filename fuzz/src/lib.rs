@@ -1,0 +1,3 @@
+//! What random bytes are given to.
+
+pub mod targets;

@@ -1,0 +1,93 @@
+//! `zelus report`: a run on one page that needs no network.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use zelus_core::diagnostics::{Diagnostic, Place};
+use zelus_core::io::replace_own_file;
+use zelus_core::{Error, Result};
+
+use super::report::check_output;
+use super::results::find;
+use super::say::say;
+use super::skin::view;
+
+const PAGE: &str = include_str!("page/page.html");
+const STYLE: &str = include_str!("page/style.css");
+const SCRIPTS: [&str; 3] =
+    [include_str!("page/charts.js"), include_str!("page/sections.js"), include_str!("page/view.js")];
+/// What every page begins with, by which one is known.
+const MARK: &str = "<!doctype html>\n<!-- zelus report -->";
+
+/// The command line of `zelus report`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The report of a run (`zelus run DECK --report run.json`).
+    report: PathBuf,
+    /// The page.
+    #[arg(short, long, default_value = "report.html")]
+    output: PathBuf,
+}
+
+/// Writes the page.
+///
+/// # Errors
+/// A file that is no report, results that cannot be read, an output that cannot be written or would replace something else.
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let Arguments { report: path, output } = arguments;
+    check_output("the page", output, &[path])?;
+    if std::fs::read(output).is_ok_and(|text| !text.is_empty() && !text.starts_with(MARK.as_bytes())) {
+        let fact = format!("{} is no page of this program, and would be replaced", output.display());
+        let problem = Diagnostic::error("output-file", fact);
+        return Err(problem.remedy("give the page another name, or remove the file").into());
+    }
+    let report = read(path)?;
+    let (views, missing) = views(path)?;
+    let page = page(&report, &views, &missing);
+    replace_own_file(output, |file| file.write_all(page.as_bytes()))?;
+    missing.iter().for_each(|what| say(what));
+    say(&format!("page: {}", output.display()));
+    Ok(())
+}
+
+fn read(path: &Path) -> Result<Value> {
+    let wrong = |fact: String| {
+        let problem = Diagnostic::error("no-report", fact).at(Place::file(path));
+        Error::from(problem.remedy("`zelus run DECK --report run.json` writes one"))
+    };
+    let bytes = std::fs::read(path).map_err(|error| wrong(format!("it cannot be read: {error}")))?;
+    let report: Value = serde_json::from_slice(&bytes).map_err(|error| wrong(format!("it is no JSON: {error}")))?;
+    match report.get("laid_defaults").and(report.get("steps")) {
+        Some(_) => Ok(report),
+        None => Err(wrong("it is no report of a run".to_owned())),
+    }
+}
+
+/// The pictures of the run, and why there are none of some.
+fn views(report: &Path) -> Result<(Vec<Value>, Vec<String>)> {
+    let (mut views, mut missing) = (Vec::new(), Vec::new());
+    let all = match find(report) {
+        Ok(all) => all,
+        Err(error) => return Ok((views, vec![format!("no picture of the mesh: {error}")])),
+    };
+    for (name, series) in &all {
+        match view(name, series) {
+            Ok(view) => views.extend(view),
+            Err(error) => missing.push(format!("no picture of {name}: {error}")),
+        }
+    }
+    if views.is_empty() && missing.is_empty() {
+        missing.push("no picture of the mesh: the deck has no vtu_output_process".to_owned());
+    }
+    Ok((views, missing))
+}
+
+fn page(report: &Value, views: &[Value], missing: &[String]) -> String {
+    // Nothing within a text may end the script that holds it.
+    let data = json!({ "report": report, "views": views, "missing": missing }).to_string().replace("</", "<\\/");
+    let title = report["problem"].as_str().unwrap_or_default();
+    let title = title.replace('&', "&amp;").replace('<', "&lt;");
+    let page = PAGE.replace("{{title}}", &title).replace("{{style}}", STYLE).replace("{{scripts}}", &SCRIPTS.concat());
+    format!("{MARK}\n{}", page.replace("{{data}}", &data))
+}
