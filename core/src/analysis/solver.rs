@@ -15,6 +15,8 @@ use crate::strategies::{
     linear_tolerance, make_linear_solver, multipliers,
 };
 
+/// Steps that nodes may remember.
+const MOST_LEVELS: usize = 100;
 /// Objects of the settings that name strategy and builder.
 const STRATEGY: &str = "solving_strategy_settings";
 const BUILDER: &str = "builder_and_solver_settings";
@@ -169,6 +171,11 @@ impl SolverSettings {
     pub fn prepare(&self, part: &mut ModelPart) -> Result<()> {
         part.info.domain_size = self.settings.get_usize("domain_size")?;
         let levels = self.settings.get_usize("buffer_size")?.max(2);
+        if levels > MOST_LEVELS {
+            let fact = format!("\"buffer_size\" is {levels}: every node would hold the values of so many steps");
+            let problem = self.settings.error("buffer_size", "invalid-value", fact);
+            return Err(problem.remedy(format!("write at most {MOST_LEVELS}; schemes take what they need")).into());
+        }
         part.nodes.history.set_levels(levels);
         part.info.marks.insert(EXPLICIT, self.definition.explicit);
         // Names that are not registered are reported where the strategy is made.
