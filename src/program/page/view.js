@@ -1,12 +1,13 @@
 // The deformed mesh: drag turns, the wheel zooms, drag with shift or the right button moves.
 const SHADERS = [`
+precision highp float;
 attribute vec3 point, displacement; attribute float value;
-uniform mat3 turn; uniform vec3 centre; uniform vec2 shift; uniform vec2 aspect; uniform float zoom, amount;
+uniform mat3 turn; uniform vec3 centre; uniform vec2 shift; uniform vec2 aspect; uniform float zoom, amount, plain;
 varying vec3 place; varying float shown;
 void main() {
   place = turn * (point + amount * displacement - centre);
   shown = value;
-  gl_Position = vec4((place.xy * zoom + shift) * aspect, -0.2 * clamp(place.z * zoom, -4.0, 4.0), 1.0);
+  gl_Position = vec4((place.xy * zoom + shift) * aspect, -0.2 * clamp(place.z * zoom, -4.0, 4.0) - 0.001 * plain, 1.0);
 }`, `
 #extension GL_OES_standard_derivatives : enable
 precision highp float;
