@@ -323,32 +323,78 @@ fn reactions_of_supports_that_constraints_reach() {
     equals_serial("mpc/pressed_and_opened_hexahedra", &friction, EQUAL, true);
 }
 
-/// Rank 0 gathers the equations with the motions of bodies that multigrid coarsens by.
+const MULTIGRID: (&str, &str) = (
+    "\"Static\"",
+    "\"Static\", \"linear_solver_settings\": {\"solver_type\": \"amgcl\", \"direct_below\": 0, \"tolerance\": 1e-11}",
+);
+
+/// Results of multigrid where the rows are equal those of one process.
+fn multigrid_equals_serial(case: &str, changes: &[(&str, &str)]) {
+    let changes = [&[MULTIGRID], changes].concat();
+    // Criteria of sliding are met by a hair.
+    equals_serial(case, &changes, EQUAL, !case.contains("friction"));
+    let folder = self::case(case);
+    changes.iter().for_each(|(find, with)| change(folder.path(), DECK, find, with));
+    let output = distributed(folder.path(), 3, &["run", DECK, "--report", "report.json"]);
+    assert!(output.status.success(), "{case}: {}", said(&output));
+    let report = read_json(&folder.path().join("report.json")).expect("the report");
+    let iterations = report["steps"].as_array().expect("steps").iter().flat_map(|step| step["iterations"].as_array());
+    for iteration in iterations.flatten() {
+        assert_eq!(iteration["engine"], "multigrid over ranks", "{case}: {iteration}");
+        assert!(iteration["fallback"].is_null(), "{case}: {iteration}");
+    }
+}
+
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
-fn multigrid_of_rank_0() {
-    let asks = "\"Static\", \"linear_solver_settings\": {\"solver_type\": \"amgcl\", \"direct_below\": 0}";
-    let asks = [("\"Static\"", asks)];
-    for case in ["contact_3d/hexahedra_nonmatching", "contact_3d/friction_slide", "contact_3d/nitsche"] {
-        equals_serial(case, &asks, EQUAL, true);
-    }
-    // More equations than the coarsest level takes: without the motions of bodies the iteration is a longer one.
+fn multigrid_over_ranks() {
+    multigrid_equals_serial("contact_2d/nonmatching", &[]);
+    multigrid_equals_serial("contact_3d/hexahedra_nonmatching", &[]);
+    // Gaps are round-off there.
+    multigrid_equals_serial("contact_3d/hexahedra_on_tetrahedra", &[("\"WEIGHTED_GAP\"", "\"DISPLACEMENT\"")]);
+    multigrid_equals_serial("contact_3d/nitsche", &[]);
+    let pressure = ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", "VECTOR_LAGRANGE_MULTIPLIER");
+    let components = ("\"ALMContactFrictionless\"", "\"ALMContactFrictionlessComponents\"");
+    let of_components = ("\"contact_type\": \"Frictionless\"", "\"contact_type\": \"FrictionlessComponents\"");
+    multigrid_equals_serial("contact_3d/hexahedra_nonmatching", &[components, of_components, pressure]);
+    let gap = ("\"LAGRANGE_MULTIPLIER_CONTACT_PRESSURE\", \"WEIGHTED_GAP\"", "\"DISPLACEMENT\"");
+    let penalty = [("alm_contact_process", "penalty_contact_process"), ("ALMContact", "PenaltyContact"), gap];
+    multigrid_equals_serial("contact_3d/hexahedra_nonmatching", &penalty);
+    multigrid_equals_serial("mpc/pressed_and_opened_hexahedra", &[]);
+    multigrid_equals_serial("mpc/tying_matching_hexahedra", &[]);
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn multigrid_over_ranks_with_friction_and_ties() {
+    multigrid_equals_serial("contact_2d/friction_slide", &[]);
+    multigrid_equals_serial("contact_3d/friction_slide", &[]);
+    let tractions = ("\"FRICTION_TRACTION\"", "\"DISPLACEMENT\"");
+    multigrid_equals_serial("contact_3d/friction_penalty_slide", &[tractions]);
+    multigrid_equals_serial("contact_3d/friction_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")]);
+    multigrid_equals_serial("mesh_tying/hexahedra", &[]);
+    multigrid_equals_serial("mesh_tying/tetrahedra_on_hexahedra", &[]);
+}
+
+/// More equations than the coarsest level takes: without the motions of bodies the iteration is a longer one.
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn levels_over_ranks_are_as_good_as_those_of_one() {
     let folder = scratch_copy(&root().join("examples/hertz_sphere"));
-    change(folder.path(), DECK, asks[0].0, asks[0].1);
+    change(folder.path(), DECK, MULTIGRID.0, MULTIGRID.1);
     change(folder.path(), DECK, "\"end_time\": 1.0", "\"end_time\": 0.25");
     let arguments = ["run", DECK, "--report", "report.json"];
-    let solves = |output: Output| -> Vec<f64> {
+    let solves = |output: Output, engine: &str| -> Vec<f64> {
         assert!(output.status.success(), "{}", said(&output));
         let report = read_json(&folder.path().join("report.json")).expect("the report");
         let iterations = report["steps"][0]["iterations"].as_array().expect("iterations");
-        assert!(iterations.iter().all(|iteration| iteration["engine"] == "multigrid"), "{}", said(&output));
+        assert!(iterations.iter().all(|iteration| iteration["engine"] == engine), "{}", said(&output));
         iterations.iter().map(|iteration| iteration["linear_iterations"].as_f64().expect("a number")).collect()
     };
-    let alone = solves(zelus(folder.path(), &arguments));
+    let alone = solves(zelus(folder.path(), &arguments), "multigrid");
     for ranks in [2, 3] {
-        let output = distributed(folder.path(), ranks, &arguments);
-        let shared = solves(output);
-        let alike = shared.len() == alone.len() && shared.iter().zip(&alone).all(|(a, b)| (a - b).abs() <= 2.0);
+        let shared = solves(distributed(folder.path(), ranks, &arguments), "multigrid over ranks");
+        let alike = shared.len() == alone.len() && shared.iter().zip(&alone).all(|(a, b)| *a <= 1.15 * b + 2.0);
         assert!(alike, "{ranks} ranks: {shared:?} iterations, not {alone:?}");
     }
 }

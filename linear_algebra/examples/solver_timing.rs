@@ -67,6 +67,7 @@ fn main() {
     let mut system = System {
         coupling: Some(&sample.coupling),
         coupling_symmetric: false,
+        shared: None,
         ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
     };
     let mut solver = create(Engine::default());

@@ -49,7 +49,8 @@ pub(crate) fn empty_rows(system: &System<'_>) -> Result<(), SolveError> {
         system.bulk.row(i).1.iter().all(|&a| a == 0.0)
             && system.coupling.is_none_or(|coupling| coupling.row(i).1.iter().all(|&a| a == 0.0))
     };
-    let empty: Vec<usize> = (0..system.equations()).filter(|&i| is_zero(i)).collect();
+    let own = system.shared.map_or(system.equations(), |ghosts| ghosts.own());
+    let empty: Vec<usize> = (0..own).filter(|&i| is_zero(i)).collect();
     if empty.is_empty() {
         return Ok(());
     }

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::csr::Csr;
 use crate::dense_lu::{self, Pivots};
 use crate::equilibrate;
+use crate::ghosts::Ghosts;
 use crate::iterations::gmres;
 use crate::multifrontal::Scaling;
 use crate::square::Square;
@@ -175,7 +176,7 @@ impl Interface {
             self.solve_factorised(x);
         };
         x.fill(0.0);
-        let progress = gmres(multiply, precondition, &rhs, x, ITERATIONS, ITERATIONS, AIM);
+        let progress = gmres(&Ghosts::none(rhs.len()), multiply, precondition, &rhs, x, ITERATIONS, ITERATIONS, AIM);
         if progress.relative_residual > ACCEPTED || progress.relative_residual.is_nan() {
             self.lost.set(true);
         }

@@ -7,6 +7,7 @@ use crate::check;
 use crate::condensation::{Condensation, CondensationSettings, NotCondensable};
 use crate::csr::Csr;
 use crate::direct::DirectSolver;
+use crate::ghosts::Ghosts;
 use crate::iterations::{Progress, conjugate_gradient, gmres};
 use crate::memory;
 use crate::precondition::{self, Precondition};
@@ -99,8 +100,12 @@ impl KrylovSolver {
         let apply = |r: &mut [f64]| preconditioner.apply(r);
         let (most, tolerance) = (self.settings.iterations, self.settings.tolerance);
         let mut progress = match method {
-            Method::ConjugateGradient => conjugate_gradient(multiply, apply, rhs, x, most, tolerance),
-            Method::Gmres { restart } => gmres(multiply, apply, rhs, x, restart, most, tolerance),
+            Method::ConjugateGradient => {
+                conjugate_gradient(&Ghosts::none(rhs.len()), multiply, apply, rhs, x, most, tolerance)
+            }
+            Method::Gmres { restart } => {
+                gmres(&Ghosts::none(rhs.len()), multiply, apply, rhs, x, restart, most, tolerance)
+            }
         };
         let scale = vector::norm(rhs);
         if scale > 0.0 {

@@ -10,6 +10,7 @@ mod state;
 
 mod csr;
 pub mod vector;
+mod ghosts;
 mod system;
 
 mod dense;
@@ -45,6 +46,7 @@ mod rank;
 pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
+pub use ghosts::{Ghosts, Owned, Processes};
 pub use partition::{WeightedGraph, partition_graph};
 pub use rank::rank;
 pub use solver::{

@@ -15,7 +15,6 @@ use crate::precondition::{Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::state::{State, WrongState};
 use crate::system::{Stamps, System};
-use crate::vector;
 
 /// Directions kept before a restart.
 const RESTART: usize = 80;
@@ -59,8 +58,9 @@ impl Hierarchy {
         let before: BTreeSet<_> = self.prescribed.iter().collect();
         let changed = prescribed.iter().filter(|now| !before.contains(now)).count()
             + self.prescribed.len().saturating_sub(prescribed.len());
-        self.last <= STALE.0 * self.first.unwrap_or(self.last) + STALE.1
-            && changed as f64 <= CHANGED * self.prescribed.len() as f64
+        let ghosts = constrained.ghosts();
+        let (changed, before) = (ghosts.total(changed as f64), ghosts.total(self.prescribed.len() as f64));
+        self.last <= STALE.0 * self.first.unwrap_or(self.last) + STALE.1 && changed <= CHANGED * before
     }
 }
 
@@ -68,8 +68,8 @@ impl Hierarchy {
 pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
-    /// Of the bulk's rows, with the stamp of its graph.
-    runs: Option<(u64, Runs)>,
+    /// Of the bulk's rows, with the stamp of its graph and their number, which grows with ghosts.
+    runs: Option<(u64, usize, Runs)>,
     hierarchy: Option<Hierarchy>,
     learnt: Learnt,
     /// Relative residual to reach.
@@ -103,24 +103,45 @@ impl MultigridSolver {
         Self { settings, constrained: None, runs: None, hierarchy: None, learnt, tolerance, stand_in }
     }
 
+    /// Solves a system that several processes share; one that does not does less than the rest, so all agree on errors.
+    fn solve_shared(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
+        let checked = check::input(system, rhs, x).and_then(|()| check::empty_rows(system));
+        if system.ghosts().any(checked.is_err()) {
+            return Err(checked
+                .err()
+                .unwrap_or_else(|| SolveError::Failed("input of another rank is unusable".to_owned())));
+        }
+        let solved = self.attempt(system, rhs, x).map_err(SolveError::Failed);
+        self.learnt.failures = if solved.is_ok() { 0 } else { self.learnt.failures + 1 };
+        solved
+    }
+
     /// Whether multigrid is to solve a system, by its size and what came of it before.
     fn serves(&self, system: &System<'_>) -> bool {
-        self.learnt.failures < FAILURES && self.is_large(system.equations(), system.bulk.entries())
+        self.shares(system.equations(), system.bulk.entries())
     }
 
     fn is_large(&self, equations: usize, entries: usize) -> bool {
         equations >= self.settings.least[usize::from(!memory::is_dense(equations, entries))]
     }
 
-    /// Brings the constraints and the hierarchy up to date, or names the multiplier that nothing determines.
-    fn prepare(&mut self, system: &System<'_>) -> Result<(), usize> {
-        if self.runs.as_ref().is_none_or(|(graph, _)| *graph != system.bulk_graph) {
-            self.runs = Some((system.bulk_graph, system.bulk.runs()));
+    /// Brings the constraints and the hierarchy up to date, or says which multiplier nothing determines; collective.
+    fn prepare(&mut self, system: &System<'_>) -> Result<(), String> {
+        if self
+            .runs
+            .as_ref()
+            .is_none_or(|(graph, rows, _)| [*graph, *rows as u64] != [system.bulk_graph, system.bulk.rows as u64])
+        {
+            self.runs = Some((system.bulk_graph, system.bulk.rows, system.bulk.runs()));
         }
         let stamps = Stamps::of(system);
         if self.constrained.as_ref().is_none_or(|(_, old)| *old != stamps) {
             self.constrained = None;
-            self.constrained = Some((Constrained::new(system)?, stamps));
+            let made = Constrained::new(system).map_err(|m| format!("no unknown of its own determines multiplier {m}"));
+            if system.ghosts().any(made.is_err()) {
+                return Err(made.err().unwrap_or_else(|| "a multiplier of another rank is not determined".to_owned()));
+            }
+            self.constrained = made.ok().map(|constrained| (constrained, stamps));
             self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_bound);
             self.hierarchy.iter_mut().for_each(|hierarchy| hierarchy.is_old = true);
         }
@@ -144,28 +165,44 @@ impl MultigridSolver {
     fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Progress {
         let (constrained, _) = self.constrained.as_ref().expect("prepared");
         let hierarchy = self.hierarchy.as_mut().expect("prepared");
-        let (_, runs) = self.runs.as_ref().expect("prepared");
-        let scales = &constrained.row_scales;
+        let (.., runs) = self.runs.as_ref().expect("prepared");
+        let (scales, ghosts) = (&constrained.row_scales, constrained.ghosts());
         let scale = |r: &mut [f64]| r.iter_mut().zip(scales).for_each(|(r, s)| *r *= s);
-        let mut b = rhs.to_vec();
+        let mut b = rhs[..ghosts.own()].to_vec();
         scale(&mut b);
         let multiply = |x: &[f64], y: &mut [f64]| {
-            system.mul_vec_by_runs(runs, x, y);
+            if system.shared.is_none() {
+                system.mul_vec_by_runs(runs, x, y);
+            } else {
+                let (mut all, mut found) = (x.to_vec(), vec![0.0; system.equations()]);
+                all.resize(system.equations(), 0.0);
+                ghosts.spread(&mut all, 1);
+                system.mul_vec_by_runs(runs, &all, &mut found);
+                y.copy_from_slice(&found[..y.len()]);
+            }
             scale(y);
         };
-        if x.iter().all(|x| *x == 0.0) {
-            self.learnt.answers.start(system.bulk_graph, multiply, &b, 0.5 * self.tolerance, x);
+        let x = &mut x[..ghosts.own()];
+        if !ghosts.any(x.iter().any(|x| *x != 0.0)) {
+            self.learnt.answers.start(system.bulk_graph, ghosts, multiply, &b, 0.5 * self.tolerance, x);
         }
         let precondition = |r: &mut [f64]| {
             r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);
-            constrained.apply(system, &hierarchy.levels, r);
+            if system.shared.is_none() {
+                constrained.apply(system, &hierarchy.levels, r);
+            } else {
+                let mut all = r.to_vec();
+                all.resize(system.equations(), 0.0);
+                constrained.apply(system, &hierarchy.levels, &mut all);
+                r.copy_from_slice(&all[..r.len()]);
+            }
         };
         let (tolerance, iterations) = (self.tolerance, self.settings.iterations);
-        let has_multipliers = system.layout.multiplier.contains(&true);
+        let has_multipliers = ghosts.any(system.layout.multiplier.contains(&true));
         let progress = if system.is_symmetric() && !has_multipliers {
-            conjugate_gradient(multiply, precondition, &b, x, iterations, tolerance)
+            conjugate_gradient(ghosts, multiply, precondition, &b, x, iterations, tolerance)
         } else {
-            gmres(multiply, precondition, &b, x, RESTART, iterations, tolerance)
+            gmres(ghosts, multiply, precondition, &b, x, RESTART, iterations, tolerance)
         };
         let digits = (progress.start / progress.relative_residual).log10();
         if digits > TELLING {
@@ -178,8 +215,7 @@ impl MultigridSolver {
     /// The answer, or why there is none.
     fn attempt(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, String> {
         let start = Instant::now();
-        let undetermined = |m: usize| format!("no unknown of its own determines multiplier {m}");
-        self.prepare(system).map_err(undetermined)?;
+        self.prepare(system)?;
         let mut seconds_numeric = start.elapsed().as_secs_f64();
         let guess = x.to_vec();
         let mut progress = self.iterate(system, rhs, x);
@@ -188,7 +224,7 @@ impl MultigridSolver {
         if !is_good(progress) && self.hierarchy.as_ref().is_some_and(|h| h.is_old) {
             let start = Instant::now();
             self.hierarchy = None;
-            self.prepare(system).map_err(undetermined)?;
+            self.prepare(system)?;
             seconds_numeric += start.elapsed().as_secs_f64();
             x.copy_from_slice(&guess);
             progress = self.iterate(system, rhs, x);
@@ -198,12 +234,15 @@ impl MultigridSolver {
             let Progress { iterations, relative_residual, .. } = progress;
             return Err(format!("multigrid reached only {relative_residual:.1e} after {iterations} iterations"));
         }
-        self.learnt.answers.keep(system.bulk_graph, x);
-        let size = vector::norm(rhs);
+        let ghosts = system.ghosts();
+        self.learnt.answers.keep(system.bulk_graph, &ghosts, &x[..ghosts.own()]);
+        ghosts.spread(x, 1);
+        let size = ghosts.norm(&rhs[..ghosts.own()]);
         let mut residual = vec![0.0; rhs.len()];
-        let left = system.residual(rhs, x, &mut residual);
+        system.residual(rhs, x, &mut residual);
+        let left = ghosts.norm(&residual[..ghosts.own()]);
         Ok(SolveReport {
-            engine: self.name(),
+            engine: if system.shared.is_some() { "multigrid over ranks" } else { self.name() },
             relative_residual: if size > 0.0 { left / size } else { 0.0 },
             iterations: progress.iterations,
             fallback: None,
@@ -231,13 +270,15 @@ impl LinearSolver for MultigridSolver {
 
     fn forget(&mut self) {
         self.stand_in.forget();
+        // Levels that processes share are not saved.
+        self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old || !hierarchy.levels.0.is_shared());
         if let Some(hierarchy) = self.hierarchy.as_mut().filter(|hierarchy| !hierarchy.is_old) {
             (hierarchy.is_bound, hierarchy.first, hierarchy.last) = (true, None, 0.0);
         }
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        let hierarchy = self.hierarchy.clone().filter(|hierarchy| hierarchy.is_old);
+        let hierarchy = self.hierarchy.clone().filter(|hierarchy| hierarchy.is_old && !hierarchy.levels.0.is_shared());
         Some(Box::new(MultigridState { learnt: self.learnt.clone(), hierarchy, stand_in: self.stand_in.state() }))
     }
 
@@ -264,7 +305,14 @@ impl LinearSolver for MultigridSolver {
         self.serves(system)
     }
 
+    fn shares(&self, equations: usize, entries: usize) -> bool {
+        self.learnt.failures < FAILURES && self.is_large(equations, entries)
+    }
+
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
+        if system.shared.is_some() {
+            return self.solve_shared(system, rhs, x);
+        }
         check::input(system, rhs, x)?;
         check::empty_rows(system)?;
         if x.iter().any(|x| !x.is_finite()) {

@@ -116,6 +116,11 @@ pub trait LinearSolver: Send {
         false
     }
 
+    /// Whether it solves systems of this size, over all processes, where their rows are ([`System::shared`]).
+    fn shares(&self, _equations: usize, _entries: usize) -> bool {
+        false
+    }
+
     /// Why the last solve did not condense multipliers that it should have.
     fn not_condensed(&self) -> Option<NotCondensable> {
         None

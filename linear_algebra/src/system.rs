@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::csr::{Csr, Runs};
+use crate::ghosts::Ghosts;
 
 /// What is known of a matrix before it is factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,6 +77,9 @@ pub struct System<'a> {
     pub coupling_values: u64,
     /// Whether `coupling` is symmetric.
     pub coupling_symmetric: bool,
+    /// Which equations are those of other processes, where several share the system: own rows are complete, those of ghosts
+    /// only where multipliers act on their node. Own nodes come first; `None` where all equations are here.
+    pub shared: Option<&'a Ghosts>,
 }
 
 impl<'a> System<'a> {
@@ -91,6 +95,7 @@ impl<'a> System<'a> {
             coupling_graph: 0,
             coupling_values: 0,
             coupling_symmetric: true,
+            shared: None,
         }
     }
 
@@ -149,6 +154,11 @@ impl<'a> System<'a> {
             Some(coupling) => self.bulk.plus(coupling),
             None => self.bulk.clone(),
         }
+    }
+
+    /// Which equations are here and which are others'.
+    pub(crate) fn ghosts(&self) -> Ghosts {
+        self.shared.cloned().unwrap_or_else(|| Ghosts::none(self.equations()))
     }
 
     /// Whether the sum of both parts is symmetric as far as the caller knows.

@@ -39,6 +39,7 @@ impl Sample {
         System {
             coupling: Some(&self.coupling),
             coupling_symmetric: false,
+            shared: None,
             ..System::bulk(&self.layout, &self.bulk, Symmetry::PositiveDefinite)
         }
     }

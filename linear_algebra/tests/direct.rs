@@ -76,6 +76,7 @@ fn a_floating_body_is_held_by_multipliers() {
         let system = System {
             coupling: Some(&sample.coupling),
             coupling_symmetric: skew == 0.0,
+            shared: None,
             ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
         };
         let (report, error) = solve_known(&mut *direct(9000), &system);
@@ -112,6 +113,7 @@ fn factors_in_single_precision_give_answers_in_double() {
     let system = System {
         coupling: Some(&sample.coupling),
         coupling_symmetric: false,
+        shared: None,
         ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
     };
     for (limit, engine) in [(9000, "cholesky+interface"), (0, "multifrontal_lu")] {
@@ -185,6 +187,7 @@ fn equal_stamps_reuse_and_new_ones_renew() {
     let mut system = System {
         coupling: Some(&sample.coupling),
         coupling_symmetric: false,
+        shared: None,
         ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
     };
     let rhs = right_hand_side(system.equations());
@@ -229,6 +232,7 @@ fn the_bulk_of_an_interface_need_not_be_definite_or_symmetric() {
         let system = System {
             coupling: Some(&sample.coupling),
             coupling_symmetric: false,
+            shared: None,
             ..System::bulk(&sample.layout, &bulk, symmetry)
         };
         let (report, error) = solve_known(&mut *direct(9000), &system);
@@ -311,6 +315,7 @@ fn a_body_that_lost_contact_is_named() {
         let system = System {
             coupling: Some(&sample.coupling),
             coupling_symmetric: false,
+            shared: None,
             ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
         };
         let mut x = vec![0.0; system.equations()];
@@ -368,6 +373,7 @@ fn the_bits_do_not_depend_on_the_threads() {
                 let system = System {
                     coupling: Some(&sample.coupling),
                     coupling_symmetric: false,
+                    shared: None,
                     ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
                 };
                 let mut solver = direct(limit);

@@ -73,6 +73,7 @@ fn multipliers_leave_by_their_constraints() {
             let system = System {
                 coupling: Some(&sample.coupling),
                 coupling_symmetric: skew == 0.0,
+                shared: None,
                 ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
             };
             let rhs = load(system.equations());

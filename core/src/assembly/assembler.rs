@@ -316,6 +316,7 @@ impl Assembler {
             coupling_graph: self.stamps.coupling_graph,
             coupling_values: self.stamps.coupling_values,
             coupling_symmetric: false,
+            shared: None,
         }
     }
 

@@ -21,7 +21,7 @@ pub use assembler::{
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};
-pub use near_null_space::{Place, near_null_space};
+pub use near_null_space::{Place, near_null_space, near_null_space_of_all};
 pub use nodal_vectors::nodal_vectors;
 pub use numbering::Numbering;
 pub use reach::reach;

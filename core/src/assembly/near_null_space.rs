@@ -1,5 +1,6 @@
 //! Motions that elements hardly resist: what multigrid has to carry to the coarser levels.
 
+use crate::communication::Ranks;
 use crate::model::ScalarVariable;
 
 /// Axes that a rotation turns into each other.
@@ -11,10 +12,32 @@ pub type Place = Option<(ScalarVariable, [f64; 3])>;
 /// The near-null space of equations: for each vector field of the unknowns its translations and rotations, for each scalar
 /// one the constant. Entries of multipliers are zero.
 pub fn near_null_space(places: &[Place]) -> Vec<Vec<f64>> {
-    let mut fields: Vec<(&'static str, [bool; 3], bool)> = Vec::new();
+    let mut variables: Vec<ScalarVariable> = Vec::new();
     let mut center = [0.0; 3];
     for (variable, at) in places.iter().flatten() {
         (0..3).for_each(|axis| center[axis] += at[axis] / places.len() as f64);
+        if !variables.contains(variable) {
+            variables.push(*variable);
+        }
+    }
+    motions(places, &variables, center)
+}
+
+/// The same for the places of each rank, which have some of `variables`: the motions are those of all together. Collective.
+pub fn near_null_space_of_all(ranks: &Ranks, variables: &[ScalarVariable], places: &[Place]) -> Vec<Vec<f64>> {
+    let has = |variable: &ScalarVariable| places.iter().flatten().any(|(other, _)| other == variable);
+    let mut appear: Vec<bool> = variables.iter().map(has).collect();
+    ranks.any_of(&mut appear);
+    let variables = variables.iter().zip(appear).filter(|(_, appears)| *appears).map(|(variable, _)| *variable);
+    let mut sums = [0.0, 0.0, 0.0, places.len() as f64];
+    places.iter().flatten().for_each(|(_, at)| (0..3).for_each(|axis| sums[axis] += at[axis]));
+    ranks.sum(&mut sums);
+    motions(places, &variables.collect::<Vec<_>>(), [0, 1, 2].map(|axis| sums[axis] / sums[3].max(1.0)))
+}
+
+fn motions(places: &[Place], variables: &[ScalarVariable], center: [f64; 3]) -> Vec<Vec<f64>> {
+    let mut fields: Vec<(&'static str, [bool; 3], bool)> = Vec::new();
+    for variable in variables {
         let field = match fields.iter_mut().find(|(column, ..)| *column == variable.column) {
             Some(field) => field,
             None => {

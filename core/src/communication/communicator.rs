@@ -25,6 +25,11 @@ pub trait Communicator: Send + Sync {
     /// What every rank gives, one after another; rank r gives `counts[r]` numbers.
     fn gather_counted(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
+    /// What every rank gives, one after another; each gives as many numbers, few.
+    fn gather_equal_numbers(&self, own: &[f64]) -> Vec<f64> {
+        self.gather_counted(own, &vec![own.len(); self.size()])
+    }
+
     /// As [`Communicator::gather_counted`], for rank 0 alone; the others get nothing.
     fn gather_to_root(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
@@ -33,6 +38,13 @@ pub trait Communicator: Send + Sync {
 
     /// Sends `parts[r]` to rank r; gives what each rank sent here.
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
+
+    /// As [`Communicator::exchange_numbers`], where `counts` says how many numbers come from each rank: only those who send and
+    /// receive wait for each other.
+    fn exchange_counted(&self, parts: &[Vec<f64>], counts: &[usize]) -> Vec<Vec<f64>> {
+        debug_assert_eq!(parts.len(), counts.len(), "one count a rank");
+        self.exchange_numbers(parts)
+    }
 
     /// Tells the other ranks, from rank 0, that the run has failed; not collective.
     fn announce_failure(&self);

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use mpi::Threading;
 use mpi::collective::SystemOperation;
 use mpi::datatype::{Partition, PartitionMut};
+use mpi::request::{Request, Scope, scope};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, CommunicatorCollectives, Destination, Equivalence, Root, Source};
 
@@ -18,6 +19,8 @@ use mpi::environment::Universe;
 
 /// Tag of the message that the run has failed.
 const FAILED: i32 = 4711;
+/// Tag of numbers on their way between two ranks.
+const NUMBERS: i32 = 4712;
 /// How long a rank that waits for the others keeps its core busy.
 const BUSY: Duration = Duration::from_micros(50);
 /// The longest it then sleeps at a time.
@@ -57,6 +60,18 @@ pub(super) fn start() -> Result<MpiWorld> {
     })
 }
 
+/// Waits for what is under way.
+fn wait_for<'a, D: ?Sized, S: Scope<'a>>(mut request: Request<'a, D, S>) {
+    let start = Instant::now();
+    while let Err(pending) = request.test() {
+        request = pending;
+        let waited = start.elapsed();
+        if waited > BUSY {
+            std::thread::sleep((waited / 8).min(NAP));
+        }
+    }
+}
+
 fn counts(lengths: impl Iterator<Item = usize>) -> (Vec<i32>, Vec<i32>) {
     let counts: Vec<i32> =
         lengths.map(|length| i32::try_from(length).expect("a message of fewer than 2^31 entries")).collect();
@@ -82,15 +97,7 @@ impl MpiWorld {
     /// MPI's own waits take a whole core each, which the ranks that are still at work may need.
     fn together(&self) -> SimpleCommunicator {
         let all = SimpleCommunicator::world();
-        let mut barrier = all.immediate_barrier();
-        let start = Instant::now();
-        while let Err(pending) = barrier.test() {
-            barrier = pending;
-            let waited = start.elapsed();
-            if waited > BUSY {
-                std::thread::sleep((waited / 8).min(NAP));
-            }
-        }
+        wait_for(all.immediate_barrier());
         all
     }
 
@@ -179,6 +186,35 @@ impl Communicator for MpiWorld {
 
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>> {
         self.exchange(parts)
+    }
+
+    fn gather_equal_numbers(&self, own: &[f64]) -> Vec<f64> {
+        let mut received = vec![0.0; own.len() * self.size];
+        scope(|scope| wait_for(SimpleCommunicator::world().immediate_all_gather_into(scope, own, &mut received[..])));
+        received
+    }
+
+    fn exchange_counted(&self, parts: &[Vec<f64>], counts: &[usize]) -> Vec<Vec<f64>> {
+        let all = SimpleCommunicator::world();
+        let mut received: Vec<Vec<f64>> = counts.iter().map(|&count| vec![0.0; count]).collect();
+        received[self.rank].copy_from_slice(&parts[self.rank]);
+        scope(|scope| {
+            let others = |rank: &usize| *rank != self.rank;
+            let mut requests = Vec::new();
+            for (rank, buffer) in
+                received.iter_mut().enumerate().filter(|(rank, list)| others(rank) && !list.is_empty())
+            {
+                let from = all.process_at_rank(rank as i32);
+                requests.push(from.immediate_receive_into_with_tag(scope, &mut buffer[..], NUMBERS));
+            }
+            let mut sends = Vec::new();
+            for (rank, part) in parts.iter().enumerate().filter(|(rank, list)| others(rank) && !list.is_empty()) {
+                sends.push(all.process_at_rank(rank as i32).immediate_send_with_tag(scope, &part[..], NUMBERS));
+            }
+            requests.into_iter().for_each(wait_for);
+            sends.into_iter().for_each(wait_for);
+        });
+        received
     }
 
     fn announce_failure(&self) {

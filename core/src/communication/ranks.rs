@@ -30,6 +30,33 @@ impl Ranks {
     }
 }
 
+/// For solvers that work where the rows are.
+impl zelus_linear_algebra::Processes for Ranks {
+    fn rank(&self) -> usize {
+        (**self).rank()
+    }
+
+    fn size(&self) -> usize {
+        (**self).size()
+    }
+
+    fn gather(&self, own: &[f64]) -> Vec<f64> {
+        self.gather_equal_numbers(own)
+    }
+
+    fn exchange_counted(&self, parts: &[Vec<f64>], counts: &[usize]) -> Vec<Vec<f64>> {
+        (**self).exchange_counted(parts, counts)
+    }
+
+    fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        (**self).exchange_numbers(parts)
+    }
+
+    fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>> {
+        (**self).exchange_indices(parts)
+    }
+}
+
 impl Default for Ranks {
     fn default() -> Self {
         Self::new(Serial)

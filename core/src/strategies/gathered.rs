@@ -8,6 +8,7 @@ use rayon::ThreadPool;
 use zelus_linear_algebra::{Csr, Layout, NotCondensable, System};
 
 use super::meaning::Meaning;
+use super::shared_rows::SharedRows;
 use crate::assembly::{Assembler, DofTable, Numbering, Place, near_null_space};
 use crate::communication::{Ranks, threads_while_others_wait};
 use crate::model::Nodes;
@@ -22,6 +23,8 @@ pub(super) struct Gathered {
     solves: u64,
     /// As many threads as there are on the machine of rank 0, on rank 0.
     threads: OnceLock<Option<ThreadPool>>,
+    /// What solvers that work where the rows are have in place of rank 0.
+    pub(super) shared: SharedRows,
     /// Solves where the rows are, in place of rank 0.
     #[cfg(feature = "petsc")]
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,

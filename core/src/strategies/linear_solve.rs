@@ -5,7 +5,7 @@ use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, v
 use super::condensing;
 use super::gathered::Gathered;
 use super::meaning::{Meaning, Meanings};
-use crate::assembly::{Assembler, DofTable};
+use crate::assembly::{Assembler, DofTable, Numbering};
 use crate::diagnostics::Error;
 use crate::model::Nodes;
 
@@ -78,8 +78,20 @@ pub(super) fn solve(
         let solved = rows.solve(assembler, numbering, loads.as_ref(), dofs, nodes, rhs)?;
         return solved.map_err(|error| explain(&error, None, &|equation| rows.meaning(equation)));
     }
-    gathered.update(assembler, loads.as_ref(), dofs, nodes);
     let ranks = assembler.ranks();
+    let mut why = None;
+    if is_shared(assembler, numbering, solver) {
+        let shared = &mut gathered.shared;
+        shared.update(assembler, numbering, loads.as_ref(), dofs, nodes);
+        let here = shared.system(&system);
+        let own = shared.of_own(numbering, rhs);
+        let mut increment = vec![0.0; own.len()];
+        match solver.solve(&here, &own, &mut increment) {
+            Ok(report) => return Ok((assembler.complete(&increment[..numbering.own.len()]), report)),
+            Err(error) => why = Some(format!("over all ranks: {error}")),
+        }
+    }
+    gathered.update(assembler, loads.as_ref(), dofs, nodes);
     let rhs = gathered.gather(ranks, rhs, numbering);
     let (whole, loads) = gathered.system(&system);
     let solved = if ranks.is_root() {
@@ -91,8 +103,19 @@ pub(super) fn solve(
     } else {
         Ok((Vec::new(), elsewhere()))
     };
-    let (increment, report) = ranks.agree(solved.map_err(Error::from))?;
+    let (increment, mut report) = ranks.agree(solved.map_err(Error::from))?;
+    let reasons = [why, report.fallback.take()];
+    report.fallback = reasons.into_iter().flatten().reduce(|first, then| first + "; " + &then);
     Ok((assembler.complete(&gathered.scatter(ranks, &increment, numbering)), report))
+}
+
+/// Whether `solver` works where the rows are, on all ranks or on none; collective.
+fn is_shared(assembler: &Assembler, numbering: &Numbering, solver: &dyn LinearSolver) -> bool {
+    let ranks = assembler.ranks();
+    let mut entries = [assembler.system().bulk.entries() as f64];
+    ranks.sum(&mut entries);
+    let equations = numbering.starts[ranks.size()];
+    !ranks.any(!solver.shares(equations, entries[0] as usize))
 }
 
 /// What a rank knows of a solve that rank 0 did.

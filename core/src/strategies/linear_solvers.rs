@@ -73,7 +73,8 @@ pub(crate) fn frugal(request: &LinearSolverRequest<'_>) -> Result<Box<dyn Linear
     multigrid_from(request, [0; 2])
 }
 
-/// Unknowns from which on PETSc solves by multigrid where the deck does not say who shall: rank 0 is as fast below.
+/// Unknowns from which on PETSc solves by multigrid where the deck names a solver that works on one rank alone and does not say
+/// who shall: rank 0 is as fast below.
 #[cfg(feature = "petsc")]
 const MULTIGRID: usize = 70_000;
 
@@ -90,7 +91,7 @@ pub(crate) fn unknowns_of_all(part: &ModelPart, system: &System) -> usize {
 
 /// What PETSc solves with on several ranks, and a sentence saying so; `None` where rank 0 shall solve for all.
 ///
-/// `petsc_engine` names an engine, or is `"automatic"` or `"none"`; `petsc_options` are words of PETSc's own command line.
+/// `is_shared` tells that the deck's solver works where the rows are itself. `petsc_engine` names an engine, or is `"automatic"` or `"none"`; `petsc_options` are words of PETSc's own command line.
 ///
 /// # Errors
 /// An unknown engine.
@@ -99,13 +100,14 @@ pub(super) fn petsc(
     settings: &Settings,
     unknowns: usize,
     has_multipliers: bool,
+    is_shared: bool,
 ) -> Result<Option<(zelus_petsc::PetscSettings, String)>> {
     use zelus_petsc::{PetscEngine, PetscSettings};
     let word = |key: &str| settings.node().get(key).map(|n| n.str()).transpose().map(|word| word.unwrap_or(""));
     let number = |key: &str| settings.node().get(key).and_then(|n| n.as_f64());
     let name = word("petsc_engine")?;
     let enough = if has_multipliers { FACTORISED } else { MULTIGRID };
-    if name == "none" || (name.is_empty() && unknowns < enough) {
+    if name == "none" || (name.is_empty() && (is_shared || unknowns < enough)) {
         return Ok(None);
     }
     let engine = PetscEngine::find(name);

@@ -17,6 +17,8 @@ mod criterion;
 mod critical_step;
 mod displacement_criterion;
 mod explicit;
+mod owned_matrix;
+mod shared_rows;
 mod gathered;
 mod generalized_alpha_scheme;
 mod line_search;

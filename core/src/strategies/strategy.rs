@@ -135,8 +135,10 @@ impl StrategyRequest<'_> {
         #[cfg(feature = "petsc")]
         if self.part.share.is_some() && self.replaceable {
             let unknowns = linear_solvers::unknowns_of_all(self.part, self.system);
+            let entries = self.part.ranks.total(newton.assembler.entries() as f64);
+            let is_shared = newton.solver.shares(unknowns, entries as usize);
             let has_multipliers = self.system.dofs.dofs().iter().any(|dof| dof.multiplier);
-            if let Some((petsc, by_petsc)) = linear_solvers::petsc(&named, unknowns, has_multipliers)?
+            if let Some((petsc, by_petsc)) = linear_solvers::petsc(&named, unknowns, has_multipliers, is_shared)?
                 && let Some(communicator) = self.part.ranks.petsc()
             {
                 newton.solve_by_petsc(communicator?, petsc, multipliers(&self.part.info));

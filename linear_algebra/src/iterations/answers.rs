@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use crate::vector::{add_scaled, dot, norm};
+use crate::ghosts::Ghosts;
+use crate::vector::add_scaled;
 
 /// Answers kept.
 const KEPT: usize = 6;
@@ -25,12 +26,12 @@ pub(crate) struct Answers {
 
 impl Answers {
     /// Keeps an answer for systems with this graph.
-    pub(crate) fn keep(&mut self, graph: u64, x: &[f64]) {
+    pub(crate) fn keep(&mut self, graph: u64, ghosts: &Ghosts, x: &[f64]) {
         if self.graph != graph {
             self.latest.clear();
             self.graph = graph;
         }
-        let size = norm(x);
+        let size = ghosts.norm(x);
         if size > 0.0 && size.is_finite() {
             let mut kept = if self.latest.len() < KEPT { None } else { self.latest.pop_back() }.unwrap_or_default();
             kept.clear();
@@ -44,6 +45,7 @@ impl Answers {
     pub(crate) fn start(
         &self,
         graph: u64,
+        ghosts: &Ghosts,
         mut multiply: impl FnMut(&[f64], &mut [f64]),
         b: &[f64],
         enough: f64,
@@ -55,25 +57,25 @@ impl Answers {
         // Orthonormal products, with what each had of those before it and the part of b along it.
         let mut basis: Vec<(&[f64], Vec<f64>, Vec<f64>, f64)> = Vec::new();
         let mut rest = b.to_vec();
-        let least = enough * norm(b);
+        let least = enough * ghosts.norm(b);
         for kept in &self.latest {
-            if norm(&rest) <= least {
+            if ghosts.norm(&rest) <= least {
                 break;
             }
             let mut product = vec![0.0; b.len()];
             multiply(kept, &mut product);
-            let before = norm(&product);
+            let before = ghosts.norm(&product);
             let mut column: Vec<f64> = Vec::with_capacity(basis.len() + 1);
             for (_, q, _, _) in &basis {
-                let along = dot(q, &product);
+                let along = ghosts.dot(q, &product);
                 add_scaled(-along, q, &mut product);
                 column.push(along);
             }
-            let left = norm(&product);
+            let left = ghosts.norm(&product);
             if left > INDEPENDENT * before && left.is_finite() {
                 product.iter_mut().for_each(|p| *p /= left);
                 column.push(left);
-                let along = dot(&product, &rest);
+                let along = ghosts.dot(&product, &rest);
                 add_scaled(-along, &product, &mut rest);
                 basis.push((kept, product, column, along));
             }
@@ -96,16 +98,16 @@ mod tests {
         let diagonal = [1.0, 2.0, 4.0, 8.0];
         let multiply = |x: &[f64], y: &mut [f64]| y.iter_mut().zip(x).zip(diagonal).for_each(|((y, x), d)| *y = d * x);
         let mut answers = Answers::default();
-        answers.keep(7, &[1.0, 1.0, 0.0, 0.0]);
-        answers.keep(7, &[0.0, 1.0, 1.0, 0.0]);
-        answers.keep(7, &[2.0, 2.0, 0.0, 0.0]);
+        answers.keep(7, &Ghosts::none(4), &[1.0, 1.0, 0.0, 0.0]);
+        answers.keep(7, &Ghosts::none(4), &[0.0, 1.0, 1.0, 0.0]);
+        answers.keep(7, &Ghosts::none(4), &[2.0, 2.0, 0.0, 0.0]);
         let mut x = [0.0; 4];
-        answers.start(7, multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut x);
+        answers.start(7, &Ghosts::none(4), multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut x);
         // 3 (1, 1, 0, 0) and the best multiple of (0, 1, 1, 0) for (0, -4, -8, 0.8).
         let expected = [3.0, 1.0, -2.0, 0.0];
         assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
         let mut other = [0.0; 4];
-        answers.start(8, multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut other);
+        answers.start(8, &Ghosts::none(4), multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut other);
         assert_eq!(other, [0.0; 4], "answers of another system");
     }
 }

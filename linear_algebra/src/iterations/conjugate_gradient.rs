@@ -1,12 +1,14 @@
 //! Preconditioned conjugate gradients.
 
 use super::Progress;
-use crate::vector::{add_scaled, dot, norm};
+use crate::ghosts::Ghosts;
+use crate::vector::add_scaled;
 
 /// Improves `x` until `‖b - A x‖ ≤ tolerance ‖b‖` or `most` iterations are done; stops early on an indefinite matrix.
 ///
-/// `multiply(x, y)` is `y = A x`, `precondition(x)` replaces `x` by a symmetric approximation of `A⁻¹ x`.
+/// `ghosts` says who has which entries; `multiply(x, y)` is `y = A x`, `precondition(x)` replaces `x` by a symmetric approximation of `A⁻¹ x`.
 pub(crate) fn conjugate_gradient(
+    ghosts: &Ghosts,
     mut multiply: impl FnMut(&[f64], &mut [f64]),
     mut precondition: impl FnMut(&mut [f64]),
     b: &[f64],
@@ -14,7 +16,7 @@ pub(crate) fn conjugate_gradient(
     most: usize,
     tolerance: f64,
 ) -> Progress {
-    let scale = norm(b);
+    let scale = ghosts.norm(b);
     if scale == 0.0 {
         x.fill(0.0);
         return Progress { iterations: 0, start: 0.0, relative_residual: 0.0 };
@@ -26,19 +28,19 @@ pub(crate) fn conjugate_gradient(
     let mut preconditioned = residual.clone();
     let mut old_product = 1.0;
     let mut iterations = 0;
-    let start = norm(&residual) / scale;
+    let start = ghosts.norm(&residual) / scale;
     loop {
-        let relative_residual = norm(&residual) / scale;
+        let relative_residual = ghosts.norm(&residual) / scale;
         if relative_residual <= tolerance || iterations >= most || relative_residual.is_nan() {
             return Progress { iterations, start, relative_residual };
         }
         preconditioned.copy_from_slice(&residual);
         precondition(&mut preconditioned);
-        let product = dot(&residual, &preconditioned);
+        let product = ghosts.dot(&residual, &preconditioned);
         let beta = if iterations == 0 { 0.0 } else { product / old_product };
         direction.iter_mut().zip(&preconditioned).for_each(|(p, z)| *p = z + beta * *p);
         multiply(&direction, &mut image);
-        let curvature = dot(&direction, &image);
+        let curvature = ghosts.dot(&direction, &image);
         if curvature <= 0.0 || product <= 0.0 || !curvature.is_finite() {
             return Progress { iterations, start, relative_residual };
         }

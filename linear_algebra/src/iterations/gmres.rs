@@ -1,12 +1,14 @@
 //! Restarted GMRES with a preconditioner from the right, so that its residual is the true one.
 
 use super::Progress;
-use crate::vector::{add_scaled, dot, norm};
+use crate::ghosts::Ghosts;
+use crate::vector::add_scaled;
 
 /// Improves `x` until `‖b - A x‖ ≤ tolerance ‖b‖` or `most` iterations are done.
 ///
-/// `multiply(x, y)` is `y = A x`, `precondition(x)` replaces `x` by an approximation of `A⁻¹ x`.
+/// `ghosts` says who has which entries; `multiply(x, y)` is `y = A x`, `precondition(x)` replaces `x` by an approximation of `A⁻¹ x`.
 pub(crate) fn gmres(
+    ghosts: &Ghosts,
     mut multiply: impl FnMut(&[f64], &mut [f64]),
     mut precondition: impl FnMut(&mut [f64]),
     b: &[f64],
@@ -16,7 +18,7 @@ pub(crate) fn gmres(
     tolerance: f64,
 ) -> Progress {
     let n = b.len();
-    let scale = norm(b);
+    let scale = ghosts.norm(b);
     if scale == 0.0 {
         x.fill(0.0);
         return Progress { iterations: 0, start: 0.0, relative_residual: 0.0 };
@@ -29,7 +31,7 @@ pub(crate) fn gmres(
     loop {
         multiply(x, &mut work);
         let residual: Vec<f64> = b.iter().zip(&work).map(|(b, ax)| b - ax).collect();
-        let size = norm(&residual);
+        let size = ghosts.norm(&residual);
         let relative_residual = size / scale;
         if iterations == 0 {
             start = relative_residual;
@@ -50,19 +52,16 @@ pub(crate) fn gmres(
             precondition(&mut direction);
             multiply(&direction, &mut work);
             iterations += 1;
-            let before = norm(&work);
+            let before = ghosts.norm(&work);
             let mut column = vec![0.0; k + 2];
             for _ in 0..2 {
-                for (i, v) in basis.iter().enumerate() {
-                    let h = dot(v, &work);
-                    column[i] += h;
-                    add_scaled(-h, v, &mut work);
-                }
-                if norm(&work) > 0.1 * before {
+                let along = ghosts.orthogonalise(&basis, &mut work);
+                column.iter_mut().zip(along).for_each(|(column, h)| *column += h);
+                if ghosts.norm(&work) > 0.1 * before {
                     break;
                 }
             }
-            column[k + 1] = norm(&work);
+            column[k + 1] = ghosts.norm(&work);
             for (i, &(c, s)) in rotations.iter().enumerate() {
                 let (a, b) = (column[i], column[i + 1]);
                 column[i] = c * a + s * b;
@@ -122,7 +121,7 @@ mod tests {
         let b: Vec<f64> = (0..n).map(|i| (i % 7) as f64).collect();
         for restart in [10, 60] {
             let mut x = vec![0.0; n];
-            let done = gmres(|x, y| a.mul_vec(x, y), |_| {}, &b, &mut x, restart, 300, 1e-12);
+            let done = gmres(&Ghosts::none(n), |x, y| a.mul_vec(x, y), |_| {}, &b, &mut x, restart, 300, 1e-12);
             assert!(done.relative_residual < 1e-12, "{done:?}");
         }
     }

@@ -40,7 +40,9 @@ fn strong_graph(matrix: &BlockMatrix) -> (Vec<usize>, Vec<u32>) {
         .with_min_len(256)
         .map(|i| {
             let (columns, values) = matrix.row(i);
-            let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| **j as usize != i);
+            // Aggregates end where the blocks of others begin.
+            let is_neighbour = |j: u32| j as usize != i && (j as usize) < matrix.rows;
+            let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j));
             let is_strong =
                 |j: u32, block: &[f32]| square(block) > (STRONG * STRONG) * (diagonal[i] * diagonal[j as usize]).sqrt();
             blocks.filter(|(j, block)| is_strong(**j, block)).map(|(j, _)| *j).collect()
@@ -87,12 +89,9 @@ fn aggregate(matrix: &BlockMatrix) -> (Vec<u32>, usize) {
     (of, count as usize)
 }
 
-/// The tentative coarse space of a matrix with these near-null vectors; `None` when nothing aggregates.
-pub(super) fn coarsen(matrix: &BlockMatrix, near_null_space: &[Vec<f64>]) -> Option<Tentative> {
+/// The tentative coarse space of the own rows of a matrix with these near-null vectors.
+pub(super) fn coarsen(matrix: &BlockMatrix, near_null_space: &[Vec<f64>]) -> Tentative {
     let (aggregate, aggregates) = aggregate(matrix);
-    if aggregates == 0 {
-        return None;
-    }
     let (height, modes) = (matrix.height, near_null_space.len());
     let mut members = vec![Vec::new(); aggregates];
     for (i, &a) in aggregate.iter().enumerate().filter(|(_, a)| **a != NONE) {
@@ -115,7 +114,7 @@ pub(super) fn coarsen(matrix: &BlockMatrix, near_null_space: &[Vec<f64>]) -> Opt
             vector[a * modes..(a + 1) * modes].copy_from_slice(&triangle[m * modes..(m + 1) * modes]);
         }
     }
-    Some(Tentative { aggregate, aggregates, values, modes: coarse })
+    Tentative { aggregate, aggregates, values, modes: coarse }
 }
 
 /// Orthonormal vectors on the blocks of `list` that span the near-null space there, one after the other, and each of its

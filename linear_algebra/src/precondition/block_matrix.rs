@@ -183,6 +183,12 @@ impl BlockMatrix {
         (&self.indices[range.clone()], &self.values[range.start * self.size()..range.end * self.size()])
     }
 
+    /// Appends empty rows up to this number of them.
+    pub(super) fn add_rows(&mut self, rows: usize) {
+        self.starts.resize(rows + 1, self.starts[self.rows]);
+        self.rows = rows;
+    }
+
     /// Calls `each(i, A_i x, y_i)` for every block row.
     fn rows_of_product(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
         match (self.height, self.width) {

@@ -6,6 +6,7 @@ mod block_matrix;
 mod constrained;
 mod ilu0;
 mod multigrid;
+mod shared_levels;
 
 pub(crate) use constrained::Constrained;
 pub(crate) use multigrid::Multigrid;

@@ -2,16 +2,20 @@
 //! a symmetric matrix.
 //!
 //! Vaněk, Mandel and Brezina, Computing 56 (1996). The prolongation is `P = (I - ω D⁻¹ A) T` with the tentative `T`
-//! of [`super::aggregation`], `D` the diagonal blocks and `ω = 4 / (3 ρ(D⁻¹ A))`.
+//! of [`super::aggregation`], `D` the diagonal blocks and `ω = 4 / (3 ρ(D⁻¹ A))`. Where several processes share the matrix,
+//! aggregates stay within the rows of one; products, prolongations and levels are those of one process with these
+//! aggregates, and each process has the coarsest level.
 
 use std::sync::{Arc, Mutex};
 
 use serde::{Deserialize, Serialize};
 
-use super::aggregation::{NONE, coarsen};
+use super::aggregation::{NONE, Tentative, coarsen};
 use super::block_matrix::{BlockMatrix, BlockRow, Into, multiplier};
+use super::shared_levels::{Aggregates, gathered};
 use crate::check;
 use crate::dense_lu;
+use crate::ghosts::Ghosts;
 use crate::multifrontal::{Factor, Kind, Precision, Scatter};
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
@@ -42,9 +46,12 @@ struct Level {
     prolongation: BlockMatrix,
     #[serde(skip_serializing)]
     restriction: BlockMatrix,
+    /// Who has which blocks.
+    #[serde(skip_serializing)]
+    ghosts: Ghosts,
 }
 
-/// What a level is made of again.
+/// What a level of one process is made of again.
 #[derive(Deserialize)]
 struct SavedLevel {
     matrix: BlockMatrix,
@@ -53,13 +60,14 @@ struct SavedLevel {
 
 impl From<SavedLevel> for Level {
     fn from(SavedLevel { matrix, prolongation }: SavedLevel) -> Self {
-        let (inverse, radius) = spectrum(&matrix);
+        let ghosts = Ghosts::none(matrix.rows);
+        let (inverse, radius) = spectrum(&matrix, &ghosts);
         let restriction = prolongation.transpose();
-        Self { matrix, inverse, radius, prolongation, restriction }
+        Self { matrix, inverse, radius, prolongation, restriction, ghosts }
     }
 }
 
-/// Vectors of a level during a cycle.
+/// Vectors of a level during a cycle, over own blocks; those of `b` and `x` over ghosts, too.
 #[derive(Default)]
 struct Vectors {
     b: Vec<f32>,
@@ -67,62 +75,87 @@ struct Vectors {
     step: Vec<f32>,
 }
 
+/// The last level, which every process has whole.
+struct Coarsest {
+    /// `None` when it has no equations.
+    factor: Option<Factor>,
+    ghosts: Ghosts,
+    /// Equations of each process.
+    counts: Vec<usize>,
+}
+
 /// The hierarchy.
 #[derive(Serialize, Deserialize)]
 #[serde(from = "SavedMultigrid")]
 pub(crate) struct Multigrid {
     levels: Vec<Level>,
-    coarsest: BlockMatrix,
-    /// Of the coarsest matrix; `None` when it has no equations.
+    /// Own rows of the last level.
+    last: BlockMatrix,
     #[serde(skip_serializing)]
-    factor: Option<Factor>,
+    coarsest: Coarsest,
     #[serde(skip_serializing)]
     vectors: Mutex<Vec<Vectors>>,
 }
 
-/// What a hierarchy is made of again.
+/// What a hierarchy of one process is made of again.
 #[derive(Deserialize)]
 struct SavedMultigrid {
     levels: Vec<Level>,
-    coarsest: BlockMatrix,
+    last: BlockMatrix,
 }
 
 impl From<SavedMultigrid> for Multigrid {
-    fn from(SavedMultigrid { levels, coarsest }: SavedMultigrid) -> Self {
-        let matrices = levels.iter().map(|level| &level.matrix).chain([&coarsest]);
-        let vectors = matrices.map(|matrix| {
-            let rows = equations(matrix);
-            Vectors { b: vec![0.0; rows], x: vec![0.0; rows], step: vec![0.0; rows] }
-        });
-        let vectors = Mutex::new(vectors.collect());
-        Self { levels, factor: factorise(&coarsest), coarsest, vectors }
+    fn from(SavedMultigrid { levels, last }: SavedMultigrid) -> Self {
+        let ghosts = Ghosts::none(last.rows);
+        Self::of(levels, last, ghosts)
     }
-}
-
-fn equations(matrix: &BlockMatrix) -> usize {
-    matrix.rows * matrix.height
 }
 
 impl Multigrid {
-    /// Builds the hierarchy on `matrix`, whose near-null vectors have one entry for each of its rows.
-    pub(super) fn new(mut matrix: BlockMatrix, mut near_null_space: Vec<Vec<f64>>) -> Self {
+    /// Builds the hierarchy on the own rows of `matrix`, whose near-null vectors have one entry for each of them; collective.
+    pub(super) fn new(mut matrix: BlockMatrix, mut near_null_space: Vec<Vec<f64>>, mut ghosts: Ghosts) -> Self {
         let mut levels: Vec<Level> = Vec::new();
-        while equations(&matrix) > COARSEST && levels.len() < LEVELS {
-            let Some(coarse) = coarsen(&matrix, &near_null_space) else { break };
-            if coarse.aggregates * near_null_space.len() * 4 > equations(&matrix) * 3 {
+        loop {
+            let equations = ghosts.total((matrix.rows * matrix.height) as f64) as usize;
+            if equations <= COARSEST || levels.len() >= LEVELS {
                 break;
             }
-            let (level, next) = Level::new(matrix, &coarse.aggregate, coarse.aggregates, &coarse.values);
+            let mut coarse = coarsen(&matrix, &near_null_space);
+            let aggregates = ghosts.total(coarse.aggregates as f64) as usize;
+            if aggregates == 0 || aggregates * near_null_space.len() * 4 > equations * 3 {
+                break;
+            }
+            near_null_space = std::mem::take(&mut coarse.modes);
+            let (level, next, of_next) = Level::new(matrix, ghosts, coarse, near_null_space.len());
             levels.push(level);
-            matrix = next;
-            near_null_space = coarse.modes;
+            (matrix, ghosts) = (next, of_next);
         }
-        SavedMultigrid { levels, coarsest: matrix }.into()
+        Self::of(levels, matrix, ghosts)
     }
 
-    /// Replaces `x` by an approximation of `A⁻¹ x`.
+    /// The hierarchy with these levels above the `last`; collective.
+    fn of(levels: Vec<Level>, last: BlockMatrix, ghosts: Ghosts) -> Self {
+        let (whole, rows) = gathered(&ghosts, &last);
+        let counts = rows.iter().map(|rows| rows * last.height).collect();
+        let shapes = levels.iter().map(|level| (&level.ghosts, level.matrix.height)).chain([(&ghosts, last.height)]);
+        let vectors = shapes.map(|(ghosts, height)| {
+            let (all, own) = (ghosts.all() * height, ghosts.own() * height);
+            Vectors { b: vec![0.0; all], x: vec![0.0; all], step: vec![0.0; own] }
+        });
+        let vectors = Mutex::new(vectors.collect());
+        let coarsest = Coarsest { factor: factorise(&whole), ghosts, counts };
+        Self { levels, last, coarsest, vectors }
+    }
+
+    /// Whether several processes share it; it cannot be saved then.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.coarsest.ghosts.processes().is_some()
+    }
+
+    /// Replaces `x`, own entries, by an approximation of `A⁻¹ x`; collective.
     pub(crate) fn apply(&self, x: &mut [f64]) {
-        let largest = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let finest = self.levels.first().map_or(&self.coarsest.ghosts, |level| &level.ghosts);
+        let largest = finest.largest(x.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
         if largest == 0.0 || !largest.is_finite() {
             return;
         }
@@ -134,20 +167,35 @@ impl Multigrid {
 
     fn cycle(&self, depth: usize, vectors: &mut [Vectors]) {
         let (here, below) = vectors.split_first_mut().expect("vectors of each level");
-        let Some(level) = self.levels.get(depth) else {
-            let mut x: Vec<f64> = here.b.iter().map(|&b| f64::from(b)).collect();
-            if let Some(factor) = &self.factor {
-                factor.solve(&mut x, |_| {});
-            }
-            here.x.iter_mut().zip(x).for_each(|(to, x)| *to = x as f32);
-            return;
-        };
+        let Some(level) = self.levels.get(depth) else { return self.coarsest.solve(here) };
+        let ghosts = self.levels.get(depth + 1).map_or(&self.coarsest.ghosts, |level| &level.ghosts);
+        let width = level.prolongation.width;
         level.smooth(here, true);
+        level.ghosts.spread(&mut here.x, level.matrix.height);
         level.matrix.residual(&here.b, &here.x, &mut here.step);
         level.restriction.mul_vec(&here.step, &mut below[0].b, Into::Set);
+        ghosts.collect(&mut below[0].b, width);
         self.cycle(depth + 1, below);
-        level.prolongation.mul_vec(&below[0].x, &mut here.x, Into::Add);
+        ghosts.spread(&mut below[0].x, width);
+        level.prolongation.mul_vec(&below[0].x, &mut here.x[..here.step.len()], Into::Add);
         level.smooth(here, false);
+    }
+}
+
+impl Coarsest {
+    fn solve(&self, Vectors { b, x, step }: &mut Vectors) {
+        let own: Vec<f64> = b[..step.len()].iter().map(|&b| f64::from(b)).collect();
+        let (mut all, first) = match self.ghosts.processes() {
+            None => (own, 0),
+            Some(processes) => {
+                let all = processes.exchange_counted(&vec![own; self.counts.len()], &self.counts).concat();
+                (all, self.counts[..processes.rank()].iter().sum())
+            }
+        };
+        if let Some(factor) = &self.factor {
+            factor.solve(&mut all, |_| {});
+        }
+        x.iter_mut().zip(&all[first..first + step.len()]).for_each(|(to, x)| *to = *x as f32);
     }
 }
 
@@ -175,12 +223,15 @@ fn factorise(matrix: &BlockMatrix) -> Option<Factor> {
 }
 
 impl Level {
-    /// A level with this tentative prolongation, and the matrix of the next one.
-    fn new(matrix: BlockMatrix, aggregate: &[u32], aggregates: usize, tentative: &[f32]) -> (Self, BlockMatrix) {
-        let (inverse, radius) = spectrum(&matrix);
+    /// A level with this tentative prolongation to blocks of `width`, the matrix of the next one, and who has its blocks.
+    fn new(matrix: BlockMatrix, ghosts: Ghosts, mut coarse: Tentative, width: usize) -> (Self, BlockMatrix, Ghosts) {
+        let (inverse, radius) = spectrum(&matrix, &ghosts);
         let omega = 4.0 / 3.0 * SAFETY / radius;
-        let (height, width) = (matrix.height, tentative.len() / (matrix.rows * matrix.height).max(1));
+        let height = matrix.height;
         let (size, wide) = (height * height, height * width);
+        let mut aggregates = Aggregates::new(&ghosts, coarse.aggregates);
+        aggregates.complete(&ghosts, &mut coarse, wide);
+        let (aggregate, tentative) = (&coarse.aggregate, &coarse.values);
         let multiply = multiplier([height, height, width]);
         let smoothed = |i: usize, row: &mut BlockRow| {
             let (columns, values) = matrix.row(i);
@@ -204,10 +255,10 @@ impl Level {
                 multiply([height, height, width], &damped, from, row.block(a));
             }
         };
-        let prolongation = BlockMatrix::from_rows([matrix.rows, aggregates], [height, width], smoothed);
-        let restriction = prolongation.transpose();
-        let next = restriction.times(&matrix.times(&prolongation));
-        (Self { matrix, inverse, radius, prolongation, restriction }, next)
+        let mut prolongation = BlockMatrix::from_rows([matrix.rows, aggregates.all()], [height, width], smoothed);
+        let mut restriction = prolongation.transpose();
+        let (next, of_next) = aggregates.product(&ghosts, &matrix, &mut prolongation, &mut restriction);
+        (Self { matrix, inverse, radius, prolongation, restriction, ghosts }, next, of_next)
     }
 
     /// Chebyshev iteration on the upper part of the spectrum of `D⁻¹ A`.
@@ -235,6 +286,7 @@ impl Level {
             if k == 0 && from_zero {
                 diagonal_step(&self.inverse, self.matrix.height, b, factors[1], step);
             } else {
+                self.ghosts.spread(x, self.matrix.height);
                 self.matrix.smoothing_step(&self.inverse, b, x, factors, step);
             }
             x.iter_mut().zip(step.iter()).for_each(|(x, s)| *x += s);
@@ -282,26 +334,28 @@ fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
     out
 }
 
-/// Inverse diagonal blocks, and the upper bound of the spectrum of `D⁻¹ A`.
-fn spectrum(matrix: &BlockMatrix) -> (Vec<f32>, f32) {
+/// Inverse diagonal blocks, and the upper bound of the spectrum of `D⁻¹ A`; collective.
+fn spectrum(matrix: &BlockMatrix, ghosts: &Ghosts) -> (Vec<f32>, f32) {
     let inverse = inverse_diagonal(matrix);
-    let radius = SAFETY * spectral_radius(matrix, &inverse);
+    let radius = SAFETY * spectral_radius(matrix, &inverse, ghosts);
     (inverse, radius)
 }
 
 /// Spectral radius of `D⁻¹ A` by power iteration, from below.
-fn spectral_radius(matrix: &BlockMatrix, inverse: &[f32]) -> f32 {
+fn spectral_radius(matrix: &BlockMatrix, inverse: &[f32], ghosts: &Ghosts) -> f32 {
     let n = matrix.rows * matrix.height;
     let mut x: Vec<f32> = check::pseudo_random(n).into_iter().map(|v| v as f32).collect();
+    x.resize(ghosts.all() * matrix.height, 0.0);
     let (zero, mut y) = (vec![0.0; n], vec![0.0; n]);
-    let norm = |v: &[f32]| v.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>().sqrt() as f32;
+    let norm = |v: &[f32]| ghosts.total(v.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>()).sqrt() as f32;
     let mut radius = 1.0;
     for _ in 0..POWER_STEPS {
-        let length = norm(&x);
+        let length = norm(&x[..n]);
         x.iter_mut().for_each(|x| *x /= length);
+        ghosts.spread(&mut x, matrix.height);
         matrix.smoothing_step(inverse, &zero, &x, [0.0, -1.0], &mut y);
         radius = norm(&y);
-        std::mem::swap(&mut x, &mut y);
+        x[..n].copy_from_slice(&y);
     }
     radius.max(f32::MIN_POSITIVE)
 }

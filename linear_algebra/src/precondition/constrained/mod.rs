@@ -6,6 +6,9 @@
 //! For symmetric systems without friction `L = Tᵀ`, and the matrix stays symmetric and positive definite. Each node keeps
 //! its number of unknowns: those prescribed become equations of their own on the diagonal, so that blocks stay of one size.
 //!
+//! Processes that share a system do this for the nodes with multipliers of their own and for those beside their rows, whose
+//! rows they have, too; so each makes its own rows of the blocks, and what is left to exchange are vectors.
+//!
 //! This is a preconditioner of the whole system: what it leaves out, such as entries of multipliers on other nodes with
 //! multipliers, costs iterations and no accuracy.
 
@@ -13,6 +16,7 @@ mod group;
 
 use super::block_matrix::{BlockMatrix, BlockRow, Sums};
 use super::multigrid::Multigrid;
+use crate::ghosts::{Ghosts, Owned};
 use crate::system::System;
 use group::GroupElimination;
 
@@ -56,6 +60,25 @@ pub(crate) struct Constrained {
     idle: Vec<(u32, f64)>,
     /// Factor of each equation that brings it to the size of forces.
     pub(crate) row_scales: Vec<f64>,
+    /// Who has which equations, and which blocks.
+    ghosts: Ghosts,
+    blocks: Ghosts,
+}
+
+/// Who has which blocks, those of own equations before others'; collective.
+fn shared_blocks(ghosts: &Ghosts, place: &[u32], equation: &[u32], width: usize) -> Ghosts {
+    let blocks = equation.len() / width;
+    let Some(processes) = ghosts.processes() else { return Ghosts::none(blocks) };
+    // The block of each equation, as its owner counts them.
+    let mut block: Vec<f64> =
+        place.iter().map(|&p| if p == NONE { -1.0 } else { f64::from(p / width as u32) }).collect();
+    ghosts.spread(&mut block, 1);
+    let own = (0..blocks).take_while(|b| (equation[b * width] as usize) < ghosts.own()).count();
+    let owned = |b: usize| -> Owned {
+        let e = equation[b * width] as usize;
+        (ghosts.owned()[e - ghosts.own()].0, block[e] as u32)
+    };
+    Ghosts::new(processes.clone(), own, (own..blocks).map(owned).collect())
 }
 
 /// Columns of a row of both parts of a system, zeros among them.
@@ -84,10 +107,10 @@ fn entry(system: &System<'_>, i: usize, j: usize) -> f64 {
 }
 
 impl Constrained {
-    /// The blocks of a system.
+    /// The blocks of a system; collective.
     ///
     /// # Errors
-    /// The equation of a multiplier that neither a node nor its condition determines.
+    /// The equation of a multiplier that neither a node nor its condition determines, here.
     pub(crate) fn new(system: &System<'_>) -> Result<Self, usize> {
         let layout = system.layout;
         let n = layout.equations();
@@ -98,7 +121,8 @@ impl Constrained {
             slot[i] = count[layout.node[i] as usize];
             count[layout.node[i] as usize] += 1;
         }
-        let width = count.iter().max().copied().unwrap_or(0).max(1) as usize;
+        let ghosts = system.ghosts();
+        let width = ghosts.largest(f64::from(count.iter().max().copied().unwrap_or(0).max(1))) as usize;
         let mut block = vec![NONE; nodes];
         let mut blocks = 0;
         for node in (0..nodes).filter(|&node| count[node] > 0) {
@@ -111,6 +135,7 @@ impl Constrained {
             place[i] = block[layout.node[i] as usize] * width as u32 + slot[i];
             equation[place[i] as usize] = i as u32;
         }
+        let of_blocks = shared_blocks(&ghosts, &place, &equation, width);
         let mut made = Self {
             width,
             place,
@@ -121,6 +146,8 @@ impl Constrained {
             beside: Vec::new(),
             idle: Vec::new(),
             row_scales: vec![1.0; n],
+            ghosts,
+            blocks: of_blocks,
         };
         if layout.multiplier.contains(&true) {
             made.find_groups(system, &block)?;
@@ -133,7 +160,9 @@ impl Constrained {
     fn find_groups(&mut self, system: &System<'_>, block: &[u32]) -> Result<(), usize> {
         let layout = system.layout;
         let mut of_node = std::collections::BTreeMap::<u32, Vec<u32>>::new();
-        for i in (0..layout.equations()).filter(|&i| layout.multiplier[i]) {
+        // Those of others whose rows are not here act on none that are.
+        let is_known = |i: usize| i < self.ghosts.own() || system.row(i).next().is_some();
+        for i in (0..layout.equations()).filter(|&i| layout.multiplier[i] && is_known(i)) {
             of_node.entry(layout.node[i]).or_default().push(i as u32);
         }
         let mut lone = Vec::new();
@@ -165,6 +194,10 @@ impl Constrained {
             self.add_group(group);
         }
         for m in lone {
+            if self.ghosts.processes().is_some() {
+                // What carries it depends on what carries others, which may be elsewhere.
+                return Err(m as usize);
+            }
             let (master, action) = self.carrier(system, m).ok_or(m as usize)?;
             let group = self.group(system, vec![master], vec![m], action)?;
             self.add_group(group);
@@ -322,6 +355,7 @@ impl Constrained {
         let largest = (0..system.equations())
             .filter(|&i| !system.layout.multiplier[i])
             .fold(0.0_f64, |m, i| m.max(system.bulk.get(i, i).abs()));
+        let largest = self.ghosts.largest(largest);
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let mut loads: Vec<Option<&[(u32, f64)]>> = vec![None; system.equations()];
         self.loads.iter().for_each(|(e, load)| loads[*e as usize] = Some(load));
@@ -391,12 +425,12 @@ impl Constrained {
                 own[k * w + k] = if diagonal > 0.0 { diagonal } else { 1.0 };
             }
         };
-        let blocks = self.equation.len() / w;
+        let shape = [self.blocks.own(), self.equation.len() / w];
         let sums = || Sums::new(system.equations());
-        (BlockMatrix::from_rows_with([blocks; 2], [w; 2], sums, fill), largest)
+        (BlockMatrix::from_rows_with(shape, [w; 2], sums, fill), largest)
     }
 
-    /// The near-null space of the layout on the blocks; translations where it has none.
+    /// The near-null space of the layout on own blocks; translations where it has none.
     fn near_null_space(&self, system: &System<'_>) -> Vec<Vec<f64>> {
         let mut on_blocks: Vec<Vec<f64>> = if system.layout.near_null_space.is_empty() {
             let alike = |k: usize| {
@@ -422,23 +456,32 @@ impl Constrained {
                     };
                 }
             }
+            vector.truncate(self.blocks.own() * self.width);
         }
         on_blocks
     }
 
-    /// What each group prescribes: its first unknown and how many motions.
+    /// What each group of this process prescribes: its first unknown and how many motions.
     pub(crate) fn prescribed(&self) -> Vec<(u32, u32)> {
-        self.groups.iter().map(|group| (group.own[0], group.elimination.prescribed as u32)).collect()
+        let own = self.groups.iter().filter(|group| (group.own[0] as usize) < self.ghosts.own());
+        own.map(|group| (group.own[0], group.elimination.prescribed as u32)).collect()
     }
 
-    /// The hierarchy of what is left, and the size its matrix was divided by.
+    /// Who has which equations.
+    pub(crate) fn ghosts(&self) -> &Ghosts {
+        &self.ghosts
+    }
+
+    /// The hierarchy of what is left, and the size its matrix was divided by; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>) -> (Multigrid, f64) {
         let (matrix, size) = self.matrix(system);
-        (Multigrid::new(matrix, self.near_null_space(system)), size)
+        (Multigrid::new(matrix, self.near_null_space(system), self.blocks.clone()), size)
     }
 
-    /// Replaces the residual `r` of the whole system by an approximation of its solution.
+    /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations.
+    /// Collective.
     pub(crate) fn apply(&self, system: &System<'_>, (multigrid, size): &(Multigrid, f64), r: &mut [f64]) {
+        self.ghosts.spread(r, 1);
         let mut z = vec![0.0; r.len()];
         let mut prescribes = false;
         for group in &self.groups {
@@ -458,6 +501,7 @@ impl Constrained {
                 self.beside.iter().map(|&e| system.row(e as usize).map(|(j, v)| v * z[j]).sum()).collect();
             self.beside.iter().zip(changes).for_each(|(&e, change)| r[e as usize] -= change);
         }
+        self.ghosts.spread(r, 1);
         let mut b: Vec<f64> = self.equation.iter().map(|&e| if e == NONE { 0.0 } else { r[e as usize] }).collect();
         let mut multipliers = vec![0.0; if self.groups.is_empty() { 0 } else { r.len() }];
         for group in &self.groups {
@@ -475,7 +519,8 @@ impl Constrained {
         for (e, load) in &self.loads {
             b[self.place[*e as usize] as usize] -= load.iter().map(|&(m, v)| v * multipliers[m as usize]).sum::<f64>();
         }
-        multigrid.apply(&mut b);
+        multigrid.apply(&mut b[..self.blocks.own() * self.width]);
+        self.blocks.spread(&mut b, self.width);
         for (&e, value) in self.equation.iter().zip(&b).filter(|(e, _)| **e != NONE) {
             if self.group_of[e as usize] == NONE {
                 z[e as usize] = value / size;

@@ -1,0 +1,192 @@
+//! Vectors that several processes share: each has items of its own and copies, *ghosts*, of items of others.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::vector;
+
+/// How the processes that share a system reach each other; every method but the first two is collective.
+pub trait Processes: Send + Sync {
+    /// Number of this process, from 0.
+    fn rank(&self) -> usize;
+
+    /// Number of processes.
+    fn size(&self) -> usize;
+
+    /// What every process gives, one after another; each gives as many numbers.
+    fn gather(&self, own: &[f64]) -> Vec<f64>;
+
+    /// As [`Processes::exchange_numbers`], where `counts` says how many come from each process.
+    fn exchange_counted(&self, parts: &[Vec<f64>], counts: &[usize]) -> Vec<Vec<f64>>;
+
+    /// Sends `parts[r]` to process r; gives what each process sent here.
+    fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>>;
+
+    /// Sends `parts[r]` to process r; gives what each process sent here.
+    fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
+}
+
+/// An item of another process: who owns it, and its number among the items there.
+pub type Owned = (u32, u32);
+
+/// Where the items of a vector are: the own ones first, then ghosts.
+#[derive(Clone)]
+pub struct Ghosts {
+    processes: Option<Arc<dyn Processes>>,
+    own: usize,
+    /// The owner of each ghost, with its number there.
+    owned: Vec<Owned>,
+    /// Own items that each process has ghosts of.
+    sent: Vec<Vec<u32>>,
+    /// Ghosts of items of each process.
+    received: Vec<Vec<u32>>,
+}
+
+impl fmt::Debug for Ghosts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} own items, {} ghosts", self.own, self.owned.len())
+    }
+}
+
+impl Ghosts {
+    /// A process that has all items itself.
+    pub fn none(own: usize) -> Self {
+        Self { processes: None, own, owned: Vec::new(), sent: Vec::new(), received: Vec::new() }
+    }
+
+    /// A process with `own` items and ghosts of these; collective.
+    pub fn new(processes: Arc<dyn Processes>, own: usize, owned: Vec<Owned>) -> Self {
+        let mut received = vec![Vec::new(); processes.size()];
+        let mut wanted = vec![Vec::new(); processes.size()];
+        for (at, &(owner, item)) in owned.iter().enumerate() {
+            received[owner as usize].push((own + at) as u32);
+            wanted[owner as usize].push(item);
+        }
+        let sent = processes.exchange_indices(&wanted);
+        Self { processes: Some(processes), own, owned, sent, received }
+    }
+
+    /// The processes, where there are several.
+    pub(crate) fn processes(&self) -> Option<&Arc<dyn Processes>> {
+        self.processes.as_ref()
+    }
+
+    /// Number of own items.
+    pub fn own(&self) -> usize {
+        self.own
+    }
+
+    /// Number of own items and ghosts.
+    pub(crate) fn all(&self) -> usize {
+        self.own + self.owned.len()
+    }
+
+    /// The owner of each ghost, with its number there.
+    pub(crate) fn owned(&self) -> &[Owned] {
+        &self.owned
+    }
+
+    /// Own items that each process has ghosts of.
+    pub(crate) fn sent(&self) -> &[Vec<u32>] {
+        &self.sent
+    }
+
+    /// Ghosts of items of each process.
+    pub(crate) fn received(&self) -> &[Vec<u32>] {
+        &self.received
+    }
+
+    /// Gives ghosts, of `width` entries each, the values of their owners; collective.
+    pub(crate) fn spread<T: Copy + Into<f64> + FromF64>(&self, values: &mut [T], width: usize) {
+        let Some(processes) = &self.processes else { return };
+        let arrived = processes.exchange_counted(&packed(&self.sent, values, width), &counts(&self.received, width));
+        for_each(&self.received, arrived, width, |at, value| values[at] = T::from_f64(value));
+    }
+
+    /// Adds what ghosts hold to the items of their owners; collective.
+    pub(crate) fn collect(&self, values: &mut [f32], width: usize) {
+        let Some(processes) = &self.processes else { return };
+        let arrived = processes.exchange_counted(&packed(&self.received, values, width), &counts(&self.sent, width));
+        for_each(&self.sent, arrived, width, |at, value| values[at] += value as f32);
+    }
+
+    /// The sum of one number of each process; collective.
+    pub(crate) fn total(&self, own: f64) -> f64 {
+        self.processes.as_ref().map_or(own, |processes| processes.gather(&[own]).iter().sum())
+    }
+
+    /// The largest of one number of each process; collective.
+    pub(crate) fn largest(&self, own: f64) -> f64 {
+        self.processes.as_ref().map_or(own, |processes| processes.gather(&[own]).into_iter().fold(own, f64::max))
+    }
+
+    /// Whether any process says so; collective.
+    pub(crate) fn any(&self, own: bool) -> bool {
+        self.largest(f64::from(u8::from(own))) > 0.0
+    }
+
+    /// Inner product of vectors of own entries; collective.
+    pub(crate) fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.total(vector::dot(a, b))
+    }
+
+    /// Takes from `vector` its parts along `basis`, orthonormal vectors of own entries, and gives their sizes; collective.
+    ///
+    /// Over several processes all products are those with the vector as it came, so that they travel together.
+    pub(crate) fn orthogonalise(&self, basis: &[Vec<f64>], vector: &mut [f64]) -> Vec<f64> {
+        let Some(processes) = &self.processes else {
+            let take = |v: &Vec<f64>| {
+                let size = vector::dot(v, vector);
+                vector::add_scaled(-size, v, vector);
+                size
+            };
+            return basis.iter().map(take).collect();
+        };
+        let own: Vec<f64> = basis.iter().map(|v| vector::dot(v, vector)).collect();
+        let all = processes.gather(&own);
+        let sizes: Vec<f64> = (0..basis.len()).map(|k| all.iter().skip(k).step_by(basis.len()).sum()).collect();
+        basis.iter().zip(&sizes).for_each(|(v, size)| vector::add_scaled(-size, v, vector));
+        sizes
+    }
+
+    /// Euclidean norm of a vector of own entries; collective.
+    pub(crate) fn norm(&self, a: &[f64]) -> f64 {
+        let own = vector::norm(a);
+        self.processes.as_ref().map_or(own, |processes| vector::norm(&processes.gather(&[own])))
+    }
+}
+
+/// Numbers that travel as f64.
+pub(crate) trait FromF64 {
+    fn from_f64(value: f64) -> Self;
+}
+
+impl FromF64 for f64 {
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+}
+
+impl FromF64 for f32 {
+    fn from_f64(value: f64) -> Self {
+        value as Self
+    }
+}
+
+/// Entries of each list.
+fn counts(lists: &[Vec<u32>], width: usize) -> Vec<usize> {
+    lists.iter().map(|list| list.len() * width).collect()
+}
+
+fn packed<T: Copy + Into<f64>>(lists: &[Vec<u32>], values: &[T], width: usize) -> Vec<Vec<f64>> {
+    let block = |&at: &u32| values[at as usize * width..(at as usize + 1) * width].iter().map(|&value| value.into());
+    lists.iter().map(|list| list.iter().flat_map(block).collect()).collect()
+}
+
+fn for_each(lists: &[Vec<u32>], arrived: Vec<Vec<f64>>, width: usize, mut each: impl FnMut(usize, f64)) {
+    for (list, arrived) in lists.iter().zip(arrived) {
+        for (&at, block) in list.iter().zip(arrived.chunks_exact(width)) {
+            block.iter().enumerate().for_each(|(k, &value)| each(at as usize * width + k, value));
+        }
+    }
+}
