@@ -81,7 +81,7 @@ pub(crate) struct MultigridSolver {
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct Learnt {
     answers: Answers,
-    /// Solves one after the other that multigrid did not do.
+    /// Solves one after the other that multigrid did not do; one more once that is told.
     failures: usize,
 }
 
@@ -320,8 +320,10 @@ impl LinearSolver for MultigridSolver {
         }
         if !self.serves(system) {
             let mut report = self.stand_in.solve(system, rhs, x)?;
-            if self.learnt.failures >= FAILURES {
-                report.fallback.get_or_insert_with(|| "multigrid failed before".to_owned());
+            if self.learnt.failures == FAILURES {
+                self.learnt.failures += 1;
+                let reason = "multigrid failed before; the direct engine solves from here on";
+                report.fallback.get_or_insert_with(|| reason.to_owned());
             }
             return Ok(report);
         }

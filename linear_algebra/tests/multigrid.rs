@@ -117,11 +117,12 @@ fn what_does_not_converge_goes_to_the_direct_engine() {
         ..MultigridSettings::default()
     }));
     let rhs = load(bulk.rows);
-    for reason in ["after 3 iterations", "after 3 iterations", "failed before"] {
+    for reason in [Some("after 3 iterations"), Some("after 3 iterations"), Some("failed before"), None] {
         let mut x = vec![0.0; bulk.rows];
         let report = solver.solve(&system, &rhs, &mut x).expect("regular");
         assert!(report.relative_residual < 1e-10);
-        assert!(report.fallback.is_some_and(|why| why.contains(reason)), "{reason}");
+        let told = report.fallback.as_deref();
+        assert!(told.is_some() == reason.is_some() && told.unwrap_or_default().contains(reason.unwrap_or_default()));
     }
 }
 

@@ -1,5 +1,7 @@
 //! What the blocks of an mdpa file say of each other: ids defined once, references to what exists.
 
+use std::collections::BTreeMap;
+
 use super::document::*;
 use super::problems::Problems;
 use crate::diagnostics::Diagnostic;
@@ -216,12 +218,18 @@ fn references(kind: &str, block: &EntityBlock, lines: &[u32], known: &Known, pro
         if let Some(&node) = nodes.iter().find(|&&node| !known.nodes.has(node)) {
             undefined(problems, line(i), &format!("{kind} {}", block.ids[i]), "node", node);
         }
-        if let Some(&properties) = block.properties.get(i).filter(|&&id| !known.properties.has(id)) {
-            undefined(problems, line(i), &format!("{kind} {}", block.ids[i]), "properties", properties);
-        }
         if problems.full() {
             return;
         }
+    }
+    // Of each missing properties the first row that names them, and how many do.
+    let mut missing: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
+    for (i, &id) in block.properties.iter().enumerate().filter(|(_, id)| !known.properties.has(**id)) {
+        missing.entry(id).or_insert((i, 0)).1 += 1;
+    }
+    for (id, (first, count)) in missing {
+        let more = if count > 1 { format!(", as {} others of its block,", count - 1) } else { String::new() };
+        undefined(problems, line(first), &format!("{kind} {}{more}", block.ids[first]), "properties", id);
     }
 }
 

@@ -148,6 +148,8 @@ fn ids_are_defined_once_and_before_use() {
         "{nodes}End Nodes\nBegin Conditions LineCondition2D2N\n1 0 1 2\n1 0 2 1\n2 0 1 3\n3 5 1 2\nEnd Conditions\n"
     );
     assert_eq!(problems(&text), ["6 repeated-node", "10 repeated-entity", "8 undefined-id", "8 undefined-id"]);
+    let many = format!("{nodes}End Nodes\nBegin Conditions PointCondition2D1N\n1 7 1\n2 0 2\n3 7 2\nEnd Conditions\n");
+    assert_eq!(problems(&many), ["6 repeated-node", "9 undefined-id"]);
     let parts = format!(
         "{nodes}End Nodes\nBegin SubModelPart A\nBegin SubModelPartNodes\n1 9\nEnd SubModelPartNodes\n\
          Begin SubModelPartElements\n1\nEnd SubModelPartElements\nEnd SubModelPart\n\
