@@ -189,6 +189,56 @@ fn supports_feed_what_leaves() {
     assert!((fed + 100.0 * 0.1 + 40.0 * 0.1).abs() < 1e-10, "{fed}");
 }
 
+/// A bar between walls that becomes warmer: u_x = 0, u_y = (1 + ν) α ΔT y in plane stress; a table of α counts as a secant.
+#[test]
+fn a_bar_between_walls_expands_across() {
+    let slab = Slab { element: "SmallDisplacementElement", rows: 2, ..Slab::new(6) };
+    let heat = Deck::new("stationary", 1e12, 1e12, 2.0).set("model_part_name", json!("Warmth")).solver;
+    for (table, expansion) in [
+        (json!({}), 1e-5),
+        (
+            json!({"a": {"input_variable": "TEMPERATURE",
+        "output_variable": "THERMAL_EXPANSION_COEFFICIENT", "data": [[0.0, 1e-5], [100.0, 3e-5]]}}),
+            2e-5,
+        ),
+    ] {
+        let mut deck = Deck::new("ThermoMechanicallyCoupled", 1.0, 1.0, 2.0);
+        let mut structure = deck.solver.clone();
+        structure["solver_type"] = json!("Static");
+        structure["model_part_name"] = json!("Heat");
+        structure["material_import_settings"]["materials_filename"] = json!("law.json");
+        let mut warm = heat.clone();
+        warm["model_import_settings"] = json!({"input_type": "use_input_model_part"});
+        deck.materials[0]["model_part_name"] = json!("Warmth.Body");
+        deck.solver = json!({"solver_type": "ThermoMechanicallyCoupled", "domain_size": 2, "structural_solver_settings": structure,
+            "thermal_solver_settings": warm});
+        let fixed = |part: &str, component: &str| {
+            json!({"python_module": "assign_scalar_variable_process", "Parameters": {
+            "model_part_name": format!("Heat.{part}"), "variable_name": format!("DISPLACEMENT_{component}"), "value": 0.0}})
+        };
+        deck.processes = vec![fixed("Left", "X"), fixed("Right", "X"), fixed("Foot", "Y")];
+        let deck = deck.process(
+            "assign_scalar_variable_process",
+            json!({"model_part_name": "Warmth.Body",
+            "variable_name": "TEMPERATURE", "value": 50.0}),
+        );
+        let scratch = tempfile::tempdir().unwrap();
+        deck.write(scratch.path(), &slab);
+        let law = json!({"properties": [{"model_part_name": "Heat.Body", "properties_id": 1, "Material": {
+            "constitutive_law": {"name": "ThermalLinearPlaneStress"}, "Tables": table, "Variables": {"DENSITY": 1.0,
+            "YOUNG_MODULUS": 1e9, "POISSON_RATIO": 0.3, "THERMAL_EXPANSION_COEFFICIENT": 1e-5, "REFERENCE_TEMPERATURE": 0.0}}}]});
+        std::fs::write(scratch.path().join("law.json"), law.to_string()).unwrap();
+        let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let results = Results::read(&scratch.path().join("results.json")).unwrap();
+        for row in 0..=2 {
+            let exact = 1.3 * expansion * 50.0 * 0.05 * row as f64;
+            let u = results.nodal("DISPLACEMENT_Y", 0)[&(slab.node(3, row) as u64)];
+            assert!((u - exact).abs() < 1e-15 + 1e-9 * exact, "{u} {exact}");
+        }
+    }
+}
+
 #[test]
 fn what_is_missing_is_said() {
     let says = |deck: &Deck, code: i32, word: &str| {

@@ -16,11 +16,13 @@ pub struct Slab {
     pub angle: f64,
     /// Whether nodes and elements are numbered from the last to the first.
     pub reversed: bool,
+    /// Name of the elements without their shape.
+    pub element: &'static str,
 }
 
 impl Slab {
     pub fn new(cells: usize) -> Self {
-        Self { cells, rows: 1, height: 0.1, triangles: false, angle: 0.0, reversed: false }
+        Self { cells, rows: 1, height: 0.1, triangles: false, angle: 0.0, reversed: false, element: "Element" }
     }
 
     /// Number of nodes.
@@ -61,7 +63,7 @@ impl Slab {
             elements.reverse();
             near.iter_mut().chain(&mut far).for_each(|id| *id = last - *id);
         }
-        text += &format!("End Nodes\nBegin Elements Element2D{}N\n", if self.triangles { 3 } else { 4 });
+        text += &format!("End Nodes\nBegin Elements {}2D{}N\n", self.element, if self.triangles { 3 } else { 4 });
         for (at, nodes) in elements.iter().enumerate() {
             text += &format!("{} 1 {}\n", at + 1, words(nodes));
         }
@@ -78,6 +80,7 @@ impl Slab {
         text += &part("Near", &columns(0, self.cells.div_ceil(2)), &near, &[]);
         text += &part("Far", &columns(self.cells.div_ceil(2), self.cells), &far, &[]);
         text += &part("Left", &column(0), &[], &[]);
+        text += &part("Foot", &(0..=self.cells).map(|column| self.node(column, 0)).collect::<Vec<_>>(), &[], &[]);
         text += &part("Right", &column(self.cells), &[], &faces);
         text
     }
@@ -137,8 +140,10 @@ impl Deck {
 
     /// Writes the deck into a folder.
     pub fn write(&self, folder: &Path, slab: &Slab) {
+        let mut variables = vec!["TEMPERATURE", "REACTION_FLUX"];
+        variables.extend((slab.element != "Element").then_some("DISPLACEMENT_Y"));
         let output = json!({"python_module": "json_output_process", "Parameters": {"model_part_name": "Heat",
-            "output_file_name": "results.json", "output_variables": ["TEMPERATURE", "REACTION_FLUX"], "time_frequency": 0.0}});
+            "output_file_name": "results.json", "output_variables": variables, "time_frequency": 0.0}});
         let mut processes = self.processes.clone();
         processes.push(output);
         let deck = json!({"problem_data": {"problem_name": "slab", "parallel_type": "OpenMP", "echo_level": 0,

@@ -16,5 +16,6 @@ register! { SolverEntry "ConstrainedOptimization",
         scheme: |_| Ok("static".to_owned()),
         adapt: |defaults| defaults.require(&["model_part_name", "model_import_settings"]),
         adopt: |_, _, _| Ok(()),
+        unfold: |_| Ok(()),
     },
 }

@@ -37,10 +37,14 @@ fn stem(name: &str) -> &str {
     ["2D", "3D"].iter().find_map(|space| bare.strip_suffix(space)).unwrap_or(name)
 }
 
-/// Puts the named kind in the place of each entity with a size, by its shape.
-fn replace(role: Role, table: &mut EntityTable, name: &str, space: usize) -> Result<(), Diagnostic> {
+/// Puts the named kind in the place of each piece of the body or its boundary, by its shape; others stay as they are.
+///
+/// # Errors
+/// A kind that is not there for a shape of the mesh.
+pub fn replace(role: Role, table: &mut EntityTable, name: &str, space: usize) -> Result<(), Diagnostic> {
+    let dim = if role == Role::Element { space } else { space - 1 };
     for at in 0..table.len() {
-        let Some(cell) = table.kinds[at].cell.filter(|cell| cell.dim() > 0) else { continue };
+        let Some(cell) = table.kinds[at].cell.filter(|cell| cell.dim() == dim) else { continue };
         let full = format!("{}{space}D{}N", stem(name), cell.nodes());
         table.kinds[at] = find_kind(role, &full).filter(|kind| kind.cell == Some(cell)).ok_or_else(|| {
             let fact = format!(

@@ -11,4 +11,5 @@ pub mod conditions;
 mod processes;
 pub mod scheme;
 pub mod adoption;
+pub mod coupling;
 pub mod solvers;

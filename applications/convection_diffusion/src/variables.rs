@@ -1,9 +1,9 @@
 //! The variables of heat.
 
 use zelus_core::{register_rates, register_variable};
+pub use zelus_structural_mechanics::variables::TEMPERATURE;
 
 register_variable! {
-    pub TEMPERATURE: f64 = "Temperature; kelvin where bodies radiate.";
     pub TEMPERATURE_RATE: f64 = "Change of TEMPERATURE by time.";
     pub REACTION_FLUX: f64 = "Heat that a prescribed node feeds into the body: minus the residual (power).";
     pub HEAT_FLUX: f64 = "Source of heat (power per volume).";

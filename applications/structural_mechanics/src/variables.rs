@@ -21,6 +21,7 @@ register_variable! {
     pub NEGATIVE_FACE_PRESSURE: f64 =
         "Pushes a line to its left and a surface along t1 × t2: on faces whose normals point out of the body, positive \
          values press in the plane and pull in space (force per area).";
+    pub TEMPERATURE: f64 = "Temperature; kelvin where bodies radiate.";
     pub VOLUMETRIC_STRAIN: f64 = "Change of volume per volume, an unknown of the nodes of mixed elements.";
     pub NODAL_MASS: f64 = "Mass at a node; in explicit integration all of it, lumped (mass).";
     pub NODAL_DISPLACEMENT_STIFFNESS: [f64; 3] = "Stiffness of a spring in each direction (force per length).";
@@ -63,8 +64,8 @@ register_variable! {
     kind SOFTENING_TYPE: Integer = "Without effect: form of softening, which no law here has.";
     kind VISCOUS_PARAMETER: Scalar = "Without effect: viscosity of laws of Kelvin and Maxwell, which no law here has.";
     kind DELAY_TIME: Scalar = "Without effect: time of relaxation, which no law here has.";
-    kind THERMAL_EXPANSION_COEFFICIENT: Scalar = "Without effect: strain per temperature, which no law here has.";
-    kind REFERENCE_TEMPERATURE: Scalar = "Without effect: temperature without thermal strain, which no law here has.";
+    kind THERMAL_EXPANSION_COEFFICIENT: Scalar = "Strain by temperature of laws that expand (per temperature).";
+    kind REFERENCE_TEMPERATURE: Scalar = "Temperature at which laws that expand are without thermal strain.";
     kind ROTATION: Vector3 = "Not computed: nodes have no rotations.";
     kind REACTION_MOMENT: Vector3 = "Not computed: nodes have no rotations.";
     kind ANGULAR_VELOCITY: Vector3 = "Not computed: nodes have no rotations.";

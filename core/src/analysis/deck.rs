@@ -205,7 +205,7 @@ pub(super) fn import(
         }
         io::read_materials(&path, part)?.into_iter().for_each(|w| warnings.push(w));
     }
-    solver.adopt(part, warnings)
+    solver.adopt(folder, part, warnings)
 }
 
 /// The entries of `processes`, list by list in the order of their names, then those of `output_processes`.

@@ -6,6 +6,8 @@ use crate::parameters::{Node, Object, Value};
 use crate::processes::ProcessEntry;
 use crate::registry::{self, Entry};
 
+use super::solver::solver_entry;
+
 /// Lists of processes that stood at the top level.
 const LISTS: [&str; 8] = [
     "constraints_process_list",
@@ -27,6 +29,11 @@ const COMPUTED: &str = "computing_domain";
 /// The same deck with its lists of processes in `processes`, and no `mesh_id` of 0, a number without meaning.
 pub(super) fn modernise(deck: &Node, report: &mut Report) -> Node {
     let mut deck = deck.clone();
+    // A solver that is not known is reported where the settings are read.
+    if let Some(Ok(entry)) = deck.get("solver_settings").map(solver_entry) {
+        let unfolded = (entry.build.unfold)(&mut deck);
+        report.absorb(unfolded);
+    }
     let gid = gid_output(&deck);
     let Value::Object(top) = &mut deck.value else { return deck };
     for key in LISTS {

@@ -1,5 +1,7 @@
 //! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
 
+use std::path::Path;
+
 use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
@@ -57,6 +59,10 @@ pub struct SolverDefinition {
     ///
     /// An error names what of mesh or settings does not fit.
     pub adopt: fn(&Settings, &mut ModelPart, &mut Report) -> Result<()>,
+    /// Puts a deck of several solvers into the form of one with extensions.
+    ///
+    /// An error names what does not fit.
+    pub unfold: fn(&mut Node) -> Result<()>,
 }
 
 /// What an application registers for a nested object of `solver_settings`.
@@ -77,6 +83,30 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub values: fn(&Settings) -> Result<Vec<(&'static str, f64)>>,
+    /// What it does to the part as read, with its materials; the folder is that of the deck.
+    ///
+    /// An error names what of mesh or settings does not fit.
+    pub adopt: fn(&Settings, &Path, &mut ModelPart, &mut Report) -> Result<()>,
+    /// The strategy around that of the solver; that itself where nothing is to be added.
+    ///
+    /// An error names a setting that does not fit.
+    pub around:
+        fn(&Settings, &mut ModelPart, Box<dyn SolutionStrategy>, &mut Report) -> Result<Box<dyn SolutionStrategy>>,
+    /// Whether its settings act without an interaction.
+    pub acts_alone: bool,
+}
+
+impl ExtensionDefinition {
+    /// One that adds nothing; struct update fills the rest from it.
+    pub const NOTHING: Self = Self {
+        variables: |_| Ok(Vec::new()),
+        marks: |_| Ok(Vec::new()),
+        cutting: |_| Ok(None),
+        values: |_| Ok(Vec::new()),
+        adopt: |_, _, _, _| Ok(()),
+        around: |_, _, strategy, _| Ok(strategy),
+        acts_alone: false,
+    };
 }
 
 /// A time scheme of one of the two methods.
@@ -98,6 +128,7 @@ pub struct SolverSettings {
     marks: Vec<&'static str>,
     cutting: Option<Cutting>,
     values: Vec<(&'static str, f64)>,
+    extensions: Vec<(&'static ExtensionDefinition, Settings)>,
 }
 
 impl SolverSettings {
@@ -129,6 +160,7 @@ impl SolverSettings {
         let mut marks = Vec::new();
         let mut cutting = None;
         let mut values = Vec::new();
+        let mut present = Vec::new();
         let mut merged = settings.as_ref().map(|s| s.node().clone());
         for (extension, mut member) in extensions {
             let defaults = Defaults::parse(extension.name, extension.defaults)?;
@@ -148,6 +180,7 @@ impl SolverSettings {
                 member.node = checked.node().clone();
                 members.insert(member);
             }
+            present.push((factory, checked));
         }
         for warning in problems.finish()? {
             report.push(warning);
@@ -161,6 +194,7 @@ impl SolverSettings {
             marks,
             cutting,
             values,
+            extensions: present,
         })
     }
 
@@ -203,8 +237,14 @@ impl SolverSettings {
     ///
     /// # Errors
     /// What of mesh or settings does not fit.
-    pub fn adopt(&self, part: &mut ModelPart, report: &mut Report) -> Result<()> {
-        (self.definition.adopt)(&self.settings, part, report)
+    pub fn adopt(&self, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
+        (self.definition.adopt)(&self.settings, part, report)?;
+        self.extensions.iter().try_for_each(|(extension, own)| (extension.adopt)(own, folder, part, report))
+    }
+
+    /// Variables with history that every node gets.
+    pub fn variables(&self) -> &[NodalVariable] {
+        &self.variables
     }
 
     /// How steps that fail are cut.
@@ -277,6 +317,20 @@ impl SolverSettings {
     /// # Errors
     /// Names that are not registered.
     pub fn strategy(
+        &self,
+        part: &mut ModelPart,
+        system: &mut System,
+        report: &mut Report,
+    ) -> Result<(Box<dyn SolutionStrategy>, String)> {
+        let (mut strategy, says) = self.own_strategy(part, system, report)?;
+        for (extension, own) in &self.extensions {
+            strategy = (extension.around)(own, part, strategy, report)?;
+        }
+        Ok((strategy, says))
+    }
+
+    /// The strategy without what extensions put around it.
+    fn own_strategy(
         &self,
         part: &mut ModelPart,
         system: &mut System,

@@ -159,7 +159,7 @@ pub(super) fn warn_of_extensions(solver: &Node, system: &System, report: &mut Re
     if !system.interactions.is_empty() {
         return;
     }
-    for entry in registry::all::<SolverExtensionEntry>() {
+    for entry in registry::all::<SolverExtensionEntry>().into_iter().filter(|entry| !entry.build.acts_alone) {
         if solver.get(entry.name).is_some_and(Node::is_given) {
             let fact = format!("{:?} is given, and no process of the deck makes use of it", entry.name);
             let remedy = "list the process that makes bodies act on each other, or remove the settings";

@@ -55,5 +55,6 @@ register! { SolverEntry "Continued",
         scheme: |_| Ok("continued".to_owned()),
         adapt: zelus::structural_mechanics::solvers::adapt,
         adopt: |_, _, _| Ok(()),
+        unfold: |_| Ok(()),
     },
 }

@@ -177,5 +177,6 @@ register! { SolverEntry "Diffusion",
         scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
         adapt: |defaults| defaults.require(&["model_part_name", "model_import_settings", "time_stepping"]),
         adopt: |_, _, _| Ok(()),
+        unfold: |_| Ok(()),
     },
 }

@@ -59,5 +59,6 @@ register! { SolverExtensionEntry "energy_settings",
         marks: |_| Ok(Vec::new()),
         cutting: |_| Ok(None),
         values: |_| Ok(Vec::new()),
+        ..ExtensionDefinition::NOTHING
     },
 }

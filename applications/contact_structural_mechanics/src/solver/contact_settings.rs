@@ -120,5 +120,6 @@ register! { SolverExtensionEntry "contact_settings",
             }
             Ok(values)
         },
+        ..ExtensionDefinition::NOTHING
     },
 }

@@ -25,5 +25,6 @@ register! { SolverExtensionEntry "mpc_contact_settings",
         },
         cutting: |_| Ok(None),
         values: |_| Ok(Vec::new()),
+        ..ExtensionDefinition::NOTHING
     },
 }

@@ -1,6 +1,7 @@
 //! The solvers of heat, by `solver_type`.
 
 mod stationary;
+mod thermo_mechanically_coupled;
 mod transient;
 
 use zelus_core::analysis::NodalVariable;

@@ -17,5 +17,6 @@ register! { SolverEntry "stationary",
         scheme: |_| Ok(SCHEME.to_owned()),
         adapt: super::adapt,
         adopt: |settings, part, report| super::take_up(settings, [1.0, 0.0, 0.0, 0.0], part, report),
+        unfold: |_| Ok(()),
     },
 }

@@ -37,5 +37,6 @@ register! { SolverEntry "transient",
             warn_of_no_storage(part, report);
             Ok(())
         },
+        unfold: |_| Ok(()),
     },
 }

@@ -8,7 +8,7 @@
 use std::marker::PhantomData;
 
 use crate::variables::DISPLACEMENT;
-use zelus_core::diagnostics::Result;
+use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 
@@ -97,7 +97,15 @@ pub struct MixedVolumetricStrain<F, const NODES: usize, const DIM: usize, const 
 fn initial_matrix<const S: usize>(law: &dyn ConstitutiveLaw<S>, small: bool) -> Matrix<S> {
     let mut d = [[0.0; S]; S];
     let history = vec![0.0; law.history()];
-    let state = StrainState { strain: [0.0; S], f: IDENTITY, det_f: 1.0, small, pressure: 0.0, history: &history };
+    let state = StrainState {
+        strain: [0.0; S],
+        f: IDENTITY,
+        det_f: 1.0,
+        small,
+        pressure: 0.0,
+        temperature: 0.0,
+        history: &history,
+    };
     law.stress(&state, StressMeasure::Pk2, Some(&mut d));
     d
 }
@@ -156,6 +164,11 @@ where
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let shape = Shape::of(DIM, NODES).expect("registered for known shapes only");
         let mut materials = Material::all(request, shape, DIM == 2, false)?;
+        if materials.iter().any(|material| material.law.expands()) {
+            let fact = format!("{} has no temperature at its Gauss points, which its law asks for", request.entry.name);
+            let remedy = "take SmallDisplacementElement, SmallDisplacementBbarElement or TotalLagrangianElement";
+            return Err(Diagnostic::error("law-does-not-fit", fact).remedy(remedy).into());
+        }
         materials.iter_mut().for_each(|material| material.rule = ShapeTable::get(shape, ORDER));
         let constant = !F::FINITE && materials.iter().all(|m| m.law.is_linear());
         let tangent = if constant { Tangent::Constant } else { Tangent::General };

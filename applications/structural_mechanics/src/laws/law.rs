@@ -24,6 +24,8 @@ pub struct StrainState<'a, const S: usize> {
     pub small: bool,
     /// Pressure that the element holds constant, positive in compression; 0 in all other elements.
     pub pressure: f64,
+    /// TEMPERATURE, where the law asks for it ([`ConstitutiveLaw::expands`]); 0 otherwise.
+    pub temperature: f64,
     /// What the law remembers from the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
@@ -53,6 +55,11 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     /// Whether the tangent is symmetric, for the small strain of a small-displacement element or for Green–Lagrange's.
     fn is_symmetric(&self, _small: bool) -> bool {
         true
+    }
+
+    /// Whether the stress depends on the temperature.
+    fn expands(&self) -> bool {
+        false
     }
 
     /// Bulk modulus where the law leaves the volume to the element, which adds the pressure.

@@ -19,6 +19,7 @@ mod parallel_mixture;
 #[cfg(test)]
 mod plasticity_tests;
 mod small_strain_plasticity;
+mod thermal_elastic;
 #[cfg(test)]
 mod tests;
 
@@ -36,3 +37,4 @@ pub use law::{ConstitutiveLaw, LawEntry, LawFactory, MakeLaw, MakesLaw, Matrix, 
 pub use linear_elastic::LinearElastic;
 pub use parallel_mixture::ParallelMixture;
 pub use small_strain_plasticity::SmallStrainPlasticity;
+pub use thermal_elastic::ThermalElastic;

@@ -101,6 +101,10 @@ impl<const S: usize> ConstitutiveLaw<S> for ParallelMixture<S> {
         self.layers.iter().all(|(_, law)| law.is_linear())
     }
 
+    fn expands(&self) -> bool {
+        self.layers.iter().any(|(_, law)| law.expands())
+    }
+
     fn is_symmetric(&self, small: bool) -> bool {
         self.layers.iter().all(|(_, law)| law.is_symmetric(small))
     }

@@ -22,7 +22,7 @@ where
 /// A state with deformation gradient `f`.
 fn state<const S: usize>(f: Tensor) -> StrainState<'static, S> {
     let strain = strain_vector(&(0.5 * (f.transpose() * f - IDENTITY)));
-    StrainState { strain, f, det_f: f.determinant(), small: false, pressure: 0.0, history: &[] }
+    StrainState { strain, f, det_f: f.determinant(), small: false, pressure: 0.0, temperature: 0.0, history: &[] }
 }
 
 /// A random deformation gradient whose out-of-plane part suits `S` strains.
@@ -54,7 +54,15 @@ where
             let mut strain = base.strain;
             strain[t] += step;
             let c = IDENTITY + 2.0 * strain_tensor(&strain);
-            StrainState { strain, f: base.f, det_f: c.determinant().sqrt(), small: false, pressure: 0.0, history: &[] }
+            StrainState {
+                strain,
+                f: base.f,
+                det_f: c.determinant().sqrt(),
+                small: false,
+                pressure: 0.0,
+                temperature: 0.0,
+                history: &[],
+            }
         };
         let mut d = [[0.0; S]; S];
         let stress = law.pk2(&base, Some(&mut d));
@@ -137,14 +145,31 @@ fn hooke_in_one_direction() {
         det_f: 1.0,
         small: false,
         pressure: 0.0,
+        temperature: 0.0,
         history: &[],
     };
     let stress = law::<6>("LinearElastic3DLaw").pk2(&solid, None);
     assert!(near(stress[0], E * e, 1e-13) && size(&stress[1..]) < 1e-13);
-    let plane = StrainState { strain: [e, -NU * e, 0.0], f, det_f: 1.0, small: false, pressure: 0.0, history: &[] };
+    let plane = StrainState {
+        strain: [e, -NU * e, 0.0],
+        f,
+        det_f: 1.0,
+        small: false,
+        pressure: 0.0,
+        temperature: 0.0,
+        history: &[],
+    };
     let stress = law::<3>("LinearElasticPlaneStress2DLaw").pk2(&plane, None);
     assert!(near(stress[0], E * e, 1e-13) && stress[1].abs() < 1e-13);
-    let shear = StrainState { strain: [0.0, 0.0, e], f, det_f: 1.0, small: false, pressure: 0.0, history: &[] };
+    let shear = StrainState {
+        strain: [0.0, 0.0, e],
+        f,
+        det_f: 1.0,
+        small: false,
+        pressure: 0.0,
+        temperature: 0.0,
+        history: &[],
+    };
     assert!(near(law::<3>("LinearElasticPlaneStrain2DLaw").pk2(&shear, None)[2], E / (2.0 * (1.0 + NU)) * e, 1e-14));
 }
 

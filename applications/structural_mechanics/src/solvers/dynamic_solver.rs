@@ -38,5 +38,6 @@ register! { SolverEntry "Dynamic",
         },
         adapt: super::adapt,
         adopt: |_, _, _| Ok(()),
+        unfold: |_| Ok(()),
     },
 }

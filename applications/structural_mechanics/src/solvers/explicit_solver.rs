@@ -15,5 +15,6 @@ register! { SolverEntry "ExplicitDynamic",
         scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
         adapt: super::adapt,
         adopt: |_, _, _| Ok(()),
+        unfold: |_| Ok(()),
     },
 }

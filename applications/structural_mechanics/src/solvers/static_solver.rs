@@ -16,5 +16,6 @@ register! { SolverEntry "Static",
         scheme: |_| Ok("static".to_owned()),
         adapt: super::adapt,
         adopt: |_, _, _| Ok(()),
+        unfold: |_| Ok(()),
     },
 }

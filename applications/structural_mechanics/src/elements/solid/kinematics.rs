@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::variables::DISPLACEMENT;
+use crate::variables::{DISPLACEMENT, TEMPERATURE};
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{Gather, StepView};
 use zelus_core::geometry::ShapeTable;
@@ -47,6 +47,21 @@ pub(super) struct Motion<const NODES: usize> {
     /// The deformation of the step is then the one from the first to `u`, as in the reference program, whose updated
     /// Lagrangian elements take the start of the step from present positions and DISPLACEMENT.
     ahead: Option<[[[f64; 3]; NODES]; 2]>,
+    /// TEMPERATURE of the nodes, where they have it.
+    temperatures: Option<[f64; NODES]>,
+}
+
+impl<const NODES: usize> Motion<NODES> {
+    /// The temperature where the shape functions are `n`, for laws that ask for it.
+    fn temperature<const S: usize>(&self, material: &Material<S>, n: &[f64; NODES]) -> Result<f64, String> {
+        if !material.law.expands() {
+            return Ok(0.0);
+        }
+        let nodal = self
+            .temperatures
+            .ok_or("its law expands with TEMPERATURE, which nodes do not have: solve for heat, too")?;
+        Ok(n.iter().zip(nodal).map(|(n, t)| n * t).sum())
+    }
 }
 
 /// Σ N_i x_i of the first coordinate.
@@ -60,8 +75,10 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     /// What the formulation reads of the motion of the nodes.
     pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
+        let column = view.nodes.history.values(&TEMPERATURE, 0);
+        let temperatures = (!column.is_empty()).then(|| entity.scalars(column));
         if !F::FINITE {
-            return Motion { u: displacement, ahead: None };
+            return Motion { u: displacement, ahead: None, temperatures };
         }
         let (x, initial) = (&entity.current, &entity.initial);
         let nodes = |of: &dyn Fn(usize, usize) -> f64| std::array::from_fn(|i| std::array::from_fn(|c| of(i, c)));
@@ -73,7 +90,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             };
             [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
         });
-        Motion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead }
+        Motion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures }
     }
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
@@ -202,6 +219,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 det_f,
                 small: !F::FINITE,
                 pressure: 0.0,
+                temperature: motion.temperature(material, n)?,
                 history: material.remembered(g, state),
             },
         })

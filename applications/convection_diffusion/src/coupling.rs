@@ -1,0 +1,212 @@
+//! Heat beside a structure: `thermal_solver_settings` of a structural solver.
+//!
+//! Both share the nodes. Each step solves for heat first, on the mesh as the last step left it, then for the structure, whose laws expand
+//! with the temperatures just found; no iteration goes to and fro, as in Kratos. Elements and faces of heat are made on those of the
+//! structure, with materials of their own.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry, SolverSettings};
+use zelus_core::assembly::{Assembler, System};
+use zelus_core::diagnostics::{Diagnostic, Report, Result};
+use zelus_core::entities::EntityBlock;
+use zelus_core::io::read_materials;
+use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
+use zelus_core::parameters::Settings;
+use zelus_core::register;
+use zelus_core::strategies::{Monitor, Phases, SolutionStrategy, StepRecord};
+use zelus_linear_algebra::State;
+
+use crate::adoption::replace;
+use crate::columns::Columns;
+
+/// Name of the extension.
+pub const EXTENSION: &str = "thermal_solver_settings";
+
+/// Data of elements and conditions: id of the properties that heat has there, 0 for none.
+const PROPERTIES: &str = "THERMAL_PROPERTIES";
+
+/// Reads the materials of heat beside those of the structure.
+fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
+    let solver = SolverSettings::new(settings.node(), report)?;
+    let mut heat = part.clone();
+    heat.name = solver.settings.get_str("model_part_name")?.to_owned();
+    heat.properties = [(0, Properties::new(0))].into();
+    for table in [&mut heat.elements, &mut heat.conditions] {
+        table.properties.fill(0);
+    }
+    for &(name, components) in solver.variables() {
+        heat.nodes.history.add_named(name, components);
+    }
+    let materials = solver.settings.get("material_import_settings.materials_filename")?;
+    let path = folder.join(materials.str()?);
+    if !path.is_file() {
+        let fact = format!("there is no materials file {} for heat", path.display());
+        return Err(Diagnostic::error("missing-file", fact)
+            .at(materials.place())
+            .remedy("the path is relative to the deck")
+            .into());
+    }
+    read_materials(&path, &mut heat)?.into_iter().for_each(|warning| report.push(warning));
+    solver.adopt(folder, &mut heat, report)?;
+    let base = part.properties.keys().max().map_or(1, |last| last + 1);
+    for (own, of_heat) in [(&mut part.elements, &heat.elements), (&mut part.conditions, &heat.conditions)] {
+        own.data.add_named(PROPERTIES, 1);
+        let ids: Vec<f64> = of_heat.properties.iter().map(|id| (base + id) as f64).collect();
+        own.data.write_level(PROPERTIES, 0, &ids);
+    }
+    for (id, mut properties) in std::mem::take(&mut heat.properties) {
+        if let Some(own) = part.properties.get_mut(&id) {
+            complete(own, &properties, report);
+        }
+        properties.id = base + id;
+        part.properties.insert(base + id, properties);
+    }
+    (part.nodes, part.data, part.info) = (heat.nodes, heat.data, heat.info);
+    Ok(())
+}
+
+/// Properties of one id are one material: what the materials of heat, which come later, say of it counts.
+fn complete(own: &mut Properties, of_heat: &Properties, report: &mut Report) {
+    for (name, value) in &of_heat.values {
+        let Some(given) = own.values.get_mut(name).filter(|given| *given != value) else { continue };
+        let fact = format!("{name} of properties {} is given by both materials files; that of heat counts", own.id);
+        let warning = Diagnostic::warning("repeated-value", fact).at(of_heat.place.clone());
+        report.push(warning.remedy("give both the same value, or properties of heat another id"));
+        given.clone_from(value);
+    }
+}
+
+/// The entities of the structure as those of heat.
+fn table_of_heat(role: Role, table: &EntityTable, settings: &Settings, space: usize) -> Result<EntityTable> {
+    let mut out = table.clone();
+    for (at, properties) in out.properties.iter_mut().enumerate() {
+        let id = table.data.level(PROPERTIES, 0).get(at).copied().unwrap_or(0.0);
+        if id > 0.0 {
+            *properties = id as usize;
+        }
+    }
+    let key = format!("element_replace_settings.{}_name", role.word());
+    replace(role, &mut out, settings.get_str(&key)?, space).map_err(|problem| problem.at(settings.key_place(&key)))?;
+    Ok(out)
+}
+
+/// Puts heat before the strategy of the structure.
+fn around(
+    settings: &Settings,
+    part: &mut ModelPart,
+    structure: Box<dyn SolutionStrategy>,
+    report: &mut Report,
+) -> Result<Box<dyn SolutionStrategy>> {
+    let solver = SolverSettings::new(settings.node(), &mut Report::new())?;
+    let space = part.info.domain_size;
+    let elements = table_of_heat(Role::Element, &part.elements, &solver.settings, space)?;
+    let conditions = table_of_heat(Role::Condition, &part.conditions, &solver.settings, space)?;
+    let own = (std::mem::replace(&mut part.elements, elements), std::mem::replace(&mut part.conditions, conditions));
+    let mut system = System::default();
+    let made = system.make_blocks(part);
+    (part.elements, part.conditions) = own;
+    made?;
+    let unknown = Columns::of(part).unknown;
+    let is_thermal = |block: &Box<dyn EntityBlock>| block.unknowns().first().is_some_and(|row| row.variable == unknown);
+    system.elements.retain(is_thermal);
+    system.conditions.retain(is_thermal);
+    let (heat, _) = solver.strategy(part, &mut system, report)?;
+    Ok(Box::new(Coupled { heat, system, structure }))
+}
+
+/// Heat first, then the structure.
+struct Coupled {
+    heat: Box<dyn SolutionStrategy>,
+    /// Unknowns and blocks of heat.
+    system: System,
+    structure: Box<dyn SolutionStrategy>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct CoupledState {
+    heat: Option<Box<dyn State>>,
+    structure: Option<Box<dyn State>>,
+}
+
+#[typetag::serde(name = "thermo_mechanically_coupled")]
+impl State for CoupledState {}
+
+impl SolutionStrategy for Coupled {
+    fn step_length(&mut self, part: &mut ModelPart, system: &System, asked: f64) -> Result<f64> {
+        self.structure.step_length(part, system, asked)
+    }
+
+    fn can_retry(&self) -> bool {
+        self.structure.can_retry()
+    }
+
+    fn remedy(&self) -> &'static str {
+        self.structure.remedy()
+    }
+
+    fn announce_every(&self) -> usize {
+        self.structure.announce_every()
+    }
+
+    fn solve_step(
+        &mut self,
+        part: &mut ModelPart,
+        system: &mut System,
+        monitor: &mut dyn Monitor,
+    ) -> Result<StepRecord> {
+        let heat = self.heat.solve_step(part, &mut self.system, monitor)?;
+        if !heat.converged {
+            return Ok(StepRecord { failure: heat.failure.map(|why| format!("heat: {why}")), ..heat });
+        }
+        let mut record = self.structure.solve_step(part, system, monitor)?;
+        record.interactions.push(("heat_iterations".to_owned(), heat.iterations.len() as f64));
+        if let (Some(all), Some(of_heat)) = (&mut record.balance, heat.balance) {
+            all.unknowns.extend(of_heat.unknowns);
+        }
+        Ok(record)
+    }
+
+    /// The mesh has moved with the structure, which carries no heat through itself.
+    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+        self.heat.accept_step(part, &mut self.system)?;
+        self.structure.accept_step(part, system)?;
+        let columns = Columns::of(part);
+        let velocity = part.nodes.history.level("VELOCITY", 0).to_vec();
+        if let Some(mesh) = columns.mesh_velocity.filter(|_| part.nodes.history.has("ACCELERATION")) {
+            part.nodes.history.write_level(mesh, 0, &velocity);
+        }
+        Ok(())
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        let mut all = self.heat.messages();
+        all.extend(self.structure.messages());
+        all
+    }
+
+    fn assembler(&self) -> &Assembler {
+        self.structure.assembler()
+    }
+
+    fn state(&self) -> Option<Box<dyn State>> {
+        Some(Box::new(CoupledState { heat: self.heat.state(), structure: self.structure.state() }))
+    }
+
+    fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
+        let CoupledState { heat, structure } = state.take()?;
+        heat.map_or(Ok(()), |state| self.heat.resume(part, &self.system, state))?;
+        structure.map_or(Ok(()), |state| self.structure.resume(part, system, state))
+    }
+
+    fn phases(&self) -> Phases {
+        self.structure.phases()
+    }
+}
+
+register! { SolverExtensionEntry "thermal_solver_settings",
+    about: "heat beside the structure: the settings of a solver of heat, \"stationary\" or \"transient\"",
+    defaults: "{}",
+    build: ExtensionDefinition { adopt: adopt, around: around, acts_alone: true, ..ExtensionDefinition::NOTHING },
+}
