@@ -25,6 +25,7 @@ use zelus_core::registry::names;
 const TANGENT_AT_REST: &[(&str, &str, &str)] = &[
     ("SmallDisplacement", "HyperElastic", "the law's matrix is the derivative by its own strain measure"),
     ("UpdatedLagrangian", "LinearElastic", "the law gives the same numbers as every stress measure"),
+    ("UpdatedLagrangian", "Thermal", "the law gives the same numbers as every stress measure"),
 ];
 
 /// Every registered kind of body or boundary with a block, and a law that fits it; conditions have none, nor elements that do

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use zelus::structural_mechanics::variables::DISPLACEMENT;
+use zelus::structural_mechanics::variables::{DISPLACEMENT, TEMPERATURE};
 use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Tangent, Want, block_factory};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{
@@ -46,9 +46,10 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
     shape.cell().points.iter().map(place).collect()
 }
 
-/// Properties of every specimen. Yielding begins far below the strains that are looked at: differences taken across its
+/// Properties of every specimen. Bodies have the temperature at which laws that expand are without strain. Yielding begins far below the strains that are looked at: differences taken across its
 /// beginning are no derivatives.
-const USUAL: [(&str, f64); 9] = [
+const USUAL: [(&str, f64); 10] = [
+    ("REFERENCE_TEMPERATURE", 0.0),
     ("CONDUCTIVITY", 0.7),
     ("SPECIFIC_HEAT", 2.0),
     ("YOUNG_MODULUS", 100.0),
@@ -119,6 +120,7 @@ impl Specimen {
         part.nodes = Nodes::new((1..=x.len()).collect(), x.to_vec());
         part.nodes.history.set_levels(2);
         part.nodes.history.add(&DISPLACEMENT);
+        part.nodes.history.add(&TEMPERATURE);
         let mut properties = Properties::new(1);
         properties.law = law.map(str::to_owned);
         let numbers = values.iter().map(|(name, value)| (name.clone(), PropertyValue::Number(*value)));
@@ -220,7 +222,8 @@ fn load(part: &mut ModelPart, entry: &EntityKind, loads: Loads) {
     let mut random = Random(5);
     let data = if entry.role == Role::Element { &mut part.elements.data } else { &mut part.conditions.data };
     // constants that resist rotations are refused
-    let taken = |name: &str| name == DISPLACEMENT.name() || name.contains("ROTATIONAL") || name == "NODAL_INERTIA";
+    let bare = [DISPLACEMENT.name(), TEMPERATURE.name()];
+    let taken = |name: &str| bare.contains(&name) || name.contains("ROTATIONAL") || name == "NODAL_INERTIA";
     for variable in variables().values().filter(|v| v.kind == wanted && !taken(v.name)) {
         let components = if loads == Loads::Scalars { 1 } else { 3 };
         for fields in [&mut *data, &mut part.nodes.history] {
