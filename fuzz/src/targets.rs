@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use zelus::core::io::{read_mesh, results::vtu_of};
+use zelus::core::io::{read_mesh, read_saved, results::vtu_of};
 use zelus::core::model::ModelPart;
 use zelus::core::parameters::{Document, Expression};
 use zelus::{RunOptions, Silent, Simulation};
@@ -58,16 +58,17 @@ pub fn json(bytes: &[u8]) {
     let _ = Expression::parse(text);
 }
 
-/// The contents of a saved run, with the head that belongs to them.
+/// The contents of a saved run: with a checksum that is not theirs they are refused, and read as what they are with theirs.
 pub fn checkpoint(contents: &[u8]) {
     let whole = std::fs::read(folder().join("saved")).expect("the saved run");
-    let mut bytes = whole[..MARK].to_vec();
-    bytes.extend((contents.len() as u64).to_le_bytes());
-    bytes.extend(crc32fast::hash(contents).to_le_bytes());
-    bytes.extend(contents);
     let path = folder().join("random.saved");
-    std::fs::write(&path, bytes).expect("a file");
-    let _ = open(folder()).load(&path, &mut Silent);
+    let write = |head: &[&[u8]]| std::fs::write(&path, [&head.concat(), contents].concat()).expect("a file");
+    write(&[&whole[..MARK + 12]]);
+    let loaded = open(folder()).load(&path, &mut Silent);
+    assert_eq!(loaded.is_ok(), contents == &whole[MARK + 12..], "what is damaged is refused");
+    let (length, sum) = ((contents.len() as u64).to_le_bytes(), crc32fast::hash(contents).to_le_bytes());
+    write(&[&whole[..MARK], &length, &sum]);
+    let _ = read_saved::<serde::de::IgnoredAny>(&path);
 }
 
 /// A picture.

@@ -73,7 +73,7 @@ pub(super) fn view(name: &str, series: &Series) -> Result<Option<Value>> {
     let every = (a_step * series.len()).div_ceil(MOST_NUMBERS).max(1);
     let mut steps = Vec::new();
     for (number, frame) in series.iter().enumerate() {
-        if number % every != 0 && number + 1 != series.len() {
+        if !number.is_multiple_of(every) && number + 1 != series.len() {
             continue;
         }
         let data = frame.read()?;

@@ -196,7 +196,7 @@ impl<'a> Bodies<'a> {
         let strides: Vec<usize> = counts.iter().map(|count| count / SAMPLE + 1).collect();
         for (node, &body) in self.of_node.iter().enumerate().filter(|(_, body)| **body != usize::MAX) {
             counts[body] -= 1;
-            if counts[body] % strides[body] != 0 {
+            if !counts[body].is_multiple_of(strides[body]) {
                 continue;
             }
             for c in 0..3 {

@@ -99,7 +99,7 @@ pub fn vtu_of(bytes: &[u8]) -> std::result::Result<Dataset, String> {
         let own = rest.split_off(..shape.nodes()).ok_or("cells have too few points")?;
         let mut nodes = vec![0; own.len()];
         for (&place, &point) in shape.cell().vtk_order.iter().zip(own) {
-            nodes[place as usize] = u32::try_from(point)
+            nodes[place] = u32::try_from(point)
                 .ok()
                 .filter(|&point| (point as usize) < out.points.len())
                 .ok_or("a cell names a point that is not there")?;
