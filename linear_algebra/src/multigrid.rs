@@ -7,7 +7,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::check;
-use crate::csr::Runs;
+use crate::csr::{Csr, Runs};
 use crate::direct::DirectSolver;
 use crate::iterations::{Answers, Progress, conjugate_gradient, gmres};
 use crate::memory;
@@ -28,6 +28,12 @@ const FAILURES: usize = 2;
 const CHANGED: f64 = 0.01;
 /// Residual, as a multiple of the tolerance, that rounding in the recurrence of the residual excuses.
 const DRIFT: f64 = 10.0;
+
+/// Nanoseconds of an iteration for an entry of the matrix, of a factorisation in space for the square of the equations, and of that of
+/// an interface for the cube of its own: by their ratios alone it is judged which is less.
+const COSTS: [f64; 3] = [4.0, 0.8, 0.02];
+/// Equations up to which factors may take over; more would take more than a gigabyte.
+const YIELDS_UP_TO: usize = 70_000;
 
 /// A hierarchy, and how well it did when it was new.
 #[derive(Clone, Serialize, Deserialize)]
@@ -83,6 +89,8 @@ struct Learnt {
     answers: Answers,
     /// Solves one after the other that multigrid did not do; one more once that is told.
     failures: usize,
+    /// Whether a solve would have paid for a factorisation: the direct engine solves.
+    has_yielded: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -119,6 +127,20 @@ impl MultigridSolver {
     /// Whether multigrid is to solve a system, by its size and what came of it before.
     fn serves(&self, system: &System<'_>) -> bool {
         self.shares(system.equations(), system.bulk.entries())
+    }
+
+    /// Iterations of a solve after which a factorisation would have been cheaper.
+    fn patience(&self, system: &System<'_>) -> usize {
+        let (equations, entries) = (system.equations(), system.bulk.entries());
+        let may_yield = self.settings.yields && system.shared.is_none() && equations <= YIELDS_UP_TO;
+        if may_yield && memory::is_dense(equations, entries) {
+            let coupled = |coupling: &Csr| (0..coupling.rows).filter(|&i| !coupling.row(i).0.is_empty()).count();
+            let [iteration, bulk, interface] = COSTS;
+            let interface = interface * (system.coupling.map_or(0, coupled) as f64).powi(3);
+            ((bulk * (equations as f64).powi(2) + interface) / (iteration * entries as f64)) as usize
+        } else {
+            usize::MAX
+        }
     }
 
     fn is_large(&self, equations: usize, entries: usize) -> bool {
@@ -162,7 +184,8 @@ impl MultigridSolver {
         Ok(())
     }
 
-    fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Progress {
+    /// At most `most` iterations.
+    fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64], most: usize) -> Progress {
         let (constrained, _) = self.constrained.as_ref().expect("prepared");
         let hierarchy = self.hierarchy.as_mut().expect("prepared");
         let (.., runs) = self.runs.as_ref().expect("prepared");
@@ -197,7 +220,7 @@ impl MultigridSolver {
                 r.copy_from_slice(&all[..r.len()]);
             }
         };
-        let (tolerance, iterations) = (self.tolerance, self.settings.iterations);
+        let (tolerance, iterations) = (self.tolerance, self.settings.iterations.min(most));
         let has_multipliers = ghosts.any(system.layout.multiplier.contains(&true));
         let progress = if system.is_symmetric() && !has_multipliers {
             conjugate_gradient(ghosts, multiply, precondition, &b, x, iterations, tolerance)
@@ -218,16 +241,23 @@ impl MultigridSolver {
         self.prepare(system)?;
         let mut seconds_numeric = start.elapsed().as_secs_f64();
         let guess = x.to_vec();
-        let mut progress = self.iterate(system, rhs, x);
+        let patience = self.patience(system);
+        let mut progress = self.iterate(system, rhs, x, patience);
         let accepted = DRIFT * self.tolerance;
         let is_good = |progress: Progress| progress.relative_residual <= accepted;
+        if !is_good(progress) && progress.iterations >= patience {
+            (self.learnt.has_yielded, self.hierarchy) = (true, None);
+            return Err(format!(
+                "after {patience} iterations a factorisation costs less: the direct engine solves from here on"
+            ));
+        }
         if !is_good(progress) && self.hierarchy.as_ref().is_some_and(|h| h.is_old) {
             let start = Instant::now();
             self.hierarchy = None;
             self.prepare(system)?;
             seconds_numeric += start.elapsed().as_secs_f64();
             x.copy_from_slice(&guess);
-            progress = self.iterate(system, rhs, x);
+            progress = self.iterate(system, rhs, x, patience);
         }
         if !is_good(progress) {
             self.hierarchy = None;
@@ -306,7 +336,8 @@ impl LinearSolver for MultigridSolver {
     }
 
     fn shares(&self, equations: usize, entries: usize) -> bool {
-        self.learnt.failures < FAILURES && self.is_large(equations, entries)
+        let has_given_up = self.learnt.has_yielded || self.learnt.failures >= FAILURES;
+        !has_given_up && self.is_large(equations, entries)
     }
 
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {

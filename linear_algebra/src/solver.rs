@@ -246,6 +246,8 @@ pub struct MultigridSettings {
     pub iterations: usize,
     /// Equations below which the direct engine solves: where rows have many entries, as those of solids in space, and else.
     pub least: [usize; 2],
+    /// Whether the direct engine takes over where a factorisation would have cost less than the iterations of a solve.
+    pub yields: bool,
 }
 
 impl MultigridSettings {
@@ -255,6 +257,6 @@ impl MultigridSettings {
 
 impl Default for MultigridSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, loosest: 1e-9, iterations: 300, least: [3_000; 2] }
+        Self { tolerance: 1e-9, loosest: 1e-9, iterations: 300, least: [3_000; 2], yields: false }
     }
 }

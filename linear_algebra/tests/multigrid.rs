@@ -173,3 +173,24 @@ fn levels_of_earlier_matrices_are_part_of_the_state() {
     assert!(one == other);
     assert!(one != fresh, "the levels in use are earlier ones");
 }
+
+/// A solve that costs more than a factorisation hands the rest of the run over; one that does not, or may not, keeps multigrid.
+#[test]
+fn the_direct_engine_takes_over_where_it_costs_less() {
+    let (bulk, layout) = clamped_box(12);
+    let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
+    let engines = |tolerance: f64, yields: bool| {
+        let settings =
+            MultigridSettings { least: [0; 2], tolerance, loosest: tolerance, yields, ..MultigridSettings::default() };
+        let mut solver = create(Engine::Multigrid(settings));
+        [0, 1].map(|shift| {
+            // Loads that are no multiples of each other.
+            let rhs: Vec<f64> = (0..bulk.rows).map(|i| ((i * i + shift) % 19) as f64 - 9.0).collect();
+            let report = solver.solve(&system, &rhs, &mut vec![0.0; bulk.rows]).expect("regular");
+            (report.engine == "multigrid", report.fallback.is_some_and(|why| why.contains("costs less")))
+        })
+    };
+    assert_eq!(engines(1e-12, true), [(false, true), (false, false)]);
+    assert_eq!(engines(1e-12, false), [(true, false); 2]);
+    assert_eq!(engines(1e-2, true), [(true, false); 2]);
+}

@@ -70,7 +70,7 @@ pub(crate) fn make(request: &LinearSolverRequest<'_>) -> Result<(Box<dyn LinearS
 /// # Errors
 /// As [`make`].
 pub(crate) fn frugal(request: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
-    multigrid_from(request, [0; 2])
+    multigrid_from(request, [0; 2], false)
 }
 
 /// Unknowns from which on PETSc solves by multigrid where the deck names a solver that works on one rank alone and does not say
@@ -132,24 +132,27 @@ fn direct(_: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
     Ok(create(Engine::Direct(DirectSettings::default())))
 }
 
-/// Multigrid by the settings of a deck, with the direct engine below `least` equations where they do not say otherwise.
-fn multigrid_from(request: &LinearSolverRequest<'_>, least: [usize; 2]) -> Result<Box<dyn LinearSolver>> {
+/// Multigrid by the settings of a deck, with the direct engine below `least` equations where they do not say otherwise, and where it
+/// costs less if multigrid `yields`.
+fn multigrid_from(request: &LinearSolverRequest<'_>, least: [usize; 2], yields: bool) -> Result<Box<dyn LinearSolver>> {
     let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
     let tolerance = number("tolerance").map_or(request.tolerance, |tolerance| tolerance.min(request.tolerance));
     Ok(create(Engine::Multigrid(MultigridSettings {
         tolerance,
         loosest: if number("tolerance").is_some() { tolerance } else { LOOSEST },
         least: number("direct_below").map_or(least, |equations| [equations as usize; 2]),
+        yields,
         ..MultigridSettings::default()
     })))
 }
 
 fn multigrid(request: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
-    multigrid_from(request, MultigridSettings::default().least)
+    multigrid_from(request, MultigridSettings::default().least, false)
 }
 
 fn automatic(request: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
-    multigrid_from(request, MultigridSettings::FASTER)
+    let is_bounded = request.settings.node().get("memory_limit").is_some();
+    multigrid_from(request, MultigridSettings::FASTER, !is_bounded)
 }
 
 fn krylov(request: &LinearSolverRequest<'_>) -> Result<KrylovSettings> {
