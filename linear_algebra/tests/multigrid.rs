@@ -177,7 +177,7 @@ fn levels_of_earlier_matrices_are_part_of_the_state() {
 /// A solve that costs more than a factorisation hands the rest of the run over; one that does not, or may not, keeps multigrid.
 #[test]
 fn the_direct_engine_takes_over_where_it_costs_less() {
-    let (bulk, layout) = clamped_box(12);
+    let (bulk, layout) = clamped_box(8);
     let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
     let engines = |tolerance: f64, yields: bool| {
         let settings =
