@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 1e-9;
 const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-7;
 
 /// The same for [`GROWN_ROUND_OFF`].
-const TOLERANCE_OF_GROWN_ROUND_OFF: f64 = 1e-8;
+const TOLERANCE_OF_GROWN_ROUND_OFF: f64 = 1e-7;
 
 /// Values below are zero but for round-off; the cases are of size one.
 const ZERO: f64 = 1e-18;
