@@ -109,9 +109,9 @@ fn around(
     (part.elements, part.conditions) = own;
     made?;
     let unknown = Columns::of(part).unknown;
-    let is_thermal = |block: &Box<dyn EntityBlock>| block.unknowns().first().is_some_and(|row| row.variable == unknown);
-    system.elements.retain(is_thermal);
-    system.conditions.retain(is_thermal);
+    let is_thermal = |block: &dyn EntityBlock| block.unknowns().first().is_some_and(|row| row.variable == unknown);
+    system.elements.retain(|block| is_thermal(block.as_ref()));
+    system.conditions.retain(|block| is_thermal(block.as_ref()));
     let (heat, _) = solver.strategy(part, &mut system, report)?;
     Ok(Box::new(Coupled { heat, system, structure }))
 }
@@ -208,5 +208,5 @@ impl SolutionStrategy for Coupled {
 register! { SolverExtensionEntry "thermal_solver_settings",
     about: "heat beside the structure: the settings of a solver of heat, \"stationary\" or \"transient\"",
     defaults: "{}",
-    build: ExtensionDefinition { adopt: adopt, around: around, acts_alone: true, ..ExtensionDefinition::NOTHING },
+    build: ExtensionDefinition { adopt, around, acts_alone: true, ..ExtensionDefinition::NOTHING },
 }

@@ -77,6 +77,6 @@ register! { SolverEntry "thermo_mechanically_coupled",
         scheme: |_| Ok(SCHEME.to_owned()),
         adapt: |defaults| defaults.require(&[STRUCTURE, EXTENSION]),
         adopt: |_, _, _| Ok(()),
-        unfold: unfold,
+        unfold,
     },
 }
