@@ -56,7 +56,7 @@ fn state(part: &ModelPart) -> Vec<(String, Vec<u64>)> {
 /// The report without what a clock and a machine make of it.
 fn report(simulation: &Simulation) -> Value {
     let mut report = serde_json::to_value(simulation.report()).expect("a report");
-    for key in ["seconds", "threads"] {
+    for key in ["seconds", "threads", "memory"] {
         report.as_object_mut().expect("an object").remove(key);
     }
     report
