@@ -112,12 +112,14 @@ fn equals_serial(case: &str, changes: &[(&str, &str)], tolerance: f64, same_iter
     }
 }
 
-/// METIS leaves most facets of a sphere's small contact to few ranks: their pairs are shared out, and nothing else changes.
+/// METIS leaves most facets of a sphere's small contact to few ranks: their pairs are shared out, and nothing else changes. The engine is
+/// named: one process alone would hand over to the direct one, whose answers are closer than multigrid's.
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn pairs_of_full_ranks_are_evaluated_by_others() {
     let deck = root().join("examples/hertz_sphere");
-    equals_serial(&deck.to_string_lossy(), &[], EQUAL, true);
+    let engine = ("\"max_iteration\"", "\"linear_solver_settings\": {\"solver_type\": \"amgcl\"}, \"max_iteration\"");
+    equals_serial(&deck.to_string_lossy(), &[engine], EQUAL, true);
     let folder = scratch_copy(&deck);
     let output = distributed(folder.path(), 2, &["run", DECK]);
     assert!(said(&output).contains("pairs moved to other ranks"), "{}", said(&output));
@@ -125,6 +127,8 @@ fn pairs_of_full_ranks_are_evaluated_by_others() {
 
 /// A tolerance for what has a closed form, which `tests/cases.rs` holds the serial run to.
 const EXACT: f64 = 1e-10;
+/// A tolerance where round-off of the slip grows over steps of one iteration each, as `tests/renumbering.rs` says.
+const GROWN: f64 = 1e-7;
 /// A tolerance for what has none.
 const EQUAL: f64 = 1e-9;
 
@@ -201,7 +205,7 @@ fn contact_by_tractions_of_elements() {
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn friction_by_penalties_of_nodes() {
     equals_serial("contact_2d/friction_penalty_slide", &[], EQUAL, true);
-    equals_serial("contact_3d/friction_penalty_slide", &[], EQUAL, true);
+    equals_serial("contact_3d/friction_penalty_slide", &[], GROWN, false);
     equals_serial("contact_3d/friction_penalty_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")], EQUAL, true);
 }
 
