@@ -10,12 +10,9 @@ register! { SolverEntry "ConstrainedOptimization",
     source: "eqs. D.2, D.5c",
     defaults: include_str!("../../../configs/solvers/constrained_optimization.json"),
     build: SolverDefinition {
-        variant: |_| None,
-        explicit: false,
         variables: &[("POSITION", 1)],
         scheme: |_| Ok("static".to_owned()),
         adapt: |defaults| defaults.require(&["model_part_name", "model_import_settings"]),
-        adopt: |_, _, _| Ok(()),
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }

@@ -37,7 +37,7 @@ impl Coefficient {
         let own = match (column, properties) {
             (None, _) => Own::Constant(off),
             (Some(name), Some(properties)) => {
-                let table = properties.tables.get(&(unknown.to_owned(), name.to_owned()));
+                let table = properties.table_over(unknown, name);
                 match (table, properties.number(name)) {
                     (Some(table), _) => Own::Table(table.clone()),
                     (None, Some(value)) => Own::Constant(value),

@@ -1,6 +1,7 @@
 //! Which columns of the nodes the balance of heat reads: `convection_diffusion_variables`.
 
 use zelus_core::diagnostics::Result;
+use zelus_core::entities::{Gather, StepView};
 use zelus_core::model::{ModelPart, Named, PropertyValue, ScalarVariable, VariableKind, named};
 use zelus_core::parameters::Settings;
 
@@ -90,6 +91,19 @@ impl Columns {
             }
         }
         Ok(())
+    }
+}
+
+/// Numbers of a column at the nodes of an entity, at a time level; zero where there is no such column.
+pub fn nodal<const NODES: usize>(
+    entity: &Gather<'_, NODES>,
+    view: &StepView<'_>,
+    column: Option<&str>,
+    level: usize,
+) -> [f64; NODES] {
+    match column.map_or(&[][..], |column| view.nodes.history.level(column, level)) {
+        [] => [0.0; NODES],
+        values => entity.scalars(values),
     }
 }
 

@@ -11,7 +11,7 @@ use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry, SolverSett
 use zelus_core::assembly::{Assembler, System};
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::EntityBlock;
-use zelus_core::io::read_materials;
+use zelus_core::io::read_materials_of;
 use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
 use zelus_core::parameters::Settings;
 use zelus_core::register;
@@ -40,15 +40,8 @@ fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut 
         heat.nodes.history.add_named(name, components);
     }
     let materials = solver.settings.get("material_import_settings.materials_filename")?;
-    let path = folder.join(materials.str()?);
-    if !path.is_file() {
-        let fact = format!("there is no materials file {} for heat", path.display());
-        return Err(Diagnostic::error("missing-file", fact)
-            .at(materials.place())
-            .remedy("the path is relative to the deck")
-            .into());
-    }
-    read_materials(&path, &mut heat)?.into_iter().for_each(|warning| report.push(warning));
+    let warnings = read_materials_of(&folder.join(materials.str()?), &materials.place(), &mut heat)?;
+    warnings.into_iter().for_each(|warning| report.push(warning));
     solver.adopt(folder, &mut heat, report)?;
     let base = part.properties.keys().max().map_or(1, |last| last + 1);
     for (own, of_heat) in [(&mut part.elements, &heat.elements), (&mut part.conditions, &heat.conditions)] {
@@ -172,9 +165,8 @@ impl SolutionStrategy for Coupled {
     fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         self.heat.accept_step(part, &mut self.system)?;
         self.structure.accept_step(part, system)?;
-        let columns = Columns::of(part);
-        let velocity = part.nodes.history.level("VELOCITY", 0).to_vec();
-        if let Some(mesh) = columns.mesh_velocity.filter(|_| part.nodes.history.has("ACCELERATION")) {
+        if let Some(mesh) = Columns::of(part).mesh_velocity.filter(|_| part.nodes.history.has("ACCELERATION")) {
+            let velocity = part.nodes.history.level("VELOCITY", 0).to_vec();
             part.nodes.history.write_level(mesh, 0, &velocity);
         }
         Ok(())

@@ -196,14 +196,7 @@ pub(super) fn import(
     let materials = settings.get("material_import_settings.materials_filename")?;
     let name = materials.str()?;
     if !name.is_empty() {
-        let path = folder.join(name);
-        if !path.is_file() {
-            return Err(Diagnostic::error("missing-file", format!("there is no materials file {}", path.display()))
-                .at(materials.place())
-                .remedy("\"materials_filename\" is relative to the deck")
-                .into());
-        }
-        io::read_materials(&path, part)?.into_iter().for_each(|w| warnings.push(w));
+        io::read_materials_of(&folder.join(name), &materials.place(), part)?.into_iter().for_each(|w| warnings.push(w));
     }
     solver.adopt(folder, part, warnings)
 }

@@ -65,6 +65,19 @@ pub struct SolverDefinition {
     pub unfold: fn(&mut Node) -> Result<()>,
 }
 
+impl SolverDefinition {
+    /// Solvers of one object, on the part as read, by the scheme that `scheme_type` names; struct update fills the rest from it.
+    pub const PLAIN: Self = Self {
+        variant: |_| None,
+        variables: &[],
+        explicit: false,
+        scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
+        adapt: |defaults| defaults,
+        adopt: |_, _, _| Ok(()),
+        unfold: |_| Ok(()),
+    };
+}
+
 /// What an application registers for a nested object of `solver_settings`.
 pub struct ExtensionDefinition {
     /// Further variables with history, for these settings of the nested object.

@@ -20,6 +20,13 @@ pub struct LocalUnknown {
     pub variable: ScalarVariable,
 }
 
+impl LocalUnknown {
+    /// One variable at each of the nodes.
+    pub fn of_nodes<const NODES: usize>(variable: ScalarVariable) -> [Self; NODES] {
+        std::array::from_fn(|node| Self { node: node as u8, variable })
+    }
+}
+
 /// How the tangent of a block behaves, so that the framework can reuse what does not change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangent {

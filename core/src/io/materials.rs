@@ -20,6 +20,20 @@ pub fn read_materials(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnosti
     Ok(document.warnings.into_iter().chain(warnings).collect())
 }
 
+/// Reads the materials file that a deck names at `place` into `part`; gives the warnings.
+///
+/// # Errors
+/// No such file; as [`read_materials`].
+pub fn read_materials_of(path: &Path, place: &Place, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
+    if !path.is_file() {
+        return Err(Diagnostic::error("missing-file", format!("there is no materials file {}", path.display()))
+            .at(place.clone())
+            .remedy("\"materials_filename\" is relative to the deck")
+            .into());
+    }
+    read_materials(path, part)
+}
+
 /// As [`read_materials`], from a tree already read.
 ///
 /// # Errors

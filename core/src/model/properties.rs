@@ -47,6 +47,11 @@ impl Properties {
         Self { id, ..Self::default() }
     }
 
+    /// The table of `name` over the variable `over`, if given.
+    pub fn table_over(&self, over: &str, name: &str) -> Option<&Table> {
+        self.tables.get(&(over.to_owned(), name.to_owned()))
+    }
+
     /// The number called `name`, if given.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.values.get(name) {

@@ -108,6 +108,11 @@ impl Object {
         self.by_key.iter().map(|&i| &self.members[i as usize])
     }
 
+    /// The values of all members.
+    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut Node> {
+        self.members.iter_mut().map(|member| &mut member.node)
+    }
+
     /// Members in the order the file has them.
     pub fn in_source_order(&self) -> &[Member] {
         &self.members

@@ -49,12 +49,9 @@ register! { SolverEntry "Continued",
     about: "equilibrium at each time, by the scheme \"continued\"",
     defaults: zelus::structural_mechanics::solvers::STATIC_DEFAULTS,
     build: SolverDefinition {
-        variant: |_| None,
         variables: &zelus::structural_mechanics::solvers::VARIABLES,
-        explicit: false,
         scheme: |_| Ok("continued".to_owned()),
         adapt: zelus::structural_mechanics::solvers::adapt,
-        adopt: |_, _, _| Ok(()),
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }

@@ -63,7 +63,7 @@ impl Kernel<NODES, NODES> for Diffusion {
     type State = Material;
 
     fn unknowns() -> [LocalUnknown; NODES] {
-        std::array::from_fn(|node| LocalUnknown { node: node as u8, variable: CONCENTRATION.scalar() })
+        LocalUnknown::of_nodes(CONCENTRATION.scalar())
     }
 
     fn new(_request: &BlockRequest<'_>) -> Result<Self> {
@@ -171,12 +171,8 @@ register! { SolverEntry "Diffusion",
     source: "s ∂c/∂t = ∇·(D ∇c)",
     defaults: DEFAULTS,
     build: SolverDefinition {
-        variant: |_| None,
-        explicit: false,
         variables: &VARIABLES,
-        scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
         adapt: |defaults| defaults.require(&["model_part_name", "model_import_settings", "time_stepping"]),
-        adopt: |_, _, _| Ok(()),
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }

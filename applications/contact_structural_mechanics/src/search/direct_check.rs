@@ -21,19 +21,22 @@ pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     let touches = |node: u32, direction: [f64; 3]| {
         let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
-        distance_along(&points, master, x, direction)
-            .is_some_and(|distance| distance <= factor * size && distance >= -size)
+        let (low, high) = (-size, factor * size);
+        distance_along(&points, normal, x, direction).is_some_and(|distance| {
+            distance <= high && distance >= low && meets(&points, master, x, direction, distance)
+        })
     };
     let nodal = |node: u32| std::array::from_fn(|c| normals[3 * node as usize + c]);
     slave.nodes.iter().copied().filter(|&n| touches(n, nodal(n)) || touches(n, scale(normal, -1.0))).collect()
 }
 
-/// Way from `x` along `direction` to the plane of a facet at `points`; `None` where that does not meet the facet.
-pub(super) fn distance_along(points: &[[f64; 3]], facet: &Facet, x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
-    let normal = facet.normal_at(points);
-    let distance = dot(sub(points[0], x), normal) / dot(direction, normal);
+/// Way from `x` along `direction` to the plane with this normal through the facet at `points`; `None` where it is parallel.
+pub(super) fn distance_along(points: &[[f64; 3]], normal: [f64; 3], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
+    Some(dot(sub(points[0], x), normal) / dot(direction, normal)).filter(|distance| distance.is_finite())
+}
+
+/// Whether the foot at that distance lies on the facet at `points`.
+pub(super) fn meets(points: &[[f64; 3]], facet: &Facet, x: [f64; 3], direction: [f64; 3], distance: f64) -> bool {
     let foot = std::array::from_fn(|c| x[c] + distance * direction[c]);
-    let meets =
-        || local_coordinates(facet.shape, points, foot).is_some_and(|at| facet.shape.cell().contains(at.xi, EDGE));
-    (distance.is_finite() && meets()).then_some(distance)
+    local_coordinates(facet.shape, points, foot).is_some_and(|at| facet.shape.cell().contains(at.xi, EDGE))
 }

@@ -6,7 +6,7 @@ use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
-use super::direct_check::distance_along;
+use super::direct_check::{distance_along, meets};
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles, find_nodal_h};
 use crate::variables::NODAL_H;
@@ -122,9 +122,13 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
             let line = Bounds::of(&[add(x, scale(normal, -reach)), add(x, scale(normal, reach))]);
             let met = tree.meeting(&line.grown(ROUND_OFF * extent)).into_iter().filter_map(|master| {
                 let facet = masters[master as usize];
-                let faces = dot(facet.normal(part), normal) < -FACING && !facet.nodes.contains(&node);
-                let distance = distance_along(&facet.positions(part), facet, x, normal).filter(|_| faces)?;
-                Some((distance, facet.nodes[0]))
+                let points = facet.positions(part);
+                let of_facet = facet.normal_at(&points);
+                if dot(of_facet, normal) >= -FACING || facet.nodes.contains(&node) {
+                    return None;
+                }
+                let distance = distance_along(&points, of_facet, x, normal)?;
+                meets(&points, facet, x, normal, distance).then_some((distance, facet.nodes[0]))
             });
             met.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         };

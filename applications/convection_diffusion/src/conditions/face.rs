@@ -14,7 +14,7 @@ use zelus_core::geometry::{Shape, ShapeTable, mapping};
 use zelus_core::model::Properties;
 use zelus_core::register;
 
-use crate::columns::Columns;
+use crate::columns::{Columns, nodal};
 use crate::elements::full_order;
 
 /// Names of h, ε, Tₐ among properties and data of conditions.
@@ -77,11 +77,11 @@ impl<const EXCHANGES: bool, const RING: bool, const DIM: usize, const NODES: usi
     type State = ();
 
     fn unknowns() -> [LocalUnknown; NODES] {
-        std::array::from_fn(|node| LocalUnknown { node: node as u8, variable: crate::variables::TEMPERATURE.scalar() })
+        LocalUnknown::of_nodes(crate::variables::TEMPERATURE.scalar())
     }
 
     fn own_unknowns(&self) -> [LocalUnknown; NODES] {
-        std::array::from_fn(|node| LocalUnknown { node: node as u8, variable: self.columns.unknown })
+        LocalUnknown::of_nodes(self.columns.unknown)
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
@@ -111,16 +111,13 @@ impl<const EXCHANGES: bool, const RING: bool, const DIM: usize, const NODES: usi
         lhs: &mut [f64],
         rhs: &mut [f64; NODES],
     ) -> Result<(), String> {
-        let column = |name: Option<&str>| match name.map_or(&[][..], |name| view.nodes.history.level(name, 0)) {
-            [] => [0.0; NODES],
-            values => entity.scalars(values),
-        };
-        let (t, q) = (column(Some(self.columns.unknown.column)), column(self.columns.surface_source));
+        let t = nodal(entity, view, Some(self.columns.unknown.column), 0);
+        let q = nodal(entity, view, self.columns.surface_source, 0);
         let own = self.columns.surface_source.map_or(&[][..], |name| view.conditions.data.level(name, 0));
         let own = own.get(entity.index as usize).copied().unwrap_or(0.0);
         let surroundings = Self::surroundings(entity.properties, view, entity.index);
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
-            let at = |nodal: &[f64; NODES]| n.iter().zip(nodal).map(|(n, value)| n * value).sum::<f64>();
+            let at = |values: &[f64; NODES]| n.iter().zip(values).map(|(n, value)| n * value).sum::<f64>();
             let area = mapping::det_jacobian(self.rule.shape(), &entity.current, self.rule.points()[g].xi);
             let round =
                 if RING { 2.0 * PI * (0..NODES).map(|i| n[i] * entity.current[i][1]).sum::<f64>() } else { 1.0 };
@@ -142,10 +139,9 @@ impl<const EXCHANGES: bool, const RING: bool, const DIM: usize, const NODES: usi
     }
 }
 
-macro_rules! faces {
-    ($name:literal, $exchanges:literal, $ring:literal, $about:literal, $source:literal; $($suffix:literal: $nodes:literal, $dim:literal $(, $alias:literal)*;)+) => {
+macro_rules! face {
+    ($name:literal, $exchanges:literal, $ring:literal, $about:literal, $source:literal; $($suffix:literal: $nodes:literal, $dim:literal;)+) => {
         $(register! { ConditionEntry concat!($name, $suffix),
-            aliases: &[$($alias),*],
             about: $about,
             source: $source,
             loads: &["FACE_HEAT_FLUX", "CONVECTION_COEFFICIENT", "EMISSIVITY", "AMBIENT_TEMPERATURE"],
@@ -156,33 +152,34 @@ macro_rules! faces {
     };
 }
 
-faces! { "ThermalFace", true, false,
+/// Registers a kind of face on the shapes in the plane, or on all.
+macro_rules! faces {
+    (plane; $($kind:tt)+) => {
+        face! { $($kind)+;
+            "2D2N": 2, 1;
+            "2D3N": 3, 1;
+        }
+    };
+    (all; $($kind:tt)+) => {
+        faces! { plane; $($kind)+ }
+        face! { $($kind)+;
+            "3D3N": 3, 2;
+            "3D4N": 4, 2;
+            "3D6N": 6, 2;
+            "3D8N": 8, 2;
+            "3D9N": 9, 2;
+        }
+    };
+}
+
+faces! { all; "ThermalFace", true, false,
 "a face with FACE_HEAT_FLUX into the body, exchange by CONVECTION_COEFFICIENT and EMISSIVITY with AMBIENT_TEMPERATURE",
-"f = ∫ N (q + h (Tₐ − T) + ε σ (Tₐ⁴ − T⁴))";
-"2D2N": 2, 1;
-"2D3N": 3, 1;
-"3D3N": 3, 2;
-"3D4N": 4, 2;
-"3D6N": 6, 2;
-"3D8N": 8, 2;
-"3D9N": 9, 2;
-}
+"f = ∫ N (q + h (Tₐ − T) + ε σ (Tₐ⁴ − T⁴))" }
 
-faces! { "FluxCondition", false, false,
+faces! { all; "FluxCondition", false, false,
 "a face with FACE_HEAT_FLUX into the body",
-"f = ∫ N q";
-"2D2N": 2, 1;
-"2D3N": 3, 1;
-"3D3N": 3, 2;
-"3D4N": 4, 2;
-"3D6N": 6, 2;
-"3D8N": 8, 2;
-"3D9N": 9, 2;
-}
+"f = ∫ N q" }
 
-faces! { "AxisymmetricThermalFace", true, true,
+faces! { plane; "AxisymmetricThermalFace", true, true,
 "ThermalFace of a body of revolution about the x axis: y is the radius",
-"f = ∫ N (q + h (Tₐ − T) + ε σ (Tₐ⁴ − T⁴)) 2πy";
-"2D2N": 2, 1;
-"2D3N": 3, 1;
-}
+"f = ∫ N (q + h (Tₐ − T) + ε σ (Tₐ⁴ − T⁴)) 2πy" }

@@ -14,7 +14,7 @@ use zelus_structural_mechanics::elements::physical_gradients;
 use super::balance::{Point, Step};
 use super::place::{full_order, stream_size};
 use crate::coefficient::Coefficient;
-use crate::columns::Columns;
+use crate::columns::{Columns, nodal};
 
 /// Which terms of the balance a kind of element has.
 pub trait Terms: Send + Sync + 'static {
@@ -37,14 +37,6 @@ pub struct Equation<T, const NODES: usize, const DIM: usize> {
 }
 
 impl<T: Terms, const NODES: usize, const DIM: usize> Equation<T, NODES, DIM> {
-    /// A column of nodal numbers, zero where there is none.
-    fn scalars(entity: &Gather<'_, NODES>, view: &StepView<'_>, column: Option<&str>, level: usize) -> [f64; NODES] {
-        match column.map_or(&[][..], |column| view.nodes.history.level(column, level)) {
-            [] => [0.0; NODES],
-            values => entity.scalars(values),
-        }
-    }
-
     /// Velocity relative to the mesh, between both ends of the step.
     fn velocities(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>, theta: f64) -> [[f64; 3]; NODES] {
         let mut out = [[0.0; 3]; NODES];
@@ -70,11 +62,11 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
     type State = ();
 
     fn unknowns() -> [LocalUnknown; NODES] {
-        std::array::from_fn(|node| LocalUnknown { node: node as u8, variable: crate::variables::TEMPERATURE.scalar() })
+        LocalUnknown::of_nodes(crate::variables::TEMPERATURE.scalar())
     }
 
     fn own_unknowns(&self) -> [LocalUnknown; NODES] {
-        std::array::from_fn(|node| LocalUnknown { node: node as u8, variable: self.columns.unknown })
+        LocalUnknown::of_nodes(self.columns.unknown)
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
@@ -125,12 +117,12 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             step.theta = 1.0;
         }
         let unknown = self.columns.unknown.column;
-        let now = Self::scalars(entity, view, Some(unknown), 0);
+        let now = nodal(entity, view, Some(unknown), 0);
         let old = match T::CARRIED {
-            true => Self::scalars(entity, view, Some("PROJECTED_SCALAR1"), 0),
-            false => Self::scalars(entity, view, Some(unknown), 1),
+            true => nodal(entity, view, Some("PROJECTED_SCALAR1"), 0),
+            false => nodal(entity, view, Some(unknown), 1),
         };
-        let source = Self::scalars(entity, view, self.columns.volume_source.filter(|_| !T::CARRIED), 0);
+        let source = nodal(entity, view, self.columns.volume_source.filter(|_| !T::CARRIED), 0);
         let velocity = self.velocities(entity, view, step.theta);
         let [conductivity, density, specific_heat] = [&self.conductivity, &self.density, &self.specific_heat]
             .map(|own| own.in_element(entity, view.nodes, &now));
@@ -146,10 +138,10 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             if determinant <= 0.0 {
                 return Err("it is inverted".to_owned());
             }
-            let value = |nodal: &[f64; NODES]| n.iter().zip(nodal).map(|(n, value)| n * value).sum::<f64>();
-            let slope = |nodal: &[f64; NODES]| {
+            let value = |at: &[f64; NODES]| n.iter().zip(at).map(|(n, value)| n * value).sum::<f64>();
+            let slope = |at: &[f64; NODES]| {
                 let mut out = [0.0; 3];
-                (0..NODES).for_each(|i| (0..DIM).for_each(|a| out[a] += dn[i][a] * nodal[i]));
+                (0..NODES).for_each(|i| (0..DIM).for_each(|a| out[a] += dn[i][a] * at[i]));
                 out
             };
             let part = |a: usize| (0..NODES).map(|i| n[i] * velocity[i][a]).sum();

@@ -36,10 +36,23 @@ impl Terms for Revolution {
     const AXISYMMETRIC: bool = true;
 }
 
-macro_rules! elements {
-    ($name:literal, $terms:ty, $about:literal, $source:literal; $($suffix:literal: $nodes:literal, $dim:literal $(, $alias:literal)*;)+) => {
+/// Names that Kratos has beside those of shape and nodes.
+macro_rules! aliases {
+    ("EulerianConvDiff", "2D3N") => {
+        &["EulerianConvDiff2D"]
+    };
+    ("EulerianConvDiff", "3D4N") => {
+        &["EulerianConvDiff3D"]
+    };
+    ($name:tt, $suffix:tt) => {
+        &[]
+    };
+}
+
+macro_rules! balance {
+    ($name:tt, $terms:ty, $about:literal, $source:literal; $($suffix:tt: $nodes:literal, $dim:literal;)+) => {
         $(register! { ElementEntry concat!($name, $suffix),
-            aliases: &[$($alias),*],
+            aliases: aliases!($name, $suffix),
             about: $about,
             source: $source,
             cell: Shape::of($dim, $nodes),
@@ -49,70 +62,9 @@ macro_rules! elements {
     };
 }
 
-elements! { "EulerianConvDiff", ConvectionDiffusion,
-"heat that is stored, conducted and carried by VELOCITY less MESH_VELOCITY; stabilised along the flow, where asked across it",
-"ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q, weighted by N + τ v·∇N";
-"2D3N": 3, 2, "EulerianConvDiff2D";
-"2D4N": 4, 2;
-"2D6N": 6, 2;
-"2D8N": 8, 2;
-"2D9N": 9, 2;
-"3D4N": 4, 3, "EulerianConvDiff3D";
-"3D6N": 6, 3;
-"3D8N": 8, 3;
-"3D10N": 10, 3;
-"3D15N": 15, 3;
-"3D20N": 20, 3;
-"3D27N": 27, 3;
-}
-
-elements! { "LaplacianElement", Laplacian,
-"heat that is conducted, without storage: the state at rest whatever the solver",
-"∇·(k ∇T) + Q = 0";
-"2D3N": 3, 2;
-"2D4N": 4, 2;
-"2D6N": 6, 2;
-"2D8N": 8, 2;
-"2D9N": 9, 2;
-"3D4N": 4, 3;
-"3D6N": 6, 3;
-"3D8N": 8, 3;
-"3D10N": 10, 3;
-"3D15N": 15, 3;
-"3D20N": 20, 3;
-"3D27N": 27, 3;
-}
-
-elements! { "EulerianDiffusion", Diffusion,
-"the second half of a semi-implicit step: conduction from PROJECTED_SCALAR1, which was carried along",
-"ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2)";
-"2D3N": 3, 2;
-"2D4N": 4, 2;
-"2D6N": 6, 2;
-"2D8N": 8, 2;
-"2D9N": 9, 2;
-"3D4N": 4, 3;
-"3D6N": 6, 3;
-"3D8N": 8, 3;
-"3D10N": 10, 3;
-"3D15N": 15, 3;
-"3D20N": 20, 3;
-"3D27N": 27, 3;
-}
-
-elements! { "AxisymmetricEulerianConvectionDiffusion", Revolution,
-"EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring",
-"ρc (∂T/∂t + v·∇T) = (1/y) ∇·(y k ∇T) + Q, weighted by N + τ v·∇N";
-"2D3N": 3, 2;
-"2D4N": 4, 2;
-"2D6N": 6, 2;
-"2D8N": 8, 2;
-"2D9N": 9, 2;
-}
-
-macro_rules! places {
-    ($($name:literal: $nodes:literal, $dim:literal;)+) => {
-        $(register! { ElementEntry $name,
+macro_rules! place {
+    ($name:literal; $($suffix:literal: $nodes:literal, $dim:literal;)+) => {
+        $(register! { ElementEntry concat!($name, $suffix),
             about: "a place of the mesh without physics; a solver of heat puts its elements there",
             cell: Shape::of($dim, $nodes),
             space: $dim,
@@ -121,17 +73,45 @@ macro_rules! places {
     };
 }
 
-places! {
-"Element2D3N": 3, 2;
-"Element2D4N": 4, 2;
-"Element2D6N": 6, 2;
-"Element2D8N": 8, 2;
-"Element2D9N": 9, 2;
-"Element3D4N": 4, 3;
-"Element3D6N": 6, 3;
-"Element3D8N": 8, 3;
-"Element3D10N": 10, 3;
-"Element3D15N": 15, 3;
-"Element3D20N": 20, 3;
-"Element3D27N": 27, 3;
+/// Registers a kind of element on the shapes in the plane, or on all.
+macro_rules! on_shapes {
+    (plane, $register:ident; $($kind:tt)+) => {
+        $register! { $($kind)+;
+            "2D3N": 3, 2;
+            "2D4N": 4, 2;
+            "2D6N": 6, 2;
+            "2D8N": 8, 2;
+            "2D9N": 9, 2;
+        }
+    };
+    (all, $register:ident; $($kind:tt)+) => {
+        on_shapes! { plane, $register; $($kind)+ }
+        $register! { $($kind)+;
+            "3D4N": 4, 3;
+            "3D6N": 6, 3;
+            "3D8N": 8, 3;
+            "3D10N": 10, 3;
+            "3D15N": 15, 3;
+            "3D20N": 20, 3;
+            "3D27N": 27, 3;
+        }
+    };
 }
+
+on_shapes! { all, balance; "EulerianConvDiff", ConvectionDiffusion,
+"heat that is stored, conducted and carried by VELOCITY less MESH_VELOCITY; stabilised along the flow, where asked across it",
+"ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q, weighted by N + τ v·∇N" }
+
+on_shapes! { all, balance; "LaplacianElement", Laplacian,
+"heat that is conducted, without storage: the state at rest whatever the solver",
+"∇·(k ∇T) + Q = 0" }
+
+on_shapes! { all, balance; "EulerianDiffusion", Diffusion,
+"the second half of a semi-implicit step: conduction from PROJECTED_SCALAR1, which was carried along",
+"ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2)" }
+
+on_shapes! { plane, balance; "AxisymmetricEulerianConvectionDiffusion", Revolution,
+"EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring",
+"ρc (∂T/∂t + v·∇T) = (1/y) ∇·(y k ∇T) + Q, weighted by N + τ v·∇N" }
+
+on_shapes! { all, place; "Element" }

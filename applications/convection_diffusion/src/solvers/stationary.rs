@@ -11,12 +11,10 @@ register! { SolverEntry "stationary",
     defaults: include_str!("../../../../configs/solvers/stationary.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/stationary.json"))],
     build: SolverDefinition {
-        variant: |_| None,
         variables: &super::VARIABLES,
-        explicit: false,
         scheme: |_| Ok(SCHEME.to_owned()),
         adapt: super::adapt,
         adopt: |settings, part, report| super::take_up(settings, [1.0, 0.0, 0.0, 0.0], part, report),
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }

@@ -54,14 +54,7 @@ fn rename(node: &mut Node, from: &str, to: &str) {
             }
         }
         Value::Array(items) => items.iter_mut().for_each(|item| rename(item, from, to)),
-        Value::Object(members) => {
-            let keys: Vec<String> = members.keys().map(str::to_owned).collect();
-            for key in keys {
-                if let Some(inner) = members.get_mut(&key) {
-                    rename(inner, from, to);
-                }
-            }
-        }
+        Value::Object(members) => members.values_mut().for_each(|inner| rename(inner, from, to)),
         _ => {}
     }
 }
@@ -71,12 +64,9 @@ register! { SolverEntry "thermo_mechanically_coupled",
     about: "heat and mechanics on one mesh: in each step heat first, on the mesh as the last step left it, then the structure",
     defaults: include_str!("../../../../configs/solvers/thermo_mechanically_coupled.json"),
     build: SolverDefinition {
-        variant: |_| None,
-        variables: &[],
-        explicit: false,
         scheme: |_| Ok(SCHEME.to_owned()),
         adapt: |defaults| defaults.require(&[STRUCTURE, EXTENSION]),
-        adopt: |_, _, _| Ok(()),
         unfold,
+        ..SolverDefinition::PLAIN
     },
 }

@@ -12,9 +12,7 @@ register! { SolverEntry "transient",
     defaults: include_str!("../../../../configs/solvers/transient.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/transient.json"))],
     build: SolverDefinition {
-        variant: |_| None,
         variables: &super::VARIABLES,
-        explicit: false,
         scheme: |settings| {
             let method = settings.get_str("time_integration_method")?;
             if method == "implicit" {
@@ -37,6 +35,6 @@ register! { SolverEntry "transient",
             warn_of_no_storage(part, report);
             Ok(())
         },
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }

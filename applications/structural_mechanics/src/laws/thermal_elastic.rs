@@ -21,7 +21,7 @@ enum Quantity {
 
 impl Quantity {
     fn of(properties: &Properties, name: &str) -> Result<Self> {
-        let table = properties.tables.get(&("TEMPERATURE".to_owned(), name.to_owned()));
+        let table = properties.table_over("TEMPERATURE", name);
         table.map_or_else(|| properties.require(name).map(Self::Constant), |table| Ok(Self::Table(table.clone())))
     }
 

@@ -20,7 +20,6 @@ register! { SolverEntry "Dynamic",
             (method == Some("explicit")).then_some("ExplicitDynamic")
         },
         variables: &VARIABLES,
-        explicit: false,
         scheme: |settings| {
             let method = settings.get_str("time_integration_method")?;
             if method != "implicit" {
@@ -37,7 +36,6 @@ register! { SolverEntry "Dynamic",
             settings.get_str("scheme_type").map(str::to_owned)
         },
         adapt: super::adapt,
-        adopt: |_, _, _| Ok(()),
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }

@@ -9,12 +9,9 @@ register! { SolverEntry "ExplicitDynamic",
     defaults: include_str!("../../../../configs/solvers/explicit_dynamic.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_dynamic.json"))],
     build: SolverDefinition {
-        variant: |_| None,
         variables: &super::dynamic_solver::VARIABLES,
         explicit: true,
-        scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
         adapt: super::adapt,
-        adopt: |_, _, _| Ok(()),
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }

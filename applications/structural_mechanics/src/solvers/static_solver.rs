@@ -10,12 +10,9 @@ register! { SolverEntry "Static",
     defaults: super::STATIC_DEFAULTS,
     like: &[("kratos", include_str!("../../../../configs/like_kratos/static.json"))],
     build: SolverDefinition {
-        variant: |_| None,
         variables: &super::VARIABLES,
-        explicit: false,
         scheme: |_| Ok("static".to_owned()),
         adapt: super::adapt,
-        adopt: |_, _, _| Ok(()),
-        unfold: |_| Ok(()),
+        ..SolverDefinition::PLAIN
     },
 }
