@@ -1,5 +1,6 @@
 //! What every engine does before and after its own work: look at the input, refine and measure the answer.
 
+use crate::ghosts::Ghosts;
 use crate::solver::SolveError;
 use crate::system::System;
 use crate::vector;
@@ -45,12 +46,10 @@ pub(crate) fn input(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), S
 
 /// Names equations whose row is zero, which no solver can solve.
 pub(crate) fn empty_rows(system: &System<'_>) -> Result<(), SolveError> {
-    let is_zero = |i: usize| {
-        system.bulk.row(i).1.iter().all(|&a| a == 0.0)
-            && system.coupling.is_none_or(|coupling| coupling.row(i).1.iter().all(|&a| a == 0.0))
-    };
-    let own = system.shared.map_or(system.equations(), |ghosts| ghosts.own());
-    let empty: Vec<usize> = (0..own).filter(|&i| is_zero(i)).collect();
+    let is_zero = |i: usize| system.row(i).next().is_none();
+    let is_own = system.shared.map(Ghosts::is_own);
+    let own = (0..system.equations()).filter(|&i| is_own.as_ref().is_none_or(|is_own| is_own[i]));
+    let empty: Vec<usize> = own.filter(|&i| is_zero(i)).collect();
     if empty.is_empty() {
         return Ok(());
     }

@@ -29,13 +29,17 @@ pub trait Processes: Send + Sync {
 /// An item of another process: who owns it, and its number among the items there.
 pub type Owned = (u32, u32);
 
-/// Where the items of a vector are: the own ones first, then ghosts.
+/// Where the items of a vector are: own ones, ghosts, and others of which this process knows nothing.
 #[derive(Clone)]
 pub struct Ghosts {
     processes: Option<Arc<dyn Processes>>,
+    /// Places of own items, ascending; empty where they are the first.
+    places: Vec<u32>,
     own: usize,
-    /// The owner of each ghost, with its number there.
-    owned: Vec<Owned>,
+    /// Places of all items.
+    all: usize,
+    /// Each ghost: its place, and its owner with its number among the items that this one owns.
+    owned: Vec<(u32, Owned)>,
     /// Own items that each process has ghosts of.
     sent: Vec<Vec<u32>>,
     /// Ghosts of items of each process.
@@ -51,19 +55,58 @@ impl fmt::Debug for Ghosts {
 impl Ghosts {
     /// A process that has all items itself.
     pub fn none(own: usize) -> Self {
-        Self { processes: None, own, owned: Vec::new(), sent: Vec::new(), received: Vec::new() }
+        let (places, owned, sent, received) = Default::default();
+        Self { processes: None, places, own, all: own, owned, sent, received }
     }
 
-    /// A process with `own` items and ghosts of these; collective.
-    pub fn new(processes: Arc<dyn Processes>, own: usize, owned: Vec<Owned>) -> Self {
+    /// A process with `own` items, the first, and ghosts of these after them; collective.
+    pub(crate) fn after(processes: Arc<dyn Processes>, own: usize, owned: &[Owned]) -> Self {
+        let ghosts: Vec<(u32, Owned)> = (own as u32..).zip(owned.iter().copied()).collect();
+        let all = own + ghosts.len();
+        let mut made = Self::new(processes, (0..own as u32).collect(), all, ghosts);
+        made.places = Vec::new();
+        made
+    }
+
+    /// A process with own items at `places`, ascending, among `all`, and these ghosts; collective.
+    pub fn new(processes: Arc<dyn Processes>, places: Vec<u32>, all: usize, owned: Vec<(u32, Owned)>) -> Self {
         let mut received = vec![Vec::new(); processes.size()];
         let mut wanted = vec![Vec::new(); processes.size()];
-        for (at, &(owner, item)) in owned.iter().enumerate() {
-            received[owner as usize].push((own + at) as u32);
+        for &(place, (owner, item)) in &owned {
+            received[owner as usize].push(place);
             wanted[owner as usize].push(item);
         }
-        let sent = processes.exchange_indices(&wanted);
-        Self { processes: Some(processes), own, owned, sent, received }
+        let mut sent = processes.exchange_indices(&wanted);
+        sent.iter_mut().flatten().for_each(|item| *item = places[*item as usize]);
+        Self { processes: Some(processes), own: places.len(), places, all, owned, sent, received }
+    }
+
+    /// Own entries of a vector over all places.
+    pub(crate) fn narrow(&self, all: &[f64]) -> Vec<f64> {
+        match self.places.is_empty() {
+            true => all[..self.own].to_vec(),
+            false => self.places.iter().map(|&place| all[place as usize]).collect(),
+        }
+    }
+
+    /// A vector over all places with own entries, and zero elsewhere.
+    pub(crate) fn widen(&self, own: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; self.all];
+        match self.places.is_empty() {
+            true => all[..self.own].copy_from_slice(own),
+            false => self.places.iter().zip(own).for_each(|(&place, &value)| all[place as usize] = value),
+        }
+        all
+    }
+
+    /// Of each place, whether it is that of an own item.
+    pub(crate) fn is_own(&self) -> Vec<bool> {
+        let mut is_own = vec![false; self.all];
+        match self.places.is_empty() {
+            true => is_own[..self.own].fill(true),
+            false => self.places.iter().for_each(|&place| is_own[place as usize] = true),
+        }
+        is_own
     }
 
     /// The processes, where there are several.
@@ -76,13 +119,13 @@ impl Ghosts {
         self.own
     }
 
-    /// Number of own items and ghosts.
+    /// Number of all places.
     pub(crate) fn all(&self) -> usize {
-        self.own + self.owned.len()
+        self.all
     }
 
-    /// The owner of each ghost, with its number there.
-    pub(crate) fn owned(&self) -> &[Owned] {
+    /// Each ghost: its place, and its owner with its number there.
+    pub(crate) fn owned(&self) -> &[(u32, Owned)] {
         &self.owned
     }
 

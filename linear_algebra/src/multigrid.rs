@@ -74,8 +74,8 @@ impl Hierarchy {
 pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
-    /// Of the bulk's rows, with the stamp of its graph and their number, which grows with ghosts.
-    runs: Option<(u64, usize, Runs)>,
+    /// Of the bulk's rows, with the stamp of its graph.
+    runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
     learnt: Learnt,
     /// Relative residual to reach.
@@ -149,12 +149,8 @@ impl MultigridSolver {
 
     /// Brings the constraints and the hierarchy up to date, or says which multiplier nothing determines; collective.
     fn prepare(&mut self, system: &System<'_>) -> Result<(), String> {
-        if self
-            .runs
-            .as_ref()
-            .is_none_or(|(graph, rows, _)| [*graph, *rows as u64] != [system.bulk_graph, system.bulk.rows as u64])
-        {
-            self.runs = Some((system.bulk_graph, system.bulk.rows, system.bulk.runs()));
+        if self.runs.as_ref().is_none_or(|(graph, _)| *graph != system.bulk_graph) {
+            self.runs = Some((system.bulk_graph, system.bulk.runs()));
         }
         let stamps = Stamps::of(system);
         if self.constrained.as_ref().is_none_or(|(_, old)| *old != stamps) {
@@ -188,50 +184,49 @@ impl MultigridSolver {
     fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64], most: usize) -> Progress {
         let (constrained, _) = self.constrained.as_ref().expect("prepared");
         let hierarchy = self.hierarchy.as_mut().expect("prepared");
-        let (.., runs) = self.runs.as_ref().expect("prepared");
-        let (scales, ghosts) = (&constrained.row_scales, constrained.ghosts());
+        let (_, runs) = self.runs.as_ref().expect("prepared");
+        let ghosts = constrained.ghosts();
+        let scales = &ghosts.narrow(&constrained.row_scales);
         let scale = |r: &mut [f64]| r.iter_mut().zip(scales).for_each(|(r, s)| *r *= s);
-        let mut b = rhs[..ghosts.own()].to_vec();
+        let (mut b, mut start) = (ghosts.narrow(rhs), ghosts.narrow(x));
         scale(&mut b);
         let multiply = |x: &[f64], y: &mut [f64]| {
             if system.shared.is_none() {
                 system.mul_vec_by_runs(runs, x, y);
             } else {
-                let (mut all, mut found) = (x.to_vec(), vec![0.0; system.equations()]);
-                all.resize(system.equations(), 0.0);
+                let (mut all, mut found) = (ghosts.widen(x), vec![0.0; system.equations()]);
                 ghosts.spread(&mut all, 1);
                 system.mul_vec_by_runs(runs, &all, &mut found);
-                y.copy_from_slice(&found[..y.len()]);
+                y.copy_from_slice(&ghosts.narrow(&found));
             }
             scale(y);
         };
-        let x = &mut x[..ghosts.own()];
-        if !ghosts.any(x.iter().any(|x| *x != 0.0)) {
-            self.learnt.answers.start(system.bulk_graph, ghosts, multiply, &b, 0.5 * self.tolerance, x);
+        if !ghosts.any(start.iter().any(|x| *x != 0.0)) {
+            self.learnt.answers.start(system.bulk_graph, ghosts, multiply, &b, 0.5 * self.tolerance, &mut start);
         }
         let precondition = |r: &mut [f64]| {
             r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);
             if system.shared.is_none() {
                 constrained.apply(system, &hierarchy.levels, r);
             } else {
-                let mut all = r.to_vec();
-                all.resize(system.equations(), 0.0);
+                let mut all = ghosts.widen(r);
                 constrained.apply(system, &hierarchy.levels, &mut all);
-                r.copy_from_slice(&all[..r.len()]);
+                r.copy_from_slice(&ghosts.narrow(&all));
             }
         };
         let (tolerance, iterations) = (self.tolerance, self.settings.iterations.min(most));
         let has_multipliers = ghosts.any(system.layout.multiplier.contains(&true));
         let progress = if system.is_symmetric() && !has_multipliers {
-            conjugate_gradient(ghosts, multiply, precondition, &b, x, iterations, tolerance)
+            conjugate_gradient(ghosts, multiply, precondition, &b, &mut start, iterations, tolerance)
         } else {
-            gmres(ghosts, multiply, precondition, &b, x, RESTART, iterations, tolerance)
+            gmres(ghosts, multiply, precondition, &b, &mut start, RESTART, iterations, tolerance)
         };
         let digits = (progress.start / progress.relative_residual).log10();
         if digits > TELLING {
             hierarchy.last = progress.iterations as f64 / digits;
             hierarchy.first.get_or_insert(hierarchy.last);
         }
+        x.copy_from_slice(&ghosts.widen(&start));
         progress
     }
 
@@ -265,12 +260,12 @@ impl MultigridSolver {
             return Err(format!("multigrid reached only {relative_residual:.1e} after {iterations} iterations"));
         }
         let ghosts = system.ghosts();
-        self.learnt.answers.keep(system.bulk_graph, &ghosts, &x[..ghosts.own()]);
+        self.learnt.answers.keep(system.bulk_graph, &ghosts, &ghosts.narrow(x));
         ghosts.spread(x, 1);
-        let size = ghosts.norm(&rhs[..ghosts.own()]);
+        let size = ghosts.norm(&ghosts.narrow(rhs));
         let mut residual = vec![0.0; rhs.len()];
         system.residual(rhs, x, &mut residual);
-        let left = ghosts.norm(&residual[..ghosts.own()]);
+        let left = ghosts.norm(&ghosts.narrow(&residual));
         Ok(SolveReport {
             engine: if system.shared.is_some() { "multigrid over ranks" } else { self.name() },
             relative_residual: if size > 0.0 { left / size } else { 0.0 },

@@ -78,7 +78,8 @@ pub struct System<'a> {
     /// Whether `coupling` is symmetric.
     pub coupling_symmetric: bool,
     /// Which equations are those of other processes, where several share the system: own rows are complete, those of ghosts
-    /// only where multipliers act on their node. Own nodes come first; `None` where all equations are here.
+    /// only where multipliers act on their node. The bulk then has rows for the first equations alone, and the coupling the
+    /// rest of them. `None` where all equations are here.
     pub shared: Option<&'a Ghosts>,
 }
 
@@ -101,7 +102,7 @@ impl<'a> System<'a> {
 
     /// Number of equations.
     pub fn equations(&self) -> usize {
-        self.bulk.rows
+        self.shared.map_or(self.bulk.rows, Ghosts::all)
     }
 
     /// The coupling when it has entries.
@@ -112,7 +113,7 @@ impl<'a> System<'a> {
     /// Entries of a row of both parts that are not zero: columns with values, those of the bulk first.
     pub(crate) fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + use<'a> {
         let of = move |matrix: &'a Csr| matrix.row(i).0.iter().zip(matrix.row(i).1);
-        let parts = [Some(self.bulk), self.active_coupling()];
+        let parts = [Some(self.bulk).filter(|bulk| i < bulk.rows), self.active_coupling()];
         parts.into_iter().flatten().flat_map(of).map(|(&j, &value)| (j as usize, value)).filter(|(_, v)| *v != 0.0)
     }
 
@@ -129,7 +130,9 @@ impl<'a> System<'a> {
 
     /// As [`System::mul_vec`], to the bit, with the runs of the bulk's rows.
     pub(crate) fn mul_vec_by_runs(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
-        self.bulk.mul_vec_by_runs(runs, x, y);
+        let (own, others) = y.split_at_mut(self.bulk.rows);
+        self.bulk.mul_vec_by_runs(runs, &x[..self.bulk.rows], own);
+        others.fill(0.0);
         if let Some(coupling) = self.active_coupling() {
             coupling.mul_vec_add(x, y);
         }
@@ -141,7 +144,7 @@ impl<'a> System<'a> {
     /// When a length is not the number of equations.
     pub fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) -> f64 {
         r.copy_from_slice(b);
-        self.bulk.mul_vec_subtract(x, r);
+        self.bulk.mul_vec_subtract(&x[..self.bulk.rows], &mut r[..self.bulk.rows]);
         if let Some(coupling) = self.active_coupling() {
             coupling.mul_vec_subtract(x, r);
         }

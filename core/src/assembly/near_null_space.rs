@@ -29,7 +29,7 @@ pub fn near_null_space_of_all(ranks: &Ranks, variables: &[ScalarVariable], place
     let mut appear: Vec<bool> = variables.iter().map(has).collect();
     ranks.any_of(&mut appear);
     let variables = variables.iter().zip(appear).filter(|(_, appears)| *appears).map(|(variable, _)| *variable);
-    let mut sums = [0.0, 0.0, 0.0, places.len() as f64];
+    let mut sums = [0.0, 0.0, 0.0, places.iter().flatten().count() as f64];
     places.iter().flatten().for_each(|(_, at)| (0..3).for_each(|axis| sums[axis] += at[axis]));
     ranks.sum(&mut sums);
     motions(places, &variables.collect::<Vec<_>>(), [0, 1, 2].map(|axis| sums[axis] / sums[3].max(1.0)))

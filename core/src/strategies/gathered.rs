@@ -30,6 +30,9 @@ pub(super) struct Gathered {
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,
 }
 
+/// What graphs here are stamped beyond those of one rank.
+const GATHERED: u64 = 1 << 32;
+
 /// Numbers that say what an equation is: place of its node, meaning, position.
 const NUMBERS: usize = 7;
 
@@ -154,11 +157,12 @@ impl Gathered {
         self.whole.meanings.get(equation).copied()
     }
 
-    /// The whole system, on rank 0, and the tangents of follower loads.
+    /// The whole system, on rank 0, and the tangents of follower loads. Its stamps are not those of what ranks share.
     pub(super) fn system<'a>(&'a self, own: &System<'a>) -> (System<'a>, Option<&'a Csr>) {
         let coupling = (self.coupling.sum.entries() > 0).then_some(&self.coupling.sum);
         let loads = (self.loads.sum.entries() > 0).then_some(&self.loads.sum);
-        (System { layout: &self.whole.layout, bulk: &self.bulk.sum, coupling, ..*own }, loads)
+        let bulk_graph = own.bulk_graph + GATHERED;
+        (System { layout: &self.whole.layout, bulk: &self.bulk.sum, bulk_graph, coupling, ..*own }, loads)
     }
 }
 

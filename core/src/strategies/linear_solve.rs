@@ -87,7 +87,7 @@ pub(super) fn solve(
         let own = shared.of_own(numbering, rhs);
         let mut increment = vec![0.0; own.len()];
         match solver.solve(&here, &own, &mut increment) {
-            Ok(report) => return Ok((assembler.complete(&increment[..numbering.own.len()]), report)),
+            Ok(report) => return Ok((assembler.complete(&numbering.own_of(&increment)), report)),
             Err(error) => why = Some(format!("over all ranks: {error}")),
         }
     }

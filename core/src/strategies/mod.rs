@@ -17,7 +17,7 @@ mod criterion;
 mod critical_step;
 mod displacement_criterion;
 mod explicit;
-mod owned_matrix;
+mod places;
 mod shared_rows;
 mod gathered;
 mod generalized_alpha_scheme;

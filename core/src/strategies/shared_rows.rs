@@ -1,36 +1,40 @@
 //! The system of all ranks for a solver that works where the rows are: each rank has its own rows complete, and those of
 //! nodes with multipliers beside them.
 //!
-//! Equations are counted over all ranks as [`Numbering`] does; here the own ones come first, then *ghosts*, whole nodes of
-//! others that own rows refer to, in the order in which the rank met them. Two rings of rows of ghosts with multipliers are
-//! what [`zelus_linear_algebra`] needs to eliminate these from own rows.
+//! The bulk stays where it is: what other ranks give to own rows joins the coupling, as do the rows of ghosts with multipliers,
+//! of which two rings around own rows are what multigrid needs to eliminate these from own rows.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use zelus_linear_algebra::{Csr, Ghosts, Layout, Symmetry, System};
+use zelus_linear_algebra::{Csr, Ghosts, Layout, System};
 
-use super::owned_matrix::{OwnedMatrix, OwnedNodes, Places};
+use super::places::Places;
 use crate::assembly::{Assembler, DofTable, Numbering, Place, near_null_space_of_all};
 use crate::communication::Ranks;
 use crate::model::Nodes;
 
 /// Rings of nodes with multipliers around own rows whose rows are fetched.
 const RINGS: usize = 2;
+/// Share of an entry below which a difference is round-off.
+const ROUND_OFF: f64 = 1e-14;
 
-/// Own rows of the system and those of ghosts with multipliers.
+/// A row on its way: its number, columns by numbers, and values.
+type Row = (u32, Vec<u32>, Vec<f64>);
+/// A value with its row and column.
+type Entry = (u32, u32, f64);
+
+/// What the system of all ranks has here beside the bulk of this one.
 #[derive(Default)]
 pub(super) struct SharedRows {
     /// Stamps of what it was made of.
     made_of: Option<[u64; 4]>,
-    nodes: OwnedNodes,
     /// The equations of own rows of the bulk.
     of_bulk: Places,
-    bulk: OwnedMatrix,
     /// The motions of bodies, at own equations.
     motions: Vec<Vec<f64>>,
-    /// Own rows of the coupling, and all of those that were fetched.
+    /// Own rows of the coupling with what others give to own rows, and all of those that were fetched.
     coupling: Csr,
+    /// Whether anything but elements and conditions gives to it.
     is_coupled: bool,
     layout: Layout,
     ghosts: Option<Ghosts>,
@@ -53,148 +57,202 @@ impl SharedRows {
         if !has_loads && self.made_of == Some(stamps) {
             return;
         }
-        let known = self.made_of.map_or([None; 2], |made_of| [Some(made_of[0]), Some(made_of[1])]);
-        if known[0] != Some(stamps[0]) {
-            self.nodes = OwnedNodes::new(ranks, numbering, system.layout);
-            self.of_bulk = Places::new(&self.nodes);
-            self.bulk = OwnedMatrix::new(ranks, numbering, system.bulk, &self.nodes, &mut self.of_bulk);
+        if self.made_of.is_none_or(|made_of| made_of[0] != stamps[0]) {
+            self.of_bulk = Places::new(ranks, numbering, system.layout);
+            self.of_bulk.meet(ranks, numbering, columns(numbering, &[system.bulk]).into_iter());
             self.motions = motions(assembler, numbering, dofs, nodes);
         }
-        if known != [Some(stamps[0]), Some(stamps[1])] {
-            self.bulk.fill(ranks, system.bulk);
-        }
-        let part = match (system.coupling, loads) {
-            (Some(coupling), Some(loads)) => coupling.plus(loads),
-            (Some(part), None) | (None, Some(part)) => part.clone(),
-            (None, None) => Csr::empty(system.equations()),
-        };
-        self.is_coupled = ranks.any(part.entries() > 0);
-        self.couple(ranks, numbering, &part);
+        self.is_coupled = has_loads || ranks.any(system.active_coupling().is_some());
+        self.couple(ranks, numbering, &system, loads);
         self.stamp += 1;
         self.made_of = Some(stamps);
         if has_loads {
             // Which follower loads act may change at any time, the rest stays.
-            self.made_of = Some([stamps[0], stamps[1], u64::MAX, u64::MAX]);
+            self.made_of = Some([stamps[0], u64::MAX, u64::MAX, u64::MAX]);
         }
     }
 
-    /// Makes what depends on the coupling, of which this rank has `part`; collective.
-    fn couple(&mut self, ranks: &Ranks, numbering: &Numbering, part: &Csr) {
+    /// Makes what this rank has beside its bulk; collective.
+    fn couple(&mut self, ranks: &Ranks, numbering: &Numbering, system: &System<'_>, loads: Option<&Csr>) {
         let mut places = self.of_bulk.clone();
-        let mut own = OwnedMatrix::new(ranks, numbering, part, &self.nodes, &mut places);
-        own.fill(ranks, part);
-        let fetched = self.fetch(ranks, numbering, &own.matrix, &mut places);
-        self.coupling = own.matrix;
-        let mut rows: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); places.len() - self.nodes.equations()];
-        for (row, columns, values) in fetched {
-            let sums = &mut rows[places.at(row) as usize - self.nodes.equations()];
-            for (column, value) in columns.into_iter().zip(values) {
-                *sums.entry(places.at(column)).or_default() += value;
+        let beside: Vec<&Csr> = system.coupling.into_iter().chain(loads).collect();
+        let all: Vec<&Csr> = std::iter::once(system.bulk).chain(beside.iter().copied()).collect();
+        let arrived = exchange(ranks, rows_of_others(ranks, numbering, &places, &all));
+        let met = columns(numbering, &beside).into_iter().chain(arrived.iter().flat_map(|row| row.1.iter().copied()));
+        places.meet(ranks, numbering, met);
+        let mut entries: Vec<Entry> = Vec::new();
+        for &row in &numbering.own {
+            for (columns, values) in beside.iter().map(|matrix| matrix.row(row as usize)) {
+                // As places, equations of this rank keep their numbers here.
+                entries.extend(columns.iter().zip(values).map(|(&column, &value)| (row, column, value)));
             }
         }
-        for row in rows {
-            self.coupling.columns.extend(row.keys());
-            self.coupling.values.extend(row.values());
-            self.coupling.row_starts.push(self.coupling.columns.len());
-        }
-        self.coupling.rows = places.len();
-        let bulk = &mut self.bulk.matrix;
-        bulk.rows = places.len();
-        bulk.row_starts.truncate(self.nodes.equations() + 1);
-        bulk.row_starts.resize(places.len() + 1, bulk.columns.len());
-        self.layout = places.layout(&self.nodes);
+        entries.extend(arrived.iter().flat_map(|row| placed(&places, row)));
+        let mut own = summed(places.len(), entries);
+        let fetched = fetch(ranks, numbering, system.bulk, &own, &mut places);
+        let rows = fetched.iter().flat_map(|row| complement(system.bulk, placed(&places, row).collect()));
+        let of_ghosts = summed(places.len(), rows.collect());
+        own.row_starts.resize(places.len() + 1, own.columns.len());
+        own.rows = places.len();
+        self.coupling = own.plus(&of_ghosts);
+        self.layout = places.layout(system.layout);
         let pad = |motion: &Vec<f64>| {
             let mut motion = motion.clone();
             motion.resize(places.len(), 0.0);
             motion
         };
         self.layout.near_null_space = self.motions.iter().map(pad).collect();
-        self.ghosts = Some(Ghosts::new(Arc::new(ranks.clone()), self.nodes.equations(), places.owned(numbering)));
-    }
-
-    /// The rows of ghosts with multipliers around own rows: number, columns and values; collective.
-    fn fetch(
-        &self,
-        ranks: &Ranks,
-        numbering: &Numbering,
-        coupling: &Csr,
-        places: &mut Places,
-    ) -> Vec<(u32, Vec<u32>, Vec<f64>)> {
-        let mut fetched = Vec::new();
-        let mut done = 0;
-        for _ in 0..RINGS {
-            let mut wanted = vec![Vec::new(); ranks.size()];
-            let nodes = &places.with_multipliers()[done..];
-            nodes.iter().for_each(|&[first, count]| wanted[numbering.owner(first)].extend(first..first + count));
-            done += nodes.len();
-            let asked = ranks.exchange_indices(&wanted);
-            let (mut indices, mut values) = (Vec::new(), Vec::new());
-            for list in asked {
-                let (mut of_list, mut entries) = (Vec::new(), Vec::new());
-                for number in list {
-                    let row = (number - self.nodes.first()) as usize;
-                    let parts = [self.bulk.matrix.row(row), coupling.row(row)];
-                    of_list.extend([number, parts.iter().map(|(columns, _)| columns.len() as u32).sum()]);
-                    for (columns, found) in parts {
-                        of_list.extend(columns.iter().map(|&column| places.number(column)));
-                        entries.extend_from_slice(found);
-                    }
-                }
-                indices.push(of_list);
-                values.push(entries);
-            }
-            let (indices, values) = (ranks.exchange_indices(&indices), ranks.exchange_numbers(&values));
-            let before = fetched.len();
-            for (mut indices, mut values) in
-                indices.iter().map(|list| &list[..]).zip(values.iter().map(|list| &list[..]))
-            {
-                while let [number, count, rest @ ..] = indices {
-                    let (columns, others) = rest.split_at(*count as usize);
-                    let (of_row, of_others) = values.split_at(*count as usize);
-                    fetched.push((*number, columns.to_vec(), of_row.to_vec()));
-                    (indices, values) = (others, of_others);
-                }
-            }
-            places.learn(
-                ranks,
-                numbering,
-                &self.nodes,
-                fetched[before..].iter().flat_map(|(_, columns, _)| columns.clone()),
-            );
-        }
-        fetched
+        let (own, ghosts) = (numbering.own.clone(), places.ghosts(numbering));
+        self.ghosts = Some(Ghosts::new(Arc::new(ranks.clone()), own, places.len(), ghosts));
     }
 
     /// The system as this rank has it, of which `own` is its part.
     pub(super) fn system<'a>(&'a self, own: &System<'a>) -> System<'a> {
         System {
             layout: &self.layout,
-            bulk: &self.bulk.matrix,
-            bulk_symmetry: if self.is_coupled { Symmetry::General } else { own.bulk_symmetry },
-            coupling: self.is_coupled.then_some(&self.coupling),
+            coupling: Some(&self.coupling),
             coupling_graph: self.stamp,
             coupling_values: self.stamp,
-            coupling_symmetric: false,
+            coupling_symmetric: !self.is_coupled,
+            bulk_symmetry: if self.is_coupled { zelus_linear_algebra::Symmetry::General } else { own.bulk_symmetry },
             shared: self.ghosts.as_ref(),
             ..*own
         }
     }
 
-    /// A vector of own values, of ones over the equations that this rank has, with zeros for ghosts.
+    /// The own values of a vector over the equations that this rank has, with zeros elsewhere.
     pub(super) fn of_own(&self, numbering: &Numbering, values: &[f64]) -> Vec<f64> {
-        let mut own = numbering.own_of(values);
-        own.resize(self.layout.equations(), 0.0);
-        own
+        let mut all = vec![0.0; self.layout.equations()];
+        numbering.own.iter().for_each(|&e| all[e as usize] = values[e as usize]);
+        all
     }
+}
+
+/// Numbers of the columns of own rows of these matrices.
+fn columns(numbering: &Numbering, matrices: &[&Csr]) -> Vec<u32> {
+    let mut is_met = vec![false; numbering.numbers.len()];
+    for &row in &numbering.own {
+        let columns = matrices.iter().flat_map(|matrix| matrix.row(row as usize).0);
+        columns.for_each(|&column| is_met[column as usize] = true);
+    }
+    numbering.numbers.iter().zip(is_met).filter(|(_, is_met)| *is_met).map(|(&number, _)| number).collect()
+}
+
+/// What this rank has of the rows of each other one.
+fn rows_of_others(ranks: &Ranks, numbering: &Numbering, places: &Places, matrices: &[&Csr]) -> Vec<Vec<Row>> {
+    let mut rows = vec![Vec::new(); ranks.size()];
+    for (e, &number) in numbering.numbers.iter().enumerate().filter(|(_, number)| places.own(**number).is_none()) {
+        let (mut columns, mut values) = (Vec::new(), Vec::new());
+        for (of_row, found) in matrices.iter().map(|matrix| matrix.row(e)) {
+            columns.extend(of_row.iter().map(|&column| numbering.numbers[column as usize]));
+            values.extend_from_slice(found);
+        }
+        if !columns.is_empty() {
+            rows[numbering.owner(number)].push((number, columns, values));
+        }
+    }
+    rows
+}
+
+/// Sends rows to each rank; gives those that come from all of them. Collective.
+fn exchange(ranks: &Ranks, rows: Vec<Vec<Row>>) -> Vec<Row> {
+    let (mut indices, mut values) = (Vec::new(), Vec::new());
+    for list in rows {
+        let (mut of_list, mut entries) = (Vec::new(), Vec::new());
+        for (number, columns, found) in list {
+            of_list.extend([number, columns.len() as u32]);
+            of_list.extend(columns);
+            entries.extend(found);
+        }
+        indices.push(of_list);
+        values.push(entries);
+    }
+    let (indices, values) = (ranks.exchange_indices(&indices), ranks.exchange_numbers(&values));
+    let mut arrived = Vec::new();
+    for (mut indices, mut values) in indices.iter().map(|list| &list[..]).zip(values.iter().map(|list| &list[..])) {
+        while let [number, count, rest @ ..] = indices {
+            let (columns, others) = rest.split_at(*count as usize);
+            let (of_row, of_others) = values.split_at(*count as usize);
+            arrived.push((*number, columns.to_vec(), of_row.to_vec()));
+            (indices, values) = (others, of_others);
+        }
+    }
+    arrived
+}
+
+/// The complete rows of ghosts with multipliers around own rows; collective.
+fn fetch(ranks: &Ranks, numbering: &Numbering, bulk: &Csr, coupling: &Csr, places: &mut Places) -> Vec<Row> {
+    let mut fetched: Vec<Row> = Vec::new();
+    let mut done = 0;
+    for _ in 0..RINGS {
+        let mut wanted = vec![Vec::new(); ranks.size()];
+        let nodes = &places.with_multipliers()[done..];
+        nodes.iter().for_each(|&[first, count]| wanted[numbering.owner(first)].extend(first..first + count));
+        done += nodes.len();
+        let complete = |number: u32| {
+            let row = places.own(number).expect("a row that this rank owns") as usize;
+            let (mut columns, mut values) = (Vec::new(), Vec::new());
+            for (of_row, found) in [bulk.row(row), coupling.row(row)] {
+                columns.extend(of_row.iter().map(|&place| places.number(place)));
+                values.extend_from_slice(found);
+            }
+            (number, columns, values)
+        };
+        let asked = ranks.exchange_indices(&wanted);
+        let rows = asked.into_iter().map(|list| list.into_iter().map(complete).collect()).collect();
+        let arrived = exchange(ranks, rows);
+        places.meet(ranks, numbering, arrived.iter().flat_map(|row| row.1.iter().copied()));
+        fetched.extend(arrived);
+    }
+    fetched
+}
+
+/// The entries of a row by places.
+fn placed<'a>(places: &'a Places, (number, columns, values): &'a Row) -> impl Iterator<Item = Entry> + 'a {
+    let row = places.at(*number);
+    columns.iter().zip(values).map(move |(&column, &value)| (row, places.at(column), value))
+}
+
+/// What a complete row has beside what the bulk of this rank has of it.
+fn complement(bulk: &Csr, mut row: Vec<Entry>) -> Vec<Entry> {
+    let Some(&(at, ..)) = row.first() else { return row };
+    row.sort_by_key(|entry| entry.1);
+    row.dedup_by(|entry, sum| {
+        let is_same = entry.1 == sum.1;
+        sum.2 += if is_same { entry.2 } else { 0.0 };
+        is_same
+    });
+    if (at as usize) < bulk.rows {
+        for entry in &mut row {
+            let here = bulk.find(at as usize, entry.1 as usize).map_or(0.0, |found| bulk.values[found]);
+            let left = entry.2 - here;
+            entry.2 = if left.abs() > ROUND_OFF * here.abs() { left } else { 0.0 };
+        }
+        row.retain(|entry| entry.2 != 0.0);
+    }
+    row
+}
+
+/// The matrix of these entries, those of one place added up in their order.
+fn summed(rows: usize, mut entries: Vec<Entry>) -> Csr {
+    entries.sort_by_key(|&(row, column, _)| (row, column));
+    let mut matrix = Csr::empty(rows);
+    for of_place in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        matrix.row_starts[of_place[0].0 as usize + 1] += 1;
+        matrix.columns.push(of_place[0].1);
+        matrix.values.push(of_place.iter().map(|entry| entry.2).sum());
+    }
+    (0..rows).for_each(|row| matrix.row_starts[row + 1] += matrix.row_starts[row]);
+    matrix
 }
 
 /// The motions of bodies at own equations; collective.
 fn motions(assembler: &Assembler, numbering: &Numbering, dofs: &DofTable, nodes: &Nodes) -> Vec<Vec<f64>> {
     let unknowns = assembler.equations().unknowns();
-    let place = |&equation: &u32| -> Place {
+    let mut places: Vec<Place> = vec![None; unknowns.len()];
+    for &equation in &numbering.own {
         let dof = &dofs.dofs()[unknowns[equation as usize] as usize];
-        (!dof.multiplier).then(|| (dof.variable, nodes.initial[dof.node as usize]))
-    };
-    let places: Vec<Place> = numbering.own.iter().map(place).collect();
+        places[equation as usize] = (!dof.multiplier).then(|| (dof.variable, nodes.initial[dof.node as usize]));
+    }
     near_null_space_of_all(assembler.ranks(), &dofs.variables().collect::<Vec<_>>(), &places)
 }

@@ -127,7 +127,7 @@ impl Aggregates {
         });
         restriction.add_rows(self.all());
         prolongation.columns = self.all();
-        let ghosts = Ghosts::new(ghosts.processes().expect("several").clone(), self.own, self.others);
+        let ghosts = Ghosts::after(ghosts.processes().expect("several").clone(), self.own, &self.others);
         (next, ghosts)
     }
 
@@ -175,7 +175,7 @@ pub(super) fn gathered(ghosts: &Ghosts, matrix: &BlockMatrix) -> (BlockMatrix, V
     let number = |j: u32| match (j as usize).checked_sub(ghosts.own()) {
         None => first(rank) as u32 + j,
         Some(at) => {
-            let (owner, item) = ghosts.owned()[at];
+            let (_, (owner, item)) = ghosts.owned()[at];
             first(owner as usize) as u32 + item
         }
     };

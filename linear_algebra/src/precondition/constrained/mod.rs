@@ -66,24 +66,23 @@ pub(crate) struct Constrained {
 }
 
 /// Who has which blocks, those of own equations before others'; collective.
-fn shared_blocks(ghosts: &Ghosts, place: &[u32], equation: &[u32], width: usize) -> Ghosts {
-    let blocks = equation.len() / width;
-    let Some(processes) = ghosts.processes() else { return Ghosts::none(blocks) };
+fn shared_blocks(ghosts: &Ghosts, place: &[u32], equation: &[u32], width: usize, own: usize) -> Ghosts {
+    let Some(processes) = ghosts.processes() else { return Ghosts::none(own) };
     // The block of each equation, as its owner counts them.
     let mut block: Vec<f64> =
         place.iter().map(|&p| if p == NONE { -1.0 } else { f64::from(p / width as u32) }).collect();
     ghosts.spread(&mut block, 1);
-    let own = (0..blocks).take_while(|b| (equation[b * width] as usize) < ghosts.own()).count();
-    let owned = |b: usize| -> Owned {
-        let e = equation[b * width] as usize;
-        (ghosts.owned()[e - ghosts.own()].0, block[e] as u32)
-    };
-    Ghosts::new(processes.clone(), own, (own..blocks).map(owned).collect())
+    let mut owned: Vec<Owned> = vec![(0, 0); equation.len() / width - own];
+    for &(e, (owner, _)) in ghosts.owned().iter().filter(|(e, _)| place[*e as usize] != NONE) {
+        owned[place[e as usize] as usize / width - own] = (owner, block[e as usize] as u32);
+    }
+    Ghosts::after(processes.clone(), own, &owned)
 }
 
 /// Columns of a row of both parts of a system, zeros among them.
 fn pattern(system: &System<'_>, i: usize) -> Vec<u32> {
-    let mut columns = system.bulk.row(i).0.to_vec();
+    let bulk = Some(system.bulk).filter(|bulk| i < bulk.rows);
+    let mut columns = bulk.map_or(Vec::new(), |bulk| bulk.row(i).0.to_vec());
     columns.extend(system.active_coupling().into_iter().flat_map(|coupling| coupling.row(i).0));
     columns
 }
@@ -103,7 +102,8 @@ fn summed(mut terms: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
 
 /// Sum of the entries of a row in one column.
 fn entry(system: &System<'_>, i: usize, j: usize) -> f64 {
-    system.bulk.get(i, j) + system.active_coupling().map_or(0.0, |coupling| coupling.get(i, j))
+    let bulk = if i < system.bulk.rows { system.bulk.get(i, j) } else { 0.0 };
+    bulk + system.active_coupling().map_or(0.0, |coupling| coupling.get(i, j))
 }
 
 impl Constrained {
@@ -117,25 +117,35 @@ impl Constrained {
         let nodes = layout.node.iter().max().map_or(0, |&node| node as usize + 1);
         let mut count = vec![0_u32; nodes];
         let mut slot = vec![NONE; n];
-        for i in (0..n).filter(|&i| !layout.multiplier[i]) {
+        let ghosts = system.ghosts();
+        // Own nodes come first, then those of ghosts; nothing is known of others.
+        let is_own = ghosts.is_own();
+        let mut has_place: Vec<bool> = (0..n).map(|i| is_own[i] && !layout.multiplier[i]).collect();
+        ghosts.owned().iter().for_each(|&(i, _)| has_place[i as usize] = !layout.multiplier[i as usize]);
+        let mut owns = vec![false; nodes];
+        for i in (0..n).filter(|&i| has_place[i]) {
             slot[i] = count[layout.node[i] as usize];
             count[layout.node[i] as usize] += 1;
+            owns[layout.node[i] as usize] |= is_own[i];
         }
-        let ghosts = system.ghosts();
         let width = ghosts.largest(f64::from(count.iter().max().copied().unwrap_or(0).max(1))) as usize;
         let mut block = vec![NONE; nodes];
         let mut blocks = 0;
-        for node in (0..nodes).filter(|&node| count[node] > 0) {
-            block[node] = blocks;
-            blocks += 1;
+        let mut own_blocks = 0;
+        for own in [true, false] {
+            for node in (0..nodes).filter(|&node| count[node] > 0 && owns[node] == own) {
+                block[node] = blocks;
+                blocks += 1;
+            }
+            own_blocks = if own { blocks } else { own_blocks };
         }
         let mut equation = vec![NONE; blocks as usize * width];
         let mut place = vec![NONE; n];
-        for i in (0..n).filter(|&i| !layout.multiplier[i]) {
+        for i in (0..n).filter(|&i| has_place[i]) {
             place[i] = block[layout.node[i] as usize] * width as u32 + slot[i];
             equation[place[i] as usize] = i as u32;
         }
-        let of_blocks = shared_blocks(&ghosts, &place, &equation, width);
+        let of_blocks = shared_blocks(&ghosts, &place, &equation, width, own_blocks as usize);
         let mut made = Self {
             width,
             place,
@@ -161,7 +171,8 @@ impl Constrained {
         let layout = system.layout;
         let mut of_node = std::collections::BTreeMap::<u32, Vec<u32>>::new();
         // Those of others whose rows are not here act on none that are.
-        let is_known = |i: usize| i < self.ghosts.own() || system.row(i).next().is_some();
+        let is_own = self.ghosts.is_own();
+        let is_known = |i: usize| is_own[i] || system.row(i).next().is_some();
         for i in (0..layout.equations()).filter(|&i| layout.multiplier[i] && is_known(i)) {
             of_node.entry(layout.node[i]).or_default().push(i as u32);
         }
@@ -353,7 +364,7 @@ impl Constrained {
     /// The matrix of the blocks, over its largest diagonal entry, and that entry.
     fn matrix(&self, system: &System<'_>) -> (BlockMatrix, f64) {
         let largest = (0..system.equations())
-            .filter(|&i| !system.layout.multiplier[i])
+            .filter(|&i| !system.layout.multiplier[i] && i < system.bulk.rows)
             .fold(0.0_f64, |m, i| m.max(system.bulk.get(i, i).abs()));
         let largest = self.ghosts.largest(largest);
         let largest = if largest > 0.0 { largest } else { 1.0 };
@@ -463,7 +474,8 @@ impl Constrained {
 
     /// What each group of this process prescribes: its first unknown and how many motions.
     pub(crate) fn prescribed(&self) -> Vec<(u32, u32)> {
-        let own = self.groups.iter().filter(|group| (group.own[0] as usize) < self.ghosts.own());
+        let is_own = self.ghosts.is_own();
+        let own = self.groups.iter().filter(|group| is_own[group.own[0] as usize]);
         own.map(|group| (group.own[0], group.elimination.prescribed as u32)).collect()
     }
 

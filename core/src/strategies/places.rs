@@ -1,0 +1,139 @@
+//! Where the equations of several ranks are in the vectors of this one.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+use zelus_linear_algebra::{Layout, Owned};
+
+use crate::assembly::Numbering;
+use crate::communication::Ranks;
+
+/// The equations that this rank has, and the nodes of those it owns.
+#[derive(Default)]
+struct Here {
+    first: u32,
+    /// Equations that it owns, as it counts them.
+    own: Vec<u32>,
+    numbers: Vec<u32>,
+    /// How it counts those of others, by their numbers.
+    at: FxHashMap<u32, u32>,
+    /// First number, equations, and a bit for each that is a multiplier, of the node of each own equation.
+    nodes: Vec<[u32; 3]>,
+}
+
+/// Places of equations: those that this rank has as it counts them, then those it meets in rows of others. *Ghosts* are the
+/// nodes of others that it has met in rows.
+#[derive(Clone, Default)]
+pub(super) struct Places {
+    here: Arc<Here>,
+    /// Number of each equation that is not here.
+    beyond: Vec<u32>,
+    at: FxHashMap<u32, u32>,
+    /// Equations of ghosts, by place and number.
+    ghosts: Vec<(u32, u32)>,
+    is_ghost: FxHashMap<u32, [u32; 3]>,
+    /// First number and equations of each ghost with multipliers.
+    with_multipliers: Vec<[u32; 2]>,
+}
+
+impl Places {
+    /// The equations of `layout`; no ghosts yet.
+    pub(super) fn new(ranks: &Ranks, numbering: &Numbering, layout: &Layout) -> Self {
+        let first = numbering.starts[ranks.rank()] as u32;
+        let mut nodes: Vec<[u32; 3]> = Vec::with_capacity(numbering.own.len());
+        // Equations of a node stand together.
+        for of_node in numbering.own.chunk_by(|&a, &b| layout.node[a as usize] == layout.node[b as usize]) {
+            let bit = |(k, &e): (usize, &u32)| u32::from(layout.multiplier[e as usize]) << k;
+            let node = [first + nodes.len() as u32, of_node.len() as u32, of_node.iter().enumerate().map(bit).sum()];
+            nodes.extend(of_node.iter().map(|_| node));
+        }
+        let own = first..first + numbering.own.len() as u32;
+        let others = numbering.numbers.iter().zip(0..).filter(|(number, _)| !own.contains(number));
+        let at = others.map(|(&number, e)| (number, e)).collect();
+        let here = Here { first, own: numbering.own.clone(), numbers: numbering.numbers.clone(), at, nodes };
+        Self { here: Arc::new(here), ..Self::default() }
+    }
+
+    /// Number of all places.
+    pub(super) fn len(&self) -> usize {
+        self.here.numbers.len() + self.beyond.len()
+    }
+
+    /// Which of its own equations a number is that of.
+    pub(super) fn own(&self, number: u32) -> Option<u32> {
+        let at = number.checked_sub(self.here.first)?;
+        self.here.own.get(at as usize).copied()
+    }
+
+    /// Place of an equation that this rank has or has met, by its number over all ranks.
+    pub(super) fn at(&self, number: u32) -> u32 {
+        let others = || self.here.at.get(&number).or_else(|| self.at.get(&number)).copied();
+        self.own(number).or_else(others).expect("an equation that this rank has met")
+    }
+
+    /// Number over all ranks of the equation at a place.
+    pub(super) fn number(&self, place: u32) -> u32 {
+        let place = place as usize;
+        place.checked_sub(self.here.numbers.len()).map_or_else(|| self.here.numbers[place], |at| self.beyond[at])
+    }
+
+    /// Ghosts with multipliers in the order in which the rank met them: first number, and equations.
+    pub(super) fn with_multipliers(&self) -> &[[u32; 2]] {
+        &self.with_multipliers
+    }
+
+    /// Meets the nodes of equations; collective.
+    pub(super) fn meet(&mut self, ranks: &Ranks, numbering: &Numbering, numbers: impl Iterator<Item = u32>) {
+        let is_new = |number: &u32| self.own(*number).is_none() && !self.is_ghost.contains_key(number);
+        let mut new: Vec<u32> = numbers.filter(is_new).collect();
+        new.sort_unstable();
+        new.dedup();
+        let mut wanted = vec![Vec::new(); ranks.size()];
+        new.iter().for_each(|&number| wanted[numbering.owner(number)].push(number));
+        let node = |&number: &u32| self.here.nodes[(number - self.here.first) as usize];
+        let asked = ranks.exchange_indices(&wanted);
+        let told: Vec<Vec<u32>> = asked.iter().map(|list| list.iter().flat_map(node).collect()).collect();
+        for told in ranks.exchange_indices(&told) {
+            for &[first, count, bits] in told.as_chunks().0 {
+                if self.is_ghost.contains_key(&first) {
+                    continue;
+                }
+                for number in first..first + count {
+                    let place = self.here.at.get(&number).copied().unwrap_or_else(|| {
+                        let place = self.len() as u32;
+                        self.beyond.push(number);
+                        self.at.insert(number, place);
+                        place
+                    });
+                    self.ghosts.push((place, number));
+                    self.is_ghost.insert(number, [first, count, bits]);
+                }
+                if bits != 0 {
+                    self.with_multipliers.push([first, count]);
+                }
+            }
+        }
+    }
+
+    /// Nodes and kinds of the equations at all places, for those of the equations that are here.
+    pub(super) fn layout(&self, here: &Layout) -> Layout {
+        let (mut node, mut multiplier) = (here.node.clone(), here.multiplier.clone());
+        let mut next = node.iter().max().map_or(0, |&last| last + 1);
+        for number in &self.beyond {
+            let [first, count, bits] = self.is_ghost[number];
+            node.push(next);
+            multiplier.push(bits >> (number - first) & 1 == 1);
+            next += u32::from(number + 1 == first + count);
+        }
+        Layout { node, multiplier, near_null_space: Vec::new() }
+    }
+
+    /// Place and owner of each equation of ghosts.
+    pub(super) fn ghosts(&self, numbering: &Numbering) -> Vec<(u32, Owned)> {
+        let owned = |&(place, number): &(u32, u32)| {
+            let owner = numbering.owner(number);
+            (place, (owner as u32, number - numbering.starts[owner] as u32))
+        };
+        self.ghosts.iter().map(owned).collect()
+    }
+}
