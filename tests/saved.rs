@@ -5,6 +5,7 @@ mod support;
 #[path = "support/thread_ranks.rs"]
 mod thread_ranks;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -77,9 +78,8 @@ fn assert_same(what: &str, a: &Simulation, b: &Simulation) {
     }
 }
 
-/// Runs a case to its end; again, saved in the middle; and again from there, with other threads and further back than the
-/// files have come to.
-fn goes_on(case: &Case) {
+/// A scratch copy of a case with its changes.
+fn prepared(case: &Case) -> tempfile::TempDir {
     let scratch = scratch_copy(&root().join("tests").join(case.folder));
     let path = scratch.path().join(DECK);
     let text = std::fs::read_to_string(&path).expect("the deck");
@@ -91,6 +91,13 @@ fn goes_on(case: &Case) {
         deck["solver_settings"]["time_stepping"] = json!({"time_step": (end - start) / case.steps as f64});
     }
     std::fs::write(&path, deck.to_string()).expect("the deck");
+    scratch
+}
+
+/// Runs a case to its end; again, saved in the middle; and again from there, with other threads and further back than the
+/// files have come to.
+fn goes_on(case: &Case) {
+    let scratch = prepared(case);
     let mut whole = open(scratch.path(), 2);
     whole.run(&mut Silent).expect("a run");
     let files = contents(scratch.path());
@@ -279,30 +286,141 @@ fn files_of_output_must_be_there() {
     assert!(error.contains("points_1.dat"), "{error}");
 }
 
-/// Several ranks save a file each, and go on with the same bits; as many as they were.
+fn of_rank(folder: &Path, ranks: &Ranks) -> Simulation {
+    let options = RunOptions { threads: Some(1), ranks: ranks.clone(), ..RunOptions::default() };
+    Simulation::open(&folder.join(DECK), &options).expect("a deck")
+}
+
+/// Several ranks save one file, and go on with the same bits where they are as many as they were.
 #[test]
 fn ranks_go_on_as_many_as_they_were() {
     for case in ["contact_2d/friction_slide", "contact_3d/friction_slide"] {
         let scratch = scratch_copy(&root().join("tests/cases").join(case));
         let saved = scratch.path().join("saved");
-        let of_rank = |ranks: &Ranks| {
-            let options = RunOptions { threads: Some(1), ranks: ranks.clone(), ..RunOptions::default() };
-            Simulation::open(&scratch.path().join(DECK), &options).expect("a deck")
-        };
         on_threads(3, |ranks| {
-            let mut whole = of_rank(&ranks);
+            let mut whole = of_rank(scratch.path(), &ranks);
             whole.run(&mut Silent).expect("a run");
-            let mut first = of_rank(&ranks);
+            let mut first = of_rank(scratch.path(), &ranks);
             assert!(first.step(&mut Silent).expect("a step"));
             first.save(&saved).expect("a saved run");
             drop(first);
-            let mut second = of_rank(&ranks);
+            let mut second = of_rank(scratch.path(), &ranks);
             second.load(&saved, &mut Silent).expect("a run to go on with");
             second.run(&mut Silent).expect("the rest");
             assert_same(&format!("{case}, {ranks:?}"), &whole, &second);
         });
-        let refusals =
-            on_threads(2, |ranks| of_rank(&ranks).load(&saved, &mut Silent).expect_err("other ranks").to_string());
-        assert!(refusals.iter().all(|said| said.contains("saved by 3 ranks, and 2 run now")), "{refusals:?}");
     }
+}
+
+/// Numbers of all nodes of a run that some ranks have made together, by name and id; those of the owners.
+fn by_id(simulation: &Simulation) -> BTreeMap<String, BTreeMap<usize, Vec<f64>>> {
+    let nodes = &simulation.part().expect("a part").nodes;
+    let mut out = BTreeMap::new();
+    for (kind, fields) in [("history", &nodes.history), ("values", &nodes.values)] {
+        for (name, field) in fields.iter() {
+            let of_node = |at: usize| field.levels[0][at * field.components..][..field.components].to_vec();
+            let owned = (0..nodes.len()).filter(|&at| simulation.part().is_some_and(|part| part.owns_node(at)));
+            out.insert(format!("{kind} {name}"), owned.map(|at| (nodes.ids[at], of_node(at))).collect());
+        }
+    }
+    out
+}
+
+type Numbers = BTreeMap<String, BTreeMap<usize, Vec<f64>>>;
+
+fn joined(of_ranks: Vec<Numbers>) -> Numbers {
+    let mut all = Numbers::new();
+    for (name, values) in of_ranks.into_iter().flatten() {
+        all.entry(name).or_default().extend(values);
+    }
+    all
+}
+
+/// The largest difference of two runs over the largest number, by name; of what both have.
+fn differences(a: &Numbers, b: &Numbers) -> Vec<(String, f64)> {
+    let difference = |(name, values): (&String, &BTreeMap<usize, Vec<f64>>)| {
+        let other = &b[name];
+        assert!(values.keys().eq(other.keys()), "{name}");
+        let numbers = || values.iter().flat_map(|(id, own)| own.iter().zip(&other[id]));
+        let most = numbers().fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let scale = numbers().fold(0.0_f64, |most, (a, _)| most.max(a.abs()));
+        (name.clone(), if most > 0.0 { most / scale } else { 0.0 })
+    };
+    a.iter().map(difference).collect()
+}
+
+/// All steps of a case over `ranks` ranks.
+fn whole_over(folder: &Path, ranks: usize) -> Numbers {
+    joined(on_threads(ranks, |ranks| {
+        let mut whole = of_rank(folder, &ranks);
+        whole.run(&mut Silent).expect("a run");
+        by_id(&whole)
+    }))
+}
+
+/// Runs a case over `were` ranks, saved on the way, and on from there over `are`: displacements are those of the run that was not
+/// stopped to 1e-10, and no number is farther from it than those of a run over `are` ranks.
+fn goes_on_elsewhere(case: &Case, were: usize, are: usize) {
+    let scratch = prepared(case);
+    let [whole, other] = [were, are].map(|ranks| whole_over(scratch.path(), ranks));
+    let saved = scratch.path().join("saved");
+    on_threads(were, |ranks| {
+        let mut first = of_rank(scratch.path(), &ranks);
+        for _ in 0..(case.steps / 2).max(1) {
+            assert!(first.step(&mut Silent).expect("a step"));
+        }
+        first.save(&saved).expect("a saved run");
+    });
+    let again = joined(on_threads(are, |ranks| {
+        let mut second = of_rank(scratch.path(), &ranks);
+        second.load(&saved, &mut Silent).expect("a run to go on with");
+        second.run(&mut Silent).expect("the rest");
+        by_id(&second)
+    }));
+    for ((name, here), (_, there)) in differences(&whole, &again).into_iter().zip(differences(&whole, &other)) {
+        let most = if name.ends_with(" DISPLACEMENT") { 1e-10 } else { (10.0 * there).max(1e-10) };
+        assert!(here <= most, "{}, {were} ranks and then {are}: {name} differs by {here:e}, {there:e}", case.folder);
+    }
+}
+
+fn elsewhere(cases: &[Case]) {
+    for case in cases {
+        [(1, 3), (3, 1), (2, 3)].into_iter().for_each(|(were, are)| goes_on_elsewhere(case, were, are));
+    }
+}
+
+#[test]
+fn contact_goes_on_over_other_ranks() {
+    elsewhere(&[
+        Case { folder: "cases/contact_2d/friction_slide", change: with_files, steps: 5 },
+        case("cases/contact_3d/friction_slide", 4),
+        case("cases/contact_2d/uzawa", 4),
+        case("cases/contact_2d/nitsche", 4),
+        case("cases/self_contact/slit", 4),
+        Case {
+            folder: "cases/mpc/pressed_and_opened",
+            change: |deck| deck["problem_data"]["end_time"] = json!(1.0),
+            steps: 4,
+        },
+        case("cases/mesh_tying/quadrilaterals", 4),
+    ]);
+}
+
+#[test]
+fn motion_goes_on_over_other_ranks() {
+    elsewhere(&[
+        case("decks/bouncing_block", 40),
+        Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "generalized_alpha"), steps: 40 },
+        Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "bdf2"), steps: 40 },
+        case("cases/contact_3d/explicit_touch", 50),
+    ]);
+}
+
+#[test]
+fn materials_that_remember_go_on_over_other_ranks() {
+    elsewhere(&[
+        case("decks/squeezed_block", 6),
+        case("cases/structural/mixture_of_layers", 6),
+        case("cases/structural/stages_of_plastic_flow", 0),
+    ]);
 }

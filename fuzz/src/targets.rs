@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use zelus::core::io::{read_mesh, read_saved, results::vtu_of};
+use zelus::core::io::{SavedFile, read_mesh, results::vtu_of};
 use zelus::core::model::ModelPart;
 use zelus::core::parameters::{Document, Expression};
 use zelus::{RunOptions, Silent, Simulation};
@@ -14,8 +14,8 @@ const DECK: [(&str, &str); 3] = [
     ("StructuralMaterials.json", include_str!("../deck/StructuralMaterials.json")),
     ("mesh.mdpa", include_str!("../deck/mesh.mdpa")),
 ];
-/// Bytes of a saved run before the length of its contents: its mark and version.
-const MARK: usize = 16 + 4;
+/// Bytes of a saved run of one process before the length of its contents: mark, version, number of processes.
+const MARK: usize = 16 + 4 + 4;
 
 /// A folder of this process with the deck and a run of it that is saved.
 fn folder() -> &'static PathBuf {
@@ -68,7 +68,7 @@ pub fn checkpoint(contents: &[u8]) {
     assert_eq!(loaded.is_ok(), contents == &whole[MARK + 12..], "what is damaged is refused");
     let (length, sum) = ((contents.len() as u64).to_le_bytes(), crc32fast::hash(contents).to_le_bytes());
     write(&[&whole[..MARK], &length, &sum]);
-    let _ = read_saved::<serde::de::IgnoredAny>(&path);
+    let _ = SavedFile::open(&path).and_then(|file| file.read::<serde::de::IgnoredAny>(0));
 }
 
 /// A picture.

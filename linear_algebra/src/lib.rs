@@ -53,7 +53,7 @@ pub use solver::{
     DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Precondition, Preconditioner,
     PreconditionerFactory, SolveError, SolveReport,
 };
-pub use state::{State, WrongState};
+pub use state::{Carrier, State, Unknowns, WrongState};
 pub use system::{Layout, Symmetry, System};
 
 /// A solver of the kind asked for.

@@ -13,7 +13,7 @@ use crate::iterations::{Answers, Progress, conjugate_gradient, gmres};
 use crate::memory;
 use crate::precondition::{Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
-use crate::state::{State, WrongState};
+use crate::state::{Carrier, State, WrongState};
 use crate::system::{Stamps, System};
 
 /// Directions kept before a restart.
@@ -102,7 +102,13 @@ struct MultigridState {
 }
 
 #[typetag::serde(name = "multigrid")]
-impl State for MultigridState {}
+impl State for MultigridState {
+    /// Levels and answers are of the equations of a rank.
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        (self.hierarchy, self.learnt.answers) = (None, Answers::default());
+        self.stand_in.iter_mut().for_each(|state| state.carry(carrier));
+    }
+}
 
 impl MultigridSolver {
     pub(crate) fn new(settings: MultigridSettings) -> Self {

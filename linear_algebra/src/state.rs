@@ -1,13 +1,77 @@
 //! What something remembers between the steps of a run, as it stands in a file.
 
 use std::any::{Any, type_name};
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
 
 /// What a participant of a run, as a solver, remembers beside the fields of the model.
 ///
 /// Each type of participant states its own in its own file: a type that serde writes and reads, with
 /// `#[typetag::serde] impl State for …`, whose name tags it in the file.
 #[typetag::serde]
-pub trait State: Any + Send + Sync {}
+pub trait State: Any + Send + Sync {
+    /// Shows what it holds of nodes and unknowns to a carrier, which takes it to other ranks, and drops what is cheap to make
+    /// again and belongs to the ranks it was made on. What it shows must not depend on which of the ranks it is.
+    fn carry(&mut self, carrier: &mut dyn Carrier);
+}
+
+/// Takes what ranks remember to other ranks that run the same deck.
+///
+/// It is shown the states of all ranks that were, then that of one to come as it begins, and at last that of the first rank once
+/// more, into which it puts what the one to come is to remember.
+pub trait Carrier {
+    /// Indices of nodes that every rank has.
+    fn nodes(&mut self, nodes: &mut [u32]);
+
+    /// As many numbers a node for each node of the rank, node by node; or none at all.
+    fn by_node(&mut self, values: &mut Vec<f64>);
+
+    /// A number an unknown; or none at all.
+    fn by_unknown(&mut self, values: &mut Vec<f64>);
+
+    /// From here on unknowns are these; gives those before.
+    fn begin_unknowns(&mut self, unknowns: &Unknowns) -> Unknowns;
+}
+
+impl dyn Carrier + '_ {
+    /// The keys of a map, which are nodes that every rank has.
+    pub fn node_map<T>(&mut self, map: &mut BTreeMap<u32, T>) {
+        let (mut nodes, values): (Vec<u32>, Vec<T>) = std::mem::take(map).into_iter().unzip();
+        self.nodes(&mut nodes);
+        *map = nodes.into_iter().zip(values).collect();
+    }
+
+    /// A set of nodes that every rank has.
+    pub fn node_set(&mut self, set: &mut BTreeSet<u32>) {
+        let mut nodes: Vec<u32> = std::mem::take(set).into_iter().collect();
+        self.nodes(&mut nodes);
+        *set = nodes.into_iter().collect();
+    }
+
+    /// Nodes that every rank has, with something beside each.
+    pub fn node_list<T>(&mut self, list: &mut [(u32, T)]) {
+        let mut nodes: Vec<u32> = list.iter().map(|(node, _)| *node).collect();
+        self.nodes(&mut nodes);
+        list.iter_mut().zip(nodes).for_each(|((node, _), new)| *node = new);
+    }
+}
+
+/// The unknowns of a rank: numbers of nodes that follow each other, and the names of the unknowns that each of them has.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Unknowns(pub Vec<(u32, Vec<String>)>);
+
+impl Unknowns {
+    /// Number of unknowns.
+    pub fn len(&self) -> usize {
+        self.0.iter().map(|(nodes, names)| *nodes as usize * names.len()).sum()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
 
 /// A state that another type of participant has written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, find_kind};
 use zelus_core::model::{ModelPart, Role, ScalarVariable};
-use zelus_core::{Result, State};
+use zelus_core::{Carrier, Result, State};
 
 use crate::constraint_block::ConstraintBlock;
 use crate::constraints::{Constraint, INTERACTION};
@@ -26,7 +26,9 @@ pub struct ConstraintInteraction<M: Method> {
 struct SavedConstraints(Vec<Vec<ConstraintState>>);
 
 #[typetag::serde(name = "constraints")]
-impl State for SavedConstraints {}
+impl State for SavedConstraints {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 impl<M: Method> ConstraintInteraction<M> {
     /// The interaction of these conditions, which are constraints.

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
-use zelus_core::State;
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
 use zelus_core::entities::{Interaction, Observer};
 use zelus_core::io::{FileUse, replace_file};
 use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
+use zelus_core::{Carrier, State};
 
 /// A column of the table.
 #[derive(Debug, Clone, Deserialize)]
@@ -38,7 +38,9 @@ type Table = Arc<Mutex<Vec<Row>>>;
 struct SavedRows(Vec<Row>);
 
 #[typetag::serde(name = "iterate_output")]
-impl State for SavedRows {}
+impl State for SavedRows {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 struct IterateOutput {
     root: String,

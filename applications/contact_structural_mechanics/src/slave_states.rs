@@ -10,6 +10,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::flags::{ISOLATED, SLIP};
+use zelus_core::Carrier;
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Variable};
 use zelus_core::vector3::cross;
@@ -165,6 +166,13 @@ impl SlaveStates {
     /// Nodes on slave facets, ascending.
     pub fn slaves(&self) -> Arc<[u32]> {
         self.slaves.clone()
+    }
+
+    /// See [`State::carry`](zelus_core::State::carry): every rank has all carriers, in the same order.
+    pub fn carry(&mut self, carrier: &mut dyn Carrier) {
+        let mut slaves = self.slaves.to_vec();
+        carrier.nodes(&mut slaves);
+        self.slaves = slaves.into();
     }
 
     /// Takes up the states of the same carriers from a saved run.

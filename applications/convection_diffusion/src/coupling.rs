@@ -16,7 +16,7 @@ use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
 use zelus_core::parameters::Settings;
 use zelus_core::register;
 use zelus_core::strategies::{Monitor, Phases, SolutionStrategy, StepRecord};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State, Unknowns};
 
 use crate::adoption::replace;
 use crate::columns::Columns;
@@ -119,12 +119,20 @@ struct Coupled {
 
 #[derive(Serialize, Deserialize)]
 struct CoupledState {
+    unknowns_of_heat: Unknowns,
     heat: Option<Box<dyn State>>,
     structure: Option<Box<dyn State>>,
 }
 
 #[typetag::serde(name = "thermo_mechanically_coupled")]
-impl State for CoupledState {}
+impl State for CoupledState {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        let of_structure = carrier.begin_unknowns(&self.unknowns_of_heat);
+        self.heat.iter_mut().for_each(|state| state.carry(carrier));
+        carrier.begin_unknowns(&of_structure);
+        self.structure.iter_mut().for_each(|state| state.carry(carrier));
+    }
+}
 
 impl SolutionStrategy for Coupled {
     fn step_length(&mut self, part: &mut ModelPart, system: &System, asked: f64) -> Result<f64> {
@@ -183,11 +191,15 @@ impl SolutionStrategy for Coupled {
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        Some(Box::new(CoupledState { heat: self.heat.state(), structure: self.structure.state() }))
+        Some(Box::new(CoupledState {
+            unknowns_of_heat: self.system.dofs.layout(),
+            heat: self.heat.state(),
+            structure: self.structure.state(),
+        }))
     }
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
-        let CoupledState { heat, structure } = state.take()?;
+        let CoupledState { heat, structure, .. } = state.take()?;
         heat.map_or(Ok(()), |state| self.heat.resume(part, &self.system, state))?;
         structure.map_or(Ok(()), |state| self.structure.resume(part, system, state))
     }

@@ -7,13 +7,14 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{State, Unknowns};
 
+use super::carrier::OfRank;
 use super::deck::StageDeck;
 use super::report::RunReport;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::entities::EntityBlock;
+use crate::entities::{EntityBlock, regroup};
 use crate::model::{Model, ModelPart};
 use crate::parameters::{Node, Value};
 
@@ -25,8 +26,6 @@ pub(super) type States = Vec<Option<Box<dyn State>>>;
 pub(super) struct SavedRun<M, R> {
     /// Of the deck, see [`fingerprint`].
     pub deck: u32,
-    /// Rank that has written it, and their number.
-    pub rank: [usize; 2],
     /// Stages that are over.
     pub over: usize,
     /// The part of the present or the last stage.
@@ -50,6 +49,8 @@ pub(super) struct SavedRun<M, R> {
 pub(super) struct SavedStage {
     pub begun: bool,
     pub first_length: Option<f64>,
+    /// What the states of the strategy go by.
+    pub unknowns: Unknowns,
     pub strategy: Option<Box<dyn State>>,
     pub elements: States,
     pub conditions: States,
@@ -59,6 +60,28 @@ pub(super) struct SavedStage {
 
 /// A run that was read.
 pub(super) type LoadedRun = SavedRun<Model, RunReport>;
+
+impl LoadedRun {
+    /// # Errors
+    /// A run of another deck, or one that cannot be.
+    pub(super) fn check(&self, deck: u32, stages: usize) -> Result<()> {
+        if self.deck != deck {
+            return Err(other_deck("it was saved by a run of another deck"));
+        }
+        if self.over > stages || (self.over == stages) && self.stage.is_some() {
+            return Err(other_deck(format!("{} stages of {stages} are over", self.over)));
+        }
+        let models = self.before.iter().chain([&self.model]);
+        models.flat_map(|model| model.parts.values()).try_for_each(|part| {
+            part.check().map_err(|fact| other_deck(format!("its model part {} is none: {fact}", part.name)))
+        })
+    }
+
+    /// Nodes and unknowns of the rank in the stage under way.
+    pub(super) fn of_rank(&self, rank: usize) -> Option<OfRank> {
+        Some(OfRank::new(self.model.parts.get(&self.root)?, rank, self.stage.as_ref()?.unknowns.clone()))
+    }
+}
 
 /// Settings that may be others when a run goes on: by them it runs on, or says less.
 const FREE: [&str; 4] = [
@@ -141,13 +164,15 @@ pub(super) fn resume_blocks(blocks: &mut [Box<dyn EntityBlock>], states: States)
     hand_out(blocks, states, "blocks of entities", |block, state| block.resume(state))
 }
 
-/// The elements of an earlier stage on a part, with what they remembered.
+/// The elements of an earlier stage on a part, with what they remembered: `states` of this rank, or of all ranks that were where it is
+/// `regrouped`.
 ///
 /// # Errors
 /// States of other elements.
-pub(super) fn earlier_system(part: &ModelPart, states: States) -> Result<System> {
+pub(super) fn earlier_system(part: &ModelPart, mut states: Vec<States>, regrouped: bool) -> Result<System> {
     let mut system = System::default();
     system.make_blocks(part)?;
+    let states = if regrouped { regroup(&system.elements, states)? } else { states.swap_remove(0) };
     resume_blocks(&mut system.elements, states)?;
     Ok(System { elements: system.elements, ..System::default() })
 }
@@ -165,6 +190,22 @@ pub(super) fn check_mesh(saved: &ModelPart, read: &ModelPart) -> Result<()> {
     } else {
         Err(other_deck(format!("the mesh of {} is another than that of the saved run", read.name)))
     }
+}
+
+/// The models of all ranks as one that has everything, of which a stage takes its share; that of one rank as it is.
+///
+/// # Errors
+/// Models that do not make up a whole.
+pub(super) fn whole(mut models: Vec<Model>) -> Result<Model> {
+    if models.len() == 1 {
+        return Ok(models.swap_remove(0));
+    }
+    let mut by_name: BTreeMap<String, Vec<ModelPart>> = BTreeMap::new();
+    for (name, part) in models.into_iter().flat_map(|model| model.parts) {
+        by_name.entry(name).or_default().push(part);
+    }
+    let joined = |(name, shares)| Ok((name, ModelPart::joined(shares).map_err(other_deck)?));
+    Ok(Model { parts: by_name.into_iter().map(joined).collect::<Result<_>>()?, ..Model::default() })
 }
 
 /// That a saved run does not belong to the deck.

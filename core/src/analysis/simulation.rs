@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::carrier::{OfRank, Regrouping};
 use super::checkpoints::{Checkpoints, Pointer};
 use super::deck::{StageDeck, open, stages};
 use super::report::RunReport;
-use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of};
+use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of, whole};
 use super::stage::{Stage, Systems};
 use super::threads;
 use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
-use crate::io::{path_of_rank, read_saved, write_saved};
+use crate::io::{SavedFile, write_saved};
 use crate::model::{Model, ModelPart};
 use crate::parameters::Node;
 use crate::processes::Process;
@@ -171,15 +172,13 @@ impl Simulation {
         })
     }
 
-    /// Saves the run as it stands between two steps, whole: fields, states, reports. Of several ranks each has a file of its
-    /// own, whose name ends in the number of the rank.
+    /// Saves the run as it stands between two steps, whole: fields, states, reports, of several ranks in one file. Collective.
     ///
     /// # Errors
     /// A disk that refuses; the file that was there is then untouched.
     pub fn save(&self, path: &Path) -> Result<()> {
         let run = SavedRun {
             deck: self.fingerprint(),
-            rank: [self.model.ranks.rank(), self.model.ranks.size()],
             over: self.over,
             root: self.root.clone(),
             before: self.before.as_ref(),
@@ -189,7 +188,7 @@ impl Simulation {
             report: &self.report,
             mesh: self.checkpoints.mesh.clone(),
         };
-        self.model.ranks.agree(write_saved(&path_of_rank(&self.model.ranks, path), &run))
+        write_saved(&self.model.ranks, path, &run)
     }
 
     /// Saves the run beside its deck, where [`Simulation::resume`] finds it, and ends here: every process writes what it holds.
@@ -215,13 +214,13 @@ impl Simulation {
         Ok(Some(path))
     }
 
-    /// Goes on where a run of the same deck was saved: what follows are the same bits, on any number of threads. Nothing may be
-    /// prepared yet; processes of the caller's are added before.
+    /// Goes on where a run of the same deck was saved: what follows are the same bits, on any number of threads; on another number of
+    /// ranks they differ by round-off. Nothing may be prepared yet; processes of the caller's are added before.
     ///
     /// Meshes are read again. Files of output that grow lose what was added since the run was saved.
     ///
     /// # Errors
-    /// A file that is no whole saved run, or one of another deck, mesh or number of ranks; problems of the deck.
+    /// A file that is no whole saved run, or one of another deck or mesh; problems of the deck.
     pub fn load(&mut self, path: &Path, monitor: &mut dyn Monitor) -> Result<()> {
         self.timed(|simulation| simulation.load_run(path, monitor))
     }
@@ -290,43 +289,71 @@ impl Simulation {
 
     fn load_run(&mut self, path: &Path, monitor: &mut dyn Monitor) -> Result<()> {
         let ranks = self.model.ranks.clone();
-        let path = path_of_rank(&self.model.ranks, path);
-        let run: LoadedRun = ranks.agree(read_saved(&path))?;
-        let here = Place::file(&path);
-        self.take_up(run, monitor).map_err(|error| error.at(&here))
+        let file = ranks.agree(SavedFile::open(path))?;
+        // Each rank takes up what it had; on another number of them, its share of what all had.
+        let same = file.ranks() == ranks.size();
+        let wanted = if same { ranks.rank()..ranks.rank() + 1 } else { 0..file.ranks() };
+        let runs: Vec<LoadedRun> = ranks.agree(wanted.map(|rank| file.read(rank)).collect())?;
+        if !same {
+            let (were, are) = (file.ranks(), ranks.size());
+            monitor.note(&format!("saved by {were} processes, {are} go on: the last digits may be others"));
+        }
+        let here = Place::file(path);
+        self.take_up(runs, !same, monitor).map_err(|error| error.at(&here))
     }
 
-    fn take_up(&mut self, run: LoadedRun, monitor: &mut dyn Monitor) -> Result<()> {
+    /// Takes up the run of this rank or, where they are to be `regrouped`, the runs of all ranks that were.
+    fn take_up(&mut self, mut runs: Vec<LoadedRun>, regrouped: bool, monitor: &mut dyn Monitor) -> Result<()> {
         let ranks = self.model.ranks.clone();
         if self.stage.is_some() || self.over > 0 {
             return Err(other_deck("the simulation has begun already"));
         }
-        if run.rank != [ranks.rank(), ranks.size()] {
-            return Err(other_deck(format!("it was saved by {} ranks, and {} run now", run.rank[1], ranks.size())));
-        }
-        if run.deck != self.fingerprint() {
-            return Err(other_deck("it was saved by a run of another deck"));
-        }
+        let deck = self.fingerprint();
+        ranks.agree(runs.iter().try_for_each(|run| run.check(deck, self.stages.len())))?;
         self.checkpoints.from = None;
-        self.checkpoints.name_mesh(&mut self.stages, run.mesh);
-        let model = run.model.shared_by(&ranks);
-        self.over = run.over;
-        self.model = run.before.map_or_else(|| Model::new(ranks.clone()), |before| before.shared_by(&ranks));
-        for (root, states) in run.systems {
-            let part = self.model.parts.get(&root).map_or_else(|| model.root(&root), Ok)?;
-            self.systems.insert(root, earlier_system(part, states)?);
-        }
-        if let Some(state) = run.stage {
-            self.prepare_stage(monitor)?;
-            check_mesh(model.root(&self.root)?, self.model.root(&self.root)?)?;
-            self.model = model;
-            self.stage.as_mut().expect("just prepared").resume(&mut self.model, state)?;
+        self.checkpoints.name_mesh(&mut self.stages, runs[0].mesh.take());
+        self.over = runs[0].over;
+        let root = runs[0].root.clone();
+        let report = std::mem::take(&mut runs[0].report);
+        let were: Vec<OfRank> = if regrouped {
+            runs.iter().enumerate().filter_map(|(rank, run)| run.of_rank(rank)).collect()
         } else {
-            self.model = model;
+            Vec::new()
+        };
+        let (mut models, mut before, mut systems, mut stages) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for run in runs {
+            models.push(run.model);
+            before.extend(run.before);
+            systems.push(run.systems);
+            stages.extend(run.stage);
         }
-        self.root = run.root;
+        let mut model = whole(models)?.shared_by(&ranks);
+        self.model = if before.is_empty() { Model::new(ranks.clone()) } else { whole(before)?.shared_by(&ranks) };
+        for root in systems[0].keys().cloned().collect::<Vec<_>>() {
+            let part = self.model.parts.get(&root).map_or_else(|| model.root(&root), Ok)?;
+            let states = systems.iter_mut().filter_map(|of_rank| of_rank.remove(&root)).collect();
+            self.systems.insert(root, earlier_system(part, states, regrouped)?);
+        }
+        if stages.is_empty() {
+            self.model = model;
+        } else {
+            self.prepare_stage(monitor)?;
+            let stage = self.stage.as_mut().expect("just prepared");
+            let part = self.model.root(&self.root)?;
+            let state = if regrouped {
+                let cut = model.parts.remove(&self.root).map(|saved| saved.cut_like(part)).transpose();
+                model.parts.extend(cut.map_err(other_deck)?.map(|part| (self.root.clone(), part)));
+                Regrouping::new(were, part, stage.system()).stage(stages, stage.state(), stage.system())?
+            } else {
+                stages.swap_remove(0)
+            };
+            check_mesh(model.root(&self.root)?, part)?;
+            self.model = model;
+            stage.resume(&mut self.model, state)?;
+        }
+        self.root = root;
         let threads = self.report.threads;
-        self.report = RunReport { threads, ..run.report };
+        self.report = RunReport { threads, ..report };
         Ok(())
     }
 

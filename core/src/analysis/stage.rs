@@ -271,6 +271,7 @@ impl Stage {
         SavedStage {
             begun: self.begun,
             first_length: self.first_length,
+            unknowns: self.system.dofs.layout(),
             strategy: self.strategy.state(),
             elements: states_of(&self.system.elements),
             conditions: states_of(&self.system.conditions),

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use zelus_linear_algebra::Unknowns;
+
 use crate::model::{ColumnOf, Fields, Nodes, Rates, ScalarVariable};
 
 /// "Not an unknown of the system" in the table of numbers.
@@ -62,6 +64,24 @@ impl DofTable {
             }
         }
         self.version += 1;
+    }
+
+    /// Which nodes have which unknowns.
+    pub fn layout(&self) -> Unknowns {
+        let nodes = self.dofs.last().map_or(0, |last| last.node + 1);
+        let mut runs: Vec<(u32, &[Dof])> = Vec::new();
+        let mut left = self.dofs.as_slice();
+        for node in 0..nodes {
+            let (own, others) = left.split_at(left.partition_point(|dof| dof.node <= node));
+            left = others;
+            let is_like = |known: &[Dof]| known.iter().map(|dof| dof.variable).eq(own.iter().map(|dof| dof.variable));
+            match runs.last_mut().filter(|(_, known)| is_like(known)) {
+                Some((nodes, _)) => *nodes += 1,
+                None => runs.push((1, own)),
+            }
+        }
+        let names = |dofs: &[Dof]| dofs.iter().map(|dof| dof.variable.to_string()).collect();
+        Unknowns(runs.into_iter().map(|(nodes, dofs)| (nodes, names(dofs))).collect())
     }
 
     /// All unknowns in the order of their numbers.

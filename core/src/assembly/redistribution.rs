@@ -14,6 +14,7 @@ use zelus_linear_algebra::Csr;
 
 use super::dof_table::DofTable;
 use super::supports::supports;
+use crate::Carrier;
 use crate::entities::MasslessNodes;
 use crate::model::ModelPart;
 
@@ -56,6 +57,17 @@ impl Redistribution {
         let changed = nodes != self.nodes;
         self.nodes = nodes;
         changed
+    }
+
+    /// See [`State::carry`](crate::State::carry): the nodes are near surfaces, which all ranks have; unknowns are found anew.
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        carrier.nodes(&mut self.wanted.surface);
+        carrier.nodes(&mut self.wanted.near);
+        for (node, below) in self.lasting.iter_mut().chain(&mut self.nodes) {
+            carrier.nodes(std::slice::from_mut(node));
+            carrier.node_list(below);
+        }
+        self.unknowns.clear();
     }
 
     /// Takes the mass off the unknowns of the massless nodes that are `free`; whether anything changes.

@@ -4,16 +4,17 @@ use std::any::Any;
 use std::collections::HashMap;
 use std::ops::Range;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::State;
 
 use super::block::{
     BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Tangent, Want,
 };
+use super::block_state::BlockState;
 use super::face_point::FacePoint;
 use super::view::StepView;
-use crate::diagnostics::{Diagnostic, Result};
+use crate::diagnostics::Result;
 use crate::model::{EntityKind, Properties, Role};
 
 /// What a kernel is told of its entity, beside the step's fields.
@@ -172,20 +173,6 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         Err(NO_TRACTIONS.to_owned())
     }
 }
-
-/// What the entities of a block remember.
-#[derive(Serialize, Deserialize)]
-struct BlockState {
-    kind: String,
-    /// Of its entities.
-    ids: Vec<usize>,
-    /// As the kernel writes them.
-    #[serde(with = "serde_bytes")]
-    states: Vec<u8>,
-}
-
-#[typetag::serde(name = "entities")]
-impl State for BlockState {}
 
 /// A block made of a kernel, a connectivity and a state for each entity.
 pub struct KernelBlock<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> {
@@ -361,20 +348,11 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
         if size_of::<K::State>() == 0 {
             return None;
         }
-        let states = rmp_serde::to_vec(&self.states).expect("numbers can be written");
-        Some(Box::new(BlockState { kind: self.entry.name.to_owned(), ids: self.ids.clone(), states }))
+        Some(Box::new(BlockState::of(self.entry.name, &self.ids, &self.states)))
     }
 
     fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
-        let BlockState { kind, ids, states } = state.take()?;
-        let states =
-            rmp_serde::from_slice(&states).ok().filter(|states: &Vec<K::State>| states.len() == self.ids.len());
-        let states = states.filter(|_| kind == self.entry.name && ids == self.ids);
-        self.states = states.ok_or_else(|| {
-            let fact =
-                format!("what {} {kind} remember does not fit {} {}", ids.len(), self.ids.len(), self.entry.name);
-            Diagnostic::error("saved-state", fact).remedy("it was saved by a run with another mesh or other materials")
-        })?;
+        self.states = state.take::<BlockState>()?.states(self.entry.name, &self.ids)?;
         Ok(())
     }
 

@@ -4,6 +4,7 @@
 //! buffers of the caller. A method is a [`Kernel`], the mathematics of one entity; [`KernelBlock`] makes a block of it.
 
 mod block;
+mod block_state;
 mod constraint_entry;
 mod face_point;
 mod interaction;
@@ -14,6 +15,7 @@ mod registered;
 mod view;
 
 pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
+pub(crate) use block_state::regroup;
 pub use constraint_entry::{ConstraintEntry, ConstraintFactory, ConstraintRow};
 pub use face_point::FacePoint;
 pub use interaction::{

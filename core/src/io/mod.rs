@@ -11,7 +11,7 @@ pub mod results;
 mod tests;
 pub(crate) mod variables;
 
-pub use container::{path_of_rank, read_saved, write_saved};
+pub use container::{SavedFile, write_saved};
 pub use import::{import, mesh_file, read_mesh, read_mesh_of};
 pub use materials::{apply_materials, read_materials, read_materials_of};
 pub use outputs::{Claim, FileUse, check_files, of_series};

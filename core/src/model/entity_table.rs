@@ -58,6 +58,20 @@ impl EntityTable {
         out
     }
 
+    /// Adds other entities after its own, whatever their ids; the first node of the others is node `offset`.
+    pub(super) fn append(&mut self, other: &Self, offset: u32) {
+        let (count, nodes) = (self.len(), self.nodes.len() as u32);
+        self.index = Index::default();
+        self.ids.extend(&other.ids);
+        self.kinds.extend(&other.kinds);
+        self.properties.extend(&other.properties);
+        self.data.append(&other.data);
+        self.flags.append(count, &other.flags);
+        let starts = other.starts.iter().skip(usize::from(!self.starts.is_empty()));
+        self.starts.extend(starts.map(|start| start + nodes));
+        self.nodes.extend(other.nodes.iter().map(|node| node + offset));
+    }
+
     /// Makes the data columns as long as the table; call after the last [`EntityTable::push`].
     pub fn finish(&mut self) {
         if self.data.is_empty() {
@@ -65,6 +79,25 @@ impl EntityTable {
         } else {
             self.data.grow(self.len());
         }
+    }
+
+    /// Whether all lists have one length, and each entity as many of the `nodes` as its kind asks for.
+    pub(super) fn is_sound(&self, nodes: usize) -> bool {
+        let count = self.ids.len();
+        let starts = self.starts.first().is_none_or(|&first| first == 0)
+            && self.starts.last().map_or(0, |&last| last as usize) == self.nodes.len()
+            && self.starts.len() == if self.starts.is_empty() { 0 } else { count + 1 }
+            && self.starts.is_sorted();
+        let kinds =
+            self.kinds.len() == count && self.properties.len() == count && (count == 0 || !self.starts.is_empty());
+        let of_kind = |(at, kind): (usize, &&EntityKind)| {
+            kind.nodes() == 0 || kind.nodes() == (self.starts[at + 1] - self.starts[at]) as usize
+        };
+        starts
+            && kinds
+            && self.nodes.iter().all(|&node| (node as usize) < nodes)
+            && self.kinds.iter().enumerate().all(of_kind)
+            && self.flags.is_sound(count)
     }
 
     /// Number of entities.

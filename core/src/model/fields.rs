@@ -82,6 +82,20 @@ impl Fields {
         Self { columns, levels: self.levels, count: items.len() }
     }
 
+    /// Adds the items of others after its own; a column that is missing on one side is zero there.
+    pub(super) fn append(&mut self, other: &Self) {
+        let (own, all) = (self.count, self.count + other.count);
+        for (name, field) in &other.columns {
+            self.add_named(name, field.components);
+        }
+        self.grow(all);
+        for (name, field) in &mut self.columns {
+            let Some(more) = other.columns.get(name) else { continue };
+            let from = own * field.components;
+            field.levels.iter_mut().zip(&more.levels).for_each(|(level, more)| level[from..].copy_from_slice(more));
+        }
+    }
+
     /// Sets the number of time levels; new ones copy the oldest.
     pub fn set_levels(&mut self, levels: usize) {
         self.levels = levels.max(1);

@@ -25,6 +25,22 @@ impl Fixities {
         self.columns.get(&variable).is_some_and(|column| column[node as usize])
     }
 
+    /// Adds the marks of `more` nodes after those of `count`.
+    pub(super) fn append(&mut self, count: usize, other: &Self, more: usize) {
+        for (variable, marks) in &other.columns {
+            let column = self.columns.entry(*variable).or_default();
+            column.resize(count, false);
+            column.extend(marks);
+        }
+        self.columns.values_mut().for_each(|column| column.resize(count + more, false));
+    }
+
+    /// Whether they can be those of `count` nodes.
+    pub(super) fn is_sound(&self, count: usize) -> bool {
+        let known = |variable: &ScalarVariable| variable.component.is_none_or(|component| component < 3);
+        self.columns.iter().all(|(variable, column)| known(variable) && column.len() == count)
+    }
+
     /// Those of the chosen nodes.
     pub fn pick(&self, nodes: &[u32]) -> Self {
         let pick = |column: &Vec<bool>| nodes.iter().map(|&at| column[at as usize]).collect();

@@ -108,6 +108,20 @@ impl Flags {
         Self { columns: self.columns.iter().map(|(name, column)| (*name, pick(column))).collect() }
     }
 
+    /// Adds the flags of others, after those of `count` items.
+    pub(super) fn append(&mut self, count: usize, other: &Self) {
+        for (name, more) in &other.columns {
+            let column = self.columns.entry(name).or_default();
+            column.resize(count, UNDEFINED);
+            column.extend(more);
+        }
+    }
+
+    /// Whether they can be those of `count` items.
+    pub(super) fn is_sound(&self, count: usize) -> bool {
+        self.columns.values().all(|column| column.len() <= count && column.iter().all(|state| (-1..=1).contains(state)))
+    }
+
     /// Makes the flag undefined everywhere.
     pub fn clear(&mut self, flag: &str) {
         self.columns.remove(flag);

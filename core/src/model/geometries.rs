@@ -37,6 +37,17 @@ impl Geometries {
         self.ids.binary_search(&id).ok().map(|at| at as u32)
     }
 
+    /// Whether all lists have one length, ids ascend, and nodes are among `nodes`.
+    pub(super) fn is_sound(&self, nodes: usize) -> bool {
+        let whole = |(cell, own): (&(Shape, usize), &Vec<u32>)| {
+            own.len() == cell.0.nodes() && own.iter().all(|&node| (node as usize) < nodes)
+        };
+        self.cells.len() == self.ids.len()
+            && self.nodes.len() == self.ids.len()
+            && self.ids.is_sorted()
+            && self.cells.iter().zip(&self.nodes).all(whole)
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()

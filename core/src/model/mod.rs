@@ -13,12 +13,14 @@ pub mod flags;
 mod geometries;
 mod halo;
 mod index;
+mod joined;
 mod model_part;
 mod nodes;
 mod process_info;
 mod properties;
 mod rates;
 mod share;
+mod soundness;
 mod sub_part;
 mod table;
 #[cfg(test)]

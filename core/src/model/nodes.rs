@@ -65,6 +65,19 @@ impl Nodes {
         }
     }
 
+    /// Adds other nodes after its own, whatever their ids.
+    pub(super) fn append(&mut self, other: &Self) {
+        let count = self.len();
+        self.index = Index::default();
+        self.ids.extend(&other.ids);
+        self.initial.extend(&other.initial);
+        self.current.extend(&other.current);
+        self.history.append(&other.history);
+        self.values.append(&other.values);
+        self.flags.append(count, &other.flags);
+        self.fixities.append(count, &other.fixities, other.len());
+    }
+
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.ids.len()

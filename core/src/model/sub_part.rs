@@ -76,6 +76,28 @@ impl SubPart {
         self.children.values_mut().for_each(|child| child.renumber(nodes, elements, conditions));
     }
 
+    /// Adds what another part of the same name selects, here and below.
+    pub(super) fn join(&mut self, other: &Self) {
+        self.nodes.extend(&other.nodes);
+        self.elements.extend(&other.elements);
+        self.conditions.extend(&other.conditions);
+        self.constraints.extend(&other.constraints);
+        self.tables.clone_from(&other.tables);
+        self.properties.clone_from(&other.properties);
+        self.data.clone_from(&other.data);
+        for (name, child) in &other.children {
+            self.children.entry(name.clone()).or_insert_with(|| Self::new(name.clone())).join(child);
+        }
+    }
+
+    /// Selects the geometries that another part of the same name does, here and below.
+    pub(super) fn take_geometries(&mut self, other: &Self) {
+        self.geometries.clone_from(&other.geometries);
+        for (name, child) in &mut self.children {
+            other.children.get(name).into_iter().for_each(|other| child.take_geometries(other));
+        }
+    }
+
     /// Sorts all lists and removes repetitions, here and below.
     pub fn normalise(&mut self) {
         let SubPart { nodes, elements, conditions, geometries, constraints, .. } = self;

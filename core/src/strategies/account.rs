@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::balance::{Balance, Energies, PairBalance, Sums, UnknownBalance};
+use crate::Carrier;
 use crate::assembly::{Assembler, Inertia, NONE, Push, System};
 use crate::diagnostics::Result;
 use crate::entities::PairState;
@@ -88,6 +89,11 @@ impl Account {
         if let Some(Pending { forces, works, dissipated }) = self.pending.take() {
             (self.before, self.works, self.dissipated) = (Some(forces), works, dissipated);
         }
+    }
+
+    /// See [`State::carry`](crate::State::carry).
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.before.iter_mut().flatten().for_each(|forces| carrier.by_unknown(forces));
     }
 
     fn dissipated_by(&self, pair: usize) -> f64 {

@@ -5,7 +5,7 @@
 //! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
@@ -87,7 +87,12 @@ struct ArcLengthState {
 }
 
 #[typetag::serde(name = "arc_length")]
-impl State for ArcLengthState {}
+impl State for ArcLengthState {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        carrier.by_unknown(&mut self.last);
+        self.newton.iter_mut().for_each(|state| state.carry(carrier));
+    }
+}
 
 impl ArcLength {
     /// Follows the path with the scheme, criterion and solver of `newton`.

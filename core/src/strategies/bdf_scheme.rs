@@ -6,7 +6,7 @@
 //! 5 are not for motion without damping.
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::scheme::{Scheme, SchemeFactory, predict_ballistic};
 use crate::assembly::{DofTable, Inertia};
@@ -32,7 +32,9 @@ struct BdfState {
 }
 
 #[typetag::serde(name = "bdf")]
-impl State for BdfState {}
+impl State for BdfState {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 /// Weights of the values at `times` in the derivative at `times[0]` of the polynomial through them.
 fn weights(times: &[f64]) -> Vec<f64> {

@@ -5,7 +5,7 @@
 //! ([`crate::entities::Interaction::step_factor`]). One that adds stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
@@ -98,7 +98,11 @@ struct ExplicitState {
 }
 
 #[typetag::serde(name = "explicit")]
-impl State for ExplicitState {}
+impl State for ExplicitState {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.assembler.carry(carrier);
+    }
+}
 
 impl ExplicitStrategy {
     /// Numbers the unknowns of `part`, whose blocks and interactions are ready, and lumps the mass.

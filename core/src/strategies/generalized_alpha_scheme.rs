@@ -6,7 +6,7 @@
 //! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
@@ -31,7 +31,11 @@ struct GeneralizedAlphaState {
 }
 
 #[typetag::serde(name = "generalized_alpha")]
-impl State for GeneralizedAlphaState {}
+impl State for GeneralizedAlphaState {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.forces.iter_mut().for_each(|forces| carrier.by_unknown(forces));
+    }
+}
 
 impl GeneralizedAlphaScheme {
     /// The scheme with spectral radius `rho` in [0, 1] at infinite frequency.

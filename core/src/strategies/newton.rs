@@ -10,7 +10,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "petsc")]
 use zelus_linear_algebra::Multipliers;
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 pub(super) use references::References;
@@ -99,7 +99,13 @@ struct NewtonState {
 }
 
 #[typetag::serde(name = "newton_raphson")]
-impl State for NewtonState {}
+impl State for NewtonState {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.assembler.carry(carrier);
+        self.scheme.iter_mut().chain(&mut self.solver).for_each(|state| state.carry(carrier));
+        self.account.carry(carrier);
+    }
+}
 
 impl SolutionStrategy for NewtonRaphson {
     fn assembler(&self) -> &Assembler {

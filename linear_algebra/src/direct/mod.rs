@@ -17,7 +17,7 @@ use crate::lu::SparseLu;
 use crate::memory;
 use crate::multifrontal::Precision;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
-use crate::state::{State, WrongState};
+use crate::state::{Carrier, State, WrongState};
 use crate::system::{Stamps, Symmetry, System};
 use crate::vector;
 use answers::{is_regular, krylov, largest_entries, null_vector};
@@ -92,7 +92,12 @@ struct DirectState {
 }
 
 #[typetag::serde(name = "direct")]
-impl State for DirectState {}
+impl State for DirectState {
+    /// All of it is of the equations of a rank.
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {
+        *self = Self::default();
+    }
+}
 
 impl DirectSolver {
     pub(crate) fn new(settings: DirectSettings) -> Self {

@@ -10,7 +10,7 @@ use zelus_core::entities::{
     Retry, SetChange,
 };
 use zelus_core::model::{ModelPart, ScalarVariable};
-use zelus_core::{Result, State};
+use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
 use super::activation::Start;
@@ -68,7 +68,13 @@ struct SavedContact {
 }
 
 #[typetag::serde(name = "contact")]
-impl State for SavedContact {}
+impl State for SavedContact {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.contact.carry(carrier);
+        self.loops.carry(carrier);
+        carrier.nodes(&mut self.near_nodes);
+    }
+}
 
 impl ContactInteraction {
     /// Contact with these settings; the interfaces are built at once, so that a wrong part is named early.

@@ -1,9 +1,9 @@
 //! What contact is at a moment: interfaces with their pairs, slave nodes with their states, and the numbers of the run.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
+use zelus_core::{Carrier, Result};
 
 use super::activation::{self, Start};
 use super::contact_settings::ContactSettings;
@@ -47,6 +47,15 @@ pub(super) struct RememberedContact {
     holding: Holding,
     resolution: Resolution,
     steps_since_search: usize,
+}
+
+impl RememberedContact {
+    /// See [`State::carry`](zelus_core::State::carry): facets are everywhere the same.
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.pairing.carry(carrier);
+        self.states.carry(carrier);
+        self.holding.carry(carrier);
+    }
 }
 
 impl ContactState {

@@ -30,6 +30,11 @@ pub(super) struct FrictionRamp {
 }
 
 impl FrictionRamp {
+    /// See [`State::carry`](zelus_core::State::carry): between steps nothing waits.
+    pub(super) fn carry(&mut self) {
+        self.waiting = None;
+    }
+
     /// The step is tried again; one that was solved, and is to be shorter, has not failed.
     pub(super) fn retry(&mut self) {
         self.failed = if self.solved { 0 } else { self.failed + 1 };

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
+use zelus_core::Carrier;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::geometry::shape_functions;
@@ -46,6 +47,12 @@ pub(super) struct HeldNode {
 }
 
 impl Holding {
+    /// See [`State::carry`](zelus_core::State::carry).
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        carrier.node_map(&mut self.fixed);
+        carrier.node_map(&mut self.planes);
+    }
+
     /// Step start: what is fixed now, and which of it are planes of symmetry.
     pub(super) fn begin_step(&mut self, part: &ModelPart, interfaces: &[Interface]) {
         self.fixed = fixed_components(part, interfaces);

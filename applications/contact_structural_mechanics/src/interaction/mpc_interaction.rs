@@ -15,7 +15,7 @@ use zelus_core::entities::{
 };
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role};
 use zelus_core::vector3::{dot, norm, scale};
-use zelus_core::{Result, State};
+use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::activation::{self, Start};
@@ -79,7 +79,13 @@ struct SavedMpc {
 }
 
 #[typetag::serde(name = "mpc_contact")]
-impl State for SavedMpc {}
+impl State for SavedMpc {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.states.carry(carrier);
+        self.relations.carry(carrier);
+        carrier.node_map(&mut self.directions);
+    }
+}
 
 impl MpcInteraction {
     /// Contact with these settings; the interfaces are built at once, so that a wrong part is named early.

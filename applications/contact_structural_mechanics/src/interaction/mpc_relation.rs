@@ -14,6 +14,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use zelus_core::Carrier;
 use zelus_core::model::{MasterSlaveConstraint, ModelPart};
 use zelus_core::vector3::{dot, normalised, sub};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
@@ -89,6 +90,14 @@ fn vector(column: &[f64], node: u32) -> [f64; 3] {
 }
 
 impl PairRelation {
+    /// See [`State::carry`](zelus_core::State::carry).
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        for row in &mut self.rows {
+            carrier.nodes(std::slice::from_mut(&mut row.node));
+            carrier.node_list(&mut row.weights);
+        }
+    }
+
     /// The rows of a pair in the present configuration; `finer` integrates it again where its D is not diagonal.
     pub(super) fn new(
         part: &ModelPart,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use zelus_core::Carrier;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, norm, sub};
@@ -40,6 +41,13 @@ fn facets(interfaces: &[Interface], key: PairKey) -> (&Facet, &Facet) {
 }
 
 impl Relations {
+    /// See [`State::carry`](zelus_core::State::carry).
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.pairs.values_mut().for_each(|relation| relation.carry(carrier));
+        carrier.node_map(&mut self.nodes);
+        self.nodes.values_mut().for_each(|relation| carrier.node_list(&mut relation.weights));
+    }
+
     /// Relations of the pairs that overlap; those that hold a node stay as they were made, unless they are to be renewed.
     pub(super) fn search(
         &mut self,

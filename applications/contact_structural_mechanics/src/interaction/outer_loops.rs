@@ -1,9 +1,9 @@
 //! The loops around Newton's iteration: the checks of a converged state, and what each changes before the next iteration.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::Result;
 use zelus_core::entities::Outer;
 use zelus_core::model::ModelPart;
+use zelus_core::{Carrier, Result};
 
 use super::contact_state::ContactState;
 use super::friction_ramp::FrictionRamp;
@@ -39,6 +39,12 @@ pub(super) struct OuterLoops {
 }
 
 impl OuterLoops {
+    /// See [`State::carry`](zelus_core::State::carry).
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.friction_ramp.carry();
+        self.work.carry(carrier);
+    }
+
     /// Step start, before contact is searched.
     pub(super) fn begin_step(&mut self, part: &mut ModelPart, contact: &mut ContactState) {
         self.step_search.begin_step();

@@ -6,11 +6,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{EntityBlock, require_kind};
 use zelus_core::model::{ModelPart, Role};
 use zelus_core::vector3::dot;
+use zelus_core::{Carrier, Result};
 
 use super::contact_settings::ContactSettings;
 use super::holding::Holding;
@@ -59,6 +59,13 @@ pub(super) struct PairingState {
     touching: BTreeSet<u32>,
     graph: u64,
     warned_of_reach: bool,
+}
+
+impl PairingState {
+    /// See [`State::carry`](zelus_core::State::carry): each step begins with the integrals of its pairs.
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        carrier.node_set(&mut self.touching);
+    }
 }
 
 /// How the facets of a pair meet.

@@ -9,7 +9,7 @@ use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, 
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
 use zelus_core::parameters::Interval;
-use zelus_core::{Result, State};
+use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::holding::Holding;
@@ -88,7 +88,11 @@ struct SavedTie {
 }
 
 #[typetag::serde(name = "mesh_tying")]
-impl State for SavedTie {}
+impl State for SavedTie {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.holding.carry(carrier);
+    }
+}
 
 impl TyingInteraction {
     /// Ties with these settings; the interfaces are built at once, so that a wrong part is named early.

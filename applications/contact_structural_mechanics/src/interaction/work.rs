@@ -4,12 +4,12 @@
 //! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::Result;
 use zelus_core::assembly::nodal_vectors;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
+use zelus_core::{Carrier, Result};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use crate::solver::{KEEP_MASS, LARGEST_ENERGY_GAIN};
@@ -44,6 +44,11 @@ pub(super) struct ContactWork {
 }
 
 impl ContactWork {
+    /// See [`State::carry`](zelus_core::State::carry).
+    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        carrier.by_node(&mut self.before);
+    }
+
     /// Adds up the work of the present step, at whose end `blocks` act; collective.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Assembler, Stamps, bulk_pattern};
+use crate::Carrier;
 use crate::assembly::System;
 use crate::assembly::equations::Equations;
 use crate::assembly::redistribution::Redistribution;
@@ -16,6 +17,14 @@ pub struct AssemblerState {
     reduced_graph: u64,
     tangent_key: Option<[f64; 4]>,
     redistribution: Redistribution,
+}
+
+impl AssemblerState {
+    /// See [`State::carry`](crate::State::carry): equations are found anew.
+    pub fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.equations = Equations::default();
+        self.redistribution.carry(carrier);
+    }
 }
 
 impl Assembler {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use crate::diagnostics::Result;
 use crate::io::results::{Dataset, VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
@@ -92,7 +92,9 @@ struct Vtu {
 }
 
 #[typetag::serde(name = "vtu")]
-impl State for Vtu {}
+impl State for Vtu {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 impl Vtu {
     /// Writes a VTU file, or one a rank and a PVTU file that lists them; gives the name of what to open. Collective.

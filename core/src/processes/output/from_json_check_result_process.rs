@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::control::TimeCounter;
 use super::gauss;
@@ -160,7 +160,9 @@ impl FromJsonCheck {
 struct SavedCounter(f64);
 
 #[typetag::serde(name = "from_json_check_result")]
-impl State for SavedCounter {}
+impl State for SavedCounter {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 impl Process for FromJsonCheck {
     fn state(&self) -> Option<Box<dyn State>> {

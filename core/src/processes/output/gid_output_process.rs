@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::control::OutputControl;
 use super::gauss;
@@ -194,7 +194,9 @@ struct GidOutputState {
 }
 
 #[typetag::serde(name = "gid_output")]
-impl State for GidOutputState {}
+impl State for GidOutputState {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 impl Process for GidOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {

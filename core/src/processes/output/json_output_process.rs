@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::control::TimeCounter;
 use super::gauss;
@@ -58,10 +58,18 @@ struct Histories {
 struct JsonOutputState {
     counter: f64,
     series: Histories,
+    /// Whether the ranks are others than those that have sampled.
+    #[serde(skip)]
+    regrouped: bool,
 }
 
 #[typetag::serde(name = "json_output")]
-impl State for JsonOutputState {}
+impl State for JsonOutputState {
+    /// Every rank gets what the first had, which is all.
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {
+        self.regrouped = true;
+    }
+}
 
 /// The history of one node: all quantities of a step one after another.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -350,11 +358,26 @@ impl Process for JsonOutput {
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        Some(Box::new(JsonOutputState { counter: self.counter.counter, series: self.series.clone() }))
+        Some(Box::new(JsonOutputState { counter: self.counter.counter, series: self.series.clone(), regrouped: false }))
     }
 
-    fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
-        let JsonOutputState { counter, series } = state.take()?;
+    fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
+        let JsonOutputState { counter, mut series, regrouped } = state.take()?;
+        if regrouped {
+            let (part, selection) = self.part.find(model)?;
+            let known = |&&node: &&u32| {
+                part.owns_node(node as usize) && series.nodes.contains_key(&part.nodes.ids[node as usize])
+            };
+            let followed = |&&element: &&u32| {
+                let id = part.elements.ids[element as usize];
+                part.evaluates(Role::Element, element as usize) && series.elements.contains_key(&id)
+            };
+            series.known = selection.nodes.iter().filter(known).copied().collect();
+            series.followed = selection.elements.iter().filter(followed).copied().collect();
+            if !part.ranks.is_root() {
+                (series.nodes, series.elements) = Default::default();
+            }
+        }
         (self.counter.counter, self.series) = (counter, series);
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::json_output_process::fields;
 use super::place::{PartPath, one_of};
@@ -189,7 +189,9 @@ impl PointsOutput {
 struct SavedLengths(Vec<u64>);
 
 #[typetag::serde(name = "points_output")]
-impl State for SavedLengths {}
+impl State for SavedLengths {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 impl Process for PointsOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::place::{PartPath, one_of};
 use crate::diagnostics::Result;
-use crate::io::path_of_rank;
 use crate::model::Model;
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -42,7 +41,9 @@ struct Saved {
 }
 
 #[typetag::serde(name = "save_restart")]
-impl State for Saved {}
+impl State for Saved {
+    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+}
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let adapt = |defaults: Defaults| defaults.require(&["model_part_name"]).renamed("io_foldername", "output_path");
@@ -81,9 +82,9 @@ impl SaveRestart {
     /// Removes the oldest files beyond those that are kept; the latest is whole on the disk by then.
     fn remove_old(&mut self, model: &Model) {
         let surplus = self.most.map_or(0, |most| self.saved.files.len().saturating_sub(most));
-        for old in self.saved.files.drain(..surplus) {
+        for old in self.saved.files.drain(..surplus).filter(|_| model.ranks.is_root()) {
             // One that cannot be removed is a file more.
-            let _ = std::fs::remove_file(path_of_rank(&model.ranks, &old));
+            let _ = std::fs::remove_file(old);
         }
     }
 }

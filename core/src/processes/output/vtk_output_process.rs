@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{Carrier, State};
 
 use super::control::{OutputControl, Unit};
 use super::format::{OutputFormat, OutputFormatEntry, Shown};
@@ -142,7 +142,11 @@ struct VtkOutputState {
 }
 
 #[typetag::serde(name = "vtk_output")]
-impl State for VtkOutputState {}
+impl State for VtkOutputState {
+    fn carry(&mut self, carrier: &mut dyn Carrier) {
+        self.format.iter_mut().for_each(|state| state.carry(carrier));
+    }
+}
 
 impl Process for VtkOutput {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {

@@ -1,0 +1,260 @@
+//! Takes what ranks remember to another number of ranks, by the places of nodes in the whole mesh.
+
+use rustc_hash::FxHashMap;
+use zelus_linear_algebra::{Carrier, State, Unknowns};
+
+use super::saved_run::{SavedStage, States, other_deck};
+use crate::assembly::System;
+use crate::diagnostics::Result;
+use crate::entities::regroup;
+use crate::model::ModelPart;
+
+/// The nodes and unknowns of a rank.
+pub(super) struct OfRank {
+    /// Places of its nodes in the whole mesh.
+    places: Vec<u32>,
+    /// Which of them it owns.
+    owned: Vec<bool>,
+    unknowns: Unknowns,
+}
+
+/// Whose state is shown.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Turn {
+    /// That of a rank that was.
+    Was(usize),
+    /// That of the rank to come, as it begins.
+    Begins,
+    /// The one that the rank to come is to have.
+    Comes,
+}
+
+/// A place in the whole mesh, and a component or unknown there.
+type Key = (u32, u32);
+
+/// See [`Carrier`].
+pub(super) struct Regrouping {
+    were: Vec<OfRank>,
+    comes: OfRank,
+    /// Node of the rank to come by place.
+    nodes: FxHashMap<u32, u32>,
+    turn: Turn,
+    /// The unknowns of whom is shown.
+    unknowns: Unknowns,
+    /// Those of the rank to come, in the order in which they are begun.
+    begun: Vec<Unknowns>,
+    /// How many of them are.
+    beginnings: usize,
+    /// Names of unknowns.
+    names: Vec<String>,
+    /// The numbers of all ranks, by what is shown of one rank after another.
+    shown: Vec<FxHashMap<Key, f64>>,
+    /// How many columns of this state were shown.
+    at: usize,
+    fault: Option<String>,
+}
+
+impl OfRank {
+    /// Those of a rank that has this of the part, or all of it.
+    pub(super) fn new(part: &ModelPart, rank: usize, unknowns: Unknowns) -> Self {
+        let (places, owned) = match &part.share {
+            Some(share) => (share.places.clone(), share.owners.iter().map(|&owner| owner as usize == rank).collect()),
+            None => ((0..part.nodes.len() as u32).collect(), vec![true; part.nodes.len()]),
+        };
+        Self { places, owned, unknowns }
+    }
+}
+
+impl Regrouping {
+    /// From the ranks that were to the present one, which has this of the part.
+    pub(super) fn new(were: Vec<OfRank>, part: &ModelPart, system: &System) -> Self {
+        let comes = OfRank::new(part, part.ranks.rank(), system.dofs.layout());
+        Self {
+            were,
+            nodes: comes.places.iter().enumerate().map(|(node, &place)| (place, node as u32)).collect(),
+            comes,
+            turn: Turn::Begins,
+            unknowns: Unknowns::default(),
+            begun: Vec::new(),
+            beginnings: 0,
+            names: Vec::new(),
+            shown: Vec::new(),
+            at: 0,
+            fault: None,
+        }
+    }
+
+    /// What the rank to come is to remember of a stage: of `stages` by rank; `begins` is its own as it begins.
+    ///
+    /// # Errors
+    /// States that do not fit each other or the mesh.
+    pub(super) fn stage(mut self, stages: Vec<SavedStage>, begins: SavedStage, system: &System) -> Result<SavedStage> {
+        let (mut elements, mut conditions) = (Vec::new(), Vec::new());
+        let (mut strategies, mut interactions, mut processes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut first = None;
+        for stage in stages {
+            first.get_or_insert((stage.begun, stage.first_length, stage.unknowns));
+            elements.push(stage.elements);
+            conditions.push(stage.conditions);
+            strategies.push(vec![stage.strategy]);
+            interactions.push(stage.interactions);
+            processes.push(stage.processes);
+        }
+        let (begun, first_length, unknowns) = first.ok_or_else(|| other_deck("it was saved by no rank"))?;
+        Ok(SavedStage {
+            begun,
+            first_length,
+            unknowns,
+            elements: regroup(&system.elements, elements)?,
+            conditions: regroup(&system.conditions, conditions)?,
+            strategy: self.states(strategies, vec![begins.strategy])?.swap_remove(0),
+            interactions: self.states(interactions, begins.interactions)?,
+            processes: self.states(processes, begins.processes)?,
+        })
+    }
+
+    /// The states to come of as many participants: of those by rank, and as they begin.
+    fn states(&mut self, of_ranks: Vec<States>, begin: States) -> Result<States> {
+        let count = of_ranks.first().map_or(0, Vec::len);
+        if of_ranks.iter().any(|states| states.len() != count) {
+            return Err(other_deck("its ranks had different participants"));
+        }
+        let mut of_ranks: Vec<_> = of_ranks.into_iter().map(Vec::into_iter).collect();
+        let mut begin = begin.into_iter();
+        (0..count)
+            .map(|_| {
+                let all = of_ranks.len();
+                let states: Vec<_> = of_ranks.iter_mut().filter_map(|states| states.next().flatten()).collect();
+                let begins = begin.next().flatten();
+                match states.len() {
+                    0 => Ok(None),
+                    count if count == all => self.state(states, begins).map(Some),
+                    _ => Err(other_deck("its ranks had different participants")),
+                }
+            })
+            .collect()
+    }
+
+    fn state(&mut self, mut of_ranks: Vec<Box<dyn State>>, begins: Option<Box<dyn State>>) -> Result<Box<dyn State>> {
+        (self.shown, self.begun) = (Vec::new(), Vec::new());
+        for (rank, state) in of_ranks.iter_mut().enumerate() {
+            self.turn(Turn::Was(rank), self.were[rank].unknowns.clone());
+            state.carry(self);
+        }
+        if let Some(mut begins) = begins {
+            self.turn(Turn::Begins, self.comes.unknowns.clone());
+            begins.carry(self);
+        }
+        let mut comes = of_ranks.swap_remove(0);
+        self.turn(Turn::Comes, self.comes.unknowns.clone());
+        comes.carry(self);
+        self.fault.take().map_or(Ok(comes), |fault| Err(other_deck(fault)))
+    }
+
+    fn turn(&mut self, turn: Turn, unknowns: Unknowns) {
+        (self.turn, self.unknowns, self.at, self.beginnings) = (turn, unknowns, 0, 0);
+    }
+
+    fn fail(&mut self, fact: &str) {
+        self.fault.get_or_insert_with(|| fact.to_owned());
+    }
+
+    /// Keys of the unknowns of whom is shown, which has these places.
+    fn keys(&mut self, places: &[u32]) -> Vec<Key> {
+        let mut keys = Vec::new();
+        let mut places = places.iter();
+        for (nodes, names) in &self.unknowns.0 {
+            let mut number = |name: &String| {
+                let known = self.names.iter().position(|known| known == name);
+                known.unwrap_or_else(|| {
+                    self.names.push(name.clone());
+                    self.names.len() - 1
+                }) as u32
+            };
+            let names: Vec<u32> = names.iter().map(&mut number).collect();
+            for &place in places.by_ref().take(*nodes as usize) {
+                keys.extend(names.iter().map(|&name| (place, name)));
+            }
+        }
+        keys
+    }
+
+    /// Keeps the numbers of the shown rank under their keys, or gives those of the rank to come.
+    fn column(&mut self, values: &mut Vec<f64>, keys: impl FnOnce(&mut Self, &[u32], usize) -> Vec<Key>) {
+        match self.turn {
+            Turn::Begins => {}
+            Turn::Was(rank) => {
+                let OfRank { places, owned, .. } = &self.were[rank];
+                let (places, owned): (_, FxHashMap<u32, bool>) =
+                    (places.clone(), places.iter().copied().zip(owned.iter().copied()).collect());
+                if self.shown.len() <= self.at {
+                    self.shown.push(FxHashMap::default());
+                }
+                let keys = if values.is_empty() { Vec::new() } else { keys(self, &places, values.len()) };
+                if keys.len() != values.len() {
+                    self.fail("what its ranks remember does not fit their mesh");
+                }
+                let column = &mut self.shown[self.at];
+                for (key, &value) in keys.into_iter().zip(&*values) {
+                    if owned[&key.0] {
+                        column.insert(key, value);
+                    } else {
+                        column.entry(key).or_insert(value);
+                    }
+                }
+            }
+            Turn::Comes if values.is_empty() => {}
+            Turn::Comes => {
+                let places = self.comes.places.clone();
+                let components = values.len() / self.were[0].places.len().max(1);
+                let keys = keys(self, &places, components * places.len());
+                let Some(column) = self.shown.get(self.at) else {
+                    return self.fail("its ranks remember different things");
+                };
+                match keys.iter().map(|key| column.get(key).copied()).collect() {
+                    Some(numbers) => *values = numbers,
+                    None => self.fail("its ranks do not remember all nodes"),
+                }
+            }
+        }
+        self.at += 1;
+    }
+}
+
+impl Carrier for Regrouping {
+    fn nodes(&mut self, nodes: &mut [u32]) {
+        if self.turn != Turn::Comes {
+            return;
+        }
+        for node in nodes {
+            match self.were[0].places.get(*node as usize).and_then(|place| self.nodes.get(place)) {
+                Some(&new) => *node = new,
+                None => return self.fail("it remembers something of nodes that not every rank has"),
+            }
+        }
+    }
+
+    fn by_node(&mut self, values: &mut Vec<f64>) {
+        self.column(values, |_, places, count| {
+            let components = (count / places.len().max(1)) as u32;
+            places.iter().flat_map(|&place| (0..components).map(move |c| (place, c))).collect()
+        });
+    }
+
+    fn by_unknown(&mut self, values: &mut Vec<f64>) {
+        self.column(values, |regrouping, places, _| regrouping.keys(places));
+    }
+
+    fn begin_unknowns(&mut self, unknowns: &Unknowns) -> Unknowns {
+        let unknowns = match self.turn {
+            Turn::Was(_) => unknowns.clone(),
+            Turn::Begins => {
+                self.begun.push(unknowns.clone());
+                unknowns.clone()
+            }
+            Turn::Comes => self.begun.get(self.beginnings).unwrap_or(unknowns).clone(),
+        };
+        self.beginnings += 1;
+        std::mem::replace(&mut self.unknowns, unknowns)
+    }
+}
