@@ -28,6 +28,7 @@ struct Library;
 use zelus_constrained_optimization as _;
 use zelus_contact_structural_mechanics as _;
 use zelus_convection_diffusion as _;
+use zelus_meshes as _;
 use zelus_structural_mechanics as _;
 
 pub use zelus_constrained_optimization as constrained_optimization;
@@ -37,4 +38,5 @@ pub use zelus_core as core;
 pub use zelus_core::analysis::{RunOptions, RunReport, Simulation};
 pub use zelus_core::strategies::{Monitor, Silent};
 pub use zelus_core::{Error, Result};
+pub use zelus_meshes as meshes;
 pub use zelus_structural_mechanics as structural_mechanics;

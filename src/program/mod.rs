@@ -1,4 +1,4 @@
-//! The program: `zelus run`, `check`, `partition`, `diff`, `report`, `list`, `describe`.
+//! The program: `zelus run`, `check`, `import`, `convert`, `new`, `partition`, `diff`, `report`, `list`, `describe`.
 
 mod catalogue;
 mod diff;
@@ -6,12 +6,14 @@ mod html;
 mod kratos_names;
 mod log;
 mod matching;
+mod meshes;
 mod partition;
 mod progress;
 mod report;
 mod results;
 mod say;
 mod skin;
+mod starter;
 mod stop;
 mod terminal;
 mod warnings;
@@ -84,6 +86,12 @@ enum Command {
         #[arg(long, value_name = "PROGRAM")]
         like: Option<String>,
     },
+    /// Read a mesh of Gmsh, Abaqus, CalculiX or VTK and write it as an mdpa file; groups become sub model parts.
+    Import(meshes::Import),
+    /// Read a mesh and write it in the format of its new name's ending: .mdpa, .msh, .inp, .vtu.
+    Convert(meshes::Convert),
+    /// Write a commented deck to start from: parts, materials, supports and pairs in contact, of a mesh.
+    New(starter::Arguments),
     /// Cut the mesh of a deck for several ranks and say what each has, whom it meets and what it sends.
     Partition(partition::Arguments),
     /// Compare two result sets by node and field; exit code 0 where they are equal, 1 where not.
@@ -192,6 +200,9 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
             ));
             Ok(ExitCode::SUCCESS)
         }
+        Command::Import(arguments) => meshes::import(arguments).map(|()| ExitCode::SUCCESS),
+        Command::Convert(arguments) => meshes::convert(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::New(arguments) => starter::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Partition(arguments) => partition::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Report(arguments) => html::run(&arguments).map(|()| ExitCode::SUCCESS),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::deck::StageDeck;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Place, Result, did_you_mean};
-use crate::io::replace_file;
+use crate::io::{format_of, replace_file};
 use crate::parameters::{Node, Value};
 
 /// Saved runs that a deck names, with Kratos' keys.
@@ -77,7 +77,8 @@ impl Checkpoints {
     pub(super) fn name_mesh(&mut self, stages: &mut [StageDeck], mesh: Option<String>) {
         let import = stages.first_mut().and_then(|first| first.settings.get_path_mut(IMPORT));
         let (Some(import), Some(mesh)) = (import.filter(|_| self.mesh.is_none()), mesh) else { return };
-        for (key, text) in [("input_type", "mdpa"), ("input_filename", mesh.as_str())] {
+        let format = format_of(Path::new(&mesh)).map_or("mdpa", |format| format.name);
+        for (key, text) in [("input_type", format), ("input_filename", mesh.as_str())] {
             if let Some(node) = import.get_path_mut(key) {
                 node.value = Value::String(text.to_owned());
             }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::report::RunReport;
 use super::solver::{SolverSettings, flatten_bars};
 use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
-use crate::io;
+use crate::io::{self, MeshFormatEntry};
 use crate::model::{Model, ModelPart};
 use crate::parameters::{Document, Node, Settings, Value};
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -164,7 +164,14 @@ pub(super) fn import(
             .remedy("read it from a file with \"input_type\": \"mdpa\", or by an ImportMDPAModeler in \"modelers\"")
             .into());
         }
-        "mdpa" => {
+        name => {
+            let format = registry::find::<MeshFormatEntry>(name).ok_or_else(|| {
+                let formats: Vec<&str> = registry::all::<MeshFormatEntry>().iter().map(|format| format.name).collect();
+                let formats = formats.join(", ");
+                Diagnostic::error("input-type", format!("\"input_type\" is {name:?}"))
+                    .at(import.key_place("input_type"))
+                    .remedy(format!("use {formats}, \"use_input_model_part\" or, in the first stage, \"rest\""))
+            })?;
             if existing {
                 model.parts.remove(root);
             }
@@ -172,14 +179,10 @@ pub(super) fn import(
             let name = import.node().require("input_filename")?;
             solver.prepare(&mut part)?;
             let path = folder.join(name.str()?);
-            io::read_mesh_of(&path, &name.place(), &mut part)?.into_iter().for_each(|w| warnings.push(w));
+            io::read_mesh_as(format, import.node(), &path, &name.place(), &mut part)?
+                .into_iter()
+                .for_each(|w| warnings.push(w));
             model.add(part);
-        }
-        other => {
-            return Err(Diagnostic::error("input-type", format!("\"input_type\" is {other:?}"))
-                .at(import.key_place("input_type"))
-                .remedy("use \"mdpa\", \"use_input_model_part\" or, in the first stage, \"rest\"")
-                .into());
         }
     }
     let part = model.root_mut(root)?;

@@ -21,11 +21,12 @@ use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
 use crate::entities::Interaction;
-use crate::io::{Claim, FileUse, check_files, mesh_file};
+use crate::io::{Claim, FileUse, MeshFormatEntry, check_files};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
 use crate::processes::{Process, tables_of};
+use crate::registry;
 use crate::strategies::unknowns_of_all;
 use crate::strategies::{Monitor, Plan, SolutionStrategy, StepRecord};
 
@@ -586,11 +587,16 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
 /// What a stage reads: deck, meshes, materials and tables.
 fn inputs_of(stage: &StageDeck, deck: &Node, folder: &Path) -> Vec<FileUse> {
     let named = |key: &str| deck.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
-    let mesh = named("solver_settings.model_import_settings.input_filename").map(|name| mesh_file(&folder.join(name)));
+    let mesh_file = |input_type: &str, name: &str| {
+        registry::find::<MeshFormatEntry>(input_type).map(|format| format.file(&folder.join(name)))
+    };
+    let input_type = named("solver_settings.model_import_settings.input_type").unwrap_or("mdpa");
+    let mesh = named("solver_settings.model_import_settings.input_filename");
+    let mesh = mesh.and_then(|name| mesh_file(input_type, name));
     let materials = named("solver_settings.material_import_settings.materials_filename").map(|name| folder.join(name));
     let of_modeler = |modeler: &Node| {
         let parameters = modeler.get("parameters").or_else(|| modeler.get("Parameters"))?;
-        parameters.get("input_filename")?.as_str().map(|name| mesh_file(&folder.join(name)))
+        parameters.get("input_filename")?.as_str().and_then(|name| mesh_file("mdpa", name))
     };
     let meshes = stage.modelers.iter().filter_map(of_modeler);
     let mut files = vec![deck.place().file];

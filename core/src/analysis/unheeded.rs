@@ -4,6 +4,7 @@ use super::deck::{listed, unread_key};
 use super::solver::SolverExtensionEntry;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
+use crate::io::MeshFormatEntry;
 use crate::parameters::{Defaults, Interval, Node};
 use crate::registry;
 use crate::strategies::LinearSolverEntry;
@@ -113,12 +114,15 @@ pub(super) fn warn_of_unheeded(deck: &Node, times: Option<(f64, f64)>, report: &
     }
 }
 
-/// What the linear solver that `object` names reads besides, nothing where it names none; `None` where there is no such solver.
+/// What the linear solver or the format of meshes that `object` names reads besides, nothing where it names none; `None` where
+/// there is no such solver.
 fn own_settings(object: &Node) -> Option<Defaults> {
     let name = object.get("solver_type").and_then(|node| node.as_str()?.rsplit('.').next()).unwrap_or_default();
+    let format = object.get("input_type").and_then(Node::as_str).and_then(registry::find::<MeshFormatEntry>);
     match registry::find::<LinearSolverEntry>(name) {
         None if !name.is_empty() => None,
         Some(entry) if !entry.defaults.is_empty() => Defaults::parse(name, entry.defaults).ok(),
+        _ if format.is_some_and(|format| !format.defaults.is_empty()) => Defaults::parse(name, format?.defaults).ok(),
         _ => Some(Defaults::free_form(name)),
     }
 }

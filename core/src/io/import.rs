@@ -5,7 +5,7 @@ mod constraints;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
@@ -20,48 +20,28 @@ use crate::model::{
     VariableKind, named,
 };
 
+/// Gives `read` what it must know of registered names.
+pub(super) fn entity_names<R>(read: impl FnOnce(&EntityNames) -> R) -> R {
+    let known = [kind_names(Role::Element), kind_names(Role::Condition)].concat();
+    let nodes_of = |name: &str| {
+        let entry = find_kind(Role::Element, name).or_else(|| find_kind(Role::Condition, name));
+        entry.map(|entry| entry.nodes()).or_else(|| shape_of_geometry(name).map(|(cell, _)| cell.nodes()))
+    };
+    read(&EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| flag(name).is_ok() })
+}
+
 /// Reads an mdpa file into `part`; gives the warnings. Columns the part already has are kept and made longer.
 ///
 /// # Errors
 /// As [`mdpa::read`] and [`import`].
 pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
-    let known = [kind_names(Role::Element), kind_names(Role::Condition)].concat();
-    let nodes_of = |name: &str| {
-        let entry = find_kind(Role::Element, name).or_else(|| find_kind(Role::Condition, name));
-        entry.map(|entry| entry.nodes()).or_else(|| geometry(name).map(|(cell, _)| cell.nodes()))
-    };
-    let names = EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| flag(name).is_ok() };
-    let (document, mut warnings) = mdpa::read(path, &names)?;
+    let (document, mut warnings) = entity_names(|names| mdpa::read(path, names))?;
     warnings.extend(import(&document, part)?);
     Ok(warnings)
 }
 
-/// The mdpa file that a deck names, with or without ending.
-pub fn mesh_file(named: &Path) -> PathBuf {
-    let mut name = named.as_os_str().to_owned();
-    if named.extension().is_none_or(|ending| ending != "mdpa") {
-        name.push(".mdpa");
-    }
-    name.into()
-}
-
-/// Reads the mdpa file that a deck names at `place`, with or without ending, into `part`; gives the warnings.
-///
-/// # Errors
-/// No such file; as [`read_mesh`].
-pub fn read_mesh_of(path: &Path, place: &Place, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
-    let path = &mesh_file(path);
-    if !path.is_file() {
-        return Err(Diagnostic::error("missing-file", format!("there is no mesh file {}", path.display()))
-            .at(place.clone())
-            .remedy("\"input_filename\" is relative to the deck and has no extension")
-            .into());
-    }
-    read_mesh(path, part)
-}
-
 /// Reference cell and space of a geometry by its name, as `Quadrilateral3D4`.
-fn geometry(name: &str) -> Option<(Shape, usize)> {
+pub fn shape_of_geometry(name: &str) -> Option<(Shape, usize)> {
     let kinds = [
         ("Point", 0),
         ("Line", 1),
@@ -176,7 +156,7 @@ impl Import<'_> {
         rows.sort_by_key(|&(id, ..)| id);
         part.geometries.place = self.document.geometries.first().map(|block| self.place(block.line));
         for (id, block, at) in rows {
-            let Some((cell, space)) = geometry(&block.name) else { continue };
+            let Some((cell, space)) = shape_of_geometry(&block.name) else { continue };
             let nodes = block.nodes_of(at).iter().map(|&node| part.nodes.find(node as usize).expect("checked"));
             part.geometries.push(id as usize, cell, space, nodes.collect());
         }

@@ -4,6 +4,7 @@ mod container;
 mod import;
 mod materials;
 pub mod mdpa;
+mod mesh_format;
 mod outputs;
 mod replace;
 pub mod results;
@@ -12,7 +13,8 @@ mod tests;
 pub(crate) mod variables;
 
 pub use container::{SavedFile, write_saved};
-pub use import::{import, mesh_file, read_mesh, read_mesh_of};
+pub use import::{import, read_mesh, shape_of_geometry};
 pub use materials::{apply_materials, read_materials, read_materials_of};
+pub use mesh_format::{MeshFormatEntry, MeshReader, MeshWriter, format_of, read_mesh_as};
 pub use outputs::{Claim, FileUse, check_files, of_series};
 pub use replace::{append_to_file, cut_file, length_of, replace_file, replace_own_file};

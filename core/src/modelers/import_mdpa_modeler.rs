@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::modeler::{Modeler, ModelerEntry};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
-use crate::io::read_mesh_of;
+use crate::io::{MeshFormatEntry, read_mesh_as};
 use crate::model::{Model, ModelPart};
-use crate::parameters::Settings;
-use crate::register;
+use crate::parameters::{Node, Object, Settings, Value};
+use crate::{register, registry};
 
 struct ImportMdpa {
     part: String,
@@ -33,7 +33,10 @@ impl Modeler for ImportMdpa {
             return Err(Diagnostic::error("repeated-part", fact).at(self.place.clone()).into());
         }
         let mut part = ModelPart::new(self.part.clone());
-        read_mesh_of(&self.path, &self.place, &mut part)?.into_iter().for_each(|warning| report.push(warning));
+        let mdpa = registry::require::<MeshFormatEntry>("mdpa")?;
+        let no_settings = Node::new(Value::Object(Object::default()), &self.place);
+        let warnings = read_mesh_as(mdpa, &no_settings, &self.path, &self.place, &mut part)?;
+        warnings.into_iter().for_each(|warning| report.push(warning));
         model.add(part);
         Ok(())
     }

@@ -1,0 +1,48 @@
+//! The input files of Abaqus and CalculiX: parts and instances, sets, surfaces, ties and contact pairs.
+//!
+//! A part is read anew for each of its instances, whose name stands before those of its sets: `INSTANCE_SET`. Materials, supports
+//! and loads are kept for a starter deck. Source: CalculiX CrunchiX user's manual, "Input deck format".
+
+mod cards;
+mod cells;
+mod instance;
+mod model;
+mod steps;
+mod surfaces;
+mod write;
+
+use std::path::Path;
+
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::io::MeshFormatEntry;
+use zelus_core::io::mdpa::MdpaDocument;
+use zelus_core::parameters::Settings;
+use zelus_core::register;
+
+use super::document::finish;
+use super::mesh::Mesh;
+
+/// Reads an input file; gives warnings of what it says and no mesh holds.
+///
+/// # Errors
+/// A file that cannot be read, data that do not fit their keyword, names that are not there.
+pub(crate) fn read_mesh(path: &Path) -> Result<(Mesh, Vec<Diagnostic>)> {
+    model::read(&cards::read(path)?, path)
+}
+
+fn build(path: &Path, settings: &Settings) -> Result<(MdpaDocument, Vec<Diagnostic>)> {
+    let (mesh, mut said) = read_mesh(path)?;
+    let (document, mended) = finish(mesh, settings, path)?;
+    said.extend(mended);
+    Ok((document, said))
+}
+
+register! { MeshFormatEntry "abaqus",
+    aliases: &["calculix", "inp"],
+    about: "input files of Abaqus and CalculiX; sets, surfaces and instances become sub model parts",
+    source: "CalculiX CrunchiX user's manual",
+    defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/mesh_formats/abaqus.json")),
+    build: build,
+    endings: &["inp"],
+    write: Some(write::write),
+}

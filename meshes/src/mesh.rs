@@ -1,0 +1,198 @@
+//! What a mesh file of another program says, whatever its format.
+
+use zelus_core::geometry::Shape;
+
+/// Nodes, cells, named groups of both, and what an input file of a solver says besides.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Id of each node, unique.
+    pub node_ids: Vec<u32>,
+    /// Positions of the nodes.
+    pub points: Vec<[f64; 3]>,
+    /// Cells of all dimensions.
+    pub cells: Cells,
+    /// Named groups, names unique.
+    pub groups: Vec<Group>,
+    /// Surfaces that the file ties or lets touch.
+    pub pairs: Vec<Pair>,
+    /// Materials by name.
+    pub materials: Vec<Material>,
+    /// Which group is of which material.
+    pub sections: Vec<Section>,
+    /// Degrees of freedom that the file holds.
+    pub supports: Vec<Support>,
+    /// Forces on nodes and pressures on faces.
+    pub loads: Vec<Load>,
+    /// What a planar mesh stands for, where the file says so.
+    pub plane: Option<Plane>,
+}
+
+/// Cells in flat arrays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cells {
+    /// Id of each cell, unique.
+    pub ids: Vec<u32>,
+    /// Shape of each cell.
+    pub shapes: Vec<Shape>,
+    starts: Vec<u32>,
+    nodes: Vec<u32>,
+}
+
+impl Default for Cells {
+    fn default() -> Self {
+        Self { ids: Vec::new(), shapes: Vec::new(), starts: vec![0], nodes: Vec::new() }
+    }
+}
+
+impl Cells {
+    /// Adds a cell with its nodes, which are indices in the order of the shape; gives the index of the cell.
+    pub fn push(&mut self, id: u32, shape: Shape, nodes: impl IntoIterator<Item = u32>) -> u32 {
+        self.ids.push(id);
+        self.shapes.push(shape);
+        self.nodes.extend(nodes);
+        self.starts.push(self.nodes.len() as u32);
+        self.ids.len() as u32 - 1
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Node indices of a cell.
+    pub fn nodes(&self, cell: usize) -> &[u32] {
+        &self.nodes[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// Node indices of a cell, to change.
+    pub fn nodes_mut(&mut self, cell: usize) -> &mut [u32] {
+        &mut self.nodes[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// The largest id, 0 where there are no cells.
+    pub fn max_id(&self) -> u32 {
+        self.ids.iter().copied().max().unwrap_or(0)
+    }
+}
+
+/// A named set; its nodes are those listed and those of its cells.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Group {
+    /// Its name, a word without dots.
+    pub name: String,
+    /// Indices of nodes.
+    pub nodes: Vec<u32>,
+    /// Indices of cells.
+    pub cells: Vec<u32>,
+}
+
+/// Two surfaces that act on each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// Whether they are tied; they may touch otherwise.
+    pub tied: bool,
+    /// The group that carries the multipliers.
+    pub slave: String,
+    /// The other group; that of the slave where a surface touches itself.
+    pub master: String,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+}
+
+/// A linear elastic material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Its name.
+    pub name: String,
+    /// Young's modulus; `None` where the file gives no elasticity.
+    pub young: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Mass per volume; 0 where none is given.
+    pub density: f64,
+}
+
+/// The material of a group of cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// The group.
+    pub group: String,
+    /// The name of the material.
+    pub material: String,
+}
+
+/// Displacements prescribed for a group of nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support {
+    /// The group.
+    pub group: String,
+    /// Value by direction; `None` where it is free.
+    pub values: [Option<f64>; 3],
+}
+
+/// A load on a group.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// The group.
+    pub group: String,
+    /// What acts on it.
+    pub kind: LoadKind,
+}
+
+/// What acts on a group.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoadKind {
+    /// The same force on each node.
+    Force([f64; 3]),
+    /// Force per area against the outward normal of the faces.
+    Pressure(f64),
+}
+
+/// What a planar mesh stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    /// A thin plate, free to change its thickness.
+    Stress,
+    /// A slice of a long body.
+    Strain,
+    /// A body of revolution about the y axis.
+    Axial,
+}
+
+impl Mesh {
+    /// Dimension of its elements: that of the cells with most dimensions.
+    pub fn dimension(&self) -> usize {
+        self.cells.shapes.iter().map(|shape| shape.dim()).max().unwrap_or(0)
+    }
+
+    /// Positions of the nodes of a cell.
+    pub fn points_of(&self, cell: usize) -> Vec<[f64; 3]> {
+        self.cells.nodes(cell).iter().map(|&node| self.points[node as usize]).collect()
+    }
+
+    /// The group of that name, made where it is not there.
+    pub fn group_mut(&mut self, name: &str) -> &mut Group {
+        let at = self.groups.iter().position(|group| group.name == name).unwrap_or_else(|| {
+            self.groups.push(Group { name: name.to_owned(), ..Group::default() });
+            self.groups.len() - 1
+        });
+        &mut self.groups[at]
+    }
+
+    /// The group of that name.
+    pub fn group(&self, name: &str) -> Option<&Group> {
+        self.groups.iter().find(|group| group.name == name)
+    }
+}
+
+/// A name as a deck can use it: what separates words and parts becomes an underscore.
+pub fn word(name: &str) -> String {
+    let name: String = name.trim().trim_matches('"').chars().collect();
+    let keeps = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '+');
+    name.chars().map(|c| if keeps(c) { c } else { '_' }).collect()
+}

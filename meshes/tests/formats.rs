@@ -1,0 +1,120 @@
+//! Files that Gmsh has written, read in every form, and written back.
+
+use std::path::{Path, PathBuf};
+
+use zelus_core::diagnostics::Result;
+use zelus_core::geometry::mapping;
+use zelus_core::io::mdpa::MdpaDocument;
+use zelus_core::io::{MeshFormatEntry, format_of};
+use zelus_core::parameters::{Node, Object, Value};
+use zelus_core::registry;
+use zelus_meshes::Mesh;
+use zelus_meshes::document;
+use zelus_structural_mechanics as _;
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+fn read(path: &Path) -> Result<MdpaDocument> {
+    let format = format_of(path).expect("a known ending");
+    let nothing = Node::new(Value::Object(Object::default()), &zelus_core::diagnostics::Place::file("test"));
+    Ok((format.build)(path, &format.settings(&nothing)?)?.0)
+}
+
+fn mesh(path: &Path) -> Mesh {
+    document::mesh(&read(path).unwrap()).unwrap()
+}
+
+/// Length, area or volume of the cells of a group with that dimension.
+fn size(mesh: &Mesh, group: &str, dimension: usize) -> f64 {
+    let cells = &mesh.group(group).unwrap_or_else(|| panic!("no group {group}")).cells;
+    let own = cells.iter().map(|&cell| cell as usize).filter(|&cell| mesh.cells.shapes[cell].dim() == dimension);
+    own.map(|cell| mapping::domain_size(mesh.cells.shapes[cell], &mesh.points_of(cell))).sum()
+}
+
+/// Every node of a cell with straight edges is where its corners say.
+fn nodes_are_in_order(mesh: &Mesh) {
+    for cell in 0..mesh.cells.len() {
+        let (shape, points) = (mesh.cells.shapes[cell], mesh.points_of(cell));
+        let linear = shape.linear();
+        for (point, xi) in points.iter().zip(shape.cell().points) {
+            let wanted = mapping::position(linear, &points[..linear.nodes()], *xi);
+            assert!((0..3).all(|i| (point[i] - wanted[i]).abs() < 1e-9), "{shape:?}: {point:?} is not {wanted:?}");
+        }
+        assert!(!mapping::is_inverted(shape, mesh.dimension(), &points), "{shape:?}");
+    }
+}
+
+fn has_three_cubes(mesh: &Mesh) {
+    nodes_are_in_order(mesh);
+    for (group, dimension) in [("Tets", 3), ("Hexes", 3), ("Prisms", 3), ("Bottom", 2), ("Top", 2)] {
+        let found = size(mesh, group, dimension);
+        assert!((found - 1.0).abs() < 1e-9, "{group}: {found}");
+    }
+    let bottom = mesh.group("Bottom").unwrap();
+    for &cell in &bottom.cells {
+        let normal = mapping::vector_area(mesh.cells.shapes[cell as usize], &mesh.points_of(cell as usize));
+        assert!(normal[2] < 0.0, "the normal of Bottom is {normal:?}");
+    }
+}
+
+#[test]
+fn every_form_of_gmsh_gives_the_same_mesh() {
+    for order in ["1", "2"] {
+        for form in ["22", "22b", "41", "41b"] {
+            let mesh = mesh(&data(&format!("solids_{order}_{form}.msh")));
+            has_three_cubes(&mesh);
+            assert_eq!(mesh.group("Corner").unwrap().nodes.len(), 1, "{order} {form}");
+        }
+    }
+}
+
+#[test]
+fn gmsh_s_abaqus_files_give_the_same_mesh() {
+    for order in ["1", "2"] {
+        has_three_cubes(&mesh(&data(&format!("solids_{order}.inp"))));
+    }
+}
+
+#[test]
+fn without_physical_groups_entities_are_parts() {
+    let mesh = mesh(&data("disc_41.msh"));
+    assert!((size(&mesh, "Surface_1", 2) - std::f64::consts::PI).abs() < 0.02);
+    assert!((size(&mesh, "Surface_2", 2) - 1.0).abs() < 1e-9);
+    assert!(mesh.group("Curve_1").is_some());
+}
+
+#[test]
+fn what_is_written_reads_back() {
+    let folder = tempfile::tempdir().unwrap();
+    for order in ["1", "2"] {
+        let document = read(&data(&format!("solids_{order}_41.msh"))).unwrap();
+        for format in registry::all::<MeshFormatEntry>() {
+            let Some(write) = format.write.filter(|_| format.name != "mdpa") else { continue };
+            let path = folder.path().join(format!("again.{}", format.endings[0]));
+            write(&document, &path).unwrap();
+            let mesh = mesh(&path);
+            has_three_cubes(&mesh);
+            assert_eq!(mesh.group("Corner").unwrap().nodes.len(), 1, "{}", format.name);
+        }
+    }
+}
+
+#[test]
+fn damaged_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["solids_1_22.msh", "solids_1_22b.msh", "solids_1_41.msh", "solids_1_41b.msh", "solids_1.inp"] {
+        let whole = std::fs::read(data(name)).unwrap();
+        for share in 1..20 {
+            let path = folder.path().join(name);
+            std::fs::write(&path, &whole[..whole.len() * share / 20]).unwrap();
+            // what is cut may still be a mesh; it must never be a panic
+            if let Err(error) = read(&path) {
+                assert!(!error.to_string().is_empty());
+            }
+        }
+        std::fs::write(folder.path().join(name), b"nothing of the kind").unwrap();
+        assert!(read(&folder.path().join(name)).is_err(), "{name}");
+    }
+}
