@@ -4,6 +4,7 @@ mod support;
 
 use std::fs::{self, File};
 use std::path::Path;
+use std::process::Command;
 
 use serde_json::{Value, json};
 use support::{contents, read_json, root, said, scratch_copy, zelus};
@@ -65,6 +66,34 @@ fn inputs_are_no_outputs() {
     is_refused(long.path(), &[], "too long");
     let below = deck(|deck| *json_output(deck) = json!("mesh.mdpa/results.json"));
     is_refused(below.path(), &[], "is no folder");
+}
+
+#[test]
+fn partitions_replace_no_files_of_others() {
+    let plain = deck(|_| {});
+    let before = contents(plain.path());
+    for (option, name) in [("--json", "mesh.mdpa"), ("--vtu", "mesh.mdpa"), ("--json", DECK), ("--vtu", "/dev/null")] {
+        let output = zelus(plain.path(), &["partition", DECK, "--ranks", "2", option, name]);
+        assert_eq!(output.status.code(), Some(2), "{option} {name}: {}", said(&output));
+        assert!(said(&output).contains("[output-file]"), "{}", said(&output));
+        assert!(contents(plain.path()) == before, "{option} {name}");
+    }
+    for _ in 0..2 {
+        let arguments = ["partition", DECK, "--ranks", "2", "--json", "ranks.json", "--vtu", "ranks.vtu"];
+        let output = zelus(plain.path(), &arguments);
+        assert!(output.status.success(), "{}", said(&output));
+    }
+}
+
+/// A limit of the size of files is an error that is told, and no silent end.
+#[test]
+fn limits_of_files_are_told() {
+    let plain = deck(|_| {});
+    let program = env!("CARGO_BIN_EXE_zelus");
+    let limited = format!("ulimit -f 1; exec {program} run {DECK}");
+    let output = Command::new("bash").args(["-c", &limited]).current_dir(plain.path()).output().expect("a shell");
+    let code = output.status.code();
+    assert!(matches!(code, Some(2 | 4)) && said(&output).contains("File too large"), "{code:?}: {}", said(&output));
 }
 
 #[test]

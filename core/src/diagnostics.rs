@@ -228,6 +228,11 @@ impl From<WrongState> for Error {
     }
 }
 
+/// That a saved state cannot be of the run that reads it.
+pub fn unfit(fact: impl Into<String>) -> Error {
+    Diagnostic::error("saved-state", fact).remedy("it was saved by a run of another deck, or it is forged").into()
+}
+
 /// Result of everything in the framework that can fail.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 

@@ -11,7 +11,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::partition::{Counts, Partition, RankCounts, Repeats, Traffic, partition};
 use zelus_core::{Error, Result};
 
-use super::report::check_output;
+use super::report::{check_earlier, check_output};
 use super::say::say;
 
 /// Up to this number of ranks every rank has its line.
@@ -42,10 +42,15 @@ pub(super) struct Arguments {
     vtu: Option<PathBuf>,
 }
 
+/// A key that every file of a partition has.
+const MARK: &str = "\"repeats\"";
+
 /// Cuts the mesh, prints the table and writes the files asked for.
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    for (what, path) in [("the partition", &arguments.json), ("the picture", &arguments.vtu)] {
-        path.iter().try_for_each(|path| check_output(what, path, &[&arguments.file]))?;
+    for (what, path, mark) in [("partition", &arguments.json, MARK), ("picture", &arguments.vtu, "<VTKFile")] {
+        let Some(path) = path else { continue };
+        check_output(&format!("the {what}"), path, &[&arguments.file])?;
+        check_earlier(what, path, mark)?;
     }
     let DeckMesh { part, surfaces, common } = read_deck_mesh(&arguments.file)?;
     let cut = partition(&part, &surfaces, arguments.ranks)?;

@@ -27,6 +27,20 @@ pub(super) fn check_output(what: &str, path: &Path, inputs: &[&Path]) -> Result<
     if problems.is_empty() { Ok(()) } else { Err(Error::Input(problems)) }
 }
 
+/// Refuses to replace a file that an earlier run has not written: one without the `mark` that all such files have.
+///
+/// # Errors
+/// The stranger's file.
+pub(super) fn check_earlier(what: &str, path: &Path, mark: &str) -> Result<()> {
+    let is_strange = |text: Vec<u8>| !text.is_empty() && !String::from_utf8_lossy(&text).contains(mark);
+    if !std::fs::read(path).is_ok_and(is_strange) {
+        return Ok(());
+    }
+    let fact = format!("{} is no {what} of an earlier run, and would be replaced", path.display());
+    let problem = Diagnostic::error("output-file", fact);
+    Err(problem.remedy(format!("give the {what} another name, or remove the file")).into())
+}
+
 /// The report of a run, to be written at its end.
 #[derive(Debug)]
 pub(super) struct Report(pub PathBuf);
@@ -39,13 +53,7 @@ impl Report {
     pub(super) fn check(&self, deck: &Path) -> Result<()> {
         let path = &self.0;
         check_output("the report", path, &[deck])?;
-        let is_strange = |text: Vec<u8>| !text.is_empty() && !String::from_utf8_lossy(&text).contains(MARK);
-        if std::fs::read(path).is_ok_and(is_strange) {
-            let fact = format!("{} is no report of an earlier run, and would be replaced", path.display());
-            let problem = Diagnostic::error("output-file", fact);
-            return Err(problem.remedy("give the report another name, or remove the file").into());
-        }
-        Ok(())
+        check_earlier("report", path, MARK)
     }
 
     /// Writes the report, unless the run has ended since files would have been lost.

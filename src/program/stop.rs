@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 use zelus_core::{Error, Result};
 
@@ -16,14 +16,15 @@ impl Stop {
     /// # Errors
     /// A system that does not let signals be listened to.
     pub(super) fn listen() -> Result<Self> {
+        let unheard = |error| Error::System(format!("signals cannot be listened to: {error}"));
         let asked = Arc::new(AtomicBool::new(false));
         for signal in [SIGINT, SIGTERM] {
             // The order matters: the first signal finds the flag unset, and sets it.
             let second = flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&asked));
-            second
-                .and_then(|_| flag::register(signal, Arc::clone(&asked)))
-                .map_err(|error| Error::System(format!("signals cannot be listened to: {error}")))?;
+            second.and_then(|_| flag::register(signal, Arc::clone(&asked))).map_err(unheard)?;
         }
+        // A file beyond the limit of its size is then an error of its writing, which is told, and no silent end.
+        flag::register(SIGXFSZ, Arc::default()).map_err(unheard)?;
         Ok(Self(asked))
     }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use zelus_core::diagnostics::unfit;
 use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, find_kind};
 use zelus_core::model::{ModelPart, Role, ScalarVariable};
 use zelus_core::{Carrier, Result, State};
@@ -100,6 +101,10 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
 
     fn resume(&mut self, _part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
         let SavedConstraints(states) = state.take()?;
+        let counts = |block: &ConstraintBlock<M>| block.states.len();
+        if !self.blocks.iter().map(counts).eq(states.iter().map(Vec::len)) {
+            return Err(unfit("the constraints whose states it remembers are others"));
+        }
         self.blocks.iter_mut().zip(states).for_each(|(block, states)| block.states = states);
         Ok(())
     }

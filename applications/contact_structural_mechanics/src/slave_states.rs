@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::flags::{ISOLATED, SLIP};
 use zelus_core::Carrier;
+use zelus_core::Result;
+use zelus_core::diagnostics::unfit;
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Variable};
 use zelus_core::vector3::cross;
@@ -176,8 +178,17 @@ impl SlaveStates {
     }
 
     /// Takes up the states of the same carriers from a saved run.
-    pub fn resume(&mut self, saved: Self) {
+    ///
+    /// # Errors
+    /// The states of others.
+    pub fn resume(&mut self, saved: Self) -> Result<()> {
+        let carries = |node: &u32| self.carriers.binary_search(node).is_ok();
+        let ascend = saved.slaves.windows(2).all(|pair| pair[0] < pair[1]);
+        if saved.states.len() != self.states.len() || !ascend || !saved.slaves.iter().all(carries) {
+            return Err(unfit("the states of contact that it remembers are of other nodes"));
+        }
         (self.slaves, self.states) = (saved.slaves, saved.states);
+        Ok(())
     }
 
     /// Sets which carriers are on slave facets; the others are not in contact.

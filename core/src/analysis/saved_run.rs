@@ -15,7 +15,7 @@ use super::report::RunReport;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::{EntityBlock, regroup};
-use crate::model::{Model, ModelPart};
+use crate::model::{Field, Fields, Model, ModelPart, Share};
 use crate::parameters::{Node, Value};
 
 /// What participants of one kind remember, in their order.
@@ -178,18 +178,40 @@ pub(super) fn earlier_system(part: &ModelPart, mut states: Vec<States>, regroupe
 }
 
 /// # Errors
-/// Another mesh than that of the saved run.
+/// Another mesh than that of the saved run, or values and shares that cannot be of it.
 pub(super) fn check_mesh(saved: &ModelPart, read: &ModelPart) -> Result<()> {
     let same = saved.nodes.ids == read.nodes.ids
         && saved.nodes.initial == read.nodes.initial
+        && saved.info.domain_size == read.info.domain_size
         && [(&saved.elements, &read.elements), (&saved.conditions, &read.conditions)].into_iter().all(|(a, b)| {
-            a.ids == b.ids && a.kinds == b.kinds && (0..a.len() as u32).all(|at| a.nodes(at) == b.nodes(at))
+            a.ids == b.ids
+                && a.kinds == b.kinds
+                && a.properties == b.properties
+                && (0..a.len() as u32).all(|at| a.nodes(at) == b.nodes(at))
         });
-    if same {
-        Ok(())
-    } else {
-        Err(other_deck(format!("the mesh of {} is another than that of the saved run", read.name)))
+    if !same {
+        return Err(other_deck(format!("the mesh of {} is another than that of the saved run", read.name)));
     }
+    let has_columns = |saved: &Fields, read: &Fields| {
+        let same = |(name, field): (&str, &Field)| {
+            saved
+                .get(name)
+                .is_some_and(|own| own.components == field.components && own.levels.len() >= field.levels.len())
+        };
+        read.iter().all(same)
+    };
+    let shares = match (&saved.share, &read.share) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Share { pairs: Vec::new(), ..a.clone() } == Share { pairs: Vec::new(), ..b.clone() },
+        _ => false,
+    };
+    let fits = shares
+        && read.properties.keys().all(|id| saved.properties.contains_key(id))
+        && has_columns(&saved.nodes.history, &read.nodes.history)
+        && has_columns(&saved.nodes.values, &read.nodes.values)
+        && has_columns(&saved.elements.data, &read.elements.data)
+        && has_columns(&saved.conditions.data, &read.conditions.data);
+    if fits { Ok(()) } else { Err(other_deck(format!("what it holds of {} is not what the deck makes", read.name))) }
 }
 
 /// The models of all ranks as one that has everything, of which a stage takes its share; that of one rank as it is.

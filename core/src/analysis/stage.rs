@@ -19,6 +19,7 @@ use super::time_stepping::TimeStepping;
 use super::unheeded::{check_tolerances, warn_of_extensions, warn_of_unheeded};
 use crate::assembly::System;
 use crate::communication::Ranks;
+use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
 use crate::entities::Interaction;
 use crate::io::{Claim, FileUse, MeshFormatEntry, check_files};
@@ -288,6 +289,10 @@ impl Stage {
     pub(super) fn resume(&mut self, model: &mut Model, state: SavedStage) -> Result<()> {
         (self.begun, self.first_length) = (state.begun, state.first_length);
         let part = model.root_mut(&self.root)?;
+        let begins = !self.begun || part.info.time >= self.start_time && part.info.time.is_finite();
+        if !begins || state.first_length.is_some_and(|length| !(length > 0.0 && length.is_finite())) {
+            return Err(unfit("it stands at no time of the run"));
+        }
         resume_blocks(&mut self.system.elements, state.elements)?;
         resume_blocks(&mut self.system.conditions, state.conditions)?;
         hand_out(&mut self.system.interactions, state.interactions, "interactions", |own, state| {

@@ -59,6 +59,19 @@ impl Redistribution {
         changed
     }
 
+    /// Whether it can be that of as many nodes and unknowns.
+    pub(super) fn is_of(&self, nodes: usize, unknowns: usize) -> bool {
+        let known = |count: usize, list: &[(u32, Vec<(u32, f64)>)]| {
+            let below = list.iter().flat_map(|(_, below)| below.iter().map(|(item, _)| *item));
+            below.chain(list.iter().map(|(item, _)| *item)).all(|item| (item as usize) < count)
+        };
+        let MasslessNodes { surface, near } = &self.wanted;
+        surface.iter().chain(near).all(|&node| (node as usize) < nodes)
+            && known(nodes, &self.lasting)
+            && known(nodes, &self.nodes)
+            && known(unknowns, &self.unknowns)
+    }
+
     /// See [`State::carry`](crate::State::carry): the nodes are near surfaces, which all ranks have; unknowns are found anew.
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
         carrier.nodes(&mut self.wanted.surface);

@@ -14,7 +14,7 @@ use super::block::{
 use super::block_state::BlockState;
 use super::face_point::FacePoint;
 use super::view::StepView;
-use crate::diagnostics::Result;
+use crate::diagnostics::{Result, unfit};
 use crate::model::{EntityKind, Properties, Role};
 
 /// What a kernel is told of its entity, beside the step's fields.
@@ -137,6 +137,11 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
 
     /// Takes over what the entity remembered in an earlier stage.
     fn inherit(&self, _state: &mut Self::State, _earlier: &Self::State) {}
+
+    /// Whether a state read from a file can be that of an entity that begins with `own`, as lists of one length.
+    fn fits(&self, _own: &Self::State, _saved: &Self::State) -> bool {
+        true
+    }
 
     /// A variable at the Gauss points.
     fn gauss(
@@ -352,7 +357,11 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
     }
 
     fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
-        self.states = state.take::<BlockState>()?.states(self.entry.name, &self.ids)?;
+        let states: Vec<K::State> = state.take::<BlockState>()?.states(self.entry.name, &self.ids)?;
+        if !self.states.iter().zip(&states).all(|(own, saved)| self.kernel.fits(own, saved)) {
+            return Err(unfit(format!("what {} remember is of other materials", self.entry.name)));
+        }
+        self.states = states;
         Ok(())
     }
 

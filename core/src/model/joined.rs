@@ -41,6 +41,9 @@ impl ModelPart {
         let ranks: Option<Vec<_>> = shares.iter().map(|part| part.share.as_ref()).collect();
         let ranks = ranks.ok_or_else(incomplete)?;
         let whole = ranks.first().ok_or_else(incomplete)?.whole;
+        if whole.nodes > shares.iter().map(|part| part.nodes.len()).sum() {
+            return Err(incomplete());
+        }
         let (mut places, mut chosen) = (Vec::new(), vec![u32::MAX; whole.nodes]);
         for (rank, share) in ranks.iter().enumerate() {
             for (&place, &owner) in share.places.iter().zip(&share.owners) {

@@ -91,6 +91,11 @@ impl Account {
         }
     }
 
+    /// Whether it can be that of as many unknowns.
+    pub(super) fn is_of(&self, unknowns: usize) -> bool {
+        self.before.iter().flatten().all(|forces| forces.len() == unknowns)
+    }
+
     /// See [`State::carry`](crate::State::carry).
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
         self.before.iter_mut().flatten().for_each(|forces| carrier.by_unknown(forces));

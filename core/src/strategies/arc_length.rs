@@ -15,6 +15,7 @@ use super::strategy::{
     SolutionStrategy, StrategyEntry, accept, after_prediction, recorded, relaxation, update_interactions,
 };
 use crate::assembly::{Assembler, System};
+use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Settings};
@@ -297,6 +298,10 @@ impl SolutionStrategy for ArcLength {
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
         let ArcLengthState { factor, radius, last, newton } = state.take()?;
+        let real = |radius: &f64| *radius > 0.0 && radius.is_finite();
+        if ![0, system.dofs.len()].contains(&last.len()) || !radius.iter().flatten().all(real) || !factor.is_finite() {
+            return Err(unfit("the path it remembers is not that of its unknowns"));
+        }
         (self.factor, self.radius, self.last) = (factor, radius, last);
         newton.map_or(Ok(()), |state| self.newton.resume(part, system, state))
     }

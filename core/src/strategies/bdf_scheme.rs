@@ -10,7 +10,7 @@ use zelus_linear_algebra::{Carrier, State};
 
 use super::scheme::{Scheme, SchemeFactory, predict_ballistic};
 use crate::assembly::{DofTable, Inertia};
-use crate::diagnostics::Result;
+use crate::diagnostics::{Result, unfit};
 use crate::model::{FIRST, ModelPart, Rates, SECOND};
 use crate::register;
 use crate::strategies::SchemeEntry;
@@ -105,6 +105,9 @@ impl Scheme for BdfScheme {
 
     fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
         let BdfState { ends, weights } = state.take()?;
+        if ends.len() != weights.len() || ends.len() > self.order + 1 {
+            return Err(unfit("the scheme does not remember its last steps"));
+        }
         (self.ends, self.weights) = (ends, weights);
         Ok(())
     }

@@ -16,6 +16,7 @@ use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{
     Assembler, AssemblerState, Inertia, System, damped_by_properties, impose_constraints, strongest_damping,
 };
+use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND};
 use crate::parameters::Settings;
@@ -344,7 +345,10 @@ impl SolutionStrategy for ExplicitStrategy {
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
         let ExplicitState { scheme, assembler, predicted, warned } = state.take()?;
-        self.assembler.resume(part, system, assembler);
+        self.assembler.resume(part, system, assembler)?;
+        if predicted.is_some_and(|(length, _)| !(length > 0.0 && length.is_finite())) {
+            return Err(unfit("the step it has predicted is none"));
+        }
         (self.scheme, self.predicted, self.warned) = (scheme, predicted, warned);
         Ok(())
     }

@@ -29,6 +29,7 @@ use super::scheme::Scheme;
 use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded};
 use super::whereabouts::whereabouts;
 use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
+use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::model::ModelPart;
 use crate::register;
@@ -133,10 +134,15 @@ impl SolutionStrategy for NewtonRaphson {
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
         let NewtonState { failed, warned, scheme, solver, assembler, account } = state.take()?;
+        let unknowns = system.dofs.len();
         (self.failed, self.account) = (failed, account);
         [self.warned, self.warned_of_multipliers] = warned;
-        self.assembler.resume(part, system, assembler);
+        self.assembler.resume(part, system, assembler)?;
         scheme.map_or(Ok(()), |state| self.scheme.resume(state))?;
+        let forces = self.scheme.kept().map_or(unknowns, |forces| forces.len());
+        if forces != unknowns || !self.account.is_of(unknowns) {
+            return Err(unfit("the forces it remembers are not those of its unknowns"));
+        }
         solver.map_or(Ok(()), |state| self.solver.resume(state))?;
         Ok(())
     }

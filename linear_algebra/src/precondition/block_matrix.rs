@@ -8,6 +8,9 @@ use crate::csr::Csr;
 /// Block rows of a task; fixed, so that results do not depend on the number of threads.
 const ROWS_PER_TASK: usize = 512;
 
+/// No block has more rows or columns.
+const LARGEST: usize = 64;
+
 /// Entries behind the last block.
 const TAIL: usize = 8;
 
@@ -22,6 +25,26 @@ pub(super) struct BlockMatrix {
     pub(super) indices: Vec<u32>,
     /// Entries of each block by columns, and [`TAIL`] zeros, so that whole vectors can be read.
     pub(super) values: Vec<f32>,
+}
+
+impl BlockMatrix {
+    /// Whether one that was read can be a matrix.
+    pub(super) fn is_sound(&self) -> bool {
+        let blocks = self.indices.len();
+        let values = self.height.checked_mul(self.width).and_then(|size| size.checked_mul(blocks));
+        let ascend = |row: &[usize]| {
+            self.indices.get(row[0]..row[1]).is_some_and(|row| row.windows(2).all(|pair| pair[0] < pair[1]))
+        };
+        self.starts.len() == self.rows + 1
+            && self.starts[0] == 0
+            && self.starts[self.rows] == blocks
+            && self.starts.is_sorted()
+            && self.starts.windows(2).all(ascend)
+            && self.indices.iter().all(|&column| (column as usize) < self.columns)
+            && (1..=LARGEST).contains(&self.height)
+            && (1..=LARGEST).contains(&self.width)
+            && values.is_some_and(|values| self.values.len() == values + TAIL)
+    }
 }
 
 /// A block row under way: blocks in the order of their first entry.

@@ -33,21 +33,20 @@ const DEGREE: usize = 2;
 /// Share of the spectrum that the smoother damps, counted from above.
 const DAMPED_FROM: f32 = 0.1;
 
-#[derive(Serialize, Deserialize)]
-#[serde(from = "SavedLevel")]
+#[derive(Serialize)]
 struct Level {
     matrix: BlockMatrix,
     /// Inverse diagonal blocks, by rows.
-    #[serde(skip_serializing)]
+    #[serde(skip)]
     inverse: Vec<f32>,
     /// Upper bound of the spectrum of `D⁻¹ A`.
-    #[serde(skip_serializing)]
+    #[serde(skip)]
     radius: f32,
     prolongation: BlockMatrix,
-    #[serde(skip_serializing)]
+    #[serde(skip)]
     restriction: BlockMatrix,
     /// Who has which blocks.
-    #[serde(skip_serializing)]
+    #[serde(skip)]
     ghosts: Ghosts,
 }
 
@@ -86,7 +85,7 @@ struct Coarsest {
 
 /// The hierarchy.
 #[derive(Serialize, Deserialize)]
-#[serde(from = "SavedMultigrid")]
+#[serde(try_from = "SavedMultigrid")]
 pub(crate) struct Multigrid {
     levels: Vec<Level>,
     /// Own rows of the last level.
@@ -100,14 +99,28 @@ pub(crate) struct Multigrid {
 /// What a hierarchy of one process is made of again.
 #[derive(Deserialize)]
 struct SavedMultigrid {
-    levels: Vec<Level>,
+    levels: Vec<SavedLevel>,
     last: BlockMatrix,
 }
 
-impl From<SavedMultigrid> for Multigrid {
-    fn from(SavedMultigrid { levels, last }: SavedMultigrid) -> Self {
+impl TryFrom<SavedMultigrid> for Multigrid {
+    type Error = &'static str;
+
+    fn try_from(SavedMultigrid { levels, last }: SavedMultigrid) -> Result<Self, Self::Error> {
+        let matrices: Vec<&BlockMatrix> = levels.iter().map(|level| &level.matrix).chain([&last]).collect();
+        let fits = |(level, below): (&SavedLevel, &&BlockMatrix)| {
+            let SavedLevel { matrix, prolongation } = level;
+            (prolongation.rows, prolongation.height) == (matrix.rows, matrix.height)
+                && (prolongation.columns, prolongation.width) == (below.rows, below.height)
+                && prolongation.is_sound()
+        };
+        let square =
+            |matrix: &&BlockMatrix| (matrix.rows, matrix.height) == (matrix.columns, matrix.width) && matrix.is_sound();
+        if !matrices.iter().all(square) || !levels.iter().zip(&matrices[1..]).all(fits) {
+            return Err("levels of multigrid that do not fit each other");
+        }
         let ghosts = Ghosts::none(last.rows);
-        Self::of(levels, last, ghosts)
+        Ok(Self::of(levels.into_iter().map(Level::from).collect(), last, ghosts))
     }
 }
 

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::interface::check_nodes;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
@@ -196,6 +197,8 @@ impl Interaction for ContactInteraction {
     fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
         let SavedContact { contact, set, loops, bearable, near_nodes, warned_of_friction } = state.take()?;
         self.contact.resume(part, contact)?;
+        check_nodes(part.nodes.len(), near_nodes.iter().copied())?;
+        loops.check(part.nodes.len())?;
         (self.set, self.loops, self.bearable) = (set, loops, bearable);
         (self.near_nodes, self.warned_of_friction) = (near_nodes, warned_of_friction);
         Ok(())

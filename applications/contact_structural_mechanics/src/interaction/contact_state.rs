@@ -135,9 +135,10 @@ impl ContactState {
     /// Those of making blocks.
     pub(super) fn resume(&mut self, part: &mut ModelPart, state: RememberedContact) -> Result<()> {
         let RememberedContact { pairing, states, holding, resolution, steps_since_search } = state;
+        holding.check(part.nodes.len())?;
         (self.holding, self.setup.resolution, self.steps_since_search) = (holding, resolution, steps_since_search);
         self.pairing.resume(part, &self.holding, &self.setup, pairing)?;
-        self.states.resume(states);
+        self.states.resume(states)?;
         self.pairing.set_states(&self.states);
         Ok(())
     }

@@ -25,16 +25,13 @@ pub(super) struct FrictionRamp {
     failed: usize,
     /// Whether the present one is solved.
     solved: bool,
-    /// Where in [`SHARES`] the step is, and the numbers of the law at the nodes, while not all of it acts.
+    /// Where in [`SHARES`] the step is, and the numbers of the law at the nodes, while not all of it acts; between steps
+    /// nothing waits.
+    #[serde(skip)]
     waiting: Option<(usize, Vec<f64>)>,
 }
 
 impl FrictionRamp {
-    /// See [`State::carry`](zelus_core::State::carry): between steps nothing waits.
-    pub(super) fn carry(&mut self) {
-        self.waiting = None;
-    }
-
     /// The step is tried again; one that was solved, and is to be shorter, has not failed.
     pub(super) fn retry(&mut self) {
         self.failed = if self.solved { 0 } else { self.failed + 1 };

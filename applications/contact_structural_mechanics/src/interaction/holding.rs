@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::interface::check_nodes;
 use serde::{Deserialize, Serialize};
 use zelus_core::Carrier;
+use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::geometry::shape_functions;
@@ -47,6 +49,14 @@ pub(super) struct HeldNode {
 }
 
 impl Holding {
+    /// Whether it can be that of as many nodes.
+    ///
+    /// # Errors
+    /// Others.
+    pub(super) fn check(&self, nodes: usize) -> Result<()> {
+        check_nodes(nodes, self.fixed.keys().chain(self.planes.keys()).copied())
+    }
+
     /// See [`State::carry`](zelus_core::State::carry).
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
         carrier.node_map(&mut self.fixed);

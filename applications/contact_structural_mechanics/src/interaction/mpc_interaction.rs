@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use crate::interface::check_nodes;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
@@ -353,10 +354,12 @@ impl Interaction for MpcInteraction {
         }))
     }
 
-    fn resume(&mut self, _part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
+    fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
         let saved: SavedMpc = state.take()?;
-        set_sides(&mut self.interfaces, saved.sides);
-        self.states.resume(saved.states);
+        set_sides(&mut self.interfaces, saved.sides)?;
+        self.states.resume(saved.states)?;
+        saved.relations.check(&self.interfaces, part.nodes.len(), &self.states)?;
+        check_nodes(part.nodes.len(), saved.directions.keys().copied())?;
         self.relations = saved.relations;
         (self.friction.directions, [self.version, self.friction.graph]) = (saved.directions, saved.versions);
         (self.steps_since_search, self.sided) = (saved.steps_since_search, saved.sided);

@@ -90,6 +90,11 @@ fn vector(column: &[f64], node: u32) -> [f64; 3] {
 }
 
 impl PairRelation {
+    /// Slave and master nodes.
+    pub(super) fn all_nodes(&self) -> impl Iterator<Item = u32> {
+        self.rows.iter().flat_map(|row| row.weights.iter().map(|(node, _)| *node).chain([row.node]))
+    }
+
     /// See [`State::carry`](zelus_core::State::carry).
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
         for row in &mut self.rows {

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::interface::{check_nodes, check_pairs};
 use serde::{Deserialize, Serialize};
 use zelus_core::Carrier;
+use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
+use zelus_core::diagnostics::unfit;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
@@ -41,6 +44,24 @@ fn facets(interfaces: &[Interface], key: PairKey) -> (&Facet, &Facet) {
 }
 
 impl Relations {
+    /// Whether they can be those of as many nodes, among them these slaves.
+    ///
+    /// # Errors
+    /// Others.
+    pub(super) fn check(&self, interfaces: &[Interface], nodes: usize, states: &SlaveStates) -> Result<()> {
+        check_pairs(interfaces, self.pairs.keys().copied())?;
+        let of_pairs = self.pairs.values().flat_map(PairRelation::all_nodes);
+        let of_nodes = self.nodes.values().flat_map(|relation| relation.weights.iter().map(|(node, _)| *node));
+        check_nodes(nodes, of_pairs.chain(of_nodes))?;
+        let carriers = states.carriers();
+        let mut slaves = self.pairs.values().flat_map(PairRelation::nodes).chain(self.nodes.keys().copied());
+        let count: usize = interfaces.iter().map(|interface| interface.nodes.len()).sum();
+        if !slaves.all(|node| carriers.binary_search(&node).is_ok()) || ![0, count].contains(&self.places.len()) {
+            return Err(unfit("the relations that it remembers are of other nodes"));
+        }
+        Ok(())
+    }
+
     /// See [`State::carry`](zelus_core::State::carry).
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
         self.pairs.values_mut().for_each(|relation| relation.carry(carrier));

@@ -39,9 +39,16 @@ pub(super) struct OuterLoops {
 }
 
 impl OuterLoops {
+    /// Whether it can be that of as many nodes.
+    ///
+    /// # Errors
+    /// Others.
+    pub(super) fn check(&self, nodes: usize) -> Result<()> {
+        self.work.check(nodes)
+    }
+
     /// See [`State::carry`](zelus_core::State::carry).
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.friction_ramp.carry();
         self.work.carry(carrier);
     }
 

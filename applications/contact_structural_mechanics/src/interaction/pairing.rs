@@ -5,8 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::interface::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
+use zelus_core::diagnostics::unfit;
 use zelus_core::entities::{EntityBlock, require_kind};
 use zelus_core::model::{ModelPart, Role};
 use zelus_core::vector3::dot;
@@ -400,7 +402,12 @@ impl Pairing {
         setup: &Setup,
         state: PairingState,
     ) -> Result<()> {
-        set_sides(&mut self.interfaces, state.sides);
+        set_sides(&mut self.interfaces, state.sides)?;
+        check_pairs(&self.interfaces, state.pairs.iter().map(|pair| pair.key))?;
+        let carriers = self.carriers();
+        if !state.touching.iter().all(|node| carriers.binary_search(node).is_ok()) {
+            return Err(unfit("contact remembers nodes that touch and are no slaves"));
+        }
         self.find_patches(part, holding);
         self.set(state.pairs, &setup.settings, &setup.parameters)?;
         (self.touching, self.graph, self.warned_of_reach) = (state.touching, state.graph, state.warned_of_reach);

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use crate::interface::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, require_kind};
@@ -311,6 +312,8 @@ impl Interaction for TyingInteraction {
 
     fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
         let SavedTie { pairs, holds, holding, graph, constrained, steps_since_search } = state.take()?;
+        check_pairs(&self.interfaces, pairs.keys().copied())?;
+        holding.check(part.nodes.len())?;
         (self.pairs, self.holding, self.steps_since_search) = (pairs, holding, steps_since_search);
         if holds {
             self.make_blocks(part)?;

@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::assembly::nodal_vectors;
 use zelus_core::diagnostics::Diagnostic;
+use zelus_core::diagnostics::unfit;
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
@@ -44,6 +45,15 @@ pub(super) struct ContactWork {
 }
 
 impl ContactWork {
+    /// Whether it can be that of as many nodes.
+    ///
+    /// # Errors
+    /// Others.
+    pub(super) fn check(&self, nodes: usize) -> Result<()> {
+        let fits = [0, 3 * nodes].contains(&self.before.len());
+        if fits { Ok(()) } else { Err(unfit("the forces of contact that it remembers are of other nodes")) }
+    }
+
     /// See [`State::carry`](zelus_core::State::carry).
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
         carrier.by_node(&mut self.before);

@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use crate::flags::{MASTER, SLAVE};
 use crate::mortar::carries_contact;
+use crate::pairs::PairKey;
+use zelus_core::Result;
+use zelus_core::diagnostics::unfit;
 
 use super::facet::{Facet, FacetSource, Roles};
 use rustc_hash::FxHashMap;
-use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
@@ -34,9 +36,45 @@ pub fn sides(interfaces: &[Interface]) -> Vec<Vec<Roles>> {
 }
 
 /// Gives the facets the sides that [`sides`] told of them.
-pub fn set_sides(interfaces: &mut [Interface], sides: Vec<Vec<Roles>>) {
+///
+/// # Errors
+/// Sides of other facets.
+pub fn set_sides(interfaces: &mut [Interface], sides: Vec<Vec<Roles>>) -> Result<()> {
+    let counts = interfaces.iter().map(|interface| interface.facets.len());
+    let changes = |(interface, sides): (&Interface, &Vec<Roles>)| {
+        interface.open || interface.facets.iter().map(|facet| facet.role).eq(sides.iter().copied())
+    };
+    if !counts.eq(sides.iter().map(Vec::len)) || !interfaces.iter().zip(&sides).all(changes) {
+        return Err(unfit("the sides of contact that it remembers are of other facets"));
+    }
     for (interface, sides) in interfaces.iter_mut().zip(sides) {
         interface.facets.iter_mut().zip(sides).for_each(|(facet, side)| facet.role = side);
+    }
+    Ok(())
+}
+
+/// Whether there are the facets of these pairs, on their sides.
+///
+/// # Errors
+/// One that is not.
+pub fn check_pairs(interfaces: &[Interface], mut keys: impl Iterator<Item = PairKey>) -> Result<()> {
+    let side = |interface: u32, facet: u32| Some(interfaces.get(interface as usize)?.facets.get(facet as usize)?.role);
+    let known = |key: PairKey| {
+        let sides = (side(key.interface, key.slave), side(key.interface, key.master));
+        sides == (Some(Roles::Slave), Some(Roles::Master))
+    };
+    if keys.all(known) { Ok(()) } else { Err(unfit("the pairs of facets that it remembers are not there")) }
+}
+
+/// Whether there are such nodes.
+///
+/// # Errors
+/// One that is not.
+pub fn check_nodes(count: usize, mut nodes: impl Iterator<Item = u32>) -> Result<()> {
+    if nodes.all(|node| (node as usize) < count) {
+        Ok(())
+    } else {
+        Err(unfit("contact remembers something of nodes that are not there"))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::interface::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Field, Model, ModelPart, Named, named};
@@ -212,8 +213,10 @@ impl Process for Mapper {
 
     fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
         let SavedPairs(pairs) = state.take()?;
+        self.find_facets(model.root_mut(&self.root)?)?;
+        check_pairs(&self.interface, pairs.iter().map(|pair| pair.key))?;
         self.pairs = pairs;
-        self.find_facets(model.root_mut(&self.root)?)
+        Ok(())
     }
 }
 

@@ -175,6 +175,10 @@ where
         Ok(Self { materials, tangent, form: PhantomData })
     }
 
+    fn fits(&self, own: &Self::State, saved: &Self::State) -> bool {
+        own.len() == saved.len()
+    }
+
     fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;

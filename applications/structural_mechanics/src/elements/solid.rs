@@ -104,6 +104,10 @@ where
         Ok(Self { shape, materials, tangent, formulation: PhantomData })
     }
 
+    fn fits(&self, own: &Self::State, saved: &Self::State) -> bool {
+        own.len() == saved.len()
+    }
+
     fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;

@@ -7,6 +7,7 @@ use crate::Carrier;
 use crate::assembly::System;
 use crate::assembly::equations::Equations;
 use crate::assembly::redistribution::Redistribution;
+use crate::diagnostics::{Result, unfit};
 use crate::model::ModelPart;
 
 /// Equations, stamps and massless nodes of the last step; matrices are made anew of them.
@@ -40,8 +41,14 @@ impl Assembler {
     }
 
     /// Takes up what it remembered of the same part and system.
-    pub fn resume(&mut self, part: &ModelPart, system: &System, state: AssemblerState) {
+    ///
+    /// # Errors
+    /// What is of another part or system.
+    pub fn resume(&mut self, part: &ModelPart, system: &System, state: AssemblerState) -> Result<()> {
         let AssemblerState { equations, stamps, reduced_graph, tangent_key, redistribution } = state;
+        if !redistribution.is_of(part.nodes.len(), system.dofs.len()) {
+            return Err(unfit("the nodes without mass that it remembers are not there"));
+        }
         let groups = redistribution.groups(part);
         if !groups.is_empty() {
             self.pattern = bulk_pattern(part, system, &groups);
@@ -49,5 +56,6 @@ impl Assembler {
         self.incomplete = true;
         (self.equations, self.stamps, self.redistribution) = (equations, stamps, redistribution);
         (self.reduced_graph, self.tangent_key) = (reduced_graph, tangent_key);
+        Ok(())
     }
 }

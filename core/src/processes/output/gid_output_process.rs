@@ -13,6 +13,7 @@ use super::place::{PartPath, append, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::assembly::System;
 use crate::communication::Ranks;
+use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
@@ -247,6 +248,9 @@ impl Process for GidOutput {
 
     fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
         let GidOutputState { written, next } = state.take()?;
+        if !written.iter().all(|(path, _)| path.to_string_lossy().starts_with(&*self.base.to_string_lossy())) {
+            return Err(unfit("it names files of results that are none of this run"));
+        }
         written.iter().try_for_each(|(path, length)| cut_file(&model.ranks, path, *length))?;
         self.written = written.into_iter().map(|(path, _)| path).collect();
         self.control.next = next;

@@ -14,6 +14,7 @@ use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
 use crate::diagnostics::Result;
+use crate::diagnostics::unfit;
 use crate::entities::Gauss;
 use crate::io::{FileUse, replace_file};
 use crate::model::{Fields, Flags, Model, ModelPart, Role, SubPart};
@@ -192,8 +193,8 @@ impl JsonOutput {
                     rest = more;
                     let only_values =
                         Gauss { components: *components as usize, values: values.to_vec(), ..Gauss::default() };
-                    let series = self.series.elements.get_mut(&(*id as usize)).expect("it is followed");
-                    series[at].push(only_values);
+                    let series = self.series.elements.entry(*id as usize);
+                    series.or_insert_with(|| vec![Vec::new(); self.gauss.len()])[at].push(only_values);
                 }
             }
         }
@@ -377,6 +378,19 @@ impl Process for JsonOutput {
             if !part.ranks.is_root() {
                 (series.nodes, series.elements) = Default::default();
             }
+        }
+        let part = self.part.find(model)?.0;
+        let known = series.known.iter().all(|&node| (node as usize) < part.nodes.len())
+            && series.followed.iter().all(|&element| (element as usize) < part.elements.len());
+        let alike = |steps: &Vec<Gauss>| {
+            let size = |gauss: &Gauss| (gauss.components, gauss.values.len());
+            steps.iter().all(|gauss| {
+                gauss.components > 0 && gauss.values.len() % gauss.components == 0 && size(gauss) == size(&steps[0])
+            })
+        };
+        let whole = series.elements.values().all(|of| of.len() == self.gauss.len() && of.iter().all(alike));
+        if !(known && whole && series.known.is_sorted()) {
+            return Err(unfit(format!("the histories of {} are not of this mesh", self.file.display())));
         }
         (self.counter.counter, self.series) = (counter, series);
         Ok(())

@@ -8,6 +8,7 @@ use zelus_linear_algebra::{Carrier, State};
 
 use super::place::{PartPath, one_of};
 use crate::diagnostics::Result;
+use crate::diagnostics::unfit;
 use crate::model::Model;
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -128,7 +129,12 @@ impl Process for SaveRestart {
     }
 
     fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
-        self.saved = state.take()?;
+        let saved: Saved = state.take()?;
+        let own = |path: &PathBuf| path.parent() == Some(&self.folder) && path.extension().is_some_and(|e| e == "rest");
+        if !saved.files.iter().all(own) {
+            return Err(unfit("it names saved runs that are none of this run"));
+        }
+        self.saved = saved;
         Ok(())
     }
 
