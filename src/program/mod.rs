@@ -25,6 +25,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use zelus_core::analysis::{RunOptions, RunReport, Simulation};
 use zelus_core::communication::{self, Ranks};
+use zelus_core::diagnostics::Diagnostic;
 use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
@@ -64,6 +65,9 @@ enum Command {
         /// Take the defaults of this program where the deck names nothing, e.g. kratos.
         #[arg(long, value_name = "PROGRAM")]
         like: Option<String>,
+        /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
         /// Go on from the latest saved run of the deck, with the bits of a run that was not stopped; from the start where
         /// none was saved.
         #[arg(long)]
@@ -85,6 +89,9 @@ enum Command {
         /// Take the defaults of this program where the deck names nothing, e.g. kratos.
         #[arg(long, value_name = "PROGRAM")]
         like: Option<String>,
+        /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
     },
     /// Read a mesh of Gmsh, Abaqus, CalculiX or VTK and write it as an mdpa file; groups become sub model parts.
     Import(meshes::Import),
@@ -137,15 +144,16 @@ pub fn main() -> ExitCode {
 /// Does what is asked; `ran` says afterwards whether a step was made.
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
-        Command::Run { file, threads, report, like, resume, quiet, verbose, log } => {
+        Command::Run { file, threads, report, like, set, resume, quiet, verbose, log } => {
             let report = report.map(Report);
             if let Some(report) = &report {
                 report.check(&file)?;
             }
             let stop = Stop::listen()?;
-            let also = like.as_ref().map(|like| format!("--like {like} ")).unwrap_or_default();
+            let mut also = like.as_ref().map(|like| format!("--like {like} ")).unwrap_or_default();
+            set.iter().for_each(|change| also += &format!("--set '{change}' "));
             let outputs = report.iter().map(|report| &report.0).chain(&log).cloned().collect();
-            let options = RunOptions { threads, like, ranks: ranks.clone(), outputs };
+            let options = RunOptions { threads, like, ranks: ranks.clone(), outputs, changes: changes(&set)? };
             if !ranks.is_root() {
                 let mut simulation = Simulation::open(&file, &options)?;
                 return drive(&mut simulation, &mut Silent, resume, &stop).map(|ended| ended.code());
@@ -180,8 +188,8 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
             }
             Ok(ended.code())
         }
-        Command::Check { file, like } => {
-            let options = RunOptions { like, ranks: ranks.clone(), ..RunOptions::default() };
+        Command::Check { file, like, set } => {
+            let options = RunOptions { like, ranks: ranks.clone(), changes: changes(&set)?, ..RunOptions::default() };
             let mut monitor: Box<dyn Monitor> =
                 if ranks.is_root() { Box::new(Terminal::new(Level::Usual, None)) } else { Box::new(Silent) };
             let mut simulation = Simulation::open(&file, &options)?;
@@ -209,6 +217,19 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
         Command::List { kind } => catalogue::list(kind.as_deref()).map(|()| ExitCode::SUCCESS),
         Command::Describe { name } => catalogue::describe(&name).map(|()| ExitCode::SUCCESS),
     }
+}
+
+/// Keys and values of `--set`: what is no JSON is a word.
+fn changes(given: &[String]) -> Result<Vec<(String, serde_json::Value)>> {
+    let of = |text: &String| {
+        let (key, value) = text.split_once('=').ok_or_else(|| {
+            let problem = Diagnostic::error("set", format!("--set {text} has no value"));
+            problem.remedy("write KEY=VALUE, e.g. --set solver_settings.max_iteration=20")
+        })?;
+        let value = serde_json::from_str(value).unwrap_or_else(|_| serde_json::Value::from(value));
+        Ok((key.trim().to_owned(), value))
+    };
+    given.iter().map(of).collect()
 }
 
 /// How a run came to its end.

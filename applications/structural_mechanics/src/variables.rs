@@ -1,6 +1,6 @@
 //! The variables of structural mechanics.
 
-use zelus_core::{register_rates, register_variable};
+use zelus_core::{register_rates, register_usual_results, register_variable};
 
 register_variable! {
     pub DISPLACEMENT: [f64; 3] = "Displacement from the initial position (length).";
@@ -92,6 +92,11 @@ register_variable! {
     kind VON_MISES_STRESS: Scalar = "Equivalent stress of von Mises (force per area).";
     kind STRAIN_ENERGY: Scalar = "Stored energy per initial volume.";
     kind INTEGRATION_WEIGHT: Scalar = "Part of the initial volume that a Gauss point stands for.";
+}
+
+register_usual_results! {
+    values: [],
+    gauss: ["CAUCHY_STRESS_VECTOR", "VON_MISES_STRESS", "GREEN_LAGRANGE_STRAIN_VECTOR"]
 }
 
 register_rates! { "DISPLACEMENT",

@@ -32,6 +32,18 @@ pub struct RunOptions {
     pub ranks: Ranks,
     /// Files that the caller will write: none of them may be one that the run reads or writes.
     pub outputs: Vec<PathBuf>,
+    /// Values to take in place of what the deck says, by dotted paths, which may hold places in lists: `problem_data.end_time`,
+    /// `processes.loads.0.Parameters.modulus`. They are checked as if the deck said them.
+    pub changes: Vec<(String, serde_json::Value)>,
+}
+
+/// Lays the caller's changes over a deck.
+fn change(deck: &mut Node, options: &RunOptions) -> Result<()> {
+    options.changes.iter().try_for_each(|(key, value)| {
+        let place = Place::file(format!("--set {key}"));
+        let value = Node::from_json(value, &place)?;
+        deck.set_path(key, value).map_err(|problem| problem.at(place).into())
+    })
 }
 
 /// A deck with its model and the stage under way.
@@ -71,7 +83,8 @@ impl Simulation {
     /// # Errors
     /// A file that cannot be read or is no JSON; stages that are not there; threads that cannot be started.
     pub fn open(path: &Path, options: &RunOptions) -> Result<Self> {
-        let (deck, folder) = open(path)?;
+        let (mut deck, folder) = open(path)?;
+        change(&mut deck.root, options)?;
         let mut simulation = Self::new(&deck.root, folder, options)?;
         simulation.untold.splice(..0, deck.warnings);
         simulation.pointer = Some(Pointer::of(path));
@@ -83,7 +96,9 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::open`].
     pub fn of_value(deck: &serde_json::Value, folder: &Path, options: &RunOptions) -> Result<Self> {
-        Self::new(&Node::from_json(deck, &Place::file("the deck"))?, folder.to_owned(), options)
+        let mut deck = Node::from_json(deck, &Place::file("the deck"))?;
+        change(&mut deck, options)?;
+        Self::new(&deck, folder.to_owned(), options)
     }
 
     fn new(deck: &Node, folder: PathBuf, options: &RunOptions) -> Result<Self> {

@@ -260,6 +260,9 @@ impl Stage {
             model.ranks.clone().agree(process.before_loop(model))?;
         }
         model.root_mut(&self.root)?.info.time = self.start_time;
+        for process in &mut self.processes {
+            model.ranks.clone().agree(process.print_start(model, &self.system))?;
+        }
         Ok(())
     }
 

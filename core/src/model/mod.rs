@@ -25,8 +25,9 @@ mod sub_part;
 mod table;
 #[cfg(test)]
 pub mod test_variables;
+mod usual_results;
 mod variable;
-pub mod variables;
+mod variables;
 
 use std::collections::BTreeMap;
 
@@ -48,6 +49,7 @@ pub use rates::{ColumnOf, FIRST, Rates, SECOND, UNKNOWN};
 pub use share::{MeshSizes, Share};
 pub use sub_part::SubPart;
 pub use table::Table;
+pub use usual_results::UsualResults;
 pub use variable::{ColumnType, Named, ScalarVariable, Variable, VariableEntry, VariableKind, named, variables};
 
 use crate::communication::Ranks;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::diagnostics::{Diagnostic, Error, Place, Result, did_you_mean};
 
 /// What a node holds.
 #[derive(Debug, Clone)]
@@ -38,6 +38,11 @@ impl Value {
             Self::Object(_) => "an object",
         }
     }
+}
+
+/// A path for messages; the empty one is the deck.
+fn said(path: &str) -> &str {
+    if path.is_empty() { "the deck" } else { path }
 }
 
 /// One named value of an object.
@@ -223,6 +228,47 @@ impl Node {
             Value::Object(members) => members.get_mut(key),
             _ => None,
         })
+    }
+
+    /// Puts a value at a dotted path of keys and places in lists; only the last key may be new.
+    ///
+    /// # Errors
+    /// A path on which something is missing; the caller adds the place.
+    pub fn set_path(&mut self, path: &str, value: Node) -> Result<(), Diagnostic> {
+        let mut here = self;
+        let mut walked = String::new();
+        let mut keys = path.split('.').peekable();
+        while let Some(key) = keys.next() {
+            let is_last = keys.peek().is_none();
+            let fact = match &here.value {
+                Value::Object(_) => format!("there is no {key:?} in {}", said(&walked)),
+                Value::Array(items) => format!("{} is a list of {} and has no {key:?}", said(&walked), items.len()),
+                other => format!("{} is {}, which holds nothing", said(&walked), other.kind()),
+            };
+            let missing = Diagnostic::error("unknown-path", fact);
+            here = match &mut here.value {
+                Value::Object(members) => {
+                    if is_last && members.get(key).is_none() {
+                        let key_position = (value.line, value.column);
+                        members.insert(Member { key: key.to_owned(), key_position, node: value });
+                        return Ok(());
+                    }
+                    let near = did_you_mean(key, members.keys());
+                    match members.get_mut(key) {
+                        Some(node) => node,
+                        None => return Err(near.map_or(missing.clone(), |near| missing.remedy(near))),
+                    }
+                }
+                Value::Array(items) => match key.parse::<usize>().ok().and_then(|at| items.get_mut(at)) {
+                    Some(node) => node,
+                    None => return Err(missing.remedy("places in lists count from 0")),
+                },
+                _ => return Err(missing),
+            };
+            walked = if walked.is_empty() { key.to_owned() } else { format!("{walked}.{key}") };
+        }
+        *here = value;
+        Ok(())
     }
 
     /// Where a key is written, else where the object begins.

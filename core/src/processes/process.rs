@@ -58,6 +58,14 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// Writes the state at the start, once every process is ready; not of a run that goes on.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    fn print_start(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
+        Ok(())
+    }
+
     /// Time has advanced, nothing is solved (Kratos: `ExecuteInitializeSolutionStep`): boundary conditions and loads.
     ///
     /// # Errors

@@ -25,6 +25,7 @@ use super::outer_loops::OuterLoops;
 use super::pair_states::{heat, joins, pair_states};
 use super::points;
 use super::reach::Reach;
+use super::results::{write_forces, write_states};
 use super::set_stage::SetStage;
 use super::setup::Setup;
 use super::step_parameters::StepParameters;
@@ -95,6 +96,17 @@ impl ContactInteraction {
             near_nodes: Vec::new(),
         })
     }
+
+    /// Writes what is looked at of the present state.
+    fn write_results(&self, part: &mut ModelPart) -> Result<()> {
+        let frictional = self.contact.setup.settings.family.frictional();
+        write_states(&mut part.nodes, &self.contact.states, frictional);
+        // explicit steps are many and short: the forces would cost as much as the steps
+        match self.contact.setup.settings.explicit {
+            None => write_forces(part, &self.contact.pairing.as_entities()),
+            Some(_) => Ok(()),
+        }
+    }
 }
 
 impl Interaction for ContactInteraction {
@@ -131,7 +143,7 @@ impl Interaction for ContactInteraction {
             self.contact.pairing.bodies = Arc::new(Bodies::new(part, &self.contact.pairing.interfaces, thickness)?);
         }
         self.contact.make_states(part);
-        Ok(())
+        self.write_results(part)
     }
 
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
@@ -180,7 +192,7 @@ impl Interaction for ContactInteraction {
             }
         }
         self.contact.publish(part);
-        Ok(())
+        self.write_results(part)
     }
 
     fn state(&self) -> Option<Box<dyn State>> {

@@ -29,6 +29,7 @@ mod pairing;
 mod penalty_ramp;
 mod points;
 mod reach;
+mod results;
 mod set_stage;
 mod setup;
 mod slider_forces;

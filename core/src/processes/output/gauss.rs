@@ -23,6 +23,13 @@ struct Seen<'a> {
     is_active: bool,
 }
 
+/// Whether a block of this rank knows the quantity.
+pub(super) fn is_known(system: &System, kind: Role, quantity: &GaussQuantity) -> bool {
+    let names = [Some(quantity.name.as_str()), quantity.vector.as_deref()];
+    let knows = |known: &[&str]| names.into_iter().flatten().any(|name| known.contains(&name));
+    system.blocks(kind).iter().any(|block| knows(block.gauss_variables()))
+}
+
 /// Calls `visit` with the position in `selected`, the entity and its values for every element (or condition) of this rank
 /// that knows the quantity, blocks and entities in their order.
 fn visit(

@@ -14,6 +14,7 @@ mod gid_output_process;
 mod integration_values_extrapolation_to_nodes_process;
 mod json_output_process;
 mod line_output_process;
+mod lists;
 mod multiple_points_output_process;
 mod picture;
 mod place;
@@ -23,6 +24,7 @@ mod quantity;
 mod save_restart_process;
 #[cfg(test)]
 mod tests;
+mod usual;
 mod vtk_output_process;
 
 pub use format::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};

@@ -3,8 +3,9 @@
 use super::gauss::{self, Share};
 use super::place::one_of;
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
+use super::{lists, usual};
 use crate::assembly::System;
-use crate::diagnostics::{Report, Result};
+use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::io::results::{Column, Dataset};
 use crate::model::Role;
 use crate::model::{EntityTable, ModelPart, SubPart};
@@ -105,6 +106,10 @@ pub(super) struct Picture {
     condition_values: Vec<Quantity>,
     condition_flags: Vec<&'static str>,
     gauss: Vec<GaussQuantity>,
+    /// Whether no list names anything, and what runs are looked at for is shown.
+    pub(super) usual: bool,
+    /// Where the deck names the picture; `None` where names in other lists than theirs are written as zeros.
+    refuses: Option<Place>,
 }
 
 impl Picture {
@@ -115,7 +120,7 @@ impl Picture {
             1 => CellChoice::Elements,
             _ => CellChoice::Conditions,
         };
-        Ok(Self {
+        let mut out = Self {
             choice,
             deformed: settings.get_bool("write_deformed_configuration")?,
             ids: settings.get_bool("write_ids")?,
@@ -128,7 +133,23 @@ impl Picture {
             condition_values: Quantity::shown(settings, "condition_data_value_variables", report)?,
             condition_flags: flag_list(settings, "condition_flags", report)?,
             gauss: GaussQuantity::shown(settings, "gauss_point_variables_in_elements", report)?,
-        })
+            usual: settings.get_bool("usual_results")?,
+            refuses: settings.get_bool("refuse_other_lists")?.then(|| settings.place()),
+        };
+        let lists = [&out.history, &out.values, &out.element_values, &out.condition_values];
+        let flags = [&out.flags, &out.element_flags, &out.condition_flags];
+        let gauss = [&out.extrapolated, &out.gauss];
+        let names_nothing = lists.iter().all(|list| list.is_empty())
+            && flags.iter().all(|list| list.is_empty())
+            && gauss.iter().all(|list| list.is_empty());
+        out.usual &= names_nothing;
+        Ok(out)
+    }
+
+    /// What is wrong with its lists, once all unknowns are known.
+    pub(super) fn check(&self, part: &ModelPart, system: &System) -> Vec<Diagnostic> {
+        let Some(place) = &self.refuses else { return Vec::new() };
+        lists::check(part, system, place, &self.history, &self.values, &self.extrapolated)
     }
 
     /// The picture of one part now, of several ranks the piece of each; collective.
@@ -136,14 +157,22 @@ impl Picture {
         let mut mesh = Mesh::new(part, selection, self.choice, self.deformed);
         mesh.data.point_data = self.point_data(part, system, selection, &mesh);
         mesh.data.cell_data = self.cell_data(part, system, &mesh);
+        if self.usual {
+            let parts = usual::parts(&part.ranks, selection, mesh.kind, &mesh.cells);
+            mesh.data.cell_data.push(Column::ids("PART", &parts));
+        }
         mesh
     }
 
     fn point_data(&self, part: &ModelPart, system: &System, selection: &SubPart, mesh: &Mesh) -> Vec<Column> {
         let mut out: Vec<Column> = Vec::new();
-        out.extend(self.history.iter().map(|q| q.gather(&part.nodes.history, &mesh.nodes)));
-        out.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, &mesh.nodes)));
-        for quantity in &self.extrapolated {
+        let (history, values, extrapolated) = match self.usual {
+            true => (&usual::history(part), &usual::values(part), &usual::gauss(part, system)),
+            false => (&self.history, &self.values, &self.extrapolated),
+        };
+        out.extend(history.iter().map(|q| q.gather(&part.nodes.history, &mesh.nodes)));
+        out.extend(values.iter().map(|q| q.gather(&part.nodes.values, &mesh.nodes)));
+        for quantity in extrapolated {
             out.push(gauss::at_nodes(
                 part,
                 system,
@@ -168,8 +197,10 @@ impl Picture {
         let mut out: Vec<Column> = quantities.iter().map(|q| q.gather(&table.data, &mesh.cells)).collect();
         out.extend(flags.iter().map(|flag| flag_column(&table.flags, flag, &mesh.cells)));
         out.extend(self.gauss.iter().map(|quantity| gauss::means(part, system, mesh.kind, &mesh.cells, quantity)));
-        if self.ids {
+        if self.ids || self.usual {
             out.push(Column::ids("PROPERTIES_ID", &mesh.data.cells.properties));
+        }
+        if self.ids {
             out.push(Column::ids(id, &mesh.data.cells.ids));
         }
         out

@@ -10,7 +10,7 @@ use super::format::{OutputFormat, OutputFormatEntry, Shown};
 use super::picture::Picture;
 use super::place::PartPath;
 use crate::assembly::System;
-use crate::diagnostics::{Error, Result};
+use crate::diagnostics::{Error, Report, Result};
 use crate::io::{FileUse, of_series};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
@@ -153,6 +153,20 @@ impl Process for VtkOutput {
         self.part.find(model).map(|_| ())
     }
 
+    fn check(&self, model: &Model, system: &System, warnings: &mut Report) -> Result<()> {
+        let (part, _) = self.part.find(model)?;
+        self.picture.check(part, system).into_iter().for_each(|problem| warnings.push(problem));
+        Ok(())
+    }
+
+    fn print_start(&mut self, model: &mut Model, system: &System) -> Result<()> {
+        if self.picture.usual {
+            self.write_all(model, system)?;
+            self.clears = false;
+        }
+        Ok(())
+    }
+
     fn is_output_step(&mut self, model: &Model) -> bool {
         self.part.find(model).is_ok_and(|(part, _)| self.control.wants(&part.info))
     }
@@ -199,6 +213,7 @@ register! { ProcessEntry "vtk_output_process",
     aliases: &["VtkOutputProcess"],
     about: "writes legacy VTK files for ParaView, laid out as Kratos writes them",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/vtk_output_process.json")),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/vtk_output_process.json"))],
     build: |request| build(request, false),
 }
 
@@ -207,5 +222,6 @@ register! { ProcessEntry "vtu_output_process",
     about: "writes compressed VTU files in double precision and a PVD file that lists them with their times; several ranks \
         write a piece each",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/vtu_output_process.json")),
+    like: &[("kratos", include_str!("../../../../configs/like_kratos/vtu_output_process.json"))],
     build: |request| build(request, true),
 }

@@ -1,0 +1,42 @@
+//! What the results of an application are looked at for, where a deck names nothing.
+
+/// Results beside the unknowns and their reactions; an application registers its own by [`crate::register_usual_results`].
+pub struct UsualResults {
+    /// Columns of nodes without history, written where they are.
+    pub values: &'static [&'static str],
+    /// Quantities at Gauss points, written at nodes where an element knows them.
+    pub gauss: &'static [&'static str],
+}
+
+inventory::collect!(UsualResults);
+
+impl UsualResults {
+    /// Columns without history of all applications, sorted.
+    pub fn values() -> Vec<&'static str> {
+        Self::sorted(|own| own.values)
+    }
+
+    /// Quantities at Gauss points of all applications, sorted.
+    pub fn gauss() -> Vec<&'static str> {
+        Self::sorted(|own| own.gauss)
+    }
+
+    fn sorted(of: fn(&Self) -> &'static [&'static str]) -> Vec<&'static str> {
+        let mut all: Vec<&str> = inventory::iter::<Self>().flat_map(of).copied().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
+
+/// Registers what results are looked at for.
+///
+/// ```ignore
+/// register_usual_results! { values: [], gauss: ["VON_MISES_STRESS"] }
+/// ```
+#[macro_export]
+macro_rules! register_usual_results {
+    (values: [$($value:literal),*], gauss: [$($gauss:literal),*]) => {
+        $crate::inventory::submit! { $crate::model::UsualResults { values: &[$($value),*], gauss: &[$($gauss),*] } }
+    };
+}
