@@ -82,6 +82,15 @@ impl Csr {
     /// # Panics
     /// When the lengths do not fit, or the columns of a row do not ascend or are out of range.
     pub fn from_sorted_pattern(row_starts: Vec<usize>, columns: Vec<u32>) -> Self {
+        let values = vec![0.0; columns.len()];
+        Self { values, ..Self::without_values(row_starts, columns) }
+    }
+
+    /// As [`Csr::from_sorted_pattern`], without values: for those who keep them elsewhere.
+    ///
+    /// # Panics
+    /// As there.
+    pub fn without_values(row_starts: Vec<usize>, columns: Vec<u32>) -> Self {
         let rows = row_starts.len().checked_sub(1).expect("row_starts has rows + 1 entries");
         assert_eq!(row_starts[rows], columns.len(), "row_starts ends with the number of entries");
         for i in 0..rows {
@@ -89,8 +98,7 @@ impl Csr {
             assert!(row.windows(2).all(|pair| pair[0] < pair[1]), "columns of row {i} ascend");
             assert!(row.last().is_none_or(|&column| (column as usize) < rows), "column out of range in row {i}");
         }
-        let values = vec![0.0; columns.len()];
-        Self { rows, row_starts, columns, values }
+        Self { rows, row_starts, columns, values: Vec::new() }
     }
 
     /// The matrix with the sum of all `(row, column, value)` given.
@@ -124,6 +132,12 @@ impl Csr {
     pub fn row(&self, i: usize) -> (&[u32], &[f64]) {
         let range = self.row_starts[i]..self.row_starts[i + 1];
         (&self.columns[range.clone()], &self.values[range])
+    }
+
+    /// Columns of row `i`, ascending.
+    #[inline]
+    pub fn columns_of(&self, i: usize) -> &[u32] {
+        &self.columns[self.row_starts[i]..self.row_starts[i + 1]]
     }
 
     /// Position of entry `(i, j)` in `columns` and `values`, or `None` outside the pattern.
@@ -193,7 +207,7 @@ impl Csr {
         let block = |(task, out): (usize, &mut [f64])| {
             for (at, value) in out.iter_mut().enumerate() {
                 let row = task * ROWS_PER_TASK + at;
-                let (columns, _) = self.row(row);
+                let columns = self.columns_of(row);
                 let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
                 let sum = columns.iter().zip(values).map(|(&j, a)| a * x[j as usize]).sum::<f64>();
                 *value = combine(sum, *value);

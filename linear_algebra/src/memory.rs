@@ -23,6 +23,19 @@ const INCOMPLETE: u64 = 12;
 /// Bytes of the vectors of an iteration for each equation, and of levels whose blocks are few.
 const VECTORS: u64 = 800;
 
+/// Gives memory that this process has freed back to the system, where the C library keeps it: what is taken next is then not added to
+/// it in the peak.
+pub fn give_back() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    {
+        unsafe extern "C" {
+            fn malloc_trim(pad: usize) -> i32;
+        }
+        // SAFETY: it takes no pointer, and touches only what is free.
+        unsafe { malloc_trim(0) };
+    }
+}
+
 /// Whether a matrix has rows like those of solids in space.
 pub(crate) fn is_dense(equations: usize, entries: usize) -> bool {
     entries > MANY_ENTRIES * equations

@@ -173,6 +173,7 @@ impl MultigridSolver {
         let (constrained, _) = self.constrained.as_ref().expect("made above");
         if !self.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.suits(system, constrained)) {
             self.hierarchy = None;
+            memory::give_back();
             self.hierarchy = Some(Hierarchy {
                 levels: Arc::new(constrained.hierarchy(system)),
                 bulk_graph: system.bulk_graph,
@@ -182,6 +183,7 @@ impl MultigridSolver {
                 first: None,
                 last: 0.0,
             });
+            memory::give_back();
         }
         Ok(())
     }

@@ -7,53 +7,98 @@ use super::solver::has_inertia;
 use crate::communication::Ranks;
 use crate::diagnostics::{Error, Result};
 use crate::io::FileUse;
-use crate::model::{ModelPart, Share};
+use crate::model::{Model, ModelPart};
 use crate::parameters::Node;
-use crate::partition::{Partition, Surface, common_nodes, everywhere, keep_share, partition, surfaces};
+use crate::partition::{Partition, Shares, Surface, common_nodes, everywhere, partition, surfaces};
 use crate::strategies::Monitor;
 
-/// Gives every rank its share of the mesh, where there are several ranks and enough to share; from then on a rank has its
-/// own elements with their nodes, and all of the interfaces. `decks` are this stage and those after it.
+/// Who has what of a mesh, and the nodes that all have.
+struct Cut {
+    partition: Partition,
+    common: Vec<bool>,
+    note: String,
+}
+
+/// Gives every rank its share of the part `root`, where there are several ranks, from the mesh of rank 0; from then on a rank has
+/// its own elements with their nodes, and all of the interfaces. Ranks that have no such part get all other parts of rank 0,
+/// too. `decks` are this stage and those after it. Collective.
 ///
 /// # Errors
 /// A mesh that cannot be cut.
-pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, monitor: &mut dyn Monitor) -> Result<()> {
-    let ranks = part.ranks.size();
-    if ranks == 1 {
-        return Ok(());
-    }
+pub(super) fn distribute(
+    model: &mut Model,
+    root: &str,
+    decks: &[Node],
+    changes: bool,
+    monitor: &mut dyn Monitor,
+) -> Result<()> {
+    let ranks = model.ranks.clone();
     // What an earlier stage has shared out stays where it is, unless a modeler has changed it: then every rank has it whole.
-    let fits = |share: &Share| share.elements.len() == part.elements.len() && share.owners.len() == part.nodes.len();
-    if part.share.as_ref().is_some_and(|share| fits(share) && share.conditions.len() == part.conditions.len()) {
+    if ranks.size() == 1 || model.parts.get(root).is_some_and(is_shared) {
         return Ok(());
     }
+    let cut = if ranks.is_root() { cut(model.root_mut(root)?, decks, changes).map(Some) } else { Ok(None) };
+    let cut = ranks.agree(cut)?;
+    let others_have_none = ranks.any(!model.parts.contains_key(root));
+    let shares = cut.as_ref().map(|Cut { partition, common, .. }| Shares::new(&model.parts[root], partition, common));
+    let mut sent = Ok(());
+    for rank in 1..ranks.size() {
+        // One share after the other, so that rank 0 holds one of them at a time.
+        let parts = shares.as_ref().map(|shares| {
+            let others = model.parts.values().filter(|part| others_have_none && part.name != root);
+            others.cloned().chain([shares.of(&model.parts[root], rank)]).collect::<Vec<ModelPart>>()
+        });
+        match ranks.send_from_root(parts, rank) {
+            Ok(parts) => parts.into_iter().flatten().for_each(|part| model.add(part)),
+            Err(error) => sent = Err(error),
+        }
+    }
+    ranks.agree(sent)?;
+    if let Some(shares) = shares {
+        model.add(shares.of(&model.parts[root], 0));
+    }
+    *model = std::mem::take(model).shared_by(&ranks);
+    let part = model.root(root)?;
+    let most = ranks.gather_numbers(&[part.nodes.len() as f64]).concat().into_iter().fold(0.0, f64::max);
+    if let Some(Cut { note, .. }) = cut {
+        monitor.note(&format!("{note}; the fullest has {most} of {} nodes", part.sizes().nodes));
+    }
+    Ok(())
+}
+
+/// Whether a part is shared out, and nothing has joined it since.
+fn is_shared(part: &ModelPart) -> bool {
+    part.share.as_ref().is_some_and(|share| {
+        let counts = [share.owners.len(), share.elements.len(), share.conditions.len()];
+        counts == [part.nodes.len(), part.elements.len(), part.conditions.len()]
+    })
+}
+
+/// Cuts a mesh for the ranks; one computes all where there is too little to share.
+fn cut(part: &mut ModelPart, decks: &[Node], changes: bool) -> Result<Cut> {
     part.share = None;
-    if part.elements.len() < ranks {
-        monitor
-            .note(&format!("{} elements: too few to share among {ranks} ranks, one computes all", part.elements.len()));
-        keep_share(part, &Partition::on_one_rank(part, ranks), &vec![true; part.nodes.len()]);
-        return Ok(());
+    let (ranks, elements) = (part.ranks.size(), part.elements.len());
+    if elements < ranks {
+        let note = format!("{elements} elements: too few to share among {ranks} ranks, one computes all");
+        let common = vec![true; part.nodes.len()];
+        return Ok(Cut { partition: Partition::on_one_rank(part, ranks), common, note });
     }
-    let cut = cut_on_rank_0(part, &decks[0], ranks)?;
+    let partition = partition(part, &surfaces(&decks[0], part), ranks)?;
     let mut common = vec![changes; part.nodes.len()];
     for deck in decks {
         let of_stage = common_of_stage(part, &surfaces(deck, part), deck);
         common.iter_mut().zip(of_stage).for_each(|(common, of_stage)| *common |= of_stage);
     }
     let mut facets = vec![0_usize; ranks];
-    cut.facets.iter().filter(|f| f.slave).for_each(|f| facets[cut.elements[f.element as usize] as usize] += 1);
-    let mut note = format!("{ranks} ranks share {} elements, {} faces are cut", part.elements.len(), cut.cut);
+    let slaves = partition.facets.iter().filter(|facet| facet.slave);
+    slaves.for_each(|facet| facets[partition.elements[facet.element as usize] as usize] += 1);
+    let mut note = format!("{ranks} ranks share {elements} elements, {} faces are cut", partition.cut);
     if facets.iter().any(|&count| count > 0) {
         let all: usize = facets.iter().sum();
         let holders = facets.iter().filter(|&&count| count > 0).count();
         note.push_str(&format!("; {all} slave facets on {holders} of them"));
     }
-    keep_share(part, &cut, &common);
-    let whole = part.sizes().nodes;
-    let most = part.ranks.gather_numbers(&[part.nodes.len() as f64]).concat().into_iter().fold(0.0, f64::max);
-    note.push_str(&format!("; the fullest has {most} of {whole} nodes"));
-    monitor.note(&note);
-    Ok(())
+    Ok(Cut { partition, common, note })
 }
 
 /// The nodes of a stage that every rank keeps with the elements at them. In motion with inertia those next to surfaces are among
@@ -61,20 +106,6 @@ pub(super) fn distribute(part: &mut ModelPart, decks: &[Node], changes: bool, mo
 pub(super) fn common_of_stage(part: &ModelPart, surfaces: &[Surface], deck: &Node) -> Vec<bool> {
     let common = common_nodes(part, surfaces, deck);
     if surfaces.is_empty() || !has_inertia(deck) { common } else { everywhere(part, &common) }
-}
-
-/// The partition, which rank 0 makes for all; without facets on the others. Collective.
-fn cut_on_rank_0(part: &ModelPart, deck: &Node, ranks: usize) -> Result<Partition> {
-    let made = if part.ranks.is_root() { partition(part, &surfaces(deck, part), ranks).map(Some) } else { Ok(None) };
-    let made = part.ranks.agree(made)?;
-    let owners = made.iter().flat_map(|cut| [&cut.elements, &cut.conditions, &cut.nodes]).flatten().copied().collect();
-    let owners = part.ranks.exchange_indices(&vec![owners; ranks]).swap_remove(0);
-    Ok(made.unwrap_or_else(|| {
-        let (elements, others) = owners.split_at(part.elements.len());
-        let (conditions, nodes) = others.split_at(part.conditions.len());
-        let [elements, conditions, nodes] = [elements, conditions, nodes].map(<[u32]>::to_vec);
-        Partition { ranks, elements, conditions, nodes, facets: Vec::new(), cut: 0 }
-    }))
 }
 
 /// Errors when the ranks have not read the same settings; collective.

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use zelus_linear_algebra::memory;
+
 use super::bodies::tell_what_holds;
 use super::cutting::{Cutting, Lengths};
 use super::deck::{StageDeck, check_top_level, import, make_processes, root_name};
@@ -127,20 +129,15 @@ impl Stage {
         problems.absorb(solver.scheme().map(|_| ()));
         problems.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
         let root = problems.absorb(root_name(&solver.settings)).unwrap_or_default();
-        let modelled = run_modelers(&stage.modelers, folder, model, &mut problems);
-        problems.absorb(modelled);
-        if problems.has_errors() {
-            return Err(finish(problems));
+        let ranks = model.ranks.clone();
+        read_the_same_deck(&ranks, &deck)?;
+        // What the deck begins with is read by rank 0 alone, which shares it out.
+        let by_root = ranks.size() > 1 && model.parts.is_empty();
+        if ranks.is_root() || !by_root {
+            let read = read_model(stage, &solver, &root, folder, model, &mut problems);
+            problems.absorb(read);
         }
-        let imported = import(&solver, &root, folder, model, &mut problems);
-        let imported = problems.absorb(imported);
-        if imported.is_none() || problems.has_errors() {
-            return Err(finish(problems));
-        }
-        problems.absorb(check_dimensions(model.root(&root)?, solver.domain_size()?));
-        if problems.has_errors() {
-            return Err(finish(problems));
-        }
+        problems = problems_of_all(&ranks, problems)?;
         report.add_seconds("read", start.elapsed().as_secs_f64());
         monitor.phase("set up");
         let start = Instant::now();
@@ -152,11 +149,16 @@ impl Stage {
             decks.push(deck);
         }
         let changes = later.iter().any(|later| !later.modelers.is_empty());
-        let inputs = inputs_of(stage, &deck, folder);
-        read_the_same_deck(&model.ranks, &deck)?;
-        read_the_same_files(&model.ranks, &inputs)?;
-        distribute(model.root_mut(&root)?, &decks, changes, monitor)?;
-        let ranks = model.ranks.clone();
+        let (of_mesh, mut inputs) = inputs_of(stage, &deck, folder);
+        read_the_same_files(&ranks, &inputs)?;
+        if !by_root {
+            read_the_same_files(&ranks, &of_mesh)?;
+        }
+        inputs.extend(of_mesh);
+        distribute(model, &root, &decks, changes, monitor)?;
+        memory::give_back();
+        // Ranks that have read no mesh know its parts only now.
+        complete_part_names(&mut deck, &root, model, &mut problems);
         let mut processes = make_processes(&deck, folder, model, &mut problems);
         processes.extend(more);
         problems = problems_of_all(&ranks, problems)?;
@@ -182,6 +184,7 @@ impl Stage {
         problems = problems_of_all(&ranks, problems)?;
         report.parameters = tell_parameters(part, &system, monitor);
         let (strategy, says) = solver.strategy(part, &mut system, &mut problems)?;
+        memory::give_back();
         monitor.note(&says);
         report.linear_solver = says;
         let sizes = part.sizes();
@@ -592,8 +595,31 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
     }
 }
 
-/// What a stage reads: deck, meshes, materials and tables.
-fn inputs_of(stage: &StageDeck, deck: &Node, folder: &Path) -> Vec<FileUse> {
+/// Meshes and materials of a stage, and what modelers make of them.
+///
+/// # Errors
+/// Problems of the files, beside those in `problems`.
+fn read_model(
+    stage: &StageDeck,
+    solver: &SolverSettings,
+    root: &str,
+    folder: &Path,
+    model: &mut Model,
+    problems: &mut Report,
+) -> Result<()> {
+    run_modelers(&stage.modelers, folder, model, problems)?;
+    if problems.has_errors() {
+        return Ok(());
+    }
+    import(solver, root, folder, model, problems)?;
+    if problems.has_errors() {
+        return Ok(());
+    }
+    check_dimensions(model.root(root)?, solver.domain_size()?)
+}
+
+/// What a stage reads: meshes and materials; deck and tables.
+fn inputs_of(stage: &StageDeck, deck: &Node, folder: &Path) -> (Vec<FileUse>, Vec<FileUse>) {
     let named = |key: &str| deck.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
     let mesh_file = |input_type: &str, name: &str| {
         registry::find::<MeshFormatEntry>(input_type).map(|format| format.file(&folder.join(name)))
@@ -607,8 +633,8 @@ fn inputs_of(stage: &StageDeck, deck: &Node, folder: &Path) -> Vec<FileUse> {
         parameters.get("input_filename")?.as_str().and_then(|name| mesh_file("mdpa", name))
     };
     let meshes = stage.modelers.iter().filter_map(of_modeler);
-    let mut files = vec![deck.place().file];
-    files.extend(mesh.into_iter().chain(materials).chain(meshes));
-    tables_of(deck, &mut files);
-    files.into_iter().map(FileUse::Reads).collect()
+    let mut others = vec![deck.place().file];
+    tables_of(deck, &mut others);
+    let files = mesh.into_iter().chain(materials).chain(meshes);
+    (files.map(FileUse::Reads).collect(), others.into_iter().map(FileUse::Reads).collect())
 }

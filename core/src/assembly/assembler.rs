@@ -186,7 +186,7 @@ impl Assembler {
 
     /// Entries of the elements' matrix over all unknowns.
     pub fn entries(&self) -> usize {
-        self.pattern.zero.entries()
+        self.pattern.matrix.entries()
     }
 
     /// The map between unknowns and equations.
@@ -392,8 +392,8 @@ impl Assembler {
         }
         let mut bodies = vec![0.0; values.len()];
         if let Some(values) = self.bulk_values() {
-            abs_product(&self.pattern.zero, values, bulk, &mut out);
-            bodies = product(&self.pattern.zero, values, &farthest);
+            abs_product(&self.pattern.matrix, values, bulk, &mut out);
+            bodies = product(&self.pattern.matrix, values, &farthest);
         }
         for (n, dof) in system.dofs.dofs().iter().enumerate() {
             // Multipliers stand in the tangent of turning normals, too: forces are bounded by the bodies alone.
@@ -413,7 +413,7 @@ impl Assembler {
     }
 
     fn mul_subtract(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        self.pattern.zero.mul_vec_subtract_with(values, x, y);
+        self.pattern.matrix.mul_vec_subtract_with(values, x, y);
     }
 
     fn add_blocks(
@@ -437,7 +437,7 @@ impl Assembler {
     fn ensure_constant(&mut self, part: &ModelPart, system: &System) -> Result<()> {
         if self.constant.is_none() {
             let start = Instant::now();
-            let mut values = vec![0.0; self.pattern.zero.entries()];
+            let mut values = vec![0.0; self.pattern.matrix.entries()];
             self.add_blocks(part, system, |block| block.tangent() == Tangent::Constant, &mut values)?;
             self.constant = Some(values);
             self.seconds.bulk += start.elapsed().as_secs_f64();
@@ -473,7 +473,7 @@ fn blocks_of(system: &System) -> Blocks<'_> {
 /// Adds `|A| x` of the matrix A with this pattern and these values.
 fn abs_product(pattern: &Csr, values: &[f64], x: &[f64], out: &mut [f64]) {
     out.par_iter_mut().enumerate().with_min_len(512).take(pattern.rows).for_each(|(row, y)| {
-        let (columns, _) = pattern.row(row);
+        let columns = pattern.columns_of(row);
         let values = &values[pattern.row_starts[row]..pattern.row_starts[row + 1]];
         *y += columns.iter().zip(values).map(|(&c, v)| v.abs() * x[c as usize]).sum::<f64>();
     });

@@ -23,8 +23,8 @@ pub struct BulkPattern {
     offsets: Vec<u32>,
     /// First bulk unknown of each node.
     first: Vec<u32>,
-    /// The matrix with zero values.
-    pub zero: Csr,
+    /// The matrix without values.
+    pub matrix: Csr,
 }
 
 impl BulkPattern {
@@ -75,8 +75,11 @@ impl BulkPattern {
             }
             starts.push(neighbours.len());
         }
+        let bulk = || dofs.dofs().iter().filter(|dof| !dof.multiplier).map(|dof| dof.node as usize);
+        let entries =
+            |node: usize| neighbours[starts[node]..starts[node + 1]].iter().map(|&b| count[b as usize] as usize);
         let mut row_starts = vec![0];
-        let mut columns = Vec::new();
+        let mut columns = Vec::with_capacity(bulk().flat_map(entries).sum());
         for dof in dofs.dofs() {
             if !dof.multiplier {
                 let node = dof.node as usize;
@@ -87,8 +90,8 @@ impl BulkPattern {
             }
             row_starts.push(columns.len());
         }
-        let zero = Csr::from_sorted_pattern(row_starts, columns);
-        Self { starts, neighbours, offsets, first, zero }
+        let matrix = Csr::without_values(row_starts, columns);
+        Self { starts, neighbours, offsets, first, matrix }
     }
 
     /// Place in a row of `a` where the unknowns of `b` begin.
@@ -126,7 +129,7 @@ impl BulkPattern {
     ) -> Result<(), EntityError> {
         let unknowns = block.unknowns();
         let size = unknowns.len();
-        let rows = self.zero.rows;
+        let rows = self.matrix.rows;
         let bounds: Vec<usize> = (0..=ROW_PARTS).map(|part| rows * part / ROW_PARTS).collect();
         for begin in (0..block.len()).step_by(BATCH) {
             let range = begin..(begin + BATCH).min(block.len());
@@ -134,14 +137,14 @@ impl BulkPattern {
             let mut parts: Vec<(usize, usize, &mut [f64])> = Vec::with_capacity(ROW_PARTS);
             let mut rest = &mut *values;
             for pair in bounds.windows(2) {
-                let length = self.zero.row_starts[pair[1]] - self.zero.row_starts[pair[0]];
+                let length = self.matrix.row_starts[pair[1]] - self.matrix.row_starts[pair[0]];
                 let (head, tail) = rest.split_at_mut(length);
                 parts.push((pair[0], pair[1], head));
                 rest = tail;
             }
             parts.into_par_iter().for_each(|(first_row, last_row, part)| {
                 let is_here = |row: u32| (first_row..last_row).contains(&(row as usize));
-                let base = self.zero.row_starts[first_row];
+                let base = self.matrix.row_starts[first_row];
                 // Place of each unknown of an entity in the rows of one of its nodes.
                 let mut places = vec![0; size];
                 for at in range.clone() {
@@ -156,7 +159,7 @@ impl BulkPattern {
                         if of_node.replace(unknowns[i].node) != Some(unknowns[i].node) {
                             self.places(entity_nodes, unknowns, numbers, unknowns[i].node, &mut places);
                         }
-                        let start = self.zero.row_starts[row as usize] - base;
+                        let start = self.matrix.row_starts[row as usize] - base;
                         for (place, value) in places.iter().zip(&lhs[i * size..(i + 1) * size]) {
                             part[start + place] += value;
                         }

@@ -212,11 +212,11 @@ impl Equations {
             return;
         }
         if !same_pattern {
-            let mut row_starts = vec![0];
-            let mut columns = Vec::new();
+            let mut row_starts = Vec::with_capacity(self.free.len() + 1);
+            row_starts.push(0);
+            let mut columns = Vec::with_capacity(full.entries());
             for &n in &self.free {
-                let (cols, _) = full.row(n as usize);
-                columns.extend(cols.iter().filter_map(|&c| match self.roles[c as usize] {
+                columns.extend(full.columns_of(n as usize).iter().filter_map(|&c| match self.roles[c as usize] {
                     Role::Free(equation) => Some(equation),
                     _ => None,
                 }));
@@ -235,7 +235,7 @@ impl Equations {
         parts.into_par_iter().for_each(|(rows, out)| {
             let entries = rows.iter().flat_map(|&n| {
                 let values = &values[full.row_starts[n as usize]..];
-                full.row(n as usize).0.iter().zip(values).filter(|(column, _)| self.is_free(**column as usize))
+                full.columns_of(n as usize).iter().zip(values).filter(|(column, _)| self.is_free(**column as usize))
             });
             out.iter_mut().zip(entries).for_each(|(out, (_, value))| *out = *value);
         });
@@ -244,7 +244,7 @@ impl Equations {
     /// Whether a constrained unknown has entries; the pattern is symmetric.
     fn touches_slaves(&self, full: &Csr) -> bool {
         let slaves = self.roles.iter().enumerate().filter(|(_, role)| matches!(role, Role::Slave(_)));
-        slaves.map(|(row, _)| full.row(row)).any(|(columns, _)| !columns.is_empty())
+        slaves.map(|(row, _)| full.columns_of(row)).any(|columns| !columns.is_empty())
     }
 
     fn terms<'a>(&'a self, number: usize, one: &'a mut [Follow; 1]) -> &'a [Follow] {
@@ -263,7 +263,7 @@ impl Equations {
         let none = Follow { equation: 0, weight: 0.0, force: 0.0 };
         let (mut left, mut right) = ([none], [none]);
         for row in 0..full.rows {
-            let (columns, _) = full.row(row);
+            let columns = full.columns_of(row);
             let values = &values[full.row_starts[row]..];
             for to in self.terms(row, &mut left) {
                 for (&column, &value) in columns.iter().zip(values) {

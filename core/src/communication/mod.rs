@@ -10,6 +10,7 @@ mod communicator;
 #[cfg(feature = "mpi")]
 mod mpi_world;
 mod ranks;
+mod values;
 
 pub use communicator::Communicator;
 pub use ranks::Ranks;

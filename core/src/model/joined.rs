@@ -108,7 +108,7 @@ impl ModelPart {
     ///
     /// # Errors
     /// Nodes or entities that are not here.
-    pub fn cut_like(mut self, share: &Self) -> Result<Self, String> {
+    pub fn cut_like(self, share: &Self) -> Result<Self, String> {
         let Some(of_rank) = &share.share else { return Ok(self) };
         let places = |table: &EntityTable, wanted: &EntityTable| -> Option<Vec<u32>> {
             wanted.ids.iter().map(|&id| table.find(id)).collect()
@@ -119,9 +119,9 @@ impl ModelPart {
         let (Some(elements), Some(conditions), true) = (elements, conditions, here) else {
             return Err(format!("the mesh of {} is another than that of the saved run", share.name));
         };
-        self.keep(&of_rank.places, &elements, &conditions);
-        self.tree.normalise();
-        self.share = Some(of_rank.clone());
-        Ok(self)
+        let mut cut = self.kept(&of_rank.places, &elements, &conditions);
+        cut.tree.normalise();
+        cut.share = Some(of_rank.clone());
+        Ok(cut)
     }
 }

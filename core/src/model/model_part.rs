@@ -151,8 +151,9 @@ impl ModelPart {
         self.share.as_ref().map_or_else(own, |share| share.whole)
     }
 
-    /// Drops everything but these nodes and entities, ascending; constraints stay, and their nodes must.
-    pub fn keep(&mut self, nodes: &[u32], elements: &[u32], conditions: &[u32]) {
+    /// The part with these nodes and entities alone, ascending, and all constraints, whose nodes must be among them.
+    #[must_use]
+    pub fn kept(&self, nodes: &[u32], elements: &[u32], conditions: &[u32]) -> Self {
         let new = |kept: &[u32], count: usize| {
             let mut new = vec![u32::MAX; count];
             kept.iter().enumerate().for_each(|(at, &old)| new[old as usize] = at as u32);
@@ -161,14 +162,27 @@ impl ModelPart {
         let new_nodes = new(nodes, self.nodes.len());
         let new_elements = new(elements, self.elements.len());
         let new_conditions = new(conditions, self.conditions.len());
-        self.nodes = self.nodes.pick(nodes);
-        self.elements = self.elements.pick(elements, &new_nodes);
-        self.conditions = self.conditions.pick(conditions, &new_nodes);
-        self.geometries = Geometries::default();
-        self.tree.renumber(&new_nodes, &new_elements, &new_conditions);
-        for constraint in &mut self.constraints {
+        let mut tree = self.tree.clone();
+        tree.renumber(&new_nodes, &new_elements, &new_conditions);
+        let mut constraints = self.constraints.clone();
+        for constraint in &mut constraints {
             constraint.slave.0 = new_nodes[constraint.slave.0 as usize];
             constraint.masters.iter_mut().for_each(|((node, _), _)| *node = new_nodes[*node as usize]);
+        }
+        Self {
+            name: self.name.clone(),
+            nodes: self.nodes.pick(nodes),
+            elements: self.elements.pick(elements, &new_nodes),
+            conditions: self.conditions.pick(conditions, &new_nodes),
+            geometries: Geometries::default(),
+            properties: self.properties.clone(),
+            tables: self.tables.clone(),
+            data: self.data.clone(),
+            info: self.info.clone(),
+            tree,
+            constraints,
+            ranks: self.ranks.clone(),
+            share: None,
         }
     }
 

@@ -1,10 +1,10 @@
 //! Who owns what when several ranks share a mesh: elements by METIS, nodes and conditions after them.
 //!
 //! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind
-//! facets that face each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Every
-//! rank can compute it for itself and gets the same. [`surfaces`] asks the processes of a deck
+//! facets that face each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Rank 0
+//! computes it for all. [`surfaces`] asks the processes of a deck
 //! for the facets' surfaces, and [`Counts`]
-//! says what a partition costs. [`keep_share`] then cuts the mesh of a rank down to its [`Share`](crate::model::Share), and
+//! says what a partition costs. [`Shares`] gives what each rank keeps, with its [`Share`](crate::model::Share), and
 //! [`Share::balance_pairs`](crate::model::Share::balance_pairs) shares out pairs anew once they are known.
 
 mod balance;
@@ -21,7 +21,7 @@ pub use common::common_nodes;
 pub use counts::{Counts, PRODUCTS, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
 pub use interfaces::{Surface, surfaces};
-pub use share::{everywhere, keep_share};
+pub use share::{Shares, everywhere};
 
 use zelus_linear_algebra::{WeightedGraph, partition_graph};
 

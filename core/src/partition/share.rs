@@ -6,13 +6,113 @@
 use super::Partition;
 use crate::model::{Halo, MeshSizes, ModelPart, Share};
 
-/// Indices of a whole mesh that a rank keeps, ascending.
-pub(super) struct Kept {
-    pub(super) nodes: Vec<u32>,
-    pub(super) elements: Vec<u32>,
-    pub(super) conditions: Vec<u32>,
-    halo: Halo,
-    common: Vec<bool>,
+/// Who keeps what of a mesh, of which one pass tells the lists of all ranks.
+pub struct Shares<'a> {
+    partition: &'a Partition,
+    common: &'a [bool],
+    whole: MeshSizes,
+    /// Elements, and conditions, that each rank evaluates; those at common nodes, which all keep.
+    own: [Vec<Vec<u32>>; 2],
+    of_all: [Vec<u32>; 2],
+    /// Nodes that each rank owns or has elements or conditions at, but for those that all have; repeated, in no order.
+    nodes: Vec<Vec<u32>>,
+    /// Nodes that all have, by their owners.
+    everywhere: Vec<Vec<u32>>,
+    /// Nodes of each rank at which another has elements or conditions, after the number of that one; ascending.
+    copied: Vec<Vec<[u32; 2]>>,
+    /// Nodes of others at which each rank has elements or conditions, after the number of their owner; ascending.
+    copies: Vec<Vec<[u32; 2]>>,
+}
+
+impl<'a> Shares<'a> {
+    /// Shares out `part`, of which all ranks keep the `common` nodes with the elements at them.
+    pub fn new(part: &ModelPart, partition: &'a Partition, common: &'a [bool]) -> Self {
+        let everywhere = everywhere(part, common);
+        let lists = || vec![Vec::new(); partition.ranks];
+        let mut made = Self {
+            partition,
+            common,
+            whole: MeshSizes {
+                nodes: part.nodes.len(),
+                elements: part.elements.len(),
+                conditions: part.conditions.len(),
+            },
+            own: [lists(), lists()],
+            of_all: Default::default(),
+            nodes: lists(),
+            everywhere: lists(),
+            copied: vec![Vec::new(); partition.ranks],
+            copies: vec![Vec::new(); partition.ranks],
+        };
+        for (node, &owner) in partition.nodes.iter().enumerate() {
+            let list = if everywhere[node] { &mut made.everywhere } else { &mut made.nodes };
+            list[owner as usize].push(node as u32);
+        }
+        let tables = [(&part.elements, &partition.elements), (&part.conditions, &partition.conditions)];
+        for (at, (table, owners)) in tables.into_iter().enumerate() {
+            for (entity, &owner) in (0..).zip(owners) {
+                made.own[at][owner as usize].push(entity);
+                let nodes = table.nodes(entity);
+                if nodes.iter().any(|&node| common[node as usize]) {
+                    made.of_all[at].push(entity);
+                }
+                for &node in nodes.iter().filter(|&&node| !everywhere[node as usize]) {
+                    let of_node = partition.nodes[node as usize];
+                    if of_node != owner {
+                        made.nodes[owner as usize].push(node);
+                        made.copied[of_node as usize].push([owner, node]);
+                        made.copies[owner as usize].push([of_node, node]);
+                    }
+                }
+            }
+        }
+        for list in made.copied.iter_mut().chain(&mut made.copies) {
+            list.sort_unstable();
+            list.dedup();
+        }
+        made
+    }
+
+    /// What `rank` keeps of `part`, with who has what.
+    pub fn of(&self, part: &ModelPart, rank: usize) -> ModelPart {
+        let sorted = |lists: &[&[u32]]| {
+            let mut all = lists.concat();
+            all.sort_unstable();
+            all.dedup();
+            all
+        };
+        let everywhere = self.everywhere.concat();
+        let nodes = sorted(&[&self.nodes[rank], &everywhere]);
+        let [elements, conditions] = [0, 1].map(|at| sorted(&[&self.own[at][rank], &self.of_all[at]]));
+        let kept = MeshSizes { nodes: nodes.len(), elements: elements.len(), conditions: conditions.len() };
+        let mut own = if kept == self.whole { part.clone() } else { part.kept(&nodes, &elements, &conditions) };
+        let pick = |list: &[u32], kept: &[u32]| -> Vec<u32> { kept.iter().map(|&at| list[at as usize]).collect() };
+        let owners = pick(&self.partition.nodes, &nodes);
+        let mut new = vec![0_u32; self.whole.nodes];
+        nodes.iter().enumerate().for_each(|(at, &node)| new[node as usize] = at as u32);
+        own.share = Some(Share {
+            elements: pick(&self.partition.elements, &elements),
+            conditions: pick(&self.partition.conditions, &conditions),
+            pairs: owners.clone(),
+            owners,
+            common: nodes.iter().map(|&node| self.common[node as usize]).collect(),
+            halo: self.halo(part, rank).expand(|node, out| out.push(new[node as usize])),
+            places: nodes,
+            whole: self.whole,
+        });
+        own
+    }
+
+    /// Copies of the whole mesh's nodes that concern a rank.
+    fn halo(&self, part: &ModelPart, rank: usize) -> Halo {
+        let by_rank = |pairs: &[[u32; 2]]| {
+            let mut lists = vec![Vec::new(); self.partition.ranks];
+            pairs.iter().for_each(|&[other, node]| lists[other as usize].push(node));
+            lists
+        };
+        let [copied, copies] = [&self.copied, &self.copies].map(|of_ranks| by_rank(&of_ranks[rank]));
+        Halo { ranks: part.ranks.clone(), copied, copies, everywhere: self.everywhere.clone() }
+    }
 }
 
 /// Marks the nodes that every rank has: the common ones and those of the elements and conditions at them.
@@ -27,81 +127,4 @@ pub fn everywhere(part: &ModelPart, common: &[bool]) -> Vec<bool> {
         }
     }
     everywhere
-}
-
-impl Kept {
-    /// What `rank` keeps where all ranks keep the `common` nodes with the elements at them.
-    pub(super) fn new(part: &ModelPart, partition: &Partition, common: &[bool], rank: usize) -> Self {
-        let mut kept = vec![false; part.nodes.len()];
-        let lists = || vec![Vec::new(); partition.ranks];
-        let mut halo = Halo { ranks: part.ranks.clone(), copied: lists(), copies: lists(), everywhere: lists() };
-        let everywhere = everywhere(part, common);
-        let mut elements = Vec::new();
-        let mut conditions = Vec::new();
-        for (table, owners, list) in [
-            (&part.elements, &partition.elements, &mut elements),
-            (&part.conditions, &partition.conditions, &mut conditions),
-        ] {
-            for (at, &owner) in owners.iter().enumerate() {
-                let nodes = table.nodes(at as u32);
-                let is_own = owner as usize == rank;
-                if is_own || nodes.iter().any(|&node| common[node as usize]) {
-                    list.push(at as u32);
-                }
-                for &node in nodes.iter().filter(|&&node| !everywhere[node as usize]) {
-                    if is_own {
-                        kept[node as usize] = true;
-                    } else if partition.nodes[node as usize] as usize == rank {
-                        halo.copied[owner as usize].push(node);
-                    }
-                }
-            }
-        }
-        for node in 0..kept.len() as u32 {
-            let (owner, at) = (partition.nodes[node as usize] as usize, node as usize);
-            kept[at] |= everywhere[at] || owner == rank;
-            if everywhere[at] {
-                halo.everywhere[owner].push(node);
-            } else if owner != rank && kept[at] {
-                halo.copies[owner].push(node);
-            }
-        }
-        for list in &mut halo.copied {
-            list.sort_unstable();
-            list.dedup();
-        }
-        let nodes = (0..kept.len() as u32).filter(|&node| kept[node as usize]).collect();
-        Self { nodes, elements, conditions, halo, common: common.to_vec() }
-    }
-
-    /// The share of the rank, once the mesh has been cut down to what is kept.
-    pub(super) fn share(self, partition: &Partition, whole: MeshSizes) -> Share {
-        let mut new = vec![0_u32; whole.nodes];
-        self.nodes.iter().enumerate().for_each(|(at, &node)| new[node as usize] = at as u32);
-        let pick = |list: &[u32], kept: &[u32]| -> Vec<u32> { kept.iter().map(|&at| list[at as usize]).collect() };
-        let owners = pick(&partition.nodes, &self.nodes);
-        Share {
-            elements: pick(&partition.elements, &self.elements),
-            conditions: pick(&partition.conditions, &self.conditions),
-            pairs: owners.clone(),
-            owners,
-            common: self.nodes.iter().map(|&node| self.common[node as usize]).collect(),
-            halo: self.halo.expand(|node, out| out.push(new[node as usize])),
-            places: self.nodes,
-            whole,
-        }
-    }
-}
-
-/// Cuts `part` down to what this rank keeps of it where all keep the `common` nodes, and notes in it who has what.
-pub fn keep_share(part: &mut ModelPart, partition: &Partition, common: &[bool]) {
-    let whole = MeshSizes { nodes: part.nodes.len(), elements: part.elements.len(), conditions: part.conditions.len() };
-    let kept = Kept::new(part, partition, common, part.ranks.rank());
-    if kept.nodes.len() < whole.nodes
-        || kept.elements.len() < whole.elements
-        || kept.conditions.len() < whole.conditions
-    {
-        part.keep(&kept.nodes, &kept.elements, &kept.conditions);
-    }
-    part.share = Some(kept.share(partition, whole));
 }

@@ -2,7 +2,7 @@ use crate::model::EntityKind;
 use crate::model::Role;
 use std::collections::HashMap;
 
-use super::share::Kept;
+use super::share::Shares;
 use super::{Counts, Partition, Repeats, Surface, Traffic, common_nodes, partition, surfaces};
 use crate::geometry::Shape;
 use crate::model::{ModelPart, Nodes, SubPart};
@@ -209,12 +209,10 @@ fn ranks_keep_their_elements_and_the_interface() {
     let deck = Document::from_str("{}", "deck.json").unwrap().root;
     let common = common_nodes(&whole, &surfaces, &deck);
     assert_eq!(common.iter().filter(|common| **common).count(), 2 * 49);
-    let mut shares = Vec::new();
+    let (of_all, mut shares) = (Shares::new(&whole, &cut, &common), Vec::new());
     for rank in 0..ranks {
-        let mut part = two_blocks(6);
-        let kept = Kept::new(&part, &cut, &common, rank);
-        part.keep(&kept.nodes, &kept.elements, &kept.conditions);
-        let share = kept.share(&cut, whole.sizes());
+        let mut part = of_all.of(&whole, rank);
+        let share = part.share.take().unwrap();
         assert!(part.nodes.len() < 400 && share.owners.len() == part.nodes.len(), "{}", part.nodes.len());
         let own = |list: &[u32]| list.iter().filter(|&&owner| owner as usize == rank).count();
         assert_eq!(own(&share.elements), own(&cut.elements));
@@ -266,7 +264,7 @@ fn pairs_of_a_full_rank_go_to_an_empty_one() {
     let part = two_blocks(2);
     let cut = partition(&part, &[], 2).unwrap();
     let home = cut.nodes.clone();
-    let mut share = Kept::new(&part, &cut, &vec![true; part.nodes.len()], 0).share(&cut, part.sizes());
+    let mut share = Shares::new(&part, &cut, &vec![true; part.nodes.len()]).of(&part, 0).share.unwrap();
     let of = |rank: u32| home.iter().enumerate().filter(move |(_, r)| **r == rank).map(|(node, _)| node as u32);
     let full: Vec<u32> = of(0).take(3).collect();
     let empty = of(1).next().unwrap();

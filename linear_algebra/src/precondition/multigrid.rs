@@ -16,6 +16,7 @@ use super::shared_levels::{Aggregates, gathered};
 use crate::check;
 use crate::dense_lu;
 use crate::ghosts::Ghosts;
+use crate::memory;
 use crate::multifrontal::{Factor, Kind, Precision, Scatter};
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
@@ -141,6 +142,7 @@ impl Multigrid {
             near_null_space = std::mem::take(&mut coarse.modes);
             let (level, next, of_next) = Level::new(matrix, ghosts, coarse, near_null_space.len());
             levels.push(level);
+            memory::give_back();
             (matrix, ghosts) = (next, of_next);
         }
         Self::of(levels, matrix, ghosts)

@@ -11,7 +11,7 @@ use super::nodal_sums::NodalSums;
 use super::pairing::{Pairing, integrals, searching};
 use super::setup::Setup;
 use crate::interface::Facet;
-use crate::pairs::Pair;
+use crate::pairs::{Pair, PairKey};
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;
@@ -70,9 +70,14 @@ pub(super) fn late_pairs(
     let known: BTreeSet<_> = pairing.keys().into_iter().collect();
     let near = pairing.candidates(part, settings).into_iter();
     let near = near.filter_map(|(key, within_reach)| (within_reach && !known.contains(&key)).then_some(key));
-    let (crossed, rest): (Vec<Pair>, Vec<Pair>) = near
-        .map(|key| pairing.pair(part, key))
-        .partition(|pair| have_crossed(part, pairing.slave(pair.key), pairing.master(pair.key)));
+    let near: Vec<PairKey> = near.collect();
+    let pairs_of = |keys: &mut dyn Iterator<Item = PairKey>| -> (Vec<Pair>, Vec<Pair>) {
+        let pairs = keys.map(|key| pairing.pair(part, key));
+        pairs.partition(|pair| have_crossed(part, pairing.slave(pair.key), pairing.master(pair.key)))
+    };
+    // All ranks know what is near; each makes pairs of what it evaluates.
+    let is_own = |key: &PairKey| part.evaluates_pair(&pairing.slave(*key).nodes);
+    let (crossed, rest) = pairs_of(&mut near.iter().copied().filter(is_own));
     let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;
     blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, setup.limit()))?);
     let slaves = states.slaves();
@@ -99,22 +104,25 @@ pub(super) fn late_pairs(
         !states[n].active && more_area > wanted.facing * whole && gap < -wanted.depth * area(n)
     };
     let nodes: BTreeSet<u32> = slaves.iter().copied().filter(inside).collect();
-    let (mut pairs, mut missed) = (Vec::new(), Vec::new());
+    let mut found = BTreeSet::new();
     for (block, integrals) in blocks.iter().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate() {
             let matters = |(local, &node): (usize, &u32)| {
                 nodes.contains(&node)
                     || states[node].active && integral.area[local].abs() > wanted.share * area(node).abs()
             };
-            missed.push(integral.overlapping && block.slave_nodes(at).iter().enumerate().any(matters));
-            pairs.push(&block.pairs()[at]);
+            if integral.overlapping && block.slave_nodes(at).iter().enumerate().any(matters) {
+                found.insert(block.pairs()[at].key);
+            }
         }
     }
+    let mut missed: Vec<bool> = near.iter().map(|key| found.contains(key)).collect();
     if part.share.is_some() {
         part.ranks.any_of(&mut missed);
     }
-    let missed = pairs.into_iter().zip(missed).filter(|(_, missed)| *missed).map(|(pair, _)| pair.clone());
-    Ok(Late { missed: missed.collect(), nodes: nodes.into_iter().collect() })
+    let missed = near.into_iter().zip(missed).filter(|(_, missed)| *missed).map(|(key, _)| key);
+    let (crossed, rest) = pairs_of(&mut { missed });
+    Ok(Late { missed: [crossed, rest].concat(), nodes: nodes.into_iter().collect() })
 }
 
 /// Whether the centre of the slave has gone from the front of the master's plane to its back in the step.

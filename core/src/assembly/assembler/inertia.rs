@@ -76,7 +76,7 @@ impl Assembler {
         let view = part.view();
         let nodes = undeformed(part);
         let initial = StepView { nodes: &nodes, ..view };
-        let mut values = vec![0.0; self.pattern.zero.entries()];
+        let mut values = vec![0.0; self.pattern.matrix.entries()];
         let mut lasting = true;
         let numbered = system.elements.iter().zip(&self.element_numbers);
         for (block, numbers) in numbered.chain(system.conditions.iter().zip(&self.condition_numbers)) {
@@ -124,13 +124,13 @@ impl Assembler {
         if self.mass.is_none() {
             let nodes = undeformed(part);
             let view = StepView { nodes: &nodes, ..part.view() };
-            let mut values = vec![0.0; self.pattern.zero.entries()];
+            let mut values = vec![0.0; self.pattern.matrix.entries()];
             for (block, numbers) in system.elements.iter().zip(&self.element_numbers) {
                 let lumped = self.lumped;
                 let compute = |range, out: &mut LocalSystems| block.mass(&view, range, lumped, out).map(|_| ());
                 self.pattern.add(block.as_ref(), numbers, &mut values, &compute)?;
             }
-            self.redistribution.apply(&self.pattern.zero, &mut values);
+            self.redistribution.apply(&self.pattern.matrix, &mut values);
             self.mass = Some(values);
         }
         Ok(self.mass.as_ref().expect("just made"))

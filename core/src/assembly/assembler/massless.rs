@@ -103,7 +103,7 @@ impl Assembler {
         self.add_up(&mut residual);
         let mass = self.mass.as_ref().expect("just made");
         let diagonal = {
-            let mut diagonal = diagonal(&self.pattern.zero, mass);
+            let mut diagonal = diagonal(&self.pattern.matrix, mass);
             self.add_up(&mut diagonal);
             diagonal
         };

@@ -63,13 +63,13 @@ impl Assembler {
                 damped = !still.is_empty() && (!single || stiffness_factor != 1.0);
                 self.mass(part, system)?;
                 let mass = self.mass.as_ref().expect("just made");
-                for ((value, m), column) in values.iter_mut().zip(mass).zip(&self.pattern.zero.columns) {
+                for ((value, m), column) in values.iter_mut().zip(mass).zip(&self.pattern.matrix.columns) {
                     let factor = if moves(column) { stiffness_factor } else { 1.0 };
                     *value = factor * *value + mass_factor * m;
                 }
                 if !single {
                     let damping = self.damping(part, system, [alpha, beta])?;
-                    let moving = values.iter_mut().zip(damping).zip(&self.pattern.zero.columns);
+                    let moving = values.iter_mut().zip(damping).zip(&self.pattern.matrix.columns);
                     moving.filter(|(_, column)| moves(column)).for_each(|((value, c), _)| *value += damping_factor * c);
                 }
             }
@@ -90,7 +90,7 @@ impl Assembler {
 
     fn reduce_bulk(&mut self, same_pattern: bool) {
         let values = self.bulk.as_ref().or(self.constant.as_ref()).expect("assembled before it is reduced");
-        self.equations.reduce_matrix(&self.pattern.zero, values, &mut self.reduced_bulk, same_pattern);
+        self.equations.reduce_matrix(&self.pattern.matrix, values, &mut self.reduced_bulk, same_pattern);
     }
 
     /// Multiplies the tangents of follower loads, until they are assembled again.

@@ -17,6 +17,7 @@ mod group;
 use super::block_matrix::{BlockMatrix, BlockRow, Sums};
 use super::multigrid::Multigrid;
 use crate::ghosts::{Ghosts, Owned};
+use crate::memory;
 use crate::system::System;
 use group::GroupElimination;
 
@@ -487,6 +488,7 @@ impl Constrained {
     /// The hierarchy of what is left, and the size its matrix was divided by; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>) -> (Multigrid, f64) {
         let (matrix, size) = self.matrix(system);
+        memory::give_back();
         (Multigrid::new(matrix, self.near_null_space(system), self.blocks.clone()), size)
     }
 
