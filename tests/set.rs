@@ -23,6 +23,17 @@ fn values_of_the_command_line_take_the_place_of_the_deck_s() {
 }
 
 #[test]
+fn completions_and_the_manual_know_every_command() {
+    for arguments in [&["completions", "bash"][..], &["completions", "zsh"], &["manual"]] {
+        let output = zelus(&root(), arguments);
+        assert!(output.status.success(), "{}", said(&output));
+        for command in ["run", "check", "import", "convert", "new", "partition", "diff", "report", "describe"] {
+            assert!(said(&output).contains(command), "{arguments:?} does not know {command}");
+        }
+    }
+}
+
+#[test]
 fn what_does_not_fit_is_refused() {
     let scratch = scratch_copy(&root().join("examples/hertz_line_contact"));
     for (set, fact) in [

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use support::{change, root, said, scratch_copy, zelus};
 use zelus::core::io::results::{Column, Dataset, read_vtu};
+use zelus::{RunOptions, Silent, Simulation};
 
 const LISTS: &str = r#",
           "nodal_solution_step_data_variables": ["DISPLACEMENT", "REACTION", "LAGRANGE_MULTIPLIER_CONTACT_PRESSURE"],
@@ -65,6 +66,32 @@ fn a_bare_output_process_writes_what_runs_are_looked_at_for() {
     for (pressure, traction) in pressure.iter().zip(traction.chunks(3)) {
         let size = traction.iter().map(|x| x * x).sum::<f64>().sqrt();
         assert!((size - pressure).abs() <= 1e-9 * pressure.abs(), "{traction:?} {pressure}");
+    }
+}
+
+/// With friction too, force is traction times area at each slave node, and what slaves feel masters feel the other way.
+#[test]
+fn forces_of_friction_are_tractions_times_areas() {
+    for case in ["friction_slide", "friction_penalty_stick"] {
+        let scratch = scratch_copy(&root().join("tests/cases/contact_2d").join(case));
+        let mut simulation =
+            Simulation::open(&scratch.path().join("ProjectParameters.json"), &RunOptions::default()).unwrap();
+        simulation.run(&mut Silent).unwrap();
+        let values = &simulation.part().unwrap().nodes.values;
+        let of = |name: &str| values.get(name).unwrap_or_else(|| panic!("{name}")).levels[0].as_slice();
+        let (force, traction) = (of("CONTACT_FORCE"), of("CONTACT_TRACTION"));
+        let (area, status) = (of("NODAL_AREA"), of("CONTACT_STATUS"));
+        let largest = force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+        let mut sums = [0.0; 3];
+        for (at, force) in force.chunks(3).enumerate() {
+            for (i, force) in force.iter().enumerate() {
+                sums[i] += force;
+                let wanted = traction[3 * at + i] * area[at];
+                assert!(status[at] < 0.0 || (force - wanted).abs() < 1e-9 * largest, "{case}: {force} {wanted}");
+            }
+        }
+        assert!(force.iter().step_by(3).any(|tangential| tangential.abs() > 0.1 * largest), "{case} has friction");
+        assert!(sums.iter().all(|sum| sum.abs() < 1e-9 * largest), "{case}: {sums:?}");
     }
 }
 

@@ -22,7 +22,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use zelus_core::analysis::{RunOptions, RunReport, Simulation};
 use zelus_core::communication::{self, Ranks};
 use zelus_core::diagnostics::Diagnostic;
@@ -110,6 +110,13 @@ enum Command {
         /// A kind, e.g. process or condition.
         kind: Option<String>,
     },
+    /// Print the completions of a shell, e.g. for bash: source <(zelus completions bash).
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page: zelus manual > zelus.1.
+    Manual,
     /// Say what a registered name is, its settings with defaults, and its source.
     Describe {
         /// The name, as a deck would write it.
@@ -214,6 +221,19 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
         Command::Partition(arguments) => partition::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Report(arguments) => html::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Completions { shell } => {
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut Arguments::command(), "zelus", &mut text);
+            say(String::from_utf8_lossy(&text).trim_end());
+            Ok(ExitCode::SUCCESS)
+        }
+        Command::Manual => {
+            let mut text = Vec::new();
+            let failed = |error: std::io::Error| Error::System(format!("manual: {error}"));
+            clap_mangen::Man::new(Arguments::command()).render(&mut text).map_err(failed)?;
+            say(String::from_utf8_lossy(&text).trim_end());
+            Ok(ExitCode::SUCCESS)
+        }
         Command::List { kind } => catalogue::list(kind.as_deref()).map(|()| ExitCode::SUCCESS),
         Command::Describe { name } => catalogue::describe(&name).map(|()| ExitCode::SUCCESS),
     }
