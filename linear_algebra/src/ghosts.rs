@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::vector;
+use crate::vector::{self, Number};
 
 /// How the processes that share a system reach each other; every method but the first two is collective.
 pub trait Processes: Send + Sync {
@@ -140,7 +140,7 @@ impl Ghosts {
     }
 
     /// Gives ghosts, of `width` entries each, the values of their owners; collective.
-    pub(crate) fn spread<T: Copy + Into<f64> + FromF64>(&self, values: &mut [T], width: usize) {
+    pub(crate) fn spread<T: Number>(&self, values: &mut [T], width: usize) {
         let Some(processes) = &self.processes else { return };
         let arrived = processes.exchange_counted(&packed(&self.sent, values, width), &counts(&self.received, width));
         for_each(&self.received, arrived, width, |at, value| values[at] = T::from_f64(value));
@@ -169,16 +169,16 @@ impl Ghosts {
     }
 
     /// Inner product of vectors of own entries; collective.
-    pub(crate) fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub(crate) fn dot<T: Number>(&self, a: &[T], b: &[T]) -> f64 {
         self.total(vector::dot(a, b))
     }
 
     /// Takes from `vector` its parts along `basis`, orthonormal vectors of own entries, and gives their sizes; collective.
     ///
     /// Over several processes all products are those with the vector as it came, so that they travel together.
-    pub(crate) fn orthogonalise(&self, basis: &[Vec<f64>], vector: &mut [f64]) -> Vec<f64> {
+    pub(crate) fn orthogonalise<T: Number>(&self, basis: &[Vec<T>], vector: &mut [T]) -> Vec<f64> {
         let Some(processes) = &self.processes else {
-            let take = |v: &Vec<f64>| {
+            let take = |v: &Vec<T>| {
                 let size = vector::dot(v, vector);
                 vector::add_scaled(-size, v, vector);
                 size
@@ -193,26 +193,9 @@ impl Ghosts {
     }
 
     /// Euclidean norm of a vector of own entries; collective.
-    pub(crate) fn norm(&self, a: &[f64]) -> f64 {
+    pub(crate) fn norm<T: Number>(&self, a: &[T]) -> f64 {
         let own = vector::norm(a);
         self.processes.as_ref().map_or(own, |processes| vector::norm(&processes.gather(&[own])))
-    }
-}
-
-/// Numbers that travel as f64.
-pub(crate) trait FromF64 {
-    fn from_f64(value: f64) -> Self;
-}
-
-impl FromF64 for f64 {
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-}
-
-impl FromF64 for f32 {
-    fn from_f64(value: f64) -> Self {
-        value as Self
     }
 }
 

@@ -171,7 +171,7 @@ impl Interface {
             schur.mul_vec_subtract(x, y);
             y.iter_mut().zip(&scale).for_each(|(y, scale)| *y *= -scale);
         };
-        let precondition = |x: &mut [f64]| {
+        let precondition = |x: &mut [f64], _: f64| {
             x.iter_mut().zip(&scale).for_each(|(x, scale)| *x /= scale);
             self.solve_factorised(x);
         };

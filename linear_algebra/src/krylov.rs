@@ -104,7 +104,7 @@ impl KrylovSolver {
                 conjugate_gradient(&Ghosts::none(rhs.len()), multiply, apply, rhs, x, most, tolerance)
             }
             Method::Gmres { restart } => {
-                gmres(&Ghosts::none(rhs.len()), multiply, apply, rhs, x, restart, most, tolerance)
+                gmres(&Ghosts::none(rhs.len()), multiply, |r, _| apply(r), rhs, x, restart, most, tolerance)
             }
         };
         let scale = vector::norm(rhs);

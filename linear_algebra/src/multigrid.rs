@@ -1,4 +1,5 @@
-//! The engine of big systems: Krylov iteration on the whole system, multigrid on what its constraints leave.
+//! The engine of big systems: flexible GMRES on the whole system in double precision, each direction of which is a solve of what its
+//! constraints leave, in single precision with multigrid ([`Blocks`]), or one cycle where a hierarchy of an earlier matrix needs few.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -9,15 +10,24 @@ use serde::{Deserialize, Serialize};
 use crate::check;
 use crate::csr::{Csr, Runs};
 use crate::direct::DirectSolver;
-use crate::iterations::{Answers, Progress, conjugate_gradient, gmres};
+use crate::iterations::{Answers, Progress, gmres};
 use crate::memory;
-use crate::precondition::{Constrained, Multigrid};
+use crate::precondition::{Blocks, Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::state::{Carrier, State, WrongState};
 use crate::system::{Stamps, System};
 
 /// Directions kept before a restart.
 const RESTART: usize = 80;
+/// Iterations from which on it pays to make what the constraints leave, where the hierarchy is one of an earlier matrix.
+const PAYS: f64 = 10.0;
+/// Share of a residual that a solve leaves at least: beyond it rounding counts.
+const REACHED: f64 = 1e-4;
+/// What a solve leaves at most.
+const COARSEST_AIM: f64 = 0.5;
+/// Accuracy of a solve, as a share of what the one before was worth to the whole system: beyond it the constraints that the blocks
+/// leave out count.
+const WORTH: f64 = 0.3;
 /// Growth of the iterations by digit, and their number beside it, from which on the hierarchy is made anew.
 const STALE: (f64, f64) = (1.3, 0.3);
 /// Digits from which on they say how well a hierarchy does.
@@ -38,8 +48,9 @@ const YIELDS_UP_TO: usize = 70_000;
 /// A hierarchy, and how well it did when it was new.
 #[derive(Clone, Serialize, Deserialize)]
 struct Hierarchy {
-    /// The levels, and the size their matrix was divided by.
-    levels: Arc<(Multigrid, f64)>,
+    levels: Arc<Multigrid>,
+    /// What their matrix was divided by.
+    size: f64,
     bulk_graph: u64,
     /// What the nodes with multipliers prescribed.
     prescribed: Vec<(u32, u32)>,
@@ -74,6 +85,8 @@ impl Hierarchy {
 pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
+    /// What the constraints leave, of the last system that needed it.
+    left: Option<(Blocks, Stamps)>,
     /// Of the bulk's rows, with the stamp of its graph.
     runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
@@ -114,7 +127,7 @@ impl MultigridSolver {
     pub(crate) fn new(settings: MultigridSettings) -> Self {
         let stand_in = DirectSolver::new(DirectSettings::default());
         let (tolerance, learnt) = (settings.tolerance, Learnt::default());
-        Self { settings, constrained: None, runs: None, hierarchy: None, learnt, tolerance, stand_in }
+        Self { settings, constrained: None, left: None, runs: None, hierarchy: None, learnt, tolerance, stand_in }
     }
 
     /// Solves a system that several processes share; one that does not does less than the rest, so all agree on errors.
@@ -173,9 +186,10 @@ impl MultigridSolver {
         let (constrained, _) = self.constrained.as_ref().expect("made above");
         if !self.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.suits(system, constrained)) {
             self.hierarchy = None;
-            memory::give_back();
+            let left = up_to_date(&mut self.left, constrained, system);
             self.hierarchy = Some(Hierarchy {
-                levels: Arc::new(constrained.hierarchy(system)),
+                levels: Arc::new(constrained.hierarchy(system, left)),
+                size: left.size(),
                 bulk_graph: system.bulk_graph,
                 prescribed: constrained.prescribed(),
                 is_old: false,
@@ -183,7 +197,9 @@ impl MultigridSolver {
                 first: None,
                 last: 0.0,
             });
-            memory::give_back();
+            if system.shared.is_some() {
+                memory::give_back();
+            }
         }
         Ok(())
     }
@@ -212,23 +228,40 @@ impl MultigridSolver {
         if !ghosts.any(start.iter().any(|x| *x != 0.0)) {
             self.learnt.answers.start(system.bulk_graph, ghosts, multiply, &b, 0.5 * self.tolerance, &mut start);
         }
-        let precondition = |r: &mut [f64]| {
+        let (tolerance, most) = (self.tolerance, self.settings.iterations.min(most));
+        let (mut iterations, mut before, mut rate, mut solves_left) = (0, None, 0.0_f64, !hierarchy.is_old);
+        let latest = &mut self.left;
+        let precondition = |r: &mut [f64], share: f64| {
+            let room = most - iterations;
+            if room == 0 {
+                return r.fill(0.0);
+            }
+            if iterations == 0 {
+                solves_left |= -hierarchy.last * share.log10() > PAYS;
+            }
+            rate = before.replace(share).map_or(rate, |before| before / share);
+            let solve = |b: &mut [f64]| {
+                if solves_left {
+                    let solves = (share.ln() / REACHED.ln()).ceil().max(1.0);
+                    let aim = share.powf(1.0 / solves).max(WORTH * rate).min(COARSEST_AIM);
+                    iterations += up_to_date(latest, constrained, system).solve(&hierarchy.levels, b, aim, room);
+                } else {
+                    iterations += 1;
+                    hierarchy.levels.apply_double(b);
+                    b.iter_mut().for_each(|b| *b /= hierarchy.size);
+                }
+            };
             r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);
             if system.shared.is_none() {
-                constrained.apply(system, &hierarchy.levels, r);
+                constrained.apply(system, solve, r);
             } else {
                 let mut all = ghosts.widen(r);
-                constrained.apply(system, &hierarchy.levels, &mut all);
+                constrained.apply(system, solve, &mut all);
                 r.copy_from_slice(&ghosts.narrow(&all));
             }
         };
-        let (tolerance, iterations) = (self.tolerance, self.settings.iterations.min(most));
-        let has_multipliers = ghosts.any(system.layout.multiplier.contains(&true));
-        let progress = if system.is_symmetric() && !has_multipliers {
-            conjugate_gradient(ghosts, multiply, precondition, &b, &mut start, iterations, tolerance)
-        } else {
-            gmres(ghosts, multiply, precondition, &b, &mut start, RESTART, iterations, tolerance)
-        };
+        let progress = gmres(ghosts, multiply, precondition, &b, &mut start, RESTART, most, tolerance);
+        let progress = Progress { iterations, ..progress };
         let digits = (progress.start / progress.relative_residual).log10();
         if digits > TELLING {
             hierarchy.last = progress.iterations as f64 / digits;
@@ -286,6 +319,21 @@ impl MultigridSolver {
     }
 }
 
+/// What the constraints leave of a system, made of that of an earlier one as far as both have the same bulk.
+fn up_to_date<'a>(
+    latest: &'a mut Option<(Blocks, Stamps)>,
+    constrained: &Constrained,
+    system: &System<'_>,
+) -> &'a Blocks {
+    let stamps = Stamps::of(system);
+    if latest.as_ref().is_none_or(|(_, old)| *old != stamps) {
+        let same_bulk = |old: &Stamps| [old.bulk_graph, old.bulk_values] == [stamps.bulk_graph, stamps.bulk_values];
+        let earlier = latest.take().filter(|(_, old)| same_bulk(old));
+        *latest = Some((constrained.left_blocks(system, earlier.as_ref().map(|(left, _)| left)), stamps));
+    }
+    &latest.as_ref().expect("made above").0
+}
+
 impl LinearSolver for MultigridSolver {
     fn name(&self) -> &'static str {
         "multigrid"
@@ -304,14 +352,14 @@ impl LinearSolver for MultigridSolver {
     fn forget(&mut self) {
         self.stand_in.forget();
         // Levels that processes share are not saved.
-        self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old || !hierarchy.levels.0.is_shared());
+        self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old || !hierarchy.levels.is_shared());
         if let Some(hierarchy) = self.hierarchy.as_mut().filter(|hierarchy| !hierarchy.is_old) {
             (hierarchy.is_bound, hierarchy.first, hierarchy.last) = (true, None, 0.0);
         }
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        let hierarchy = self.hierarchy.clone().filter(|hierarchy| hierarchy.is_old && !hierarchy.levels.0.is_shared());
+        let hierarchy = self.hierarchy.clone().filter(|hierarchy| hierarchy.is_old && !hierarchy.levels.is_shared());
         Some(Box::new(MultigridState { learnt: self.learnt.clone(), hierarchy, stand_in: self.stand_in.state() }))
     }
 

@@ -17,7 +17,7 @@ pub(super) fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64
     let progress = gmres(
         &Ghosts::none(rhs.len()),
         |x, y| system.mul_vec(x, y),
-        |r| path.apply(r),
+        |r, _| path.apply(r),
         rhs,
         &mut trial,
         KRYLOV_ITERATIONS,

@@ -1,18 +1,20 @@
-//! Restarted GMRES with a preconditioner from the right, so that its residual is the true one.
+//! Restarted flexible GMRES: the preconditioner acts from the right, so that the residual is the true one, and may be another one
+//! in each iteration (Saad, SIAM J. Sci. Comput. 14 (1993)).
 
 use super::Progress;
 use crate::ghosts::Ghosts;
-use crate::vector::add_scaled;
+use crate::vector::{Number, add_scaled};
 
 /// Improves `x` until `‖b - A x‖ ≤ tolerance ‖b‖` or `most` iterations are done.
 ///
-/// `ghosts` says who has which entries; `multiply(x, y)` is `y = A x`, `precondition(x)` replaces `x` by an approximation of `A⁻¹ x`.
-pub(crate) fn gmres(
+/// `ghosts` says who has which entries; `multiply(x, y)` is `y = A x`, `precondition(x, left)` replaces `x` by an approximation of
+/// `A⁻¹ x`, and the iteration would be done if that left no more than the share `left` of `x`.
+pub(crate) fn gmres<T: Number>(
     ghosts: &Ghosts,
-    mut multiply: impl FnMut(&[f64], &mut [f64]),
-    mut precondition: impl FnMut(&mut [f64]),
-    b: &[f64],
-    x: &mut [f64],
+    mut multiply: impl FnMut(&[T], &mut [T]),
+    mut precondition: impl FnMut(&mut [T], f64),
+    b: &[T],
+    x: &mut [T],
     restart: usize,
     most: usize,
     tolerance: f64,
@@ -20,17 +22,20 @@ pub(crate) fn gmres(
     let n = b.len();
     let scale = ghosts.norm(b);
     if scale == 0.0 {
-        x.fill(0.0);
+        x.fill(T::default());
         return Progress { iterations: 0, start: 0.0, relative_residual: 0.0 };
     }
     let restart = restart.clamp(1, most.max(1));
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let mut work = vec![0.0; n];
+    let (mut basis, mut directions): (Vec<Vec<T>>, Vec<Vec<T>>) = Default::default();
+    let mut work = vec![T::default(); n];
     let mut iterations = 0;
     let (mut start, mut last) = (f64::NAN, f64::INFINITY);
     loop {
-        multiply(x, &mut work);
-        let residual: Vec<f64> = b.iter().zip(&work).map(|(b, ax)| b - ax).collect();
+        let mut residual = b.to_vec();
+        if ghosts.any(x.iter().any(|&x| x.into() != 0.0)) {
+            multiply(x, &mut work);
+            add_scaled(-1.0, &work, &mut residual);
+        }
         let size = ghosts.norm(&residual);
         let relative_residual = size / scale;
         if iterations == 0 {
@@ -42,16 +47,18 @@ pub(crate) fn gmres(
         }
         last = relative_residual;
         basis.clear();
-        basis.push(residual.iter().map(|r| r / size).collect());
+        directions.clear();
+        basis.push(scaled(residual, size.recip()));
         let mut triangle: Vec<Vec<f64>> = Vec::new();
         let mut rotations: Vec<(f64, f64)> = Vec::new();
         let mut g = vec![size];
         while triangle.len() < restart && iterations < most {
             let k = triangle.len();
             let mut direction = basis[k].clone();
-            precondition(&mut direction);
+            precondition(&mut direction, (0.5 * tolerance * scale / g[k].abs()).min(1.0));
             multiply(&direction, &mut work);
             iterations += 1;
+            directions.push(direction);
             let before = ghosts.norm(&work);
             let mut column = vec![0.0; k + 2];
             for _ in 0..2 {
@@ -74,7 +81,7 @@ pub(crate) fn gmres(
             let (c, s) = (column[k] / length, column[k + 1] / length);
             let breakdown = column[k + 1] <= 1e-15 * before;
             if !breakdown {
-                basis.push(work.iter().map(|w| w / column[k + 1]).collect());
+                basis.push(scaled(work.clone(), column[k + 1].recip()));
             }
             rotations.push((c, s));
             column[k] = length;
@@ -94,11 +101,13 @@ pub(crate) fn gmres(
             let known: f64 = (i + 1..triangle.len()).map(|j| triangle[j][i] * coefficients[j]).sum();
             coefficients[i] = (g[i] - known) / triangle[i][i];
         }
-        work.fill(0.0);
-        coefficients.iter().zip(&basis).for_each(|(&c, v)| add_scaled(c, v, &mut work));
-        precondition(&mut work);
-        add_scaled(1.0, &work, x);
+        coefficients.iter().zip(&directions).for_each(|(&c, z)| add_scaled(c, z, x));
     }
+}
+
+fn scaled<T: Number>(mut vector: Vec<T>, factor: f64) -> Vec<T> {
+    vector.iter_mut().for_each(|v| *v = T::from_f64((*v).into() * factor));
+    vector
 }
 
 #[cfg(test)]
@@ -121,7 +130,7 @@ mod tests {
         let b: Vec<f64> = (0..n).map(|i| (i % 7) as f64).collect();
         for restart in [10, 60] {
             let mut x = vec![0.0; n];
-            let done = gmres(&Ghosts::none(n), |x, y| a.mul_vec(x, y), |_| {}, &b, &mut x, restart, 300, 1e-12);
+            let done = gmres(&Ghosts::none(n), |x, y| a.mul_vec(x, y), |_, _| {}, &b, &mut x, restart, 300, 1e-12);
             assert!(done.relative_residual < 1e-12, "{done:?}");
         }
     }

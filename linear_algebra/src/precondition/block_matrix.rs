@@ -11,6 +11,9 @@ const ROWS_PER_TASK: usize = 512;
 /// No block has more rows or columns.
 const LARGEST: usize = 64;
 
+/// Blocks for which rows have room at first, those of hexahedra.
+const BLOCKS_OF_A_ROW: usize = 27;
+
 /// Entries behind the last block.
 const TAIL: usize = 8;
 
@@ -83,14 +86,25 @@ impl BlockRow {
         &mut self.values[start..start + self.size]
     }
 
+    /// The same as a row of another matrix with as many columns; empty before.
+    pub(super) fn copy(&mut self, (columns, values): (&[u32], &[f32])) {
+        self.columns.extend_from_slice(columns);
+        self.values.extend_from_slice(values);
+        columns.iter().enumerate().for_each(|(at, &column)| self.place[column as usize] = at as u32);
+    }
+
     /// Appends the blocks in ascending order; the row is empty then.
     pub(super) fn take(&mut self, indices: &mut Vec<u32>, values: &mut Vec<f32>) {
         let first = indices.len();
         indices.extend_from_slice(&self.columns);
-        indices[first..].sort_unstable();
-        for &column in &indices[first..] {
-            let start = self.place[column as usize] as usize * self.size;
-            values.extend_from_slice(&self.values[start..start + self.size]);
+        if self.columns.is_sorted() {
+            values.extend_from_slice(&self.values);
+        } else {
+            indices[first..].sort_unstable();
+            for &column in &indices[first..] {
+                let start = self.place[column as usize] as usize * self.size;
+                values.extend_from_slice(&self.values[start..start + self.size]);
+            }
         }
         self.columns.drain(..).for_each(|column| self.place[column as usize] = u32::MAX);
         self.values.clear();
@@ -160,8 +174,10 @@ impl BlockMatrix {
             .map_init(
                 || (BlockRow::new(columns, height * width), scratch()),
                 |(row, scratch), task| {
-                    let (mut counts, mut indices, mut values) = (Vec::new(), Vec::new(), Vec::new());
-                    for i in task * ROWS_PER_TASK..((task + 1) * ROWS_PER_TASK).min(rows) {
+                    let own = task * ROWS_PER_TASK..((task + 1) * ROWS_PER_TASK).min(rows);
+                    let (mut counts, mut indices) = (Vec::with_capacity(own.len()), Vec::new());
+                    let mut values = Vec::with_capacity(own.len() * BLOCKS_OF_A_ROW.min(columns) * height * width);
+                    for i in own {
                         fill(i, row, scratch);
                         let before = indices.len();
                         row.take(&mut indices, &mut values);
@@ -171,28 +187,28 @@ impl BlockMatrix {
                 },
             )
             .collect();
-        let entries = parts.iter().map(|(_, indices, _)| indices.len()).sum();
-        let mut matrix = Self {
-            rows,
-            columns,
-            height,
-            width,
-            starts: Vec::with_capacity(rows + 1),
-            indices: Vec::with_capacity(entries),
-            values: Vec::with_capacity(entries * height * width + TAIL),
-        };
-        matrix.starts.push(0);
-        let mut end = 0;
+        let entries: usize = parts.iter().map(|(_, indices, _)| indices.len()).sum();
+        let size = height * width;
+        let mut starts = Vec::with_capacity(rows + 1);
+        starts.push(0);
+        let (mut all_indices, mut all_values) = (vec![0; entries], vec![0.0; entries * size + TAIL]);
+        let (mut end, mut to) = (0, (&mut all_indices[..], &mut all_values[..]));
+        let mut copies = Vec::with_capacity(parts.len());
         for (counts, indices, values) in parts {
             for count in counts {
                 end += count;
-                matrix.starts.push(end);
+                starts.push(end);
             }
-            matrix.indices.extend(indices);
-            matrix.values.extend(values);
+            let (to_indices, rest_indices) = std::mem::take(&mut to.0).split_at_mut(indices.len());
+            let (to_values, rest_values) = std::mem::take(&mut to.1).split_at_mut(values.len());
+            to = (rest_indices, rest_values);
+            copies.push((to_indices, to_values, indices, values));
         }
-        matrix.values.extend([0.0; TAIL]);
-        matrix
+        copies.into_par_iter().for_each(|(to_indices, to_values, indices, values)| {
+            to_indices.copy_from_slice(&indices);
+            to_values.copy_from_slice(&values);
+        });
+        Self { rows, columns, height, width, starts, indices: all_indices, values: all_values }
     }
 
     /// Entries of a block.

@@ -3,11 +3,13 @@
 mod aggregation;
 mod block_jacobi;
 mod block_matrix;
+mod blocks;
 mod constrained;
 mod ilu0;
 mod multigrid;
 mod shared_levels;
 
+pub(crate) use blocks::Blocks;
 pub(crate) use constrained::Constrained;
 pub(crate) use multigrid::Multigrid;
 

@@ -36,7 +36,7 @@ const DAMPED_FROM: f32 = 0.1;
 
 #[derive(Serialize)]
 struct Level {
-    matrix: BlockMatrix,
+    matrix: Arc<BlockMatrix>,
     /// Inverse diagonal blocks, by rows.
     #[serde(skip)]
     inverse: Vec<f32>,
@@ -54,7 +54,7 @@ struct Level {
 /// What a level of one process is made of again.
 #[derive(Deserialize)]
 struct SavedLevel {
-    matrix: BlockMatrix,
+    matrix: Arc<BlockMatrix>,
     prolongation: BlockMatrix,
 }
 
@@ -90,7 +90,7 @@ struct Coarsest {
 pub(crate) struct Multigrid {
     levels: Vec<Level>,
     /// Own rows of the last level.
-    last: BlockMatrix,
+    last: Arc<BlockMatrix>,
     #[serde(skip_serializing)]
     coarsest: Coarsest,
     #[serde(skip_serializing)]
@@ -101,14 +101,14 @@ pub(crate) struct Multigrid {
 #[derive(Deserialize)]
 struct SavedMultigrid {
     levels: Vec<SavedLevel>,
-    last: BlockMatrix,
+    last: Arc<BlockMatrix>,
 }
 
 impl TryFrom<SavedMultigrid> for Multigrid {
     type Error = &'static str;
 
     fn try_from(SavedMultigrid { levels, last }: SavedMultigrid) -> Result<Self, Self::Error> {
-        let matrices: Vec<&BlockMatrix> = levels.iter().map(|level| &level.matrix).chain([&last]).collect();
+        let matrices: Vec<&BlockMatrix> = levels.iter().map(|level| &*level.matrix).chain([&*last]).collect();
         let fits = |(level, below): (&SavedLevel, &&BlockMatrix)| {
             let SavedLevel { matrix, prolongation } = level;
             (prolongation.rows, prolongation.height) == (matrix.rows, matrix.height)
@@ -127,7 +127,7 @@ impl TryFrom<SavedMultigrid> for Multigrid {
 
 impl Multigrid {
     /// Builds the hierarchy on the own rows of `matrix`, whose near-null vectors have one entry for each of them; collective.
-    pub(super) fn new(mut matrix: BlockMatrix, mut near_null_space: Vec<Vec<f64>>, mut ghosts: Ghosts) -> Self {
+    pub(super) fn new(mut matrix: Arc<BlockMatrix>, mut near_null_space: Vec<Vec<f64>>, mut ghosts: Ghosts) -> Self {
         let mut levels: Vec<Level> = Vec::new();
         loop {
             let equations = ghosts.total((matrix.rows * matrix.height) as f64) as usize;
@@ -142,14 +142,16 @@ impl Multigrid {
             near_null_space = std::mem::take(&mut coarse.modes);
             let (level, next, of_next) = Level::new(matrix, ghosts, coarse, near_null_space.len());
             levels.push(level);
-            memory::give_back();
-            (matrix, ghosts) = (next, of_next);
+            if ghosts.processes().is_some() {
+                memory::give_back();
+            }
+            (matrix, ghosts) = (Arc::new(next), of_next);
         }
         Self::of(levels, matrix, ghosts)
     }
 
     /// The hierarchy with these levels above the `last`; collective.
-    fn of(levels: Vec<Level>, last: BlockMatrix, ghosts: Ghosts) -> Self {
+    fn of(levels: Vec<Level>, last: Arc<BlockMatrix>, ghosts: Ghosts) -> Self {
         let (whole, rows) = gathered(&ghosts, &last);
         let counts = rows.iter().map(|rows| rows * last.height).collect();
         let shapes = levels.iter().map(|level| (&level.ghosts, level.matrix.height)).chain([(&ghosts, last.height)]);
@@ -167,17 +169,24 @@ impl Multigrid {
         self.coarsest.ghosts.processes().is_some()
     }
 
-    /// Replaces `x`, own entries, by an approximation of `A⁻¹ x`; collective.
-    pub(crate) fn apply(&self, x: &mut [f64]) {
+    /// The same as [`Multigrid::apply`] in double precision; collective.
+    pub(crate) fn apply_double(&self, x: &mut [f64]) {
         let finest = self.levels.first().map_or(&self.coarsest.ghosts, |level| &level.ghosts);
         let largest = finest.largest(x.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
         if largest == 0.0 || !largest.is_finite() {
             return;
         }
+        let mut single: Vec<f32> = x.iter().map(|x| (x / largest) as f32).collect();
+        self.apply(&mut single);
+        x.iter_mut().zip(single).for_each(|(x, v)| *x = largest * f64::from(v));
+    }
+
+    /// Replaces `x`, own entries, by an approximation of `A⁻¹ x`; collective.
+    pub(super) fn apply(&self, x: &mut [f32]) {
         let mut vectors = self.vectors.lock().expect("no cycle panics");
-        vectors[0].b.iter_mut().zip(x.iter()).for_each(|(b, x)| *b = (x / largest) as f32);
+        vectors[0].b[..x.len()].copy_from_slice(x);
         self.cycle(0, &mut vectors);
-        x.iter_mut().zip(&vectors[0].x).for_each(|(x, v)| *x = largest * f64::from(*v));
+        x.copy_from_slice(&vectors[0].x[..x.len()]);
     }
 
     fn cycle(&self, depth: usize, vectors: &mut [Vectors]) {
@@ -239,7 +248,12 @@ fn factorise(matrix: &BlockMatrix) -> Option<Factor> {
 
 impl Level {
     /// A level with this tentative prolongation to blocks of `width`, the matrix of the next one, and who has its blocks.
-    fn new(matrix: BlockMatrix, ghosts: Ghosts, mut coarse: Tentative, width: usize) -> (Self, BlockMatrix, Ghosts) {
+    fn new(
+        matrix: Arc<BlockMatrix>,
+        ghosts: Ghosts,
+        mut coarse: Tentative,
+        width: usize,
+    ) -> (Self, BlockMatrix, Ghosts) {
         let (inverse, radius) = spectrum(&matrix, &ghosts);
         let omega = 4.0 / 3.0 * SAFETY / radius;
         let height = matrix.height;

@@ -14,7 +14,12 @@
 
 mod group;
 
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
 use super::block_matrix::{BlockMatrix, BlockRow, Sums};
+use super::blocks::Blocks;
 use super::multigrid::Multigrid;
 use crate::ghosts::{Ghosts, Owned};
 use crate::memory;
@@ -187,8 +192,10 @@ impl Constrained {
             };
             let action = |m: u32| own.iter().fold(0.0_f64, |s, &e| s.max(entry(system, e as usize, m as usize).abs()));
             let largest = multipliers.iter().fold(0.0_f64, |s, &m| s.max(action(m)));
-            let (acting, idle): (Vec<u32>, Vec<u32>) =
-                multipliers.iter().partition(|&&m| action(m) > 1e-10 * largest && largest > 0.0);
+            // One that acts on nothing belongs to those whose conditions know it.
+            let is_known_to = |m: u32, n: u32| m != n && entry(system, n as usize, m as usize) != 0.0;
+            let joins = |m: u32| action(m) > 1e-10 * largest || multipliers.iter().any(|&n| is_known_to(m, n));
+            let (acting, idle): (Vec<u32>, Vec<u32>) = multipliers.iter().partition(|&&m| largest > 0.0 && joins(m));
             for m in idle {
                 let diagonal = entry(system, m as usize, m as usize);
                 let size = system.row(m as usize).fold(0.0_f64, |s, (_, v)| s.max(v.abs()));
@@ -316,20 +323,25 @@ impl Constrained {
     /// Factors of the equations in what gives a multiplier.
     fn recovery(&self, multiplier: u32) -> Vec<(u32, f64)> {
         let group = &self.groups[self.group_of[multiplier as usize] as usize];
-        let at = group.multipliers.iter().position(|&m| m == multiplier).expect("a multiplier of the group");
+        let at = group.slot_of_multiplier(multiplier);
         let s = group.equations();
         let row = &group.elimination.recovery[at * s..(at + 1) * s];
         group.factors(row).into_iter().map(|(e, f)| (e, f / group.action)).collect()
     }
 
-    /// Equations, with factors, whose sum stands at a place.
-    fn left(&self, place: usize, load: Option<&[(u32, f64)]>) -> Vec<(u32, f64)> {
+    /// Equations, with factors, whose sum stands at a place; `recovery` gives those that a multiplier follows from.
+    fn left<'a>(
+        &self,
+        place: usize,
+        load: Option<&[(u32, f64)]>,
+        recovery: impl Fn(u32) -> &'a [(u32, f64)],
+    ) -> Vec<(u32, f64)> {
         let equation = self.equation[place];
         let group = self.group_of[equation as usize];
         if group == NONE {
             let mut sum = vec![(equation, 1.0)];
             for &(multiplier, value) in load.unwrap_or_default() {
-                sum.extend(self.recovery(multiplier).into_iter().map(|(e, factor)| (e, -value * factor)));
+                sum.extend(recovery(multiplier).iter().map(|&(e, factor)| (e, -value * factor)));
             }
             return summed(sum);
         }
@@ -362,8 +374,8 @@ impl Constrained {
         terms
     }
 
-    /// The matrix of the blocks, over its largest diagonal entry, and that entry.
-    fn matrix(&self, system: &System<'_>) -> (BlockMatrix, f64) {
+    /// What is left, the matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
+    pub(crate) fn left_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
         let largest = (0..system.equations())
             .filter(|&i| !system.layout.multiplier[i] && i < system.bulk.rows)
             .fold(0.0_f64, |m, i| m.max(system.bulk.get(i, i).abs()));
@@ -389,7 +401,43 @@ impl Constrained {
         let add = |row: &mut BlockRow, k: usize, place: u32, value: f64| {
             row.block(place / w as u32)[place as usize % w * w + k] += (value * inverse) as f32;
         };
+        let follows = |group: &Group| group.own.iter().map(|&e| self.right(e)).collect::<Vec<_>>();
+        let follows: Vec<_> = self.groups.par_iter().map(follows).collect();
+        let recovery = |group: &Group| group.multipliers.iter().map(|&m| self.recovery(m)).collect::<Vec<_>>();
+        let recoveries: Vec<_> = self.groups.par_iter().map(recovery).collect();
+        let recovery = |m: u32| {
+            let group = self.group_of[m as usize] as usize;
+            &recoveries[group][self.groups[group].slot_of_multiplier(m)][..]
+        };
+        let of_bulk = |b: usize| {
+            let mut equations = self.equation[b * w..(b + 1) * w].iter().filter(|&&e| e != NONE).map(|&e| e as usize);
+            equations.all(|i| plain[i] && self.group_of[i] == NONE && coupled(i).next().is_none())
+        };
+        let of_bulk: Vec<bool> = (0..self.blocks.own()).map(of_bulk).collect();
+        let earlier = earlier.filter(|earlier| self.blocks.processes().is_none() && earlier.size == largest);
         let fill = |b: usize, row: &mut BlockRow, sums: &mut Sums| {
+            if let Some(earlier) = earlier.filter(|earlier| of_bulk[b] && earlier.of_bulk[b]) {
+                return row.copy(earlier.matrix.row(b));
+            }
+            let equations = &self.equation[b * w..(b + 1) * w];
+            if of_bulk[b] && !equations.contains(&NONE) {
+                let rows: Vec<(&[u32], &[f64])> = equations.iter().map(|&e| system.bulk.row(e as usize)).collect();
+                if rows.iter().all(|(columns, _)| *columns == rows[0].0) {
+                    // Unknowns of a node stand side by side.
+                    let (mut block, mut start) = (NONE, 0);
+                    for (c, (of, slot)) in rows[0].0.iter().map(|&j| at[j as usize]).enumerate() {
+                        if of == NONE {
+                            continue;
+                        }
+                        if of != block {
+                            (block, start) = (of, row.start(of));
+                        }
+                        let entries = &mut row.entries()[start + slot as usize * w..][..w];
+                        entries.iter_mut().zip(&rows).for_each(|(to, (_, values))| *to = (values[c] * inverse) as f32);
+                    }
+                    return;
+                }
+            }
             row.block(b as u32);
             // One bit for each unknown that the node does not have or whose motion is prescribed.
             let mut idle = 0_u64;
@@ -418,18 +466,25 @@ impl Constrained {
                     }
                     continue;
                 }
-                let left = self.left(b * w + k, loads[i]);
+                let mut spread = |j: u32, value: f64| {
+                    let (place, group) = (self.place[j as usize], self.group_of[j as usize]);
+                    if place != NONE && group != NONE {
+                        let follows = &follows[group as usize][self.groups[group as usize].slot(j)];
+                        follows.iter().for_each(|&(place, weight)| add(row, k, place, value * weight));
+                    } else if place != NONE {
+                        add(row, k, place, value);
+                    }
+                };
+                if self.group_of[i] == NONE && loads[i].is_none() {
+                    system.row(i).for_each(|(j, value)| spread(j as u32, value));
+                    continue;
+                }
+                let left = self.left(b * w + k, loads[i], recovery);
                 idle |= u64::from(left.is_empty()) << k;
                 for (e, factor) in left {
                     system.row(e as usize).for_each(|(j, value)| sums.add(j, factor * value));
                 }
-                sums.drain(|j, value| {
-                    if self.group_of[j as usize] != NONE {
-                        self.right(j).into_iter().for_each(|(place, weight)| add(row, k, place, value * weight));
-                    } else if self.place[j as usize] != NONE {
-                        add(row, k, self.place[j as usize], value);
-                    }
-                });
+                sums.drain(spread);
             }
             let own = row.block(b as u32);
             let diagonal = (0..w).fold(0.0_f32, |m, k| m.max(own[k * w + k].abs()));
@@ -439,7 +494,11 @@ impl Constrained {
         };
         let shape = [self.blocks.own(), self.equation.len() / w];
         let sums = || Sums::new(system.equations());
-        (BlockMatrix::from_rows_with(shape, [w; 2], sums, fill), largest)
+        let matrix = Arc::new(BlockMatrix::from_rows_with(shape, [w; 2], sums, fill));
+        if self.blocks.processes().is_some() {
+            memory::give_back();
+        }
+        Blocks { matrix, size: largest, of_bulk, ghosts: self.blocks.clone() }
     }
 
     /// The near-null space of the layout on own blocks; translations where it has none.
@@ -485,16 +544,14 @@ impl Constrained {
         &self.ghosts
     }
 
-    /// The hierarchy of what is left, and the size its matrix was divided by; collective.
-    pub(crate) fn hierarchy(&self, system: &System<'_>) -> (Multigrid, f64) {
-        let (matrix, size) = self.matrix(system);
-        memory::give_back();
-        (Multigrid::new(matrix, self.near_null_space(system), self.blocks.clone()), size)
+    /// The hierarchy of what is left; collective.
+    pub(crate) fn hierarchy(&self, system: &System<'_>, left: &Blocks) -> Multigrid {
+        Multigrid::new(left.matrix.clone(), self.near_null_space(system), self.blocks.clone())
     }
 
     /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations.
-    /// Collective.
-    pub(crate) fn apply(&self, system: &System<'_>, (multigrid, size): &(Multigrid, f64), r: &mut [f64]) {
+    /// `solve` does the same for what is left, own entries. Collective.
+    pub(crate) fn apply(&self, system: &System<'_>, solve: impl FnOnce(&mut [f64]), r: &mut [f64]) {
         self.ghosts.spread(r, 1);
         let mut z = vec![0.0; r.len()];
         let mut prescribes = false;
@@ -533,17 +590,17 @@ impl Constrained {
         for (e, load) in &self.loads {
             b[self.place[*e as usize] as usize] -= load.iter().map(|&(m, v)| v * multipliers[m as usize]).sum::<f64>();
         }
-        multigrid.apply(&mut b[..self.blocks.own() * self.width]);
+        solve(&mut b[..self.blocks.own() * self.width]);
         self.blocks.spread(&mut b, self.width);
         for (&e, value) in self.equation.iter().zip(&b).filter(|(e, _)| **e != NONE) {
             if self.group_of[e as usize] == NONE {
-                z[e as usize] = value / size;
+                z[e as usize] = *value;
             }
         }
         for group in &self.groups {
             for &e in &group.own {
                 let follows: f64 = self.right(e).iter().map(|&(place, factor)| factor * b[place as usize]).sum();
-                z[e as usize] += follows / size;
+                z[e as usize] += follows;
             }
         }
         multipliers.fill(0.0);
@@ -583,6 +640,10 @@ impl Group {
 
     fn slot(&self, equation: u32) -> usize {
         self.own.iter().position(|&e| e == equation).expect("an own equation")
+    }
+
+    fn slot_of_multiplier(&self, multiplier: u32) -> usize {
+        self.multipliers.iter().position(|&m| m == multiplier).expect("a multiplier of the group")
     }
 
     /// The node's equations and conditions.
