@@ -23,6 +23,7 @@ mod assign_scalar_variable_to_entities_process;
 mod assign_vector_variable_to_entities_process;
 mod assign_vector_by_direction_to_entity_process;
 mod assign_flag_process;
+mod assign_master_slave_constraints_to_neighbours_process;
 mod check_nodes_process;
 mod comparison;
 #[cfg(test)]
@@ -36,4 +37,4 @@ pub use prescription::Prescription;
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
 pub(crate) use scalar_value::tables_of;
-pub use target::Target;
+pub use target::{Target, scalars_of};

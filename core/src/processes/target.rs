@@ -100,6 +100,18 @@ pub(super) fn scalar_variable(settings: &Settings) -> Result<ScalarVariable> {
     }
 }
 
+/// The numbers that a variable of nodes stands for: a scalar or a component, or the components of a vector in space or plane.
+pub fn scalars_of(name: &str, domain_size: usize) -> Option<Vec<ScalarVariable>> {
+    match named(name)? {
+        Named::Component(variable) => Some(vec![variable]),
+        Named::Whole(column, VariableKind::Scalar) => Some(vec![ScalarVariable { column, component: None }]),
+        Named::Whole(column, VariableKind::Vector3) => {
+            Some((0..domain_size as u8).map(|c| ScalarVariable { column, component: Some(c) }).collect())
+        }
+        Named::Whole(..) => None,
+    }
+}
+
 /// The three components of the vector that `"variable_name"` names.
 ///
 /// # Errors

@@ -142,10 +142,10 @@ impl Multigrid {
             near_null_space = std::mem::take(&mut coarse.modes);
             let (level, next, of_next) = Level::new(matrix, ghosts, coarse, near_null_space.len());
             levels.push(level);
+            (matrix, ghosts) = (Arc::new(next), of_next);
             if ghosts.processes().is_some() {
                 memory::give_back();
             }
-            (matrix, ghosts) = (Arc::new(next), of_next);
         }
         Self::of(levels, matrix, ghosts)
     }

@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Place, Report, Result};
-use zelus_core::model::{MasterSlaveConstraint, Model, Named, ScalarVariable, SubPart, VariableKind, named};
+use zelus_core::model::{MasterSlaveConstraint, Model, ScalarVariable, SubPart};
 use zelus_core::parameters::{Interval, Settings};
-use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, scalars_of};
 use zelus_core::register;
 
 struct ImposeRigidMovement {
@@ -69,17 +69,11 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
 /// The numbers that a variable of these settings stands for.
 fn components(settings: &Settings, key: &str, domain_size: usize) -> Result<Vec<ScalarVariable>> {
     let name = settings.get_str(key)?;
-    match named(name) {
-        Some(Named::Component(variable)) => Ok(vec![variable]),
-        Some(Named::Whole(column, VariableKind::Scalar)) => Ok(vec![ScalarVariable { column, component: None }]),
-        Some(Named::Whole(column, VariableKind::Vector3)) => {
-            Ok((0..domain_size as u8).map(|c| ScalarVariable { column, component: Some(c) }).collect())
-        }
-        _ => Err(settings
-            .error(key, "unknown-variable", format!("{name:?} is no variable of nodes"))
-            .remedy("name a scalar, a vector or a component, e.g. \"DISPLACEMENT\"")
-            .into()),
-    }
+    scalars_of(name, domain_size).ok_or_else(|| {
+        let fact = format!("{name:?} is no variable of nodes");
+        let remedy = "name a scalar, a vector or a component, e.g. \"DISPLACEMENT\"";
+        settings.error(key, "unknown-variable", fact).remedy(remedy).into()
+    })
 }
 
 impl Process for ImposeRigidMovement {
