@@ -30,10 +30,10 @@ mod multifrontal;
 mod equilibrate;
 mod lu;
 
-mod precondition;
 pub mod memory;
-
 mod iterations;
+mod precondition;
+
 mod interface;
 mod direct;
 

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::interface::{check_nodes, check_pairs};
+use crate::interface::check_nodes;
+use crate::pairs::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::Carrier;
 use zelus_core::Result;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use crate::interface::check_pairs;
+use crate::pairs::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, require_kind};

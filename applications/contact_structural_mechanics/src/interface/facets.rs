@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use crate::flags::{MASTER, SLAVE};
 use crate::mortar::carries_contact;
-use crate::pairs::PairKey;
 use zelus_core::Result;
 use zelus_core::diagnostics::unfit;
 
@@ -51,19 +50,6 @@ pub fn set_sides(interfaces: &mut [Interface], sides: Vec<Vec<Roles>>) -> Result
         interface.facets.iter_mut().zip(sides).for_each(|(facet, side)| facet.role = side);
     }
     Ok(())
-}
-
-/// Whether there are the facets of these pairs, on their sides.
-///
-/// # Errors
-/// One that is not.
-pub fn check_pairs(interfaces: &[Interface], mut keys: impl Iterator<Item = PairKey>) -> Result<()> {
-    let side = |interface: u32, facet: u32| Some(interfaces.get(interface as usize)?.facets.get(facet as usize)?.role);
-    let known = |key: PairKey| {
-        let sides = (side(key.interface, key.slave), side(key.interface, key.master));
-        sides == (Some(Roles::Slave), Some(Roles::Master))
-    };
-    if keys.all(known) { Ok(()) } else { Err(unfit("the pairs of facets that it remembers are not there")) }
 }
 
 /// Whether there are such nodes.

@@ -19,6 +19,6 @@ pub use family::{
 };
 pub use grouping::{Groups, group_by_shapes, group_by_surroundings};
 pub use nitsche_block::nitsche_block;
-pub use pair::{Integral, Pair, PairKey, Previous};
+pub use pair::{Integral, Pair, PairKey, Previous, check_pairs};
 pub use pair_block::PairBlock;
 pub use tying_block::{TyingRequest, tying_block};

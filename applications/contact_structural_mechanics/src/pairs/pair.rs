@@ -1,8 +1,11 @@
 //! One slave facet and one master facet that overlap.
 
 use serde::{Deserialize, Serialize};
+use zelus_core::Result;
+use zelus_core::diagnostics::unfit;
 use zelus_core::geometry::FacetShape;
 
+use crate::interface::{Interface, Roles};
 use crate::mortar::{Choices, MOST_NODES, Operators};
 
 /// Which facets of which interface.
@@ -14,6 +17,19 @@ pub struct PairKey {
     pub slave: u32,
     /// Master facet of the interface.
     pub master: u32,
+}
+
+/// Whether there are the facets of these pairs, on their sides.
+///
+/// # Errors
+/// One that is not.
+pub fn check_pairs(interfaces: &[Interface], mut keys: impl Iterator<Item = PairKey>) -> Result<()> {
+    let side = |interface: u32, facet: u32| Some(interfaces.get(interface as usize)?.facets.get(facet as usize)?.role);
+    let known = |key: PairKey| {
+        let sides = (side(key.interface, key.slave), side(key.interface, key.master));
+        sides == (Some(Roles::Slave), Some(Roles::Master))
+    };
+    if keys.all(known) { Ok(()) } else { Err(unfit("the pairs of facets that it remembers are not there")) }
 }
 
 /// Operators at the start of the step, against which slip is measured.

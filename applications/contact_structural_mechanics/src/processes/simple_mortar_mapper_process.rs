@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::interface::check_pairs;
+use crate::pairs::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Field, Model, ModelPart, Named, named};
