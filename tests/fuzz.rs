@@ -2,6 +2,8 @@
 //!
 //! `ZELUS_FUZZ_SECONDS` says how long, for each target; what makes one fail is kept in the folder for temporary files.
 
+#[path = "../fuzz/src/forge.rs"]
+mod forge;
 #[path = "../fuzz/src/targets.rs"]
 mod targets;
 
@@ -118,6 +120,11 @@ fn decks() {
 #[test]
 fn saved_runs() {
     attack("checkpoint", targets::checkpoint, &[targets::saved()]);
+}
+
+#[test]
+fn forged_runs() {
+    attack("forged", targets::forged, &[vec![0; 64], (0..=255).collect()]);
 }
 
 #[test]

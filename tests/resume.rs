@@ -190,3 +190,22 @@ fn settings_that_save_nothing_are_refused() {
         assert!(said(&output).contains(key), "{}", said(&output));
     }
 }
+
+/// A run that is asked to go on begins anew where nothing was saved, and only there.
+#[test]
+fn names_of_saved_runs_that_lead_nowhere_are_refused() {
+    let folder = deck("cases/contact_2d/friction_slide", 2, |_| {});
+    let pointer = folder.path().join("ProjectParameters.resume");
+    let resume = || zelus(folder.path(), &["run", DECK, "--resume"]);
+    assert!(resume().status.success());
+    let whole = contents(folder.path());
+    assert!(Command::new("mkfifo").arg(folder.path().join("pipe")).status().expect("mkfifo").success());
+    for name in [&b"\xff\xfe"[..], b"", b"\n", b"gone.rest", b"mesh.mdpa", b"/dev/zero", b"pipe", b"."] {
+        std::fs::write(&pointer, name).expect("a file");
+        let output = resume();
+        assert_eq!(output.status.code(), Some(2), "{name:?}: {}", said(&output));
+        assert!(said(&output).contains("[saved-run]"), "{}", said(&output));
+    }
+    [&pointer, &folder.path().join("pipe")].into_iter().for_each(|path| std::fs::remove_file(path).expect("a file"));
+    assert!(contents(folder.path()) == whole, "files have changed");
+}

@@ -1,3 +1,4 @@
 //! What random bytes are given to.
 
+pub mod forge;
 pub mod targets;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use super::forge::{Value, contents, with_contents};
 use zelus::core::io::{SavedFile, read_mesh, results::vtu_of};
 use zelus::core::model::ModelPart;
 use zelus::core::parameters::{Document, Expression};
@@ -14,8 +15,6 @@ const DECK: [(&str, &str); 3] = [
     ("StructuralMaterials.json", include_str!("../deck/StructuralMaterials.json")),
     ("mesh.mdpa", include_str!("../deck/mesh.mdpa")),
 ];
-/// Bytes of a saved run of one process before the length of its contents: mark, version, number of processes.
-const MARK: usize = 16 + 4 + 4;
 
 /// A folder of this process with the deck and a run of it that is saved.
 fn folder() -> &'static PathBuf {
@@ -38,7 +37,11 @@ fn open(folder: &std::path::Path) -> Simulation {
 
 /// The contents of a saved run of the deck.
 pub fn saved() -> Vec<u8> {
-    std::fs::read(folder().join("saved")).expect("the saved run")[MARK + 12..].to_vec()
+    contents(&whole()).to_vec()
+}
+
+fn whole() -> Vec<u8> {
+    std::fs::read(folder().join("saved")).expect("the saved run")
 }
 
 /// A mesh file, read into a model part.
@@ -59,16 +62,31 @@ pub fn json(bytes: &[u8]) {
 }
 
 /// The contents of a saved run: with a checksum that is not theirs they are refused, and read as what they are with theirs.
-pub fn checkpoint(contents: &[u8]) {
-    let whole = std::fs::read(folder().join("saved")).expect("the saved run");
+pub fn checkpoint(bytes: &[u8]) {
+    let whole = whole();
     let path = folder().join("random.saved");
-    let write = |head: &[&[u8]]| std::fs::write(&path, [&head.concat(), contents].concat()).expect("a file");
-    write(&[&whole[..MARK + 12]]);
+    let head = whole.len() - contents(&whole).len();
+    std::fs::write(&path, [&whole[..head], bytes].concat()).expect("a file");
     let loaded = open(folder()).load(&path, &mut Silent);
-    assert_eq!(loaded.is_ok(), contents == &whole[MARK + 12..], "what is damaged is refused");
-    let (length, sum) = ((contents.len() as u64).to_le_bytes(), crc32fast::hash(contents).to_le_bytes());
-    write(&[&whole[..MARK], &length, &sum]);
+    assert_eq!(loaded.is_ok(), bytes == contents(&whole), "what is damaged is refused");
+    std::fs::write(&path, with_contents(&whole, bytes)).expect("a file");
     let _ = SavedFile::open(&path).and_then(|file| file.read::<serde::de::IgnoredAny>(0));
+}
+
+/// A saved run forged as the bytes say, with a checksum that is right: it is refused, or goes on.
+pub fn forged(bytes: &[u8]) {
+    let whole = whole();
+    let mut value = Value::read(&mut contents(&whole)).expect("MessagePack");
+    let mut dice = bytes.chunks(2).map(|two| two.iter().fold(0, |sum, &byte| sum << 8 | usize::from(byte)));
+    value.forge(&mut || dice.next().unwrap_or(7));
+    let mut forged = Vec::new();
+    value.write(&mut forged);
+    let path = folder().join("forged.saved");
+    std::fs::write(&path, with_contents(&whole, &forged)).expect("a file");
+    let mut simulation = open(folder());
+    if simulation.load(&path, &mut Silent).is_ok() {
+        let _ = simulation.step(&mut Silent);
+    }
 }
 
 /// A picture.

@@ -124,9 +124,24 @@ impl Pointer {
     }
 
     /// The latest saved run; `None` where there is none.
-    pub(super) fn read(&self) -> Option<PathBuf> {
-        let name = std::fs::read_to_string(&self.0).ok()?;
-        Some(self.0.parent().unwrap_or(Path::new("")).join(name.trim_end()))
+    ///
+    /// # Errors
+    /// A file that cannot be read, or that names none: to begin anew would cost the results so far.
+    pub(super) fn read(&self) -> Result<Option<PathBuf>> {
+        let nameless = |fact: String| {
+            let remedy = "bring it back, or remove it to run the deck from its start";
+            Diagnostic::error("saved-run", fact).at(Place::file(&self.0)).remedy(remedy)
+        };
+        match std::fs::metadata(&self.0) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Ok(found) if !found.is_file() => return Err(nameless("this is no file".to_owned()).into()),
+            _ => {}
+        }
+        let name = std::fs::read_to_string(&self.0).map_err(|error| nameless(format!("it cannot be read: {error}")))?;
+        if name.trim_end().is_empty() {
+            return Err(nameless("it names no saved run".to_owned()).into());
+        }
+        Ok(Some(self.0.parent().unwrap_or(Path::new("")).join(name.trim_end())))
     }
 
     /// Names the latest.

@@ -224,7 +224,8 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::load`].
     pub fn resume(&mut self, monitor: &mut dyn Monitor) -> Result<Option<PathBuf>> {
-        let Some(path) = self.pointer.as_ref().and_then(Pointer::read) else { return Ok(None) };
+        let named = self.model.ranks.agree(self.pointer.as_ref().map_or(Ok(None), Pointer::read))?;
+        let Some(path) = named else { return Ok(None) };
         self.load(&path, monitor)?;
         Ok(Some(path))
     }

@@ -4,7 +4,7 @@
 //! Numbers of the head are little-endian. Contents are MessagePack with the names of fields, in which numbers keep their bits. All
 //! ranks stand in one file, which is replaced as a whole: no end of a run leaves files of two moments.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -91,10 +91,11 @@ impl SavedFile {
     /// # Errors
     /// A file that is not there, is no saved run, is one of another version or is cut short.
     pub fn open(path: &Path) -> Result<Self> {
-        let mut file = File::open(path).map_err(|error| unreadable(path, &error))?;
-        if !file.metadata().is_ok_and(|found| found.is_file()) {
+        // A pipe would keep whoever opens it waiting.
+        if !fs::metadata(path).map_err(|error| unreadable(path, &error))?.is_file() {
             return Err(problem(path, "this is no file".to_owned(), "name a file that zelus has saved a run in"));
         }
+        let mut file = File::open(path).map_err(|error| unreadable(path, &error))?;
         let mut head = Vec::new();
         let mut more = |head: &mut Vec<u8>, count: u64| Read::by_ref(&mut file).take(count).read_to_end(head);
         more(&mut head, HEAD as u64).map_err(|error| unreadable(path, &error))?;
@@ -168,8 +169,6 @@ fn problem(path: &Path, fact: String, remedy: &str) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     fn read<T: DeserializeOwned>(path: &Path) -> Result<T> {
