@@ -14,7 +14,6 @@ const OPEN: &[(&str, &str)] = &[
     ("conv_diff_tests/basic_conv_diffusion_semi_implicit", EXPLICIT),
     ("kratos_thermomech_tests/coupled_accessor", "storage and conduction of quadrilaterals by gradients at one point"),
     ("kratos_thermomech_tests/thermo_mech_damage", "laws of damage are not there"),
-    ("own_conduction/mpc_tied_blocks", "assign_master_slave_constraints_to_neighbours_process is not there"),
     ("own_contact/transient_heating_contact_tri", "its contact is that of Kratos with --like kratos alone"),
     ("own_convection/pulse_semi_implicit_bfecc", EXPLICIT),
 ];

@@ -301,7 +301,8 @@ fn energy_that_a_coarse_slave_makes_is_named() {
     let material = [1.0, 0.2, 1.0];
     let (mut refused, mut warned) = (0, 0);
     for angle in [0.09_f64, 0.21, 0.35, 0.58, 0.785] {
-        let (boxes, (results, said)) = coarse_slave(angle, &json!({}));
+        // Energy alone is to speak: corners deep in the ground are refused by default.
+        let (boxes, (results, said)) = coarse_slave(angle, &json!({"contact_settings": {"largest_penetration": 0.0}}));
         let Some(results) = results else {
             assert!(said.contains("from nothing") || said.contains("inside out"), "turned by {angle}: {said}");
             refused += usize::from(said.contains("from nothing"));

@@ -135,7 +135,7 @@ fn results_stay_until_there_are_others() {
     assert!(output.status.success(), "{}", said(&output));
     let mut names: Vec<String> = contents(&pictures).into_keys().map(|name| name.display().to_string()).collect();
     names.sort();
-    assert_eq!(names, ["Other_1.vtu", "Structure.pvd", "Structure_1.vtu"]);
+    assert_eq!(names, ["Other_1.vtu", "Structure.pvd", "Structure_0.vtu", "Structure_1.vtu"]);
 }
 
 #[test]

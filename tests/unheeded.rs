@@ -2,21 +2,24 @@
 
 mod support;
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use support::{read_json, root, said, scratch_copy, zelus};
 
 const DECK: &str = "ProjectParameters.json";
-const CODES: [&str; 16] = [
+const CODES: [&str; 18] = [
     "acts-on-nothing",
     "contradicting-values",
     "duplicate-key",
+    "friction-overridden",
     "held-by-nothing",
     "initial-penetration",
     "interval-reversed",
     "invalid-tolerance",
     "listed-twice",
+    "mutual-pairs",
     "negative-friction",
     "no-friction",
     "repeated-properties",
@@ -46,10 +49,17 @@ fn contact(deck: &mut Value) -> &mut Value {
     &mut deck["processes"]["contact_process_list"][0]["Parameters"]
 }
 
+/// The supports of the sides.
+fn support(deck: &mut Value) -> &mut Value {
+    &mut deck["processes"]["constraints_process_list"][1]["Parameters"]
+}
+
 const PRESSED: &str = "contact_2d/matching";
 const SLIDING: &str = "contact_2d/friction_slide";
 
-const MISTAKES: [Mistake; 19] = [
+const CONSTRAINED: &str = "mpc/pressed_and_opened";
+
+const MISTAKES: [Mistake; 34] = [
     Mistake {
         what: "a surface load on lines",
         case: PRESSED,
@@ -219,6 +229,150 @@ const MISTAKES: [Mistake; 19] = [
         code: "unknown-key-ignored",
         names: "tolerance",
     },
+    Mistake {
+        what: "a load out of the plane, as a function",
+        case: PRESSED,
+        make: |deck, _| {
+            load(deck)["direction"] = json!([0.0, 0.0, 1.0]);
+            load(deck)["modulus"] = json!("1e6*t");
+        },
+        exit: 0,
+        code: "acts-on-nothing",
+        names: "out of the plane",
+    },
+    Mistake {
+        what: "a motion out of the plane",
+        case: PRESSED,
+        make: |deck, _| {
+            support(deck)["value"] = json!([null, null, 0.1]);
+            support(deck)["constrained"] = json!([false, false, true]);
+        },
+        exit: 4,
+        code: "acts-on-nothing",
+        names: "DISPLACEMENT of Structure.SidesX has a component out of the plane only",
+    },
+    Mistake {
+        what: "a support that gives and fixes nothing",
+        case: PRESSED,
+        make: |deck, _| {
+            support(deck)["value"] = json!([null, null, null]);
+            support(deck)["constrained"] = json!([false, false, false]);
+        },
+        exit: 4,
+        code: "acts-on-nothing",
+        names: "gives no component a value, and fixes none",
+    },
+    Mistake {
+        what: "an interval between two steps",
+        case: PRESSED,
+        make: |deck, _| load(deck)["interval"] = json!([0.2, 0.3]),
+        exit: 0,
+        code: "interval-outside",
+        names: "no step of the run ends in the interval [0.2,0.3]",
+    },
+    Mistake {
+        what: "contact that names no part",
+        case: PRESSED,
+        make: |deck, _| {
+            contact(deck)["contact_model_part"] = json!({"0": []});
+            contact(deck)["assume_master_slave"] = json!({"0": []});
+        },
+        exit: 0,
+        code: "whole-skin",
+        names: "the whole skin of the bodies is taken",
+    },
+    Mistake {
+        what: "each side the slave of the other",
+        case: PRESSED,
+        make: |deck, _| {
+            contact(deck)["contact_model_part"] = json!({"0": ["Interface"], "1": ["Interface"]});
+            contact(deck)["assume_master_slave"] = json!({"0": ["Slave"], "1": ["Lower"]});
+        },
+        exit: 0,
+        code: "mutual-pairs",
+        names: "two multipliers would hold one gap",
+    },
+    Mistake {
+        what: "a coefficient that the material overrides",
+        case: SLIDING,
+        make: |deck, materials| {
+            contact(deck)["friction_coefficients"] = json!({"0": 0.4});
+            for material in materials["properties"].as_array_mut().expect("a list") {
+                material["Material"]["Variables"]["FRICTION_COEFFICIENT"] = json!(0.3);
+            }
+        },
+        exit: 0,
+        code: "friction-overridden",
+        names: "gives pair \"0\" 0.4, FRICTION_COEFFICIENT of properties",
+    },
+    Mistake {
+        what: "a coefficient where there is no friction",
+        case: PRESSED,
+        make: |deck, _| contact(deck)["friction_coefficients"] = json!({"0": 0.4}),
+        exit: 0,
+        code: "key-without-effect",
+        names: "choose \"Frictional\"",
+    },
+    Mistake {
+        what: "contact by constraints of a type that is not there",
+        case: CONSTRAINED,
+        make: |deck, _| deck["solver_settings"]["mpc_contact_settings"]["contact_type"] = json!("Nonsense"),
+        exit: 2,
+        code: "contact-type",
+        names: "there is no contact type \"Nonsense\"",
+    },
+    Mistake {
+        what: "a tolerance of zero",
+        case: PRESSED,
+        make: |deck, _| deck["solver_settings"]["residual_relative_tolerance"] = json!(0.0),
+        exit: 0,
+        code: "invalid-tolerance",
+        names: "only round-off is left",
+    },
+    Mistake {
+        what: "a tolerance of the linear solver below zero",
+        case: PRESSED,
+        make: |deck, _| {
+            deck["solver_settings"]["linear_solver_settings"] = json!({"solver_type": "cg", "tolerance": -1.0});
+        },
+        exit: 2,
+        code: "invalid-tolerance",
+        names: "\"tolerance\" is -1",
+    },
+    Mistake {
+        what: "a tolerance of the linear solver that everything meets",
+        case: PRESSED,
+        make: |deck, _| {
+            deck["solver_settings"]["linear_solver_settings"] = json!({"solver_type": "cg", "tolerance": 1.5});
+        },
+        exit: 2,
+        code: "invalid-tolerance",
+        names: "no solve would begin",
+    },
+    Mistake {
+        what: "a key of the materials file",
+        case: PRESSED,
+        make: |_, materials| materials["propertis"] = json!([]),
+        exit: 0,
+        code: "unknown-key-ignored",
+        names: "did you mean \"properties\"",
+    },
+    Mistake {
+        what: "a key of a material",
+        case: PRESSED,
+        make: |_, materials| materials["properties"][0]["Material"]["Varables"] = json!({}),
+        exit: 0,
+        code: "unknown-key-ignored",
+        names: "did you mean \"Variables\"",
+    },
+    Mistake {
+        what: "a key of a law",
+        case: PRESSED,
+        make: |_, materials| materials["properties"][0]["Material"]["constitutive_law"]["nme"] = json!("x"),
+        exit: 0,
+        code: "unknown-key-ignored",
+        names: "nothing reads \"nme\"",
+    },
 ];
 
 fn go(command: &str, folder: &Path) -> (Option<i32>, String) {
@@ -226,8 +380,24 @@ fn go(command: &str, folder: &Path) -> (Option<i32>, String) {
     (output.status.code(), said(&output))
 }
 
+/// The warnings and errors of a run with what to do about them, where folders are no part of them.
+fn messages(said: &str) -> String {
+    let mut out = String::new();
+    let mut remedy = false;
+    for line in said.lines() {
+        let begins = ["note[", "warning[", "error["].iter().any(|word| line.starts_with(word));
+        if begins || (remedy && line.starts_with("    ") && !line.trim().is_empty()) {
+            writeln!(out, "{line}").expect("text");
+        }
+        remedy = begins;
+    }
+    out
+}
+
+/// Every message stands on one page, with its code, fact and remedy: `snapshots/unheeded__mistakes.snap`.
 #[test]
 fn what_nothing_does_is_named() {
+    let mut page = String::new();
     for Mistake { what, case, make, exit, code, names } in MISTAKES {
         let scratch = scratch_copy(&root().join("tests/cases").join(case));
         let paths = [DECK, "StructuralMaterials.json"].map(|name| scratch.path().join(name));
@@ -242,6 +412,59 @@ fn what_nothing_does_is_named() {
             let (status, said) = go(command, scratch.path());
             assert_eq!(status, Some(exit), "{command}: {what}: {said}");
             assert!(said.contains(&format!("[{code}]")) && said.contains(names), "{command}: {what}: {said}");
+            if command == "check" {
+                writeln!(page, "== {what} ==\n{}", messages(&said)).expect("text");
+            }
+        }
+    }
+    insta::assert_snapshot!("mistakes", page);
+}
+
+/// Nine mistakes that have nothing to do with each other take one round, also where the mesh cannot be read.
+#[test]
+fn nine_mistakes_are_named_at_once() {
+    for reads in [true, false] {
+        let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+        let paths = [DECK, "StructuralMaterials.json"].map(|name| scratch.path().join(name));
+        let [mut deck, mut materials] = paths.each_ref().map(|path| read_json(path).expect("JSON"));
+        let solver = &mut deck["solver_settings"];
+        solver["max_iteration"] = json!(0);
+        solver["convergence_criterion"] = json!("contact_residul_criterion");
+        solver["residual_relative_tolerance"] = json!(-1e-9);
+        solver["time_stepping"]["time_step"] = json!(-1.0);
+        solver["contact_settings"]["mortar_type"] = json!("ALMContactFrictionles");
+        load(&mut deck)["variable_name"] = json!("LINE_LOD");
+        support(&mut deck)["model_part_name"] = json!("Structure.Sides");
+        contact(&mut deck)["contact_type"] = json!("Nonsense");
+        contact(&mut deck)["contact_model_part"] = json!({"0": ["Interfac"]});
+        materials["properties"][0]["Material"]["constitutive_law"]["name"] = json!("LinearElasticPlainStrain2DLaw");
+        for (path, json) in paths.iter().zip([deck, materials]) {
+            std::fs::write(path, serde_json::to_string_pretty(&json).expect("JSON")).expect("a file");
+        }
+        let mesh = scratch.path().join("mesh.mdpa");
+        if !reads {
+            let text = std::fs::read_to_string(&mesh).expect("the mesh");
+            std::fs::write(&mesh, text.replace("Element2D4N", "Element2D4")).expect("a file");
+        }
+        for command in ["check", "run"] {
+            let (status, said) = go(command, scratch.path());
+            assert_eq!(status, Some(2), "{said}");
+            let names = [
+                "max_iteration",
+                "contact_residul_criterion",
+                "residual_relative_tolerance",
+                "time_step",
+                "ALMContactFrictionles\"",
+                "LINE_LOD",
+                "Structure.Sides\"",
+                "Nonsense",
+                "\"Interfac\"",
+                if reads { "LinearElasticPlainStrain2DLaw" } else { "SmallDisplacementElement2D4`" },
+            ];
+            let unsaid: Vec<&str> = names.into_iter().filter(|name| !said.contains(name)).collect();
+            assert!(unsaid.is_empty(), "{command} does not say {unsaid:?}:\n{said}");
+            // What follows from a mistake is none of its own.
+            assert_eq!(said.matches("error[").count(), if reads { 10 } else { 12 }, "{said}");
         }
     }
 }
@@ -302,11 +525,16 @@ fn good_decks_hear_none_of_it() {
     for deck in decks {
         let output = zelus(deck.parent().expect("a folder"), &["check", DECK]);
         let said = said(&output);
-        // A shrink fit begins with bodies inside each other; nodes of the boundary that are pulled are prescribed twice.
+        // A shrink fit begins with bodies inside each other; nodes of the boundary that are pulled are prescribed twice;
+        // a case has friction twice, to see which counts.
         let own = deck.parent().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
         let meant = |code: &str| {
-            [("initial-penetration", "shrink_fit"), ("contradicting-values", "mixture_of_layers")]
-                .contains(&(code, own.as_deref().unwrap_or_default()))
+            [
+                ("initial-penetration", "shrink_fit"),
+                ("contradicting-values", "mixture_of_layers"),
+                ("friction-overridden", "friction_from_properties"),
+            ]
+            .contains(&(code, own.as_deref().unwrap_or_default()))
         };
         let heard = CODES.iter().filter(|code| said.contains(&format!("[{code}]")) && !meant(code));
         wrong.extend(heard.map(|code| format!("{}: {code}", deck.display())));

@@ -21,6 +21,7 @@ pub mod search;
 pub mod penalty_adaptation;
 pub mod pairs;
 pub mod compatibility;
+pub mod mpc_kind;
 pub mod families;
 pub mod criteria;
 mod solver;

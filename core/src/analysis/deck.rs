@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::report::RunReport;
-use super::solver::{SolverSettings, flatten_bars};
+use super::solver::{INCOMPLETE, SolverSettings, flatten_bars};
 use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
 use crate::io::{self, MeshFormatEntry};
 use crate::model::{Model, ModelPart};
 use crate::parameters::{Document, Node, Settings, Value};
-use crate::processes::{Process, ProcessEntry, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest, other_problems};
 use crate::registry;
 
 /// The parsed deck, and its folder.
@@ -196,12 +196,44 @@ pub(super) fn import(
     for kind in part.elements.kinds.iter().chain(&part.conditions.kinds).filter(|kind| !kind.nodal.is_empty()) {
         kind.nodal.iter().for_each(|&(name, components)| part.nodes.history.add_named(name, components));
     }
-    let materials = settings.get("material_import_settings.materials_filename")?;
+    Ok(())
+}
+
+/// Gives the part the materials that the settings name, and lets the solver make of it what it computes on.
+///
+/// # Errors
+/// A file that cannot be read, materials that do not fit.
+pub(super) fn import_materials(
+    solver: &SolverSettings,
+    root: &str,
+    folder: &Path,
+    model: &mut Model,
+    warnings: &mut Report,
+) -> Result<()> {
+    let part = model.root_mut(root)?;
+    let materials = solver.settings.get("material_import_settings.materials_filename")?;
     let name = materials.str()?;
     if !name.is_empty() {
         io::read_materials_of(&folder.join(name), &materials.place(), part)?.into_iter().for_each(|w| warnings.push(w));
     }
     solver.adopt(folder, part, warnings)
+}
+
+/// In the place of a mesh that could not be read: a part with the names of its parts alone, so that what else is wrong with the
+/// deck is found, too; `None` where there are no names.
+pub(super) fn add_names_only(solver: &SolverSettings, root: &str, folder: &Path, model: &mut Model) -> Option<()> {
+    let named = |key: &str| solver.settings.node().get_path(key).and_then(Node::as_str);
+    let format = named("model_import_settings.input_type").unwrap_or("mdpa");
+    let format = registry::find::<MeshFormatEntry>(format).filter(|format| format.name == "mdpa")?;
+    let file = format.file(&folder.join(named("model_import_settings.input_filename")?));
+    model.parts.remove(root);
+    let mut part = ModelPart::new(root);
+    part.tree.children = io::names_of_parts(&file)?;
+    // What is wrong with the settings was said when the mesh was to be read.
+    let _ = solver.prepare(&mut part);
+    part.info.marks.insert(INCOMPLETE, true);
+    model.add(part);
+    Some(())
 }
 
 /// The entries of `processes`, list by list in the order of their names, then those of `output_processes`.
@@ -243,12 +275,14 @@ fn make_process(item: &Node, folder: &Path, model: &mut Model, problems: &mut Re
     let empty = Node::new(Value::Object(Default::default()), &item.place());
     let parameters = item.get("Parameters").unwrap_or(&empty);
     let place = parameters.place();
-    (entry.build)(&mut ProcessRequest { entry, parameters, model, folder, report: problems }).map_err(|error| {
-        match error {
-            Error::Input(list) => Error::Input(
-                list.into_iter().map(|d| if d.place.is_none() { d.at(place.clone()) } else { d }).collect(),
-            ),
-            other => other,
+    let made = (entry.build)(&mut ProcessRequest { entry, parameters, model, folder, report: problems });
+    made.map_err(|error| match error.at(&place) {
+        Error::Input(mut list) => {
+            let mut more = other_problems(entry, parameters, model);
+            more.retain(|problem| list.iter().all(|known| known.place != problem.place));
+            list.extend(more);
+            Error::Input(list)
         }
+        other => other,
     })
 }

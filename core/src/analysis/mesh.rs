@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::deck::{import, open, root_name, stages};
+use super::deck::{import, import_materials, open, root_name, stages};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::RunReport;
 use super::sharing::common_of_stage;
@@ -41,6 +41,7 @@ pub fn read_deck_mesh(path: &Path) -> Result<DeckMesh> {
     let mut model = Model::default();
     run_modelers(&stage.modelers, &folder, &mut model, &mut problems)?;
     import(&solver, &root, &folder, &mut model, &mut problems)?;
+    import_materials(&solver, &root, &folder, &mut model, &mut problems)?;
     complete_part_names(&mut settings, &root, &model, &mut problems);
     problems.finish()?;
     let part = model.parts.remove(&root).ok_or_else(|| Error::System(format!("the stage has no model part {root}")))?;

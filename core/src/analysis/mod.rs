@@ -30,6 +30,7 @@ pub use mesh::{DeckMesh, read_deck_mesh};
 pub use report::{RunReport, Sizes};
 pub use simulation::{RunOptions, Simulation};
 pub use solver::{
-    EXPLICIT, ExtensionDefinition, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry, SolverSettings,
+    EXPLICIT, ExtensionDefinition, INCOMPLETE, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry,
+    SolverSettings,
 };
 pub use time_stepping::TimeStepping;

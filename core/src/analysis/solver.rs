@@ -4,12 +4,14 @@ use std::path::Path;
 
 use super::cutting::Cutting;
 use crate::assembly::System;
-use crate::diagnostics::{Diagnostic, Report, Result};
+use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::find_kind;
 use crate::model::{EntityKind, ModelPart, Rates, Role};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
 use crate::registry::{self, Registered};
+use zelus_linear_algebra::Multipliers;
+
 use crate::strategies::{
     Builder, BuilderEntry, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionEntry,
     CriterionRequest, ExplicitSettings, ExplicitStrategy, LinearSolverRequest, NewtonSettings, Scheme, SchemeEntry,
@@ -22,6 +24,9 @@ const MOST_LEVELS: usize = 100;
 /// Objects of the settings that name strategy and builder.
 const STRATEGY: &str = "solving_strategy_settings";
 const BUILDER: &str = "builder_and_solver_settings";
+
+/// Mark of a part that is not what the deck asks for, since what it is made from has errors: only other errors are looked for.
+pub const INCOMPLETE: &str = "INCOMPLETE";
 
 /// A variable with history on the nodes: name and number of components.
 pub type NodalVariable = (&'static str, usize);
@@ -136,6 +141,10 @@ pub struct SolverSettings {
     pub settings: Settings,
     /// As the user wrote them.
     pub user: Node,
+    /// Whether those of the solver itself fit; else defaults stand in the places of those that do not.
+    pub is_sound: bool,
+    /// Whether all fit, also those of extensions.
+    pub is_whole: bool,
     definition: &'static SolverDefinition,
     variables: Vec<NodalVariable>,
     marks: Vec<&'static str>,
@@ -147,8 +156,10 @@ pub struct SolverSettings {
 impl SolverSettings {
     /// Checks `solver_settings`.
     ///
+    /// What does not fit goes to `report`.
+    ///
     /// # Errors
-    /// Everything that does not fit, gathered.
+    /// No such solver, settings that are no object.
     pub fn new(user: &Node, report: &mut Report) -> Result<Self> {
         let entry = solver_entry(user)?;
         let definition = &entry.build;
@@ -167,17 +178,23 @@ impl SolverSettings {
         if lenient {
             defaults = defaults.lenient();
         }
+        let mut is_whole = true;
         let mut problems = Report::new();
-        let settings = Settings::validate(&own, &defaults, &mut problems);
+        let Some((settings, is_sound)) = Settings::complete(&own, &defaults, &mut problems) else {
+            return Err(Error::Input(problems.diagnostics().to_vec()));
+        };
         let mut variables = definition.variables.to_vec();
         let mut marks = Vec::new();
         let mut cutting = None;
         let mut values = Vec::new();
         let mut present = Vec::new();
-        let mut merged = settings.as_ref().map(|s| s.node().clone());
+        let mut merged = settings.node().clone();
         for (extension, mut member) in extensions {
             let defaults = Defaults::parse(extension.name, extension.defaults)?;
-            let Some(checked) = Settings::validate(&member.node, &defaults, &mut problems) else { continue };
+            let Some(checked) = Settings::validate(&member.node, &defaults, &mut problems) else {
+                is_whole = false;
+                continue;
+            };
             let factory = &extension.build;
             if let Some(more) = problems.absorb((factory.variables)(&checked)) {
                 variables.extend(more);
@@ -189,18 +206,18 @@ impl SolverSettings {
             if let Some(more) = problems.absorb((factory.values)(&checked)) {
                 values.extend(more);
             }
-            if let Some(Node { value: Value::Object(members), .. }) = &mut merged {
+            if let Value::Object(members) = &mut merged.value {
                 member.node = checked.node().clone();
                 members.insert(member);
             }
             present.push((factory, checked));
         }
-        for warning in problems.finish()? {
-            report.push(warning);
-        }
-        let node = merged.unwrap_or_else(|| user.clone());
+        is_whole &= !problems.has_errors();
+        problems.diagnostics().iter().for_each(|problem| report.push(problem.clone()));
         Ok(Self {
-            settings: Settings::unchecked(entry.name, node),
+            settings: Settings::unchecked(entry.name, merged),
+            is_sound,
+            is_whole,
             user: user.clone(),
             definition,
             variables,
@@ -225,6 +242,7 @@ impl SolverSettings {
         }
         part.nodes.history.set_levels(levels);
         part.info.marks.insert(EXPLICIT, self.definition.explicit);
+        part.info.marks.insert(INCOMPLETE, !self.is_whole);
         // Names that are not registered are reported where the strategy is made.
         let named = self.named::<StrategyEntry>(STRATEGY).ok();
         for strategy in registry::all::<StrategyEntry>() {
@@ -356,22 +374,10 @@ impl SolverSettings {
             }
             TimeScheme::Implicit(scheme) => scheme,
         };
+        self.check_names()?;
         let named = self.settings.sub("linear_solver_settings")?;
-        let analysis = self.settings.get_str("analysis_type")?;
-        if !matches!(analysis, "linear" | "non_linear") {
-            let fact = format!("\"analysis_type\" is \"{analysis}\"");
-            return Err(self
-                .settings
-                .error("analysis_type", "analysis-type", fact)
-                .remedy("use \"linear\" or \"non_linear\"")
-                .into());
-        }
         let max_iteration = self.settings.get_usize("max_iteration")?;
-        if max_iteration == 0 {
-            let fact = "\"max_iteration\" is 0: no step could be solved";
-            return Err(self.settings.error("max_iteration", "invalid-value", fact).remedy("write at least 1").into());
-        }
-        let linear = analysis == "linear";
+        let linear = self.settings.get_str("analysis_type")? == "linear";
         let residual = if linear { 0.0 } else { self.settings.get_f64("residual_relative_tolerance")? };
         let request = LinearSolverRequest {
             settings: &named,
@@ -420,6 +426,37 @@ impl SolverSettings {
             says: &mut says,
         })?;
         Ok((made, says))
+    }
+
+    /// Whether there is what iterations are to be made of.
+    ///
+    /// # Errors
+    /// Names that are not registered, a number of iterations that is none, gathered.
+    pub fn check_names(&self) -> Result<()> {
+        let mut problems = Report::new();
+        if self.definition.explicit {
+            return Ok(());
+        }
+        let analysis = self.settings.get_str("analysis_type")?;
+        if !matches!(analysis, "linear" | "non_linear") {
+            let fact = format!("\"analysis_type\" is \"{analysis}\"");
+            let problem = self.settings.error("analysis_type", "analysis-type", fact);
+            problems.push(problem.remedy("use \"linear\" or \"non_linear\""));
+        }
+        if self.settings.get_usize("max_iteration")? == 0 {
+            let fact = "\"max_iteration\" is 0: no step could be solved";
+            problems.push(self.settings.error("max_iteration", "invalid-value", fact).remedy("write at least 1"));
+        }
+        let named = self.settings.sub("linear_solver_settings")?;
+        let request = LinearSolverRequest {
+            settings: &named,
+            multipliers: Multipliers::default(),
+            tolerance: linear_tolerance(0.0),
+        };
+        problems.absorb(make_linear_solver(&request));
+        problems.absorb(self.named::<StrategyEntry>(STRATEGY));
+        problems.absorb(self.named::<BuilderEntry>(BUILDER));
+        problems.finish().map(|_| ())
     }
 
     /// What the `type` of an object of the settings names; without one, `newton_raphson` or `block`.

@@ -8,7 +8,7 @@ use zelus_linear_algebra::memory;
 
 use super::bodies::tell_what_holds;
 use super::cutting::{Cutting, Lengths};
-use super::deck::{StageDeck, check_top_level, import, make_processes, root_name};
+use super::deck::{StageDeck, add_names_only, check_top_level, import, import_materials, make_processes, root_name};
 use super::like::{lay_defaults, program};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
@@ -113,31 +113,40 @@ impl Stage {
             }
             start.zip(end)
         });
-        warn_of_unheeded(&deck, times, &mut problems);
         deck.get("solver_settings").into_iter().for_each(|solver| check_tolerances(solver, &mut problems));
         let user = problems.absorb(deck.require("solver_settings").cloned());
         let solver = user.and_then(|user| {
             let solver = SolverSettings::new(&user, &mut problems);
             problems.absorb(solver)
         });
-        let Some(solver) = solver else { return Err(finish(problems)) };
-        let stepping = solver.settings.get("time_stepping");
-        let stepping = stepping.and_then(|node| TimeStepping::from_node(node, &mut problems));
-        let stepping = problems.absorb(stepping);
-        let cutting = problems.absorb(solver.cutting());
-        problems.absorb(solver.domain_size());
-        problems.absorb(solver.scheme().map(|_| ()));
-        problems.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
-        let root = problems.absorb(root_name(&solver.settings)).unwrap_or_default();
         let ranks = model.ranks.clone();
+        let Some(solver) = solver else { return Err(finish(problems)) };
+        let mut of_solver = Report::new();
+        let stepping = solver.settings.get("time_stepping");
+        let stepping = stepping.and_then(|node| TimeStepping::from_node(node, &mut of_solver));
+        let stepping = of_solver.absorb(stepping);
+        let cutting = of_solver.absorb(solver.cutting());
+        let domain_size = of_solver.absorb(solver.domain_size());
+        of_solver.absorb(solver.scheme().map(|_| ()));
+        of_solver.absorb(solver.criterion(&mut Report::new()).map(|_| ()));
+        of_solver.absorb(solver.check_names());
+        let root = of_solver.absorb(root_name(&solver.settings)).unwrap_or_default();
+        warn_of_unheeded(&deck, times.zip(stepping.as_ref()), &mut problems);
+        // Where settings do not fit, what follows from their defaults is no mistake of the deck.
+        if solver.is_sound {
+            of_solver.diagnostics().iter().for_each(|problem| problems.push(problem.clone()));
+        }
         read_the_same_deck(&ranks, &deck)?;
         // What the deck begins with is read by rank 0 alone, which shares it out.
         let by_root = ranks.size() > 1 && model.parts.is_empty();
+        let [mut is_read, mut is_whole] = [true; 2];
         if ranks.is_root() || !by_root {
-            let read = read_model(stage, &solver, &root, folder, model, &mut problems);
-            problems.absorb(read);
+            [is_read, is_whole] = read_model(stage, &solver, domain_size, &root, folder, model, &mut problems);
         }
-        problems = problems_of_all(&ranks, problems)?;
+        problems = problems_of_ranks(&ranks, problems)?;
+        if !is_read && add_names_only(&solver, &root, folder, model).is_none() {
+            return Err(finish(problems));
+        }
         report.add_seconds("read", start.elapsed().as_secs_f64());
         monitor.phase("set up");
         let start = Instant::now();
@@ -155,13 +164,19 @@ impl Stage {
             read_the_same_files(&ranks, &of_mesh)?;
         }
         inputs.extend(of_mesh);
-        distribute(model, &root, &decks, changes, monitor)?;
+        if is_read {
+            distribute(model, &root, &decks, changes, monitor)?;
+        }
         memory::give_back();
         // Ranks that have read no mesh know its parts only now.
         complete_part_names(&mut deck, &root, model, &mut problems);
         let mut processes = make_processes(&deck, folder, model, &mut problems);
         processes.extend(more);
+        // What several ranks say one process says alone.
         problems = problems_of_all(&ranks, problems)?;
+        if !is_whole {
+            return Err(finish(problems));
+        }
         let mut system = systems.remove(&root).unwrap_or_default();
         for process in &mut processes {
             let initialized = process.initialize(model).and_then(|()| process.interaction(model));
@@ -171,16 +186,25 @@ impl Stage {
                 false => problems.push(other_root(interaction.as_ref(), &of, &root)),
             }
         }
-        problems = problems_of_all(&ranks, problems)?;
+        problems = problems_of_ranks(&ranks, problems)?;
         let part = model.root_mut(&root)?;
         problems.absorb(system.make_blocks(part));
-        problems = problems_of_all(&ranks, problems)?;
-        warn_of_lonely_nodes(part, &system, &mut problems);
-        warn_of_extensions(deck.require("solver_settings")?, &system, &mut problems);
+        problems = problems_of_ranks(&ranks, problems)?;
+        if !problems.has_errors() {
+            warn_of_lonely_nodes(part, &system, &mut problems);
+            warn_of_extensions(deck.require("solver_settings")?, &system, &mut problems);
+        }
         for interaction in &mut system.interactions {
             problems.absorb(interaction.initialize(part));
         }
         messages_of(&mut processes, &mut system).into_iter().for_each(|message| problems.push(message));
+        let mut files: Vec<FileUse> = processes.iter().flat_map(|process| process.files()).collect();
+        read_the_same_files(&ranks, &files)?;
+        files.extend(inputs);
+        files.extend(outputs.iter().cloned().map(FileUse::Writes));
+        if ranks.is_root() {
+            check_files(&files).into_iter().for_each(|problem| problems.push(problem));
+        }
         problems = problems_of_all(&ranks, problems)?;
         report.parameters = tell_parameters(part, &system, monitor);
         let (strategy, says) = solver.strategy(part, &mut system, &mut problems)?;
@@ -206,13 +230,6 @@ impl Stage {
         if matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static()) && part.info.step == 0 {
             let prescribed = prescriptions(part, &processes, 0.5 * (start_time + end_time));
             tell_what_holds(part, &system, &prescribed, &mut problems);
-        }
-        let mut files: Vec<FileUse> = processes.iter().flat_map(|process| process.files()).collect();
-        read_the_same_files(&ranks, &files)?;
-        files.extend(inputs);
-        files.extend(outputs.iter().cloned().map(FileUse::Writes));
-        if ranks.is_root() {
-            check_files(&files).into_iter().for_each(|problem| problems.push(problem));
         }
         tell(problems_of_all(&ranks, problems)?.finish()?, report, monitor);
         report.add_seconds("set up", start.elapsed().as_secs_f64());
@@ -334,6 +351,9 @@ impl Stage {
                 let ends = format!("the last step ends at {time}, after \"end_time\" {}", self.end_time);
                 monitor.note(&format!("{ends}: \"last_step\": \"shortened\" in \"time_stepping\" would end it there"));
             }
+            let last = self.system.interactions.iter().flat_map(|interaction| interaction.last_messages(part));
+            let last = last.collect();
+            tell(part.ranks.problems_of_all(last), report, monitor);
             return Ok(false);
         }
         let length = self.strategy.step_length(part, &self.system, self.stepping.next(time)?)?;
@@ -550,6 +570,14 @@ fn problems_of_all(ranks: &Ranks, problems: Report) -> Result<Report> {
     if all.has_errors() { Err(finish(all)) } else { Ok(all) }
 }
 
+/// The problems so far: several ranks stop at the first errors, one process goes on to find all there are. Collective.
+///
+/// # Errors
+/// All of them, when one is an error and there are several ranks.
+fn problems_of_ranks(ranks: &Ranks, problems: Report) -> Result<Report> {
+    if ranks.size() > 1 { problems_of_all(ranks, problems) } else { Ok(problems) }
+}
+
 /// The problem that something acts on another part than the one that is solved for.
 fn other_root(interaction: &dyn Interaction, of: &str, root: &str) -> Diagnostic {
     let fact = format!("{} acts on {of}, the solver of the stage on {root}", interaction.name());
@@ -595,27 +623,25 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
     }
 }
 
-/// Meshes and materials of a stage, and what modelers make of them.
-///
-/// # Errors
-/// Problems of the files, beside those in `problems`.
+/// Meshes and materials of a stage, and what modelers make of them: whether there is a mesh to go on with, and whether all is there.
 fn read_model(
     stage: &StageDeck,
     solver: &SolverSettings,
+    domain_size: Option<usize>,
     root: &str,
     folder: &Path,
     model: &mut Model,
     problems: &mut Report,
-) -> Result<()> {
-    run_modelers(&stage.modelers, folder, model, problems)?;
-    if problems.has_errors() {
-        return Ok(());
-    }
-    import(solver, root, folder, model, problems)?;
-    if problems.has_errors() {
-        return Ok(());
-    }
-    check_dimensions(model.root(root)?, solver.domain_size()?)
+) -> [bool; 2] {
+    let modelled = run_modelers(&stage.modelers, folder, model, problems);
+    problems.absorb(modelled);
+    let is_read = domain_size.is_some_and(|domain_size| {
+        let imported = import(solver, root, folder, model, problems);
+        let imported = imported.and_then(|()| check_dimensions(model.root(root)?, domain_size));
+        problems.absorb(imported).is_some()
+    });
+    let materials = if is_read { import_materials(solver, root, folder, model, problems) } else { Ok(()) };
+    [is_read, problems.absorb(materials).is_some() && is_read && solver.is_whole]
 }
 
 /// What a stage reads: meshes and materials; deck and tables.

@@ -77,13 +77,18 @@ impl TimeStepping {
     }
 
     /// Steps from `time` to `end`, where they can be counted.
-    pub fn count(&self, mut time: f64, end: f64) -> Option<usize> {
-        let mut steps = 0;
-        while time < end && steps < MOST_COUNTED {
-            time = self.target(time, self.next(time).ok()?, end);
-            steps += 1;
+    pub fn count(&self, time: f64, end: f64) -> Option<usize> {
+        self.times(time, end).map(|times| times.len() - 1)
+    }
+
+    /// `time` and the ends of the steps from there to `end`, where they can be counted.
+    pub fn times(&self, time: f64, end: f64) -> Option<Vec<f64>> {
+        let mut times = vec![time];
+        while times[times.len() - 1] < end && times.len() <= MOST_COUNTED {
+            let time = times[times.len() - 1];
+            times.push(self.target(time, self.next(time).ok()?, end));
         }
-        (time >= end).then_some(steps)
+        (times[times.len() - 1] >= end).then_some(times)
     }
 
     /// Length of the step that begins at `time`.

@@ -2,6 +2,7 @@
 
 use super::deck::{listed, unread_key};
 use super::solver::SolverExtensionEntry;
+use super::time_stepping::TimeStepping;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::io::MeshFormatEntry;
@@ -10,7 +11,7 @@ use crate::registry;
 use crate::strategies::LinearSolverEntry;
 
 /// Objects of a deck that no registered settings check, with the keys that are read there, or that need no word.
-const OBJECTS: [(&str, &[&str]); 4] = [
+const OBJECTS: [(&str, &[&str]); 3] = [
     (
         "problem_data",
         &[
@@ -41,7 +42,6 @@ const OBJECTS: [(&str, &[&str]); 4] = [
             "perform_partitioning",
         ],
     ),
-    ("solver_settings.material_import_settings", &["materials_filename"]),
     (
         "solver_settings.linear_solver_settings",
         &[
@@ -88,7 +88,7 @@ const OF_PROCESS: [&str; 9] = [
 ];
 
 /// Keys that nothing reads, and intervals outside the times of the run.
-pub(super) fn warn_of_unheeded(deck: &Node, times: Option<(f64, f64)>, report: &mut Report) {
+pub(super) fn warn_of_unheeded(deck: &Node, times: Option<((f64, f64), &TimeStepping)>, report: &mut Report) {
     for (path, known) in OBJECTS {
         let Some(object) = deck.get_path(path) else { continue };
         let Some(own) = own_settings(object) else { continue };
@@ -97,9 +97,11 @@ pub(super) fn warn_of_unheeded(deck: &Node, times: Option<(f64, f64)>, report: &
     }
     let processes = listed(deck, &mut Report::new());
     processes.iter().for_each(|process| warn_of_keys(process, "a process", &OF_PROCESS, report));
-    let Some((start, end)) = times.filter(|(start, end)| end > start) else { return };
+    let Some(((start, end), stepping)) = times.filter(|((start, end), _)| end > start) else { return };
+    let steps = stepping.times(start, end);
     for node in processes.iter().filter_map(|process| process.get_path("Parameters.interval")) {
-        let Ok(Interval { begin, end: last }) = Interval::from_node(node) else { continue };
+        let Ok(interval) = Interval::from_node(node) else { continue };
+        let Interval { begin, end: last } = interval;
         let problem = if last < begin {
             let fact = format!("the interval {node} ends before it begins: the process never acts");
             Diagnostic::warning("interval-reversed", fact).remedy("write the earlier time first")
@@ -107,6 +109,11 @@ pub(super) fn warn_of_unheeded(deck: &Node, times: Option<(f64, f64)>, report: &
             let fact = format!("the interval {node} is outside of the run, {start} to {end}: the process never acts");
             Diagnostic::note("interval-outside", fact)
                 .remedy("nothing to do where a run is shorter than its deck is for")
+        } else if let Some(steps) = &steps
+            && !steps.iter().any(|time| interval.contains(*time))
+        {
+            let fact = format!("no step of the run ends in the interval {node}: the process never acts");
+            Diagnostic::warning("interval-outside", fact).remedy("shorten the steps, or widen the interval")
         } else {
             continue;
         };
@@ -144,16 +151,18 @@ pub(super) fn check_tolerances(solver: &Node, report: &mut Report) {
     for member in solver.as_object().into_iter().flat_map(|object| object.iter()) {
         check_tolerances(&member.node, report);
         let (key, Some(value)) = (&member.key, member.node.as_f64()) else { continue };
-        if !key.ends_with("_tolerance") {
+        let (is_relative, is_linear) = (key.ends_with("relative_tolerance"), key == "tolerance");
+        if !key.ends_with("_tolerance") && !is_linear {
             continue;
         }
-        let why = match value {
-            _ if value < 0.0 => "nothing is below it",
-            _ if value >= 1.0 && key.ends_with("relative_tolerance") => "every first iterate meets it",
+        let (make, why): (fn(&'static str, String) -> Diagnostic, _) = match value {
+            _ if value < 0.0 => (Diagnostic::error, "nothing is below it"),
+            _ if value >= 1.0 && is_relative => (Diagnostic::error, "every first iterate meets it"),
+            _ if value >= 1.0 && is_linear => (Diagnostic::error, "no solve would begin"),
+            _ if value == 0.0 && is_relative => (Diagnostic::warning, "steps iterate until only round-off is left"),
             _ => continue,
         };
-        let fact = format!("{key:?} is {value}: {why}");
-        let problem = Diagnostic::error("invalid-tolerance", fact).at(solver.key_place(key));
+        let problem = make("invalid-tolerance", format!("{key:?} is {value}: {why}")).at(solver.key_place(key));
         report.push(problem.remedy("write a number between 0 and 1, e.g. 1e-4"));
     }
 }

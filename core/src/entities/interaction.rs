@@ -147,6 +147,11 @@ pub trait Interaction: Send + Sync {
         Vec::new()
     }
 
+    /// Warnings of what has not happened in any step, asked for once after the last.
+    fn last_messages(&self, _part: &ModelPart) -> Vec<Diagnostic> {
+        Vec::new()
+    }
+
     /// Its blocks and unknowns, where it has any.
     fn coupling(&self) -> Option<&dyn Coupling> {
         None

@@ -40,6 +40,37 @@ pub fn read_mesh(path: &Path, part: &mut ModelPart) -> Result<Vec<Diagnostic>> {
     Ok(warnings)
 }
 
+/// The names of sub model parts of an mdpa file, as parts with nothing in them; `None` where there is no such
+/// file, or it is not whole.
+pub fn names_of_parts(path: &Path) -> Option<BTreeMap<String, SubPart>> {
+    let text = std::fs::read(path).ok()?;
+    let text = String::from_utf8_lossy(&text);
+    let mut open = vec![SubPart::new("")];
+    let mut blocks = 0_i64;
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        match words.clone().next() {
+            Some("Begin") => blocks += 1,
+            Some("End") => blocks -= 1,
+            _ => {}
+        }
+        match (words.next(), words.next(), words.next()) {
+            (Some("Begin"), Some("SubModelPart"), Some(name)) if open.len() <= mdpa::DEPTH => {
+                open.push(SubPart::new(name))
+            }
+            (Some("End"), Some("SubModelPart"), _) if open.len() > 1 => close(&mut open),
+            _ => {}
+        }
+    }
+    (blocks == 0 && open.len() == 1).then(|| open.swap_remove(0).children)
+}
+
+/// Puts the last part into the one before it.
+fn close(open: &mut Vec<SubPart>) {
+    let done = open.pop().expect("a part is open");
+    open.last_mut().expect("the whole is open").children.insert(done.name.clone(), done);
+}
+
 /// Reference cell and space of a geometry by its name, as `Quadrilateral3D4`.
 pub fn shape_of_geometry(name: &str) -> Option<(Shape, usize)> {
     let kinds = [

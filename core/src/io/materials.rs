@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::variables::{composed_law, kind_of, last_of_path, law_name, unknown_variable, without_effect};
-use crate::diagnostics::{Diagnostic, Error, Place, Report, Result};
+use crate::diagnostics::{Diagnostic, Error, Place, Report, Result, did_you_mean};
 use crate::model::{ModelPart, Properties, PropertyValue, Table, VariableKind};
 use crate::parameters::{Document, Node};
 
@@ -42,6 +42,7 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
     let mut report = Report::new();
     let mut seen: Vec<String> = Vec::new();
     let mut ids: BTreeMap<usize, Place> = BTreeMap::new();
+    warn_of_keys(root, "the materials file", &["properties"], &mut report);
     for item in root.require("properties")?.array()? {
         let Some((mut name, id)) = report.absorb(head(item)) else { continue };
         if !is_part_of(&name, &part.name)
@@ -83,6 +84,8 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
 
 /// Material and sub-properties of one entry.
 fn read_item(item: &Node, properties: &mut Properties, domain_size: usize, report: &mut Report) {
+    let known = ["model_part_name", "properties_id", "Material", "sub_properties"];
+    warn_of_keys(item, "a material", &known, report);
     if let Some(material) = item.get("Material") {
         read_material(material, properties, domain_size, report);
     }
@@ -98,6 +101,19 @@ fn read_item(item: &Node, properties: &mut Properties, domain_size: usize, repor
         let fact = format!("the law of properties {} does not use sub-properties", properties.id);
         let remedy = "laws of mixtures do: ParallelRuleOfMixturesLaw3D or 2D";
         report.push(Diagnostic::warning("unused-key", fact).at(subs.place()).remedy(remedy));
+    }
+}
+
+/// Warns of keys of `object` that nothing reads; those that begin with an underscore or "comment" are words to readers.
+fn warn_of_keys(object: &Node, name: &str, known: &[&str], report: &mut Report) {
+    let own = object.as_object().into_iter().flat_map(|object| object.in_source_order());
+    let is_remark = |key: &str| key.starts_with('_') || key.to_ascii_lowercase().starts_with("comment");
+    for member in own.filter(|member| !known.contains(&member.key.as_str()) && !is_remark(&member.key)) {
+        let remedy = did_you_mean(&member.key, known.iter().copied());
+        let remedy = remedy.unwrap_or_else(|| format!("read are: {}", known.join(", ")));
+        let fact = format!("nothing reads {:?} of {name}", member.key);
+        let warning = Diagnostic::warning("unknown-key-ignored", fact).at(object.key_place(&member.key));
+        report.push(warning.remedy(remedy));
     }
 }
 
@@ -130,6 +146,8 @@ fn misplaced(name: &str, seen: &[String], part: &ModelPart) -> Option<Diagnostic
 }
 
 fn read_material(material: &Node, properties: &mut Properties, domain_size: usize, report: &mut Report) {
+    let known = ["name", "constitutive_law", "Variables", "Tables", "accessors", "sub_properties"];
+    warn_of_keys(material, "\"Material\"", &known, report);
     if let Some(given) = material.get("constitutive_law")
         && let Some(law) = given.get("name")
         && let Some(name) = report.absorb(law.str())
@@ -144,9 +162,17 @@ fn read_material(material: &Node, properties: &mut Properties, domain_size: usiz
             Err(problem) => report.push(problem.at(law.place())),
         }
     }
-    for member in
-        material.get("constitutive_law").and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order())
-    {
+    let law = material.get("constitutive_law");
+    for member in law.and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order()) {
+        let known = ["name", "yield_surface", "plastic_potential"];
+        if member.node.as_array().is_none()
+            && let Some(law) = law
+            && !known.contains(&member.key.as_str())
+        {
+            let fact = format!("nothing reads {:?} of \"constitutive_law\"", member.key);
+            let warning = Diagnostic::warning("unknown-key-ignored", fact).at(law.key_place(&member.key));
+            report.push(warning.remedy(format!("read are: {}, and lists of numbers", known.join(", "))));
+        }
         if let Some(list) = member.node.as_array()
             && let Some(numbers) = report.absorb(list.iter().map(Node::f64).collect())
         {

@@ -13,7 +13,7 @@ mod tests;
 pub(crate) mod variables;
 
 pub use container::{SavedFile, write_saved};
-pub use import::{import, read_mesh, shape_of_geometry};
+pub use import::{import, names_of_parts, read_mesh, shape_of_geometry};
 pub use materials::{apply_materials, read_materials, read_materials_of};
 pub use mesh_format::{MeshFormatEntry, MeshReader, MeshWriter, format_of, read_mesh_as};
 pub use outputs::{Claim, FileUse, check_files, of_series};

@@ -56,7 +56,7 @@ impl Merger<'_> {
         insert_at(user, new, node, member.key_position);
     }
 
-    /// The user's object completed with defaults; what does not fit is left out and reported.
+    /// The user's object completed with defaults, which also take the place of what does not fit and is reported.
     pub(super) fn merge(&mut self, user: &Node, defaults: &Node, name: &str) -> Node {
         let (Some(given), Some(known)) = (user.as_object(), defaults.as_object()) else { return user.clone() };
         if known.is_empty() {
@@ -66,9 +66,8 @@ impl Merger<'_> {
         for member in given.in_source_order() {
             match known.get(&member.key) {
                 Some(default) => {
-                    if let Some(node) = self.fit(&member.node, default, &format!("{name}.{}", member.key)) {
-                        members.push(Member { node, ..member.clone() });
-                    }
+                    let fit = self.fit(&member.node, default, &format!("{name}.{}", member.key));
+                    members.push(Member { node: fit.unwrap_or_else(|| default.clone()), ..member.clone() });
                 }
                 None => self.unknown(member, known, name),
             }

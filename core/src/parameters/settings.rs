@@ -19,6 +19,13 @@ impl Settings {
     /// [`Defaults::lenient`] (`unknown-key-ignored`); other codes are `wrong-type`, `missing-key` and, as warnings,
     /// `deprecated-key` and `key-without-effect`.
     pub fn validate(user: &Node, defaults: &Defaults, report: &mut Report) -> Option<Self> {
+        Self::complete(user, defaults, report).and_then(|(settings, is_sound)| is_sound.then_some(settings))
+    }
+
+    /// As [`Settings::validate`], where defaults take the place of what does not fit: whether all fits, too.
+    ///
+    /// `None` when the settings are no object.
+    pub fn complete(user: &Node, defaults: &Defaults, report: &mut Report) -> Option<(Self, bool)> {
         let mut user = user.clone();
         if user.as_object().is_none() {
             let fact = format!("the settings of {} must be an object, found {}", defaults.name, user.value.kind());
@@ -37,11 +44,11 @@ impl Settings {
             }
         }
         let node = merger.merge(&user, &defaults.node, &defaults.name);
-        if !merger.failed {
+        let is_sound = !merger.failed;
+        if is_sound {
             warn_without_effect(&user, defaults, report);
-            return Some(Self { name: defaults.name.clone(), node });
         }
-        None
+        Some((Self { name: defaults.name.clone(), node }, is_sound))
     }
 
     /// [`Settings::validate`] for one object alone, with its warnings.

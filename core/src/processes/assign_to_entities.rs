@@ -170,9 +170,8 @@ impl AssignToEntities {
             let kind = table.kinds[*first as usize].name;
             return Ok(Some(format!("no condition of {path} takes {names}; the first is a {kind}")));
         }
-        let is_idle = |c: &EntityComponent| matches!(c.value, ScalarValue::Number(number) if number == 0.0);
         let out_of_plane = |c: &EntityComponent| c.variable.component == Some(2) && part.info.domain_size == 2;
-        let acts = self.components.iter().filter(|c| !is_idle(c));
+        let acts = self.components.iter().filter(|c| !c.value.is_zero());
         if acts.clone().count() > 0 && acts.clone().all(out_of_plane) {
             return Ok(Some(format!("{names} of {path} has a component out of the plane only")));
         }
@@ -181,7 +180,7 @@ impl AssignToEntities {
 }
 
 /// Whether conditions of any kind are loaded by that variable.
-fn is_load(name: &str) -> bool {
+pub(super) fn is_load(name: &str) -> bool {
     let kinds = registry::all::<ConditionEntry>();
     kinds.iter().any(|kind| kind.loads.is_some_and(|loads| loads.contains(&name)))
 }

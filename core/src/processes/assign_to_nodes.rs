@@ -4,6 +4,7 @@
 //! step it is released on all nodes of the part. Between steps all such unknowns are therefore free, a later process on
 //! the same unknown wins, and fixities of the mesh file on the same unknown last one step only.
 
+use super::assign_to_entities::is_load;
 use super::local_axes::LocalAxes;
 use super::prescription::Prescription;
 use super::process::Process;
@@ -92,6 +93,28 @@ impl AssignToNodes {
         Ok(())
     }
 
+    /// Why it does nothing, where that is so.
+    fn idle(&self, part: &ModelPart) -> Result<Option<String>> {
+        let Target { path, process, .. } = &self.target;
+        if self.target.selection(&part.tree)?.nodes.is_empty() && part.share.is_none() {
+            return Ok(Some(format!("{path} has no nodes that {process} could act on")));
+        }
+        if self.components.iter().all(|component| component.value.is_none() && !component.fixed) {
+            return Ok(Some(format!("{process} on {path} gives no component a value, and fixes none")));
+        }
+        let acts = |c: &&NodalComponent| c.value.as_ref().is_some_and(|value| !value.is_zero());
+        let out_of_plane = |c: &NodalComponent| {
+            let name = c.variable.column;
+            c.variable.component == Some(2) && part.info.domain_size == 2 && (moves(name) || is_load(name))
+        };
+        let mut of_value = self.components.iter().filter(acts).peekable();
+        if of_value.peek().is_some() && of_value.all(out_of_plane) {
+            let name = self.components[0].variable.column;
+            return Ok(Some(format!("{name} of {path} has a component out of the plane only")));
+        }
+        Ok(None)
+    }
+
     /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.
     fn fixed_in_vain(&self, dofs: &DofTable) -> Option<Diagnostic> {
         let solved = |column: &str| moves(column) || dofs.variables().any(|variable| variable.column == column);
@@ -117,9 +140,13 @@ impl Process for AssignToNodes {
         Ok(())
     }
 
-    fn check(&self, _model: &Model, system: &System, warnings: &mut Report) -> Result<()> {
+    fn check(&self, model: &Model, system: &System, warnings: &mut Report) -> Result<()> {
         if let Some(warning) = self.fixed_in_vain(&system.dofs) {
             warnings.push(warning);
+        }
+        if let Some(fact) = self.idle(model.root(&self.target.path)?)? {
+            let problem = Diagnostic::warning("acts-on-nothing", fact).at(self.target.place.clone());
+            warnings.push(problem.remedy("name the part and the components that are meant, or remove the process"));
         }
         Ok(())
     }

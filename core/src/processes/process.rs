@@ -58,7 +58,7 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// Writes the state at the start, once every process is ready; not of a run that goes on.
+    /// Takes the state at the start, once every process is ready, to be written once a step is done; not of a run that goes on.
     ///
     /// # Errors
     /// A file that cannot be written.

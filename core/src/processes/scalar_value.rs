@@ -69,6 +69,15 @@ impl ScalarValue {
         }
     }
 
+    /// Whether it is zero everywhere and always, as far as numbers say.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::Number(number) => *number == 0.0,
+            Self::Product(factors) => factors.iter().any(Self::is_zero),
+            Self::Expression(_) | Self::Table(_) => false,
+        }
+    }
+
     /// Whether the value depends on the position.
     pub fn uses_space(&self) -> bool {
         match self {

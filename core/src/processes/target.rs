@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use crate::diagnostics::{Diagnostic, Place, Result, did_you_mean};
+use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
 use crate::model::{Model, Named, ScalarVariable, SubPart, VariableKind, named, variables};
-use crate::parameters::{Interval, Settings};
+use crate::parameters::{Defaults, Interval, Node, Settings};
+use crate::registry::Entry;
 
 /// What most processes share: a part of the model, a time span, and the place in the deck to blame.
 #[derive(Debug, Clone)]
@@ -61,6 +62,24 @@ impl Target {
             .at(self.place.clone())
             .remedy("check the function there, e.g. for a division by zero")
     }
+}
+
+/// What else is wrong with the parameters of a process that could not be made: the part and the variable that they name.
+pub fn other_problems(entry: &Entry, parameters: &Node, model: &Model) -> Vec<Diagnostic> {
+    let mut problems = Report::new();
+    let Ok(defaults) = Defaults::parse(entry.name, entry.defaults) else { return Vec::new() };
+    let Some((settings, _)) = Settings::complete(parameters, &defaults.lenient(), &mut Report::new()) else {
+        return Vec::new();
+    };
+    let given = |key: &str| parameters.get(key).and_then(Node::as_str).filter(|name| !name.is_empty());
+    if let Some(path) = given("model_part_name") {
+        let found = model.root(path).and_then(|root| root.part(path));
+        problems.absorb(found.map_err(|e| e.at(&settings.key_place("model_part_name"))));
+    }
+    if let Some(name) = given("variable_name").filter(|name| named(name).is_none()) {
+        problems.push(unknown_variable(&settings, name, "variable"));
+    }
+    problems.diagnostics().to_vec()
 }
 
 fn unknown_variable(settings: &Settings, name: &str, wanted: &str) -> Diagnostic {

@@ -21,6 +21,7 @@ use super::contact_state::{ContactState, RememberedContact};
 use super::decision::slip;
 use super::friction;
 use super::impact::near_nodes;
+use super::meetings::Meetings;
 use super::outer_loops::OuterLoops;
 use super::pair_states::{heat, joins, pair_states};
 use super::points;
@@ -47,6 +48,7 @@ pub struct ContactInteraction {
     contact: ContactState,
     set: SetStage,
     loops: OuterLoops,
+    meetings: Meetings,
     acting: bool,
     /// How explicit steps stiffen the penalty.
     growth: Option<Growth>,
@@ -64,6 +66,7 @@ struct SavedContact {
     contact: RememberedContact,
     set: SetStage,
     loops: OuterLoops,
+    meetings: Meetings,
     bearable: BearablePenalty,
     near_nodes: Vec<u32>,
     warned_of_friction: bool,
@@ -88,6 +91,7 @@ impl ContactInteraction {
             contact: ContactState::new(settings, part)?,
             set: SetStage::default(),
             loops: OuterLoops::default(),
+            meetings: Meetings::default(),
             acting: true,
             growth: None,
             bearable: BearablePenalty::default(),
@@ -174,6 +178,9 @@ impl Interaction for ContactInteraction {
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.loops.accept(part, &mut self.contact);
+        if self.acting {
+            self.meetings.accept(&self.contact.pairing.interfaces, &self.contact.states);
+        }
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         self.contact.clear_inactive(part, &self.contact.states.slaves());
         let (family, clears) = (self.contact.setup.settings.family, self.contact.setup.settings.clear_inactive);
@@ -200,6 +207,7 @@ impl Interaction for ContactInteraction {
             contact: self.contact.state(),
             set: self.set.clone(),
             loops: self.loops.clone(),
+            meetings: self.meetings.clone(),
             bearable: self.bearable.clone(),
             near_nodes: self.near_nodes.clone(),
             warned_of_friction: self.warned_of_friction,
@@ -207,7 +215,8 @@ impl Interaction for ContactInteraction {
     }
 
     fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
-        let SavedContact { contact, set, loops, bearable, near_nodes, warned_of_friction } = state.take()?;
+        let SavedContact { contact, set, loops, meetings, bearable, near_nodes, warned_of_friction } = state.take()?;
+        self.meetings = meetings;
         self.contact.resume(part, contact)?;
         check_nodes(part.nodes.len(), near_nodes.iter().copied())?;
         loops.check(part.nodes.len())?;
@@ -265,6 +274,11 @@ impl Interaction for ContactInteraction {
 
     fn messages(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.contact.messages)
+    }
+
+    fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
+        let settings = &self.contact.setup.settings;
+        self.meetings.warnings(part, &self.contact.pairing.interfaces, (&settings.parts, &settings.slaves))
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {

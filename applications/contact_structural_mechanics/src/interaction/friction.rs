@@ -61,12 +61,16 @@ pub(super) fn prepare(
     let mut is_given = false;
     let law = settings.law;
     let written = part.nodes.values.values(law.variable, 0);
+    let mut overridden: Option<(&str, f64, usize, f64)> = None;
     for interface in interfaces {
         let listed = settings.coefficients.get(&interface.key).copied().filter(|_| law.by_coefficients);
         is_given |= listed.is_some();
         let given = listed.filter(|coefficient| *coefficient > 0.0);
         for facet in &interface.facets {
             let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable.name()));
+            if let (Some(own), Some(given)) = (own, given.filter(|given| own != Some(*given))) {
+                overridden.get_or_insert((&interface.key, given, facet.properties, own));
+            }
             for &node in &facet.nodes {
                 let nodal = written.get(node as usize).copied().filter(|number| *number > 0.0);
                 let coefficient = own.or(given).or(nodal).unwrap_or(0.0);
@@ -82,6 +86,14 @@ pub(super) fn prepare(
                 *count += 1;
             }
         }
+    }
+    if let Some((pair, given, id, own)) = overridden.filter(|_| friction == Friction::Coulomb) {
+        let name = law.variable.name();
+        let fact = format!(
+            "\"friction_coefficients\" gives pair \"{pair}\" {given}, {name} of properties {id} is {own}: that of the properties counts"
+        );
+        let remedy = "take one of the two out";
+        messages.push(Diagnostic::warning("friction-overridden", fact).remedy(remedy));
     }
     let column = part.nodes.values.values_mut(law.variable, 0);
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {

@@ -138,7 +138,7 @@ fn have_crossed(part: &ModelPart, slave: &Facet, master: &Facet) -> bool {
 }
 
 /// Where a node was when the step began.
-fn step_start(part: &ModelPart, node: u32) -> [f64; 3] {
+pub(super) fn step_start(part: &ModelPart, node: u32) -> [f64; 3] {
     let initial = part.nodes.initial[node as usize];
     let Some(field) = part.nodes.history.get(DISPLACEMENT.name()) else { return initial };
     add(initial, field.vector(1.min(field.levels.len() - 1), node as usize))

@@ -17,6 +17,7 @@ mod holding;
 mod impact;
 mod integration;
 mod late_pairs;
+mod meetings;
 mod mpc_friction;
 mod mpc_interaction;
 mod mpc_relation;
@@ -38,6 +39,7 @@ mod step_search;
 #[cfg(test)]
 mod tangent_tests;
 mod tying_interaction;
+mod unseen;
 mod uzawa;
 mod work;
 
@@ -48,6 +50,6 @@ pub use contact_settings::ContactSettings;
 pub use friction::FrictionSettings;
 pub use mpc_interaction::MpcInteraction;
 pub use mpc_relation::Weights;
-pub use mpc_settings::{MpcKind, MpcSettings};
+pub use mpc_settings::MpcSettings;
 pub use tying_interaction::{TyingInteraction, TyingSettings};
 pub use uzawa::UzawaSettings;

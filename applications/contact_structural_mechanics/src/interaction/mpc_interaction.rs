@@ -22,10 +22,11 @@ use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 use super::activation::{self, Start};
 use super::decision::resolved_length;
 use super::friction;
+use super::meetings::Meetings;
 use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_relation::{Hold, NodeRelation, can_follow};
 use super::mpc_relations::Relations;
-use super::mpc_settings::{MpcKind, MpcSettings};
+use super::mpc_settings::MpcSettings;
 use super::pair_states::{joins, pair_states, settle_all};
 use super::reach::Reach;
 use crate::active_set::SlipRule;
@@ -34,6 +35,7 @@ use crate::interface::{
     Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals, set_sides, sides, slave_nodes,
     warnings_of_pairs,
 };
+use crate::mpc_kind::MpcKind;
 use crate::pairs::{Friction, condition_name};
 use crate::slave_states::{Columns, SlaveState, SlaveStates};
 use crate::solver::UPDATE_EACH_ITERATION;
@@ -63,6 +65,7 @@ pub struct MpcInteraction {
     sided: bool,
     reach: Reach,
     warned_of_held: bool,
+    meetings: Meetings,
     messages: Vec<Diagnostic>,
 }
 
@@ -77,6 +80,7 @@ struct SavedMpc {
     steps_since_search: usize,
     sided: bool,
     warned_of_held: bool,
+    meetings: Meetings,
 }
 
 #[typetag::serde(name = "mpc_contact")]
@@ -117,6 +121,7 @@ impl MpcInteraction {
             sided: false,
             reach: Reach::default(),
             warned_of_held: false,
+            meetings: Meetings::default(),
         })
     }
 
@@ -338,6 +343,9 @@ impl Interaction for MpcInteraction {
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.warn_of_held(part);
+        if self.acting {
+            self.meetings.accept(&self.interfaces, &self.states);
+        }
         Ok(())
     }
 
@@ -351,6 +359,7 @@ impl Interaction for MpcInteraction {
             steps_since_search: self.steps_since_search,
             sided: self.sided,
             warned_of_held: self.warned_of_held,
+            meetings: self.meetings.clone(),
         }))
     }
 
@@ -363,7 +372,7 @@ impl Interaction for MpcInteraction {
         self.relations = saved.relations;
         (self.friction.directions, [self.version, self.friction.graph]) = (saved.directions, saved.versions);
         (self.steps_since_search, self.sided) = (saved.steps_since_search, saved.sided);
-        self.warned_of_held = saved.warned_of_held;
+        (self.warned_of_held, self.meetings) = (saved.warned_of_held, saved.meetings);
         Ok(())
     }
 
@@ -402,6 +411,10 @@ impl Interaction for MpcInteraction {
 
     fn messages(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.messages)
+    }
+
+    fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
+        self.meetings.warnings(part, &self.interfaces, (&self.settings.parts, &self.settings.slaves))
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {

@@ -7,18 +7,8 @@ use zelus_core::parameters::Interval;
 use super::friction::FrictionSettings;
 use super::mpc_relation::Weights;
 use crate::mortar::SegmentationSettings;
+use crate::mpc_kind::MpcKind;
 use crate::search::SearchSettings;
-
-/// What constraints enforce.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MpcKind {
-    /// Contact without friction.
-    Frictionless,
-    /// Contact with Coulomb friction.
-    Frictional,
-    /// All overlaps are tied for good.
-    MeshTying,
-}
 
 /// What a deck chooses about contact by constraints.
 pub struct MpcSettings {

@@ -11,6 +11,7 @@ use super::impact::coarse_impact;
 use super::penalty_ramp::PenaltyRamp;
 use super::set_stage::SetStage;
 use super::step_search::StepSearch;
+use super::unseen::Unseen;
 use super::uzawa::Uzawa;
 use super::work::ContactWork;
 use crate::pairs::Multiplier;
@@ -36,6 +37,9 @@ pub(super) struct OuterLoops {
     impact_error: f64,
     /// Work of contact on bodies in motion.
     pub work: ContactWork,
+    /// Looks for what pairs do not see.
+    #[serde(skip)]
+    unseen: Unseen,
 }
 
 impl OuterLoops {
@@ -122,6 +126,9 @@ impl OuterLoops {
         if let Some(why) = too_deep(part, &contact.states, contact.setup.resolution.length) {
             return Ok(Outer::Failed(why));
         }
+        if let Some(why) = self.unseen.why(part, &contact.pairing.interfaces, &contact.states) {
+            return Ok(Outer::Failed(why));
+        }
         if part.info.is(ENSURE_CONTACT) && contact.states.count_active() == 0 {
             return Err(zelus_core::Error::NotConverged(
                 "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
@@ -158,7 +165,7 @@ impl OuterLoops {
 
     /// Whether the next attempt of a step that fails once more goes another way.
     pub(super) fn has_alternative(&self, contact: &ContactState) -> bool {
-        contact.setup.ramps_friction() && self.friction_ramp.comes_next()
+        self.unseen.depends_on_step || contact.setup.ramps_friction() && self.friction_ramp.comes_next()
     }
 }
 

@@ -11,7 +11,7 @@ use crate::interface::{Interface, Roles, notes_of_bodies};
 use crate::node_state::NodeState;
 use crate::search::{facing, settle};
 use crate::slave_states::{SlaveState, SlaveStates};
-use crate::solver::{ADJUST_INITIAL, ADJUST_TOLERANCE};
+use crate::solver::{ADJUST_INITIAL, ADJUST_TOLERANCE, LARGEST_PENETRATION};
 
 /// Parts of each pair of a deck by key: all of them, and those on the slave side.
 pub(super) type Parts<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
@@ -77,7 +77,8 @@ pub(super) fn joins(part: &ModelPart, interfaces: &[Interface], tied: bool, fric
 /// Before the first step: moves slave nodes onto their masters where the deck asks for it, or tells which lie inside them.
 pub(super) fn settle_all(part: &mut ModelPart, interfaces: &[Interface], parts: Parts<'_>) -> Vec<Diagnostic> {
     let tolerance = part.info.is(ADJUST_INITIAL).then(|| part.info.value_or(ADJUST_TOLERANCE, 0.0));
+    let refuses = part.info.value_or(LARGEST_PENETRATION, 0.0) > 0.0;
     let mut out = notes_of_bodies(part, parts.0);
-    out.extend(interfaces.iter().filter_map(|of| settle(part, of, &name(&of.key, parts), tolerance)));
+    out.extend(interfaces.iter().filter_map(|of| settle(part, of, &name(&of.key, parts), tolerance, refuses)));
     out
 }

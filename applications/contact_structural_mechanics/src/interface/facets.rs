@@ -1,6 +1,6 @@
 //! The facets of a contact interface, from the parts a deck names or from the skin of the bodies.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::flags::{MASTER, SLAVE};
 use crate::mortar::carries_contact;
@@ -9,7 +9,8 @@ use zelus_core::diagnostics::unfit;
 
 use super::facet::{Facet, FacetSource, Roles};
 use rustc_hash::FxHashMap;
-use zelus_core::diagnostics::Diagnostic;
+use zelus_core::analysis::INCOMPLETE;
+use zelus_core::diagnostics::{Diagnostic, Report};
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::flags::INTERFACE;
@@ -124,6 +125,10 @@ pub fn interfaces(
     parts: &BTreeMap<String, Vec<String>>,
     slaves: &BTreeMap<String, Vec<String>>,
 ) -> Result<Vec<Interface>> {
+    check_parts(part, parts, slaves)?;
+    if part.info.is(INCOMPLETE) {
+        return Ok(Vec::new());
+    }
     let faces = boundary_faces(part);
     let mut named: Vec<(&String, &Vec<String>)> = parts.iter().filter(|(_, list)| !list.is_empty()).collect();
     let zero = "0".to_owned();
@@ -152,7 +157,7 @@ pub fn interfaces(
                     .into());
             }
         }
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         found.retain(|f| {
             let mut sorted = f.nodes.clone();
             sorted.sort_unstable();
@@ -168,6 +173,22 @@ pub fn interfaces(
     }
     assign_roles(part, parts, slaves, &mut out)?;
     Ok(out)
+}
+
+/// Refuses parts that are not there.
+///
+/// # Errors
+/// All of them.
+pub fn check_parts(
+    part: &ModelPart,
+    parts: &BTreeMap<String, Vec<String>>,
+    slaves: &BTreeMap<String, Vec<String>>,
+) -> Result<()> {
+    let mut problems = Report::new();
+    for name in parts.values().chain(slaves.values()).flatten() {
+        problems.absorb(part.part(name));
+    }
+    problems.finish().map(|_| ())
 }
 
 fn assign_roles(
@@ -215,6 +236,13 @@ fn assign_roles(
 /// What is said of contact parts that hold elements: their whole skin is taken, or the conditions that they hold beside.
 pub fn notes_of_bodies(part: &ModelPart, parts: &BTreeMap<String, Vec<String>>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
+    if parts.values().all(Vec::is_empty) {
+        let fact =
+            "no contact part is named: the whole skin of the bodies is taken, and each search decides on the sides";
+        let remedy =
+            "name the surfaces that may touch in \"contact_model_part\" where that is not meant: it is faster, too";
+        out.push(Diagnostic::note("whole-skin", fact).remedy(remedy));
+    }
     for (key, name) in parts.iter().flat_map(|(key, list)| list.iter().map(move |name| (key, name))) {
         let Some(own) = part.part(name).ok().filter(|own| !own.elements.is_empty()) else { continue };
         let is_facet = |at: &&u32| part.conditions.kinds[**at as usize].cell.is_some_and(|shape| shape.dim() > 0);
@@ -240,6 +268,7 @@ pub fn warnings_of_pairs(slaves: &BTreeMap<String, Vec<String>>, interfaces: &[I
         let remedy = "use the keys of the pairs of contact parts";
         out.push(Diagnostic::warning("slaves-without-pair", fact).remedy(remedy));
     }
+    out.extend(mutual(interfaces));
     let mut first: BTreeMap<Vec<u32>, &str> = BTreeMap::new();
     let mut twice: BTreeMap<[&str; 2], usize> = BTreeMap::new();
     for interface in interfaces {
@@ -256,6 +285,36 @@ pub fn warnings_of_pairs(slaves: &BTreeMap<String, Vec<String>>, interfaces: &[I
         let remedy =
             "a node has one multiplier: list both masters in one pair, or make this side the master of one of them";
         out.push(Diagnostic::warning("slave-in-two-pairs", fact).remedy(remedy));
+    }
+    out
+}
+
+/// Warnings of pairs in which each side is the slave of the other.
+fn mutual(interfaces: &[Interface]) -> Vec<Diagnostic> {
+    let facets = |interface: &Interface, role: Roles| -> BTreeSet<Vec<u32>> {
+        let own = interface.facets.iter().filter(|facet| facet.role == role).map(|facet| {
+            let mut nodes = facet.nodes.clone();
+            nodes.sort_unstable();
+            nodes
+        });
+        own.collect()
+    };
+    let sides: Vec<[BTreeSet<Vec<u32>>; 2]> =
+        interfaces.iter().map(|of| [Roles::Slave, Roles::Master].map(|role| facets(of, role))).collect();
+    let mut out = Vec::new();
+    for (at, [slaves, masters]) in sides.iter().enumerate() {
+        for (other, [their_slaves, their_masters]) in sides.iter().enumerate().skip(at + 1) {
+            if slaves.is_disjoint(their_masters) || masters.is_disjoint(their_slaves) {
+                continue;
+            }
+            let fact = format!(
+                "in the pairs \"{}\" and \"{}\" each side is the slave of the other: two multipliers would hold one gap",
+                interfaces[at].key, interfaces[other].key
+            );
+            out.push(
+                Diagnostic::warning("mutual-pairs", fact).remedy("keep one of them, with the finer side as slave"),
+            );
+        }
     }
     out
 }

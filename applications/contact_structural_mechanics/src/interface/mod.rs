@@ -13,7 +13,7 @@ pub use bodies::{Bodies, Tractions};
 pub use contact_part::add_contact_part;
 pub use facet::{Facet, FacetSource, Positions, Roles};
 pub use facets::{
-    Interface, check_nodes, interfaces, notes_of_bodies, set_sides, sides, slave_nodes, warnings_of_pairs,
+    Interface, check_nodes, check_parts, interfaces, notes_of_bodies, set_sides, sides, slave_nodes, warnings_of_pairs,
 };
 pub use nodal_h::find_nodal_h;
 pub use normals::{Corner, NodalNormals, NormalPatches, nodal_normals};

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
-use zelus_core::Result;
-use zelus_core::analysis::EXPLICIT;
+use zelus_core::analysis::{EXPLICIT, INCOMPLETE};
+use zelus_core::diagnostics::Report;
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 use zelus_core::strategies::ARC_LENGTH;
+use zelus_core::{Error, Result};
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
@@ -21,7 +22,7 @@ use crate::formulations::{Augmentation, Nitsche, NitscheVariant, NormalVariation
 use crate::interaction::{
     AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, UzawaSettings,
 };
-use crate::interface::{AlmParameters, NodalNormals};
+use crate::interface::{AlmParameters, NodalNormals, check_parts};
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Family, find_family};
 use crate::penalty_adaptation::PenaltyRule;
@@ -161,9 +162,20 @@ fn interaction(
         Some(stem) => (stem, true),
         None => (whole.contact_type.as_str(), false),
     };
-    let named =
-        find_family(&format!("{}{stem}", families.name)).map_err(|d| d.at(settings.key_place("contact_type")))?;
+    let mut problems = Report::new();
+    let named = find_family(&format!("{}{stem}", families.name)).map_err(|d| d.at(settings.key_place("contact_type")));
+    let named = problems.absorb(named.map_err(Error::from));
     let part = request.model.root_mut(&whole.model_part_name)?;
+    let known = check_parts(part, &whole.contact_model_part, &whole.assume_master_slave);
+    problems.absorb(known.map_err(|error| error.at(&settings.place())));
+    problems.absorb(check_positive(
+        settings,
+        &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
+    ));
+    problems.absorb(check_search(settings));
+    problems.absorb(segmentation(settings));
+    problems.finish()?;
+    let named = named.expect("it is known");
     let family = match named.by_node {
         Some(by_node) if !whole.parameters.penalty_of_weighted_gaps => {
             if part.info.is(EXPLICIT) {
@@ -174,11 +186,6 @@ fn interaction(
         }
         _ => named,
     };
-    check_positive(
-        settings,
-        &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
-    )?;
-    check_search(settings)?;
     let keys: Option<FrictionKeys> =
         settings.node().get("frictional_law").is_some().then(|| settings.parse()).transpose()?;
     let friction = match &keys {
@@ -327,6 +334,7 @@ fn check_use(part: &ModelPart, family: &Family, settings: &Settings) -> Result<(
 fn check_variables(part: &ModelPart, family: &Family, settings: &Settings) -> Result<()> {
     match family.variables.iter().find(|(name, _)| !part.nodes.history.has(name)) {
         None => Ok(()),
+        Some(_) if part.info.is(INCOMPLETE) => Ok(()),
         Some((name, _)) => {
             let fact = format!(
                 "\"contact_type\" asks for {}, but the solver's \"mortar_type\" brings no {name}",

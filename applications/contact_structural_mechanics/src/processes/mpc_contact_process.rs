@@ -5,25 +5,16 @@ use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::Result;
-use zelus_core::diagnostics::did_you_mean;
-use zelus_core::parameters::{Interval, Settings};
+use zelus_core::parameters::Interval;
 use zelus_core::processes::{Process, ProcessRequest};
 use zelus_core::register;
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
-use crate::interaction::{FrictionSettings, MpcInteraction, MpcKind, MpcSettings, Weights};
+use crate::interaction::{FrictionSettings, MpcInteraction, MpcSettings, Weights};
+use crate::mpc_kind::{MpcKind, mpc_contact_type};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
-
-/// Names of `contact_type`, each also with the ending of [`UPDATED`].
-const TYPES: [(&str, MpcKind, bool); 4] = [
-    ("Frictionless", MpcKind::Frictionless, false),
-    ("Frictional", MpcKind::Frictional, false),
-    ("FrictionalPureSlip", MpcKind::Frictional, true),
-    ("MeshTying", MpcKind::MeshTying, false),
-];
-const UPDATED: &str = "WithNormalUpdate";
 
 #[derive(Debug, Deserialize)]
 struct Search {
@@ -46,24 +37,10 @@ struct Whole {
     search_parameters: Search,
 }
 
-fn contact_type(settings: &Settings) -> Result<(MpcKind, bool)> {
-    let name = settings.get_str("contact_type")?;
-    let stem = name.strip_suffix(UPDATED).unwrap_or(name);
-    if let Some(&(_, kind, pure_slip)) = TYPES.iter().find(|(known, ..)| *known == stem) {
-        return Ok((kind, pure_slip));
-    }
-    let known = TYPES.map(|(known, ..)| known);
-    let fact = format!("there is no contact type {name:?} by constraints");
-    Err(settings
-        .error("contact_type", "contact-type", fact)
-        .remedy(did_you_mean(name, known).unwrap_or_else(|| format!("use one of {}", known.join(", "))))
-        .into())
-}
-
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(without_computing_part)?;
     let whole: Whole = settings.parse()?;
-    let (kind, pure_slip) = contact_type(&settings)?;
+    let (kind, pure_slip) = mpc_contact_type(&settings)?;
     check_search(&settings)?;
     check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
     let law = friction_law(&settings, kind == MpcKind::Frictional, request)?;

@@ -2,6 +2,7 @@
 
 mod candidates;
 mod direct_check;
+mod inside;
 mod prediction;
 mod reach;
 mod self_contact;
@@ -10,6 +11,7 @@ mod tree;
 
 pub use candidates::{Candidate, GapCheck, SearchDistance, SearchSettings, WithinStep, candidates};
 pub use direct_check::touching_nodes;
+pub use inside::inside;
 pub use prediction::predicted_positions;
 pub use reach::{warn_of_late_pairs, warn_of_reach};
 pub use self_contact::assign_roles;

@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use super::direct_check::{distance_along, meets};
+use super::inside::inside;
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles, find_nodal_h};
 use crate::variables::NODAL_H;
@@ -17,8 +17,6 @@ const FACING: f64 = 0.1;
 const NEAR: f64 = 2.0;
 /// Depth in mesh sizes that goes without a word: facets of curved surfaces overlap by as much.
 const SILENT: f64 = 0.02;
-/// Share of a cell by which a point must be inside.
-const INSIDE: f64 = 1e-6;
 /// Distance in mesh sizes that is none.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -37,8 +35,15 @@ struct Place {
 /// What became of the slave nodes of an interface, named `name`, before the first step.
 ///
 /// Where `tolerance` is given, nodes whose distance is at most that many mesh sizes are moved onto the master, with their initial
-/// positions: without strain. Deeper ones, and all without it, are told. Collective.
-pub fn settle(part: &mut ModelPart, interface: &Interface, name: &str, tolerance: Option<f64>) -> Option<Diagnostic> {
+/// positions: without strain. Deeper ones, and all without it, are told; beyond a mesh size as an error where `refuses` holds.
+/// Collective.
+pub fn settle(
+    part: &mut ModelPart,
+    interface: &Interface,
+    name: &str,
+    tolerance: Option<f64>,
+    refuses: bool,
+) -> Option<Diagnostic> {
     if interface.open || part.info.step > 0 {
         return None;
     }
@@ -48,7 +53,8 @@ pub fn settle(part: &mut ModelPart, interface: &Interface, name: &str, tolerance
         return adjust(part, &places, name, tolerance);
     }
     let deep: Vec<&Place> = places.iter().filter(|at| at.distance < -SILENT * at.size).collect();
-    let mut inside = inside(part, &deep);
+    let points: Vec<_> = deep.iter().map(|at| (at.node, part.nodes.current[at.node as usize], at.size)).collect();
+    let mut inside = inside(part, &points);
     part.ranks.any_of(&mut inside);
     let deep: Vec<&Place> = deep.into_iter().zip(inside).filter_map(|(at, inside)| inside.then_some(at)).collect();
     let deepest = deep.iter().min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.node.cmp(&b.node)))?;
@@ -64,13 +70,16 @@ pub fn settle(part: &mut ModelPart, interface: &Interface, name: &str, tolerance
         -deepest.distance,
         -deepest.distance / deepest.size
     );
+    let is_lost = refuses && -deepest.distance > deepest.size;
+    let make = if is_lost { Diagnostic::error } else { Diagnostic::warning };
     let remedy = if -deepest.distance > deepest.size {
-        "move the bodies apart in the mesh: what lies in another body by more than an element may stay there, unseen by contact"
+        "move the bodies apart in the mesh: what lies in another body by more than an element may stay there, unseen by contact; \
+         \"largest_penetration\": 0 in \"contact_settings\" lets it run all the same"
     } else {
         "the first step pushes them out, which strains the bodies: leave it where a press fit is meant, else set \
          \"adjust_initial\": true in \"contact_settings\", or mend the mesh"
     };
-    Some(Diagnostic::warning("initial-penetration", fact).remedy(remedy))
+    Some(make("initial-penetration", fact).remedy(remedy))
 }
 
 fn adjust(part: &mut ModelPart, places: &[Place], name: &str, tolerance: f64) -> Option<Diagnostic> {
@@ -136,29 +145,4 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
         distance.is_finite().then_some(Place { node, master, normal, distance, size })
     };
     nodes.par_iter().zip(&normals).with_min_len(64).filter_map(place).collect()
-}
-
-/// Of each place, whether it is inside an element of this rank that the node is not part of.
-fn inside(part: &ModelPart, places: &[&Place]) -> Vec<bool> {
-    if places.is_empty() {
-        return Vec::new();
-    }
-    let cells: Vec<u32> = (0..part.elements.len() as u32)
-        .filter(|&at| part.elements.kinds[at as usize].cell.is_some_and(|shape| shape.dim() == part.info.domain_size))
-        .collect();
-    let corners = |at: u32| -> Vec<[f64; 3]> {
-        part.elements.nodes(at).iter().map(|&node| part.nodes.current[node as usize]).collect()
-    };
-    let tree = Tree::new(cells.iter().map(|&at| Bounds::of(&corners(at))).collect());
-    let is_inside = |place: &&Place| {
-        let x = part.nodes.current[place.node as usize];
-        tree.meeting(&Bounds::of(&[x])).into_iter().map(|near| cells[near as usize]).any(|at| {
-            let Some(shape) = part.elements.kinds[at as usize].cell else { return false };
-            !part.elements.nodes(at).contains(&place.node)
-                && local_coordinates(shape, &corners(at), x).is_some_and(|found| {
-                    shape.cell().contains(found.xi, INSIDE) && found.distance < INSIDE * place.size
-                })
-        })
-    };
-    places.par_iter().with_min_len(16).map(is_inside).collect()
 }

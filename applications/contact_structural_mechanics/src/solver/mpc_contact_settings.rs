@@ -4,6 +4,8 @@ use zelus_core::analysis::ExtensionDefinition;
 use zelus_core::analysis::SolverExtensionEntry;
 use zelus_core::register;
 
+use crate::mpc_kind::{MpcKind, mpc_contact_type};
+
 /// Mark of the step data: relations are made anew in every iteration.
 pub(crate) const UPDATE_EACH_ITERATION: &str = "UPDATE_EACH_NL_ITERATION";
 
@@ -14,7 +16,7 @@ register! { SolverExtensionEntry "mpc_contact_settings",
     build: ExtensionDefinition {
         variables: |settings| {
             let mut variables = vec![("NORMAL", 3), ("WEIGHTED_GAP", 1)];
-            if settings.get_str("contact_type")?.starts_with("Frictional") {
+            if mpc_contact_type(settings)?.0 == MpcKind::Frictional {
                 variables.push(("WEIGHTED_SLIP", 3));
             }
             Ok(variables)

@@ -8,7 +8,7 @@ use crate::model::Role;
 use crate::registry::instead_of;
 
 /// Sub model parts may be nested this deep.
-const DEPTH: usize = 100;
+pub const DEPTH: usize = 100;
 
 const PART_BLOCKS: [&str; 9] = [
     "SubModelPartData",

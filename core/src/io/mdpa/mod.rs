@@ -14,6 +14,7 @@ mod tests;
 mod tokens;
 mod writer;
 
+pub use blocks::DEPTH;
 pub use document::*;
 pub use reader::{EntityNames, read, read_bytes};
 pub use tokens::number_prefix;

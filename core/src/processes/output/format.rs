@@ -22,7 +22,9 @@ pub struct Shown<'a> {
     pub folder: &'a Path,
     /// Name of the pictures of one part.
     pub series: &'a str,
-    /// Step or time of this one.
+    /// Its time.
+    pub time: f64,
+    /// Step or time in its name.
     pub label: &'a str,
 }
 
@@ -136,7 +138,7 @@ impl OutputFormat for Vtu {
     fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
         let file = Self::write_file(shown)?;
         let steps = self.series.entry(shown.series.to_owned()).or_default();
-        steps.push((shown.part.info.time, file));
+        steps.push((shown.time, file));
         write_pvd(&shown.part.ranks, &shown.folder.join(format!("{}.pvd", shown.series)), steps)
     }
 

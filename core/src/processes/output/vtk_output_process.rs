@@ -11,8 +11,9 @@ use super::picture::Picture;
 use super::place::PartPath;
 use crate::assembly::System;
 use crate::diagnostics::{Error, Report, Result};
+use crate::io::results::Dataset;
 use crate::io::{FileUse, of_series};
-use crate::model::{Model, ModelPart, SubPart};
+use crate::model::{Model, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
@@ -23,6 +24,8 @@ struct VtkOutput {
     part: PartPath,
     control: OutputControl,
     picture: Picture,
+    /// The state at the start until the first step is done: results of an earlier run stay as long.
+    start: Vec<Drawn>,
     format: Box<dyn OutputFormat>,
     /// The same for the last iterate of a step that has failed.
     format_of_failure: Box<dyn OutputFormat>,
@@ -35,6 +38,14 @@ struct VtkOutput {
     postfix: String,
     decimals: usize,
     sub_parts: bool,
+}
+
+/// The picture of a part at a time.
+struct Drawn {
+    path: String,
+    data: Dataset,
+    time: f64,
+    label: String,
 }
 
 fn adapt(defaults: Defaults) -> Defaults {
@@ -57,6 +68,7 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
         part: PartPath::new(settings)?,
         control: OutputControl::new(settings, "")?,
         picture: Picture::new(settings, request.report)?,
+        start: Vec::new(),
         format: (format.build)(settings)?,
         format_of_failure: (format.build)(settings)?,
         folder,
@@ -78,36 +90,52 @@ impl VtkOutput {
         self.folder.with_file_name(format!("{}_last_iterate", name.to_string_lossy()))
     }
 
-    /// Writes the part, and its sub parts where the deck asks for them.
-    fn write_all(&mut self, model: &Model, system: &System) -> Result<()> {
-        let path = self.part.path.clone();
+    /// Pictures of the part, and of its sub parts where the deck asks for them. Collective.
+    fn draw(&self, model: &Model, system: &System) -> Result<Vec<Drawn>> {
         let (part, selection) = self.part.find(model)?;
-        self.write(part, system, selection, &path)?;
-        if self.sub_parts {
-            for (name, child) in &selection.children {
-                let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
-                if part.ranks.any(is_here) {
-                    self.write(part, system, child, &format!("{path}.{name}"))?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn write(&mut self, part: &ModelPart, system: &System, selection: &SubPart, path: &str) -> Result<()> {
-        let mesh = self.picture.draw(part, system, selection);
         let label = match self.control.unit {
             Unit::Step => part.info.step.to_string(),
             Unit::Time => format!("{:.*}", self.decimals, part.info.time),
         };
-        if self.clears {
-            part.ranks.on_root(|| {
-                [self.folder.clone(), self.folder_of_failure()].iter().try_for_each(|own| self.clear(own, path))
-            })?;
+        let drawn = |selection: &SubPart, path: String| Drawn {
+            path,
+            data: self.picture.draw(part, system, selection).data,
+            time: part.info.time,
+            label: label.clone(),
+        };
+        let mut all = vec![drawn(selection, self.part.path.clone())];
+        for (name, child) in selection.children.iter().filter(|_| self.sub_parts) {
+            let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
+            if part.ranks.any(is_here) {
+                all.push(drawn(child, format!("{}.{name}", self.part.path)));
+            }
         }
-        let series = self.series(path);
-        let folder = &self.folder;
-        self.format.write(&Shown { part, data: &mesh.data, folder, series: &series, label: &label })
+        Ok(all)
+    }
+
+    /// Writes pictures; those of an earlier run go first. Collective.
+    fn write(&mut self, model: &Model, pictures: &[Drawn]) -> Result<()> {
+        let (part, _) = self.part.find(model)?;
+        for Drawn { path, data, time, label } in pictures {
+            if self.clears {
+                part.ranks.on_root(|| {
+                    [self.folder.clone(), self.folder_of_failure()].iter().try_for_each(|own| self.clear(own, path))
+                })?;
+            }
+            let (series, folder) = (self.series(path), &self.folder);
+            self.format.write(&Shown { part, data, time: *time, folder, series: &series, label })?;
+        }
+        Ok(())
+    }
+
+    /// Writes the state at the start, where it waits. Collective.
+    fn write_start(&mut self, model: &Model) -> Result<()> {
+        let start = std::mem::take(&mut self.start);
+        if !start.is_empty() {
+            self.write(model, &start)?;
+            self.clears = false;
+        }
+        Ok(())
     }
 
     /// The name of the pictures of a part.
@@ -161,10 +189,13 @@ impl Process for VtkOutput {
 
     fn print_start(&mut self, model: &mut Model, system: &System) -> Result<()> {
         if self.picture.usual {
-            self.write_all(model, system)?;
-            self.clears = false;
+            self.start = self.draw(model, system)?;
         }
         Ok(())
+    }
+
+    fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
+        self.write_start(model)
     }
 
     fn is_output_step(&mut self, model: &Model) -> bool {
@@ -172,18 +203,20 @@ impl Process for VtkOutput {
     }
 
     fn print_output(&mut self, model: &mut Model, system: &System) -> Result<()> {
-        self.write_all(model, system)?;
+        let pictures = self.draw(model, system)?;
+        self.write(model, &pictures)?;
         self.clears = false;
         self.control.written(&self.part.find(model)?.0.info);
         Ok(())
     }
 
     fn print_last_iterate(&mut self, model: &mut Model, system: &System) -> Result<Option<PathBuf>> {
+        let pictures = self.draw(model, system)?;
         let (folder, failed) = (self.folder.clone(), self.folder_of_failure());
         let clears = std::mem::replace(&mut self.clears, false);
         self.folder.clone_from(&failed);
         std::mem::swap(&mut self.format, &mut self.format_of_failure);
-        let written = self.write_all(model, system);
+        let written = self.write(model, &pictures);
         std::mem::swap(&mut self.format, &mut self.format_of_failure);
         (self.folder, self.clears) = (folder, clears);
         written.map(|()| Some(failed))
