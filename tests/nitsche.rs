@@ -7,9 +7,7 @@ mod specimen;
 mod support;
 
 use std::sync::Arc;
-use support::{change, root, said, scratch_copy, zelus};
 
-use specimen::{Random, Vec3, difference, size};
 use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::formulations::{
     Augmentation, Nitsche, NitscheVariant, NormalVariation, StepParameters,
@@ -25,12 +23,13 @@ use zelus::contact_structural_mechanics::pairs::{
 use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
-use zelus_core::entities::require_kind;
-use zelus_core::entities::{LocalSystems, Want};
+use zelus_core::entities::{LocalSystems, Want, require_kind};
 use zelus_core::geometry::Shape;
-use zelus_core::model::Role;
-use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue};
+use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Role};
 use zelus_core::vector3::{add, cross, norm, sub};
+
+use specimen::{Random, Vec3, difference, size};
+use support::{change, root, said, scratch_copy, zelus};
 
 /// Element, law, and the local nodes of its face, which lies in the plane of the last axis at its lower end.
 const KINDS: [(&str, &str, &[usize]); 11] = [

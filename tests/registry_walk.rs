@@ -10,15 +10,15 @@ mod specimen;
 #[path = "support/ties.rs"]
 mod ties;
 
-use specimen::{Loads, Random, Specimen, Vec3, cell, difference, is_axisymmetric, is_linear, size};
 use zelus as _;
 use zelus::structural_mechanics::laws::LawEntry;
 use zelus::structural_mechanics::variables::DISPLACEMENT;
-use zelus_core::entities::Tangent;
-use zelus_core::entities::block_kinds;
+use zelus_core::entities::{Tangent, block_kinds};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{EntityKind, Role};
 use zelus_core::registry::names;
+
+use specimen::{Loads, Random, Specimen, Vec3, cell, difference, is_axisymmetric, is_linear, size};
 
 /// Kinds whose tangent is the derivative only where there is no strain yet, as in the reference program.
 /// (element, law, why)

@@ -3,8 +3,7 @@
 use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_core::entities::find_kind;
-use zelus_core::model::Role;
-use zelus_core::model::{VariableKind, variables};
+use zelus_core::model::{Role, VariableKind, variables};
 use zelus_core::registry::{self, Entry, Kind};
 
 use super::kratos_names::{done_here, without_shape};

@@ -4,9 +4,9 @@
 //! the X coordinate of that node. The conditions add nothing to the functional by themselves: a method does.
 
 use zelus_core::diagnostics::{Diagnostic, Result};
-use zelus_core::entities::Build;
-use zelus_core::entities::ConditionEntry;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{
+    BlockRequest, Build, ConditionEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{ModelPart, Nodes, PropertyValue};
 use zelus_core::register;

@@ -1,8 +1,7 @@
 //! Converged when the residual is small and every constraint is obeyed: a method that stalls elsewhere is not accepted.
 
 use zelus_core::register;
-use zelus_core::strategies::CriterionEntry;
-use zelus_core::strategies::{Check, ConvergenceCriterion, Form, Measure, Measures, Verdict, both};
+use zelus_core::strategies::{Check, ConvergenceCriterion, CriterionEntry, Form, Measure, Measures, Verdict, both};
 
 use crate::variables::CONSTRAINT_VIOLATION;
 

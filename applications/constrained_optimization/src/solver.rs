@@ -1,7 +1,6 @@
 //! The solver of problems whose only unknowns are positions and multipliers.
 
-use zelus_core::analysis::SolverDefinition;
-use zelus_core::analysis::SolverEntry;
+use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::register;
 
 register! { SolverEntry "ConstrainedOptimization",

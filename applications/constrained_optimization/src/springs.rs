@@ -3,9 +3,9 @@
 //! Residual −f′ = −k (x − x₀)ᵖ⁻¹, tangent f″ = (p − 1) k (x − x₀)ᵖ⁻².
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::Build;
-use zelus_core::entities::ElementEntry;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{
+    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+};
 use zelus_core::geometry::Shape;
 use zelus_core::register;
 

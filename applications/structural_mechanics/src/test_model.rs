@@ -1,10 +1,10 @@
 //! A model part with one entity of one kind, and what tests ask of it.
 
-use crate::variables::DISPLACEMENT;
 use zelus_core::entities::{BlockRequest, EntityBlock, Gauss, LocalSystems, Want, block_factory, find_kind};
 use zelus_core::geometry::Shape;
-use zelus_core::model::Role;
-use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Variable};
+use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Role, Variable};
+
+use crate::variables::DISPLACEMENT;
 
 pub(crate) type Vec3 = [f64; 3];
 

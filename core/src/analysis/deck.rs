@@ -219,13 +219,20 @@ pub(super) fn import_materials(
     solver.adopt(folder, part, warnings)
 }
 
+/// The mesh that settings of a solver name, with its format.
+pub(super) fn mesh_file(solver: &Node, folder: &Path) -> Option<(&'static MeshFormatEntry, PathBuf)> {
+    let named = |key: &str| solver.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
+    let format = registry::find::<MeshFormatEntry>(named("model_import_settings.input_type").unwrap_or("mdpa"))?;
+    Some((format, format.file(&folder.join(named("model_import_settings.input_filename")?))))
+}
+
 /// In the place of a mesh that could not be read: a part with the names of its parts alone, so that what else is wrong with the
 /// deck is found, too; `None` where there are no names.
 pub(super) fn add_names_only(solver: &SolverSettings, root: &str, folder: &Path, model: &mut Model) -> Option<()> {
-    let named = |key: &str| solver.settings.node().get_path(key).and_then(Node::as_str);
-    let format = named("model_import_settings.input_type").unwrap_or("mdpa");
-    let format = registry::find::<MeshFormatEntry>(format).filter(|format| format.name == "mdpa")?;
-    let file = format.file(&folder.join(named("model_import_settings.input_filename")?));
+    let (format, file) = mesh_file(solver.settings.node(), folder)?;
+    if format.name != "mdpa" {
+        return None;
+    }
     model.parts.remove(root);
     let mut part = ModelPart::new(root);
     part.tree.children = io::names_of_parts(&file)?;

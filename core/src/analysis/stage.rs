@@ -8,7 +8,9 @@ use zelus_linear_algebra::memory;
 
 use super::bodies::tell_what_holds;
 use super::cutting::{Cutting, Lengths};
-use super::deck::{StageDeck, add_names_only, check_top_level, import, import_materials, make_processes, root_name};
+use super::deck::{
+    StageDeck, add_names_only, check_top_level, import, import_materials, make_processes, mesh_file, root_name,
+};
 use super::like::{lay_defaults, program};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
@@ -21,8 +23,7 @@ use super::time_stepping::TimeStepping;
 use super::unheeded::{check_tolerances, warn_of_extensions, warn_of_unheeded};
 use crate::assembly::System;
 use crate::communication::Ranks;
-use crate::diagnostics::unfit;
-use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity};
+use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity, unfit};
 use crate::entities::Interaction;
 use crate::io::{Claim, FileUse, MeshFormatEntry, check_files};
 use crate::model::{Model, ModelPart};
@@ -30,8 +31,7 @@ use crate::modelers::run_modelers;
 use crate::parameters::Node;
 use crate::processes::{Process, tables_of};
 use crate::registry;
-use crate::strategies::unknowns_of_all;
-use crate::strategies::{Monitor, Plan, SolutionStrategy, StepRecord};
+use crate::strategies::{Monitor, Plan, SolutionStrategy, StepRecord, unknowns_of_all};
 
 /// The systems of earlier stages by their root parts: what elements remember goes on with them.
 pub(super) type Systems = BTreeMap<String, System>;
@@ -647,16 +647,12 @@ fn read_model(
 /// What a stage reads: meshes and materials; deck and tables.
 fn inputs_of(stage: &StageDeck, deck: &Node, folder: &Path) -> (Vec<FileUse>, Vec<FileUse>) {
     let named = |key: &str| deck.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
-    let mesh_file = |input_type: &str, name: &str| {
-        registry::find::<MeshFormatEntry>(input_type).map(|format| format.file(&folder.join(name)))
-    };
-    let input_type = named("solver_settings.model_import_settings.input_type").unwrap_or("mdpa");
-    let mesh = named("solver_settings.model_import_settings.input_filename");
-    let mesh = mesh.and_then(|name| mesh_file(input_type, name));
+    let mesh = deck.get("solver_settings").and_then(|solver| mesh_file(solver, folder)).map(|(_, file)| file);
     let materials = named("solver_settings.material_import_settings.materials_filename").map(|name| folder.join(name));
     let of_modeler = |modeler: &Node| {
         let parameters = modeler.get("parameters").or_else(|| modeler.get("Parameters"))?;
-        parameters.get("input_filename")?.as_str().and_then(|name| mesh_file("mdpa", name))
+        let name = parameters.get("input_filename")?.as_str()?;
+        registry::find::<MeshFormatEntry>("mdpa").map(|format| format.file(&folder.join(name)))
     };
     let meshes = stage.modelers.iter().filter_map(of_modeler);
     let mut others = vec![deck.place().file];

@@ -40,11 +40,11 @@ register! { ConstraintEntry "LinearMasterSlaveConstraint",
         let masters = row.masters.iter().map(|&node| (node, row.variables[0]));
         Ok(vec![MasterSlaveConstraint {
             id: row.id,
-            slave: (row.slave, row.variables[0]),
-            masters: masters.zip(row.weights.iter().copied()).collect(),
-            forces: None,
             constant: row.constant,
-            active: true,
+            ..MasterSlaveConstraint::new(
+                (row.slave, row.variables[0]),
+                masters.zip(row.weights.iter().copied()).collect(),
+            )
         }])
     },
 }

@@ -1,16 +1,14 @@
 //! Meshes and materials into a model part.
 
-use crate::entities::Build;
-use crate::entities::ConditionEntry;
-use crate::entities::ElementEntry;
-use crate::registered_kind;
 use std::path::Path;
 
 use super::*;
 use crate::diagnostics::Error;
+use crate::entities::{Build, ConditionEntry, ElementEntry};
 use crate::model::test_variables::DISPLACEMENT;
 use crate::model::{ModelPart, PropertyValue};
 use crate::parameters::Document;
+use crate::registered_kind;
 use crate::{register, register_variable};
 
 register_variable! {

@@ -24,3 +24,10 @@ pub struct MasterSlaveConstraint {
     /// Whether it holds now.
     pub active: bool,
 }
+
+impl MasterSlaveConstraint {
+    /// A constraint that holds, without a constant, and not yet of a part: its id is 0.
+    pub fn new(slave: NodeUnknown, masters: Vec<(NodeUnknown, f64)>) -> Self {
+        Self { id: 0, slave, masters, forces: None, constant: 0.0, active: true }
+    }
+}

@@ -1,6 +1,7 @@
 //! A model part: the mesh, its data, and its named sub parts. It knows nothing of what computes on it.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
@@ -117,6 +118,17 @@ impl ModelPart {
             format!("the mesh has: {}", if full.is_empty() { "no sub parts".into() } else { full.join(", ") })
         });
         Diagnostic::error("unknown-model-part", format!("there is no model part {path:?}")).remedy(remedy).into()
+    }
+
+    /// Adds constraints, which get the ids after those there are; gives their places in [`ModelPart::constraints`].
+    pub fn add_constraints(&mut self, new: impl IntoIterator<Item = MasterSlaveConstraint>) -> Range<usize> {
+        let first = self.constraints.len();
+        let next = self.constraints.iter().map(|constraint| constraint.id).max().unwrap_or(0) + 1;
+        self.constraints.extend((next..).zip(new).map(|(id, constraint)| MasterSlaveConstraint { id, ..constraint }));
+        let made = first..self.constraints.len();
+        self.tree.constraints.extend(made.start as u32..made.end as u32);
+        self.tree.normalise();
+        made
     }
 
     /// Whether this rank evaluates an entity between bodies with these nodes: who has the pairs of the last one does, which

@@ -1,11 +1,9 @@
-use crate::model::EntityKind;
-use crate::model::Role;
 use std::collections::HashMap;
 
 use super::share::Shares;
 use super::{Counts, Partition, Repeats, Surface, Traffic, common_nodes, partition, surfaces};
 use crate::geometry::Shape;
-use crate::model::{ModelPart, Nodes, SubPart};
+use crate::model::{EntityKind, ModelPart, Nodes, Role, SubPart};
 use crate::parameters::{Document, Node};
 use crate::processes::{NamedSurface, ProcessEntry};
 use crate::register;

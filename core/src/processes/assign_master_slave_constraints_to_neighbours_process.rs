@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use rustc_hash::FxHashMap;
 
 use super::process::{Process, ProcessEntry, ProcessRequest};
-use super::target::scalars_of;
+use super::target::{check_unknowns, scalars_of};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::model::{MasterSlaveConstraint, Model, ScalarVariable};
@@ -155,41 +155,22 @@ impl Process for TiesToNeighbours {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let found = self.find(model)?;
         let part = model.root_mut(&self.root)?;
-        let first = part.constraints.len();
-        let mut id = part.constraints.iter().map(|c| c.id).max().unwrap_or(0);
-        for (&node, masters) in self.slaves.iter().zip(found) {
-            for &variable in &self.variables {
-                id += 1;
-                part.constraints.push(MasterSlaveConstraint {
-                    id,
-                    slave: (node, variable),
-                    masters: masters.iter().map(|&(master, weight)| ((master, variable), weight)).collect(),
-                    forces: None,
-                    constant: 0.0,
-                    active: true,
-                });
-            }
-        }
-        self.made = first..part.constraints.len();
-        part.tree.constraints.extend(self.made.start as u32..self.made.end as u32);
-        part.tree.normalise();
+        let of_node = |(&node, masters): (&u32, Vec<(u32, f64)>)| {
+            let follows = move |&variable: &ScalarVariable| {
+                let masters = masters.iter().map(|&(master, weight)| ((master, variable), weight));
+                MasterSlaveConstraint::new((node, variable), masters.collect())
+            };
+            self.variables.iter().map(follows).collect::<Vec<_>>()
+        };
+        let new: Vec<_> = self.slaves.iter().zip(found).flat_map(of_node).collect();
+        self.made = part.add_constraints(new);
         Ok(())
     }
 
     fn check(&self, model: &Model, system: &System, _warnings: &mut Report) -> Result<()> {
-        let part = model.root(&self.root)?;
         let nodes = self.slaves.iter().chain(&self.masters);
-        let mut unknowns = nodes.flat_map(|&node| self.variables.iter().map(move |&variable| (node, variable)));
-        match unknowns.find(|&(node, variable)| system.dofs.number_of(variable, node).is_none()) {
-            None => Ok(()),
-            Some((node, variable)) => {
-                let fact = format!("{variable} is not an unknown of node {}", part.nodes.ids[node as usize]);
-                Err(Diagnostic::error("not-an-unknown", fact)
-                    .at(self.place.clone())
-                    .remedy("tie unknowns of nodes that belong to elements")
-                    .into())
-            }
-        }
+        let unknowns = nodes.flat_map(|&node| self.variables.iter().map(move |&variable| (node, variable)));
+        check_unknowns(model.root(&self.root)?, system, unknowns, &self.place)
     }
 
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {

@@ -37,4 +37,4 @@ pub use prescription::Prescription;
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
 pub(crate) use scalar_value::tables_of;
-pub use target::{Target, other_problems, scalars_of};
+pub use target::{Target, check_unknowns, other_problems, scalars_of};

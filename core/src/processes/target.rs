@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
-use crate::model::{Model, Named, ScalarVariable, SubPart, VariableKind, named, variables};
+use crate::model::{Model, ModelPart, Named, NodeUnknown, ScalarVariable, SubPart, VariableKind, named, variables};
 use crate::parameters::{Defaults, Interval, Node, Settings};
 use crate::registry::Entry;
 
@@ -147,5 +148,27 @@ pub(super) fn vector_variable(settings: &Settings) -> Result<[ScalarVariable; 3]
             Err(problem.remedy("name a variable of three components").into())
         }
         None => Err(unknown_variable(settings, name, "vector variable").into()),
+    }
+}
+
+/// An error where what constraints relate is not an unknown of the system; `place` is where the deck names it.
+///
+/// # Errors
+/// `not-an-unknown`.
+pub fn check_unknowns(
+    part: &ModelPart,
+    system: &System,
+    mut unknowns: impl Iterator<Item = NodeUnknown>,
+    place: &Place,
+) -> Result<()> {
+    match unknowns.find(|&(node, variable)| system.dofs.number_of(variable, node).is_none()) {
+        None => Ok(()),
+        Some((node, variable)) => {
+            let fact = format!("{variable} is not an unknown of node {}", part.nodes.ids[node as usize]);
+            Err(Diagnostic::error("not-an-unknown", fact)
+                .at(place.clone())
+                .remedy("tie unknowns of nodes that belong to elements, e.g. \"DISPLACEMENT\"")
+                .into())
+        }
     }
 }

@@ -15,8 +15,7 @@ use super::strategy::{
     SolutionStrategy, StrategyEntry, accept, after_prediction, recorded, relaxation, update_interactions,
 };
 use crate::assembly::{Assembler, System};
-use crate::diagnostics::unfit;
-use crate::diagnostics::{Diagnostic, Result};
+use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::register;

@@ -16,8 +16,7 @@ use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{
     Assembler, AssemblerState, Inertia, System, damped_by_properties, impose_constraints, strongest_damping,
 };
-use crate::diagnostics::unfit;
-use crate::diagnostics::{Diagnostic, Result};
+use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND};
 use crate::parameters::Settings;
 

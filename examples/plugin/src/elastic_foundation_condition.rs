@@ -5,11 +5,10 @@
 
 use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::Result;
-use zelus_core::entities::Build;
-use zelus_core::entities::ConditionEntry;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{
+    BlockRequest, Build, ConditionEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+};
 use zelus_core::geometry::{Shape, ShapeTable};
-
 use zelus_core::vector3::{norm, sub};
 use zelus_core::{register, register_variable};
 

@@ -3,11 +3,9 @@
 //! |r · Δu| ≤ tolerance · |r₀ · u|, r₀ being the residual before the first solve of the step and u the total values.
 
 use zelus_core::Result;
-use zelus_core::analysis::ExtensionDefinition;
-use zelus_core::analysis::SolverExtensionEntry;
+use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::register;
-use zelus_core::strategies::CriterionEntry;
-use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionRequest, Measures, Verdict};
+use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionEntry, CriterionRequest, Measures, Verdict};
 
 /// Defaults of the object `"energy_settings"` that a deck may write among its solver settings.
 const DEFAULTS: &str = r#"// Settings of energy_criterion.

@@ -3,8 +3,9 @@
 //! g = g̃/A is the gap of the pair (length), negative in penetration, and A its area; √A stands for the size of a facet, so
 //! that the pressure is twice that of the linear penalty where it is as deep as a facet is long.
 
-use zelus::contact_structural_mechanics::formulations::StepParameters;
-use zelus::contact_structural_mechanics::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
+use zelus::contact_structural_mechanics::formulations::{
+    Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters,
+};
 use zelus::contact_structural_mechanics::pairs::Family;
 use zelus::contact_structural_mechanics::register_contact_family;
 use zelus_core::geometry::{FacetShape, NodeArray};

@@ -5,8 +5,7 @@
 use zelus_core::diagnostics::Place;
 use zelus_core::model::{Model, Named, VariableKind, named};
 use zelus_core::parameters::SpaceTime;
-use zelus_core::processes::ProcessEntry;
-use zelus_core::processes::{Process, ProcessRequest, ScalarValue, Target};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, ScalarValue, Target};
 use zelus_core::register;
 use zelus_core::{Result, diagnostics::Diagnostic};
 

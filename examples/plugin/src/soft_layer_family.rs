@@ -3,9 +3,8 @@
 //! Active: p = k λ n and b_λ = k (g̃ − A k λ/c): the gap of a node is its pressure over c = STIFFNESS (force per length cubed).
 //! Inactive: p = 0 and λ is driven to zero. λ < 0 in compression.
 
-use zelus::contact_structural_mechanics::formulations::StepParameters;
 use zelus::contact_structural_mechanics::formulations::{
-    Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode,
+    Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters,
 };
 use zelus::contact_structural_mechanics::pairs::Family;
 use zelus::contact_structural_mechanics::register_contact_family;

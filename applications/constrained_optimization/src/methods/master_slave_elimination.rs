@@ -8,8 +8,7 @@ use zelus_core::assembly::System;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{ActiveSet, Interaction, LocalSystems, Retry, SetChange, StepView, Want};
 use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart};
-use zelus_core::processes::ProcessEntry;
-use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 
 use crate::constraints::{Constraint, IMPOSED, INTERACTION};
@@ -70,11 +69,12 @@ impl Interaction for EliminationInteraction {
             let others = constraint.terms.iter().filter(|term| term.0 != slave.0);
             part.constraints.push(MasterSlaveConstraint {
                 id: constraint.id,
-                slave: (slave.0, POSITION.scalar()),
-                masters: others.map(|&(node, a)| ((node, POSITION.scalar()), -a / slave.1)).collect(),
-                forces: None,
                 constant: -constraint.constant / slave.1,
                 active: false,
+                ..MasterSlaveConstraint::new(
+                    (slave.0, POSITION.scalar()),
+                    others.map(|&(node, a)| ((node, POSITION.scalar()), -a / slave.1)).collect(),
+                )
             });
             self.eliminations.push(Elimination { constraint, slave, at: part.constraints.len() - 1 });
         }

@@ -2,9 +2,8 @@
 
 use zelus_core::Result;
 use zelus_core::register;
-use zelus_core::strategies::CriterionEntry;
 use zelus_core::strategies::{
-    Block, ConvergenceCriterion, CriterionRequest, Form, Measure, Measures, Verdict, both, either,
+    Block, ConvergenceCriterion, CriterionEntry, CriterionRequest, Form, Measure, Measures, Verdict, both, either,
 };
 
 use super::frictional_criterion::FrictionalCriterion;

@@ -23,10 +23,9 @@ use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, dot, scale, sub, value};
 
 use crate::active_set;
-use crate::formulations::StepParameters;
 use crate::formulations::{
     Augmentation, Formulation, Kinematics, LastState, Multiplier, NodeState, PairHistory, PairResidual, SlaveNode,
-    Turning,
+    StepParameters, Turning,
 };
 use crate::mortar::{
     OperatorThreshold, Operators, PairGeometry, incremental_slip, is_objective, objective_slip, tangential,

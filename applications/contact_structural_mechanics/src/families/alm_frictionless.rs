@@ -10,8 +10,7 @@ use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
-use crate::formulations::StepParameters;
-use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
+use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters};
 use crate::pairs::Family;
 use crate::register_contact_family;
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;

@@ -6,8 +6,7 @@
 use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 
-use crate::formulations::StepParameters;
-use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
+use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters};
 use crate::mortar::tangential;
 use crate::pairs::Family;
 use crate::register_contact_family;

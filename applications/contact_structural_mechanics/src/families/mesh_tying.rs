@@ -1,9 +1,8 @@
 //! Tying of meshes that do not match, by multipliers.
 
-use crate::pairs::TyingFamilyEntry;
 use zelus_core::register;
 
-use crate::pairs::{Multiplier, TyingFamily};
+use crate::pairs::{Multiplier, TyingFamily, TyingFamilyEntry};
 use crate::register_pair_conditions;
 use crate::variables::{SCALAR_LAGRANGE_MULTIPLIER, VECTOR_LAGRANGE_MULTIPLIER};
 

@@ -7,8 +7,7 @@ use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, scale};
 
-use crate::formulations::StepParameters;
-use crate::formulations::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveNode};
+use crate::formulations::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveNode, StepParameters};
 
 /// Penalty method by node, with or without friction. Its tangent is that of given tractions.
 #[derive(Debug, Clone, Copy, PartialEq)]

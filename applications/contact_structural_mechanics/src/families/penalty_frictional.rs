@@ -12,8 +12,9 @@ use zelus_core::vector3::{add, scale};
 use super::alm_frictional::AlmFrictional;
 use super::penalty_by_node::PenaltyByNode;
 use crate::active_set;
-use crate::formulations::StepParameters;
-use crate::formulations::{Formulation, Kinematics, LastState, Multiplier, NodeState, PairResidual, SlaveNode};
+use crate::formulations::{
+    Formulation, Kinematics, LastState, Multiplier, NodeState, PairResidual, SlaveNode, StepParameters,
+};
 use crate::pairs::{ByNode, Family, Friction};
 use crate::register_contact_family;
 

@@ -8,8 +8,7 @@ use zelus_core::vector3::scale;
 
 use super::alm_frictionless::AlmFrictionless;
 use super::penalty_by_node::PenaltyByNode;
-use crate::formulations::StepParameters;
-use crate::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode};
+use crate::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters};
 use crate::pairs::{ByNode, Family};
 use crate::register_contact_family;
 

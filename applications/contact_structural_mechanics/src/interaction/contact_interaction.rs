@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::interface::check_nodes;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
@@ -31,7 +30,7 @@ use super::set_stage::SetStage;
 use super::setup::Setup;
 use super::step_parameters::StepParameters;
 use crate::flags::CONTACT;
-use crate::interface::{Bodies, find_nodal_h};
+use crate::interface::{Bodies, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
 use crate::penalty_adaptation::Growth;
 use crate::slave_states::SlaveState;

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::interface::check_nodes;
 use serde::{Deserialize, Serialize};
 use zelus_core::Carrier;
 use zelus_core::Result;
@@ -15,7 +14,9 @@ use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use crate::formulations::Held;
 use crate::formulations::held::free_normal;
-use crate::interface::{Facet, Fixed, Interface, NodalNormals, NormalPatches, fixed_components, symmetry_planes};
+use crate::interface::{
+    Facet, Fixed, Interface, NodalNormals, NormalPatches, check_nodes, fixed_components, symmetry_planes,
+};
 use crate::mortar::MOST_NODES;
 use crate::pairs::{Family, Multiplier};
 use crate::slave_states::SlaveStates;

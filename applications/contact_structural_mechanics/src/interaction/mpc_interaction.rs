@@ -8,7 +8,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use crate::interface::check_nodes;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
@@ -32,8 +31,8 @@ use super::reach::Reach;
 use crate::active_set::SlipRule;
 use crate::flags::{CONTACT, MASTER, SLAVE};
 use crate::interface::{
-    Interface, Roles, add_contact_part, find_nodal_h, interfaces, nodal_normals, set_sides, sides, slave_nodes,
-    warnings_of_pairs,
+    Interface, Roles, add_contact_part, check_nodes, find_nodal_h, interfaces, nodal_normals, set_sides, sides,
+    slave_nodes, warnings_of_pairs,
 };
 use crate::mpc_kind::MpcKind;
 use crate::pairs::{Friction, condition_name};

@@ -2,22 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use crate::interface::check_nodes;
-use crate::pairs::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::Carrier;
 use zelus_core::Result;
-use zelus_core::diagnostics::Diagnostic;
-use zelus_core::diagnostics::unfit;
+use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::mpc_relation::{NodeRelation, PairRelation, node_relations};
 use super::mpc_settings::MpcSettings;
-use crate::interface::{Facet, Interface};
+use crate::interface::{Facet, Interface, check_nodes};
 use crate::mortar::{IntegrationOrder, SegmentationSettings};
-use crate::pairs::{FacetPair, PairKey, facet_operators, overlapping_pairs};
+use crate::pairs::{FacetPair, PairKey, check_pairs, facet_operators, overlapping_pairs};
 use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;
 

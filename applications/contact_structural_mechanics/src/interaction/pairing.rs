@@ -5,10 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::pairs::check_pairs;
 use serde::{Deserialize, Serialize};
-use zelus_core::diagnostics::Diagnostic;
-use zelus_core::diagnostics::unfit;
+use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::{EntityBlock, require_kind};
 use zelus_core::model::{ModelPart, Role};
 use zelus_core::vector3::dot;
@@ -22,7 +20,8 @@ use super::step_parameters::{NormalVariation, StepParameters};
 use crate::interface::{Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, set_sides, sides, slave_nodes};
 use crate::mortar::{Choices, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Integral, Pair, PairKey, PairRequest, Present, condition_name, group_by_shapes, group_by_surroundings,
+    ContactBlock, Integral, Pair, PairKey, PairRequest, Present, check_pairs, condition_name, group_by_shapes,
+    group_by_surroundings,
 };
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
 use crate::slave_states::SlaveStates;

@@ -2,22 +2,19 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use zelus_core::entities::require_kind;
-use zelus_core::model::Role;
 
-use crate::flags::SLIP;
-use zelus_core::entities::{LocalSystems, LocalUnknown, Want};
+use zelus_core::entities::{LocalSystems, LocalUnknown, Want, require_kind};
 use zelus_core::geometry::Shape;
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{ModelPart, Nodes};
+use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::vector3::add;
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use super::decision::Rules;
 use super::sliding::find_tangents;
 use crate::active_set::{Margin, SlipRule};
-use crate::formulations::{Augmentation, Nitsche};
-use crate::formulations::{NormalVariation, StepParameters};
+use crate::flags::SLIP;
+use crate::formulations::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use crate::friction_law::COULOMB;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles};
 use crate::mortar::tests::Noise;

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use crate::pairs::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, require_kind};
@@ -22,8 +21,8 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
-    FacetOperators, FacetPair, PairKey, TyingFamily, TyingRequest, condition_name, group_by_shapes, overlapping_pairs,
-    tying_block,
+    FacetOperators, FacetPair, PairKey, TyingFamily, TyingRequest, check_pairs, condition_name, group_by_shapes,
+    overlapping_pairs, tying_block,
 };
 use crate::search::SearchSettings;
 
@@ -198,14 +197,7 @@ impl TyingInteraction {
                     continue;
                 }
                 let masters = masters.into_iter().map(|n| ((n, multiplier), weight)).collect();
-                new.push(MasterSlaveConstraint {
-                    id: 0,
-                    slave: (node, multiplier),
-                    masters,
-                    forces: None,
-                    constant: 0.0,
-                    active: true,
-                });
+                new.push(MasterSlaveConstraint::new((node, multiplier), masters));
                 dropped.entry(node).or_default()[c] = true;
             }
         }

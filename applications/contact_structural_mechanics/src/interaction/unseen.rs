@@ -2,7 +2,7 @@
 
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{add, dot, norm, scale, sub};
+use zelus_core::vector3::{add, dot, scale, sub};
 
 use super::late_pairs::{farthest_motion, step_start};
 use crate::interface::{Facet, Interface, Roles};
@@ -58,7 +58,7 @@ fn buried(part: &ModelPart, idle: &[&Interface], most: f64) -> Option<String> {
     let mut points = Vec::new();
     for interface in idle {
         for role in [Roles::Slave, Roles::Master] {
-            for (node, normal) in normals(part, interface, role) {
+            for (node, normal) in interface.normals_of(part, role) {
                 let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
                 if size > 0.0 {
                     points.extend([1.0, -1.0].map(|sign| (node, add(x, scale(normal, sign * most * size)), size)));
@@ -81,19 +81,6 @@ fn buried(part: &ModelPart, idle: &[&Interface], most: f64) -> Option<String> {
         x[1],
         x[2]
     ))
-}
-
-/// Unit normals of the nodes of one side.
-fn normals(part: &ModelPart, interface: &Interface, role: Roles) -> Vec<(u32, [f64; 3])> {
-    let nodes = interface.nodes_of(role);
-    let mut sums = vec![[0.0; 3]; nodes.len()];
-    for facet in interface.facets.iter().filter(|facet| facet.role == role) {
-        for node in &facet.nodes {
-            let at = nodes.binary_search(node).expect("a node of a facet of this side");
-            sums[at] = add(sums[at], facet.normal(part));
-        }
-    }
-    nodes.into_iter().zip(sums).map(|(node, sum)| (node, scale(sum, norm(sum).recip()))).collect()
 }
 
 /// Slave nodes that were before a master facet when the step began and have gone through it, by straight ways.

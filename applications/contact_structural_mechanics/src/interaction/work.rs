@@ -5,8 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 use zelus_core::assembly::nodal_vectors;
-use zelus_core::diagnostics::Diagnostic;
-use zelus_core::diagnostics::unfit;
+use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;

@@ -6,8 +6,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{BlockRequest, EntityBlock, EntityError, FacePoint, StepView, Tangent, block_factory};
 use zelus_core::geometry::mapping::domain_size;
 use zelus_core::geometry::{FacetShape, NodeArray};
-use zelus_core::model::EntityKind;
-use zelus_core::model::ModelPart;
+use zelus_core::model::{EntityKind, ModelPart};
 use zelus_core::vector3::{dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 

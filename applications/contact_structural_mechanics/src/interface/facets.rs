@@ -2,20 +2,19 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::flags::{MASTER, SLAVE};
-use crate::mortar::carries_contact;
-use zelus_core::Result;
-use zelus_core::diagnostics::unfit;
-
-use super::facet::{Facet, FacetSource, Roles};
 use rustc_hash::FxHashMap;
+use zelus_core::Result;
 use zelus_core::analysis::INCOMPLETE;
-use zelus_core::diagnostics::{Diagnostic, Report};
+use zelus_core::diagnostics::{Diagnostic, Report, unfit};
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::flags::INTERFACE;
 use zelus_core::model::{ModelPart, SubPart};
-use zelus_core::vector3::{dot, sub};
+use zelus_core::vector3::{add, dot, norm, scale, sub};
+
+use super::facet::{Facet, FacetSource, Roles};
+use crate::flags::{MASTER, SLAVE};
+use crate::mortar::carries_contact;
 
 /// The facets of one contact pair of a deck (one key).
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -78,6 +77,20 @@ impl Interface {
         nodes.sort_unstable();
         nodes.dedup();
         nodes
+    }
+
+    /// Nodes of the facets of one role, ascending, with the unit mean of their facets' normals.
+    pub fn normals_of(&self, part: &ModelPart, role: Roles) -> Vec<(u32, [f64; 3])> {
+        let nodes = self.nodes_of(role);
+        let mut sums = vec![[0.0; 3]; nodes.len()];
+        for facet in self.facets.iter().filter(|facet| facet.role == role) {
+            let normal = facet.normal(part);
+            for node in &facet.nodes {
+                let at = nodes.binary_search(node).expect("a node of a facet of this role");
+                sums[at] = add(sums[at], normal);
+            }
+        }
+        nodes.into_iter().zip(sums).map(|(node, sum)| (node, scale(sum, norm(sum).recip()))).collect()
     }
 }
 

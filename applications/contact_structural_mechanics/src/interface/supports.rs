@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use zelus_core::model::ModelPart;
-use zelus_core::model::NodeUnknown;
+use zelus_core::model::{ModelPart, NodeUnknown};
 use zelus_core::vector3::norm;
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 

@@ -1,13 +1,12 @@
 //! Families of contact conditions: what a `mortar_type` brings along.
 
 use std::sync::Arc;
-use zelus_core::model::EntityKind;
 
 use zelus_core::Result;
 use zelus_core::analysis::NodalVariable;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_core::geometry::Shape;
-use zelus_core::model::Variable;
+use zelus_core::model::{EntityKind, Variable};
 use zelus_core::registered_kind;
 use zelus_core::registry;
 
@@ -15,8 +14,7 @@ use super::contact_block::ContactBlock;
 use super::pair::Pair;
 use super::pair_block::pair_block;
 use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
-use crate::formulations::StepParameters;
-use crate::formulations::{Formulation, Multiplier};
+use crate::formulations::{Formulation, Multiplier, StepParameters};
 use crate::interface::{Bodies, NormalPatches};
 use crate::slave_states::{Columns, SlaveStates};
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};

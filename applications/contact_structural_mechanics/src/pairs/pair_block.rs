@@ -3,12 +3,11 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
-use zelus_core::model::EntityKind;
 
 use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{FacetShape, NodeArray, Shape};
-use zelus_core::model::ScalarVariable;
+use zelus_core::model::{EntityKind, ScalarVariable};
 use zelus_core::scalar::Dual;
 use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
@@ -16,8 +15,9 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{self, Augmentation, Formulation, Kinematics, PairHistory, SlaveNode};
-use crate::formulations::{NormalVariation, StepParameters};
+use crate::formulations::{
+    self, Augmentation, Formulation, Kinematics, NormalVariation, PairHistory, SlaveNode, StepParameters,
+};
 use crate::interface::{Corner, NormalPatches};
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::shapes::for_shapes;

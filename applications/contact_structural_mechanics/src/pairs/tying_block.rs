@@ -1,11 +1,10 @@
 //! A block of tied pairs of one pair of shapes.
 
 use std::ops::Range;
-use zelus_core::model::EntityKind;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{FacetShape, Shape};
-use zelus_core::model::ScalarVariable;
+use zelus_core::model::{EntityKind, ScalarVariable};
 
 use super::facet_operators::FacetPair;
 use crate::formulations::MeshTying;

@@ -1,14 +1,13 @@
 //! Contact by the augmented Lagrangian: reads the settings and puts the interaction into the model part.
 
 use std::collections::BTreeMap;
-use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::analysis::{EXPLICIT, INCOMPLETE};
 use zelus_core::diagnostics::Report;
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
-use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 use zelus_core::strategies::ARC_LENGTH;
 use zelus_core::{Error, Result};

@@ -1,13 +1,12 @@
 //! Ties meshes that do not match: reads the settings and puts the interaction into the model part.
 
 use std::collections::BTreeMap;
-use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::Result;
 use zelus_core::model::{Named, ScalarVariable, VariableKind, named};
 use zelus_core::parameters::{Interval, Settings};
-use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 
 use super::interaction_process::InteractionProcess;

@@ -1,12 +1,11 @@
 //! Contact and ties by constraints: reads the settings and puts the interaction into the model part.
 
 use std::collections::BTreeMap;
-use zelus_core::processes::ProcessEntry;
 
 use serde::Deserialize;
 use zelus_core::Result;
 use zelus_core::parameters::Interval;
-use zelus_core::processes::{Process, ProcessRequest};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 
 use super::friction_settings::friction_law;

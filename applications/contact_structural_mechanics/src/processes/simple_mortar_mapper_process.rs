@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::pairs::check_pairs;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Field, Model, ModelPart, Named, named};
@@ -14,7 +13,7 @@ use zelus_structural_mechanics::variables::NORMAL;
 use super::interface_settings::{check_positive, segmentation};
 use crate::interface::{Interface, interfaces, nodal_normals};
 use crate::mortar::SegmentationSettings;
-use crate::pairs::{FacetPair, overlapping_pairs};
+use crate::pairs::{FacetPair, check_pairs, overlapping_pairs};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 
 /// Least difference of unit normals of facets that face each other.

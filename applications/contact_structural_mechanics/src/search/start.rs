@@ -115,18 +115,10 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
     let whole = Bounds::of(&all);
     let extent = norm(sub(whole.high, whole.low));
     let tree = Tree::new(bounds);
-    let nodes = interface.nodes_of(Roles::Slave);
-    let mut normals = vec![[0.0; 3]; nodes.len()];
-    for facet in of_role(Roles::Slave) {
-        for node in &facet.nodes {
-            let at = nodes.binary_search(node).expect("a node of a slave facet");
-            normals[at] = add(normals[at], facet.normal(part));
-        }
-    }
+    let nodes = interface.normals_of(part, Roles::Slave);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let place = |(&node, normal): (&u32, &[f64; 3])| {
+    let place = |&(node, normal): &(u32, [f64; 3])| {
         let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
-        let normal = scale(*normal, norm(*normal).recip());
         let way = |reach: f64| {
             let line = Bounds::of(&[add(x, scale(normal, -reach)), add(x, scale(normal, reach))]);
             let met = tree.meeting(&line.grown(ROUND_OFF * extent)).into_iter().filter_map(|master| {
@@ -144,5 +136,5 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
         let (distance, master) = way(NEAR * size).or_else(|| way(extent))?;
         distance.is_finite().then_some(Place { node, master, normal, distance, size })
     };
-    nodes.par_iter().zip(&normals).with_min_len(64).filter_map(place).collect()
+    nodes.par_iter().with_min_len(64).filter_map(place).collect()
 }

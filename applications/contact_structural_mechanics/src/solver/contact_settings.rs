@@ -1,7 +1,6 @@
 //! `contact_settings` of the solver: the family decides which variables the nodes carry.
 
-use zelus_core::analysis::SolverExtensionEntry;
-use zelus_core::analysis::{Cutting, ExtensionDefinition};
+use zelus_core::analysis::{Cutting, ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::register;
 use zelus_core::strategies::{
     CONDENSE_MULTIPLIERS, CONDITION_NUMBER, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,

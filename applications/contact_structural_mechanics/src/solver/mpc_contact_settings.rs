@@ -1,7 +1,6 @@
 //! `mpc_contact_settings` of the solver: contact by constraints needs no unknowns of its own.
 
-use zelus_core::analysis::ExtensionDefinition;
-use zelus_core::analysis::SolverExtensionEntry;
+use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::register;
 
 use crate::mpc_kind::{MpcKind, mpc_contact_type};

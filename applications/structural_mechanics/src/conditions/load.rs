@@ -2,13 +2,12 @@
 
 use std::marker::PhantomData;
 
-use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::model::Variable;
 
-use crate::variables::{NEGATIVE_FACE_PRESSURE, POSITIVE_FACE_PRESSURE, PRESSURE};
+use crate::variables::{DISPLACEMENT, NEGATIVE_FACE_PRESSURE, POSITIVE_FACE_PRESSURE, PRESSURE};
 
 /// A load spread over a line or a surface: what is integrated, at all Gauss points of one condition.
 pub trait DistributedLoad<const NODES: usize, const SIZE: usize>: 'static {

@@ -1,7 +1,6 @@
 use zelus_core::entities::find_kind;
 use zelus_core::geometry::{Shape, mapping};
-use zelus_core::model::Role;
-use zelus_core::model::Variable;
+use zelus_core::model::{Role, Variable};
 
 use crate::test_model::{Random, Single, Vec3, near, reference_cell, size, weighted};
 use crate::variables::*;

@@ -1,13 +1,13 @@
 //! Elements, conditions, laws, schemes and solvers of the reference program that are known and not there, and what to
 //! use instead.
 
-use crate::laws::LawEntry;
 use zelus_core::analysis::SolverEntry;
-use zelus_core::entities::ConditionEntry;
-use zelus_core::entities::ElementEntry;
+use zelus_core::entities::{ConditionEntry, ElementEntry};
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register_absent;
 use zelus_core::strategies::SchemeEntry;
+
+use crate::laws::LawEntry;
 
 register_absent! { ElementEntry ["Shell", "IsotropicShell", "Sprism", "SolidShell", "CSDSG3", "MITC"] =>
 "shells are not there: mesh the thickness with SmallDisplacementElement or TotalLagrangianElement 3D8N, 3D20N or 3D27N" }

@@ -7,7 +7,6 @@
 
 use std::marker::PhantomData;
 
-use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
@@ -17,7 +16,7 @@ use super::material::Material;
 use super::results;
 use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, Matrix, StrainState, StressMeasure};
 use crate::tensor::IDENTITY;
-use crate::variables::{VOLUME_ACCELERATION, VOLUMETRIC_STRAIN};
+use crate::variables::{DISPLACEMENT, VOLUME_ACCELERATION, VOLUMETRIC_STRAIN};
 
 /// Order of the Gauss rule of every shape.
 const ORDER: usize = 2;

@@ -5,19 +5,18 @@
 //! the node. Constants of the properties go before those of the element.
 
 use serde::{Deserialize, Serialize};
-
-use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::Build;
-use zelus_core::entities::ElementEntry;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{
+    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+};
 use zelus_core::geometry::Shape;
 use zelus_core::register;
 
 use super::gradients::nodal_vectors;
 use super::nodal_values::{refuse_rotations, scalar, vector};
 use crate::variables::{
-    NODAL_DAMPING_RATIO, NODAL_DISPLACEMENT_STIFFNESS, NODAL_INITIAL_DISPLACEMENT, NODAL_MASS, VOLUME_ACCELERATION,
+    DISPLACEMENT, NODAL_DAMPING_RATIO, NODAL_DISPLACEMENT_STIFFNESS, NODAL_INITIAL_DISPLACEMENT, NODAL_MASS,
+    VOLUME_ACCELERATION,
 };
 
 /// Mass, spring and damper at a node.

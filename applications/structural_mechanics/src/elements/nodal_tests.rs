@@ -1,6 +1,5 @@
 use zelus_core::entities::{Tangent, Want};
-use zelus_core::model::PropertyValue;
-use zelus_core::model::Role;
+use zelus_core::model::{PropertyValue, Role};
 
 use crate::test_model::{Random, Single, Vec3, near, size};
 use crate::variables::*;

@@ -11,7 +11,6 @@ mod traction;
 use std::f64::consts::PI;
 use std::marker::PhantomData;
 
-use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, FacePoint, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
@@ -24,7 +23,7 @@ use super::results;
 use super::stiffness::add_stiffness;
 use crate::laws::{LawFactory, MakesLaw, StrainState};
 use crate::tensor::{inverse, stress_vector};
-use crate::variables::VOLUME_ACCELERATION;
+use crate::variables::{DISPLACEMENT, VOLUME_ACCELERATION};
 
 /// Solid element with `NODES` nodes in `DIM` dimensions and `S` strains (3 plane, 4 axisymmetric or plane B-bar, 6 solid).
 pub struct Solid<F, const NODES: usize, const DIM: usize, const S: usize> {

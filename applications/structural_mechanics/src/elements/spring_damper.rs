@@ -4,18 +4,16 @@
 //! NODAL_DAMPING_RATIO (force per velocity) of the properties or of the element. Its springs on rotations are not there.
 
 use serde::{Deserialize, Serialize};
-
-use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::Build;
-use zelus_core::entities::ElementEntry;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{
+    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+};
 use zelus_core::geometry::Shape;
 use zelus_core::register;
 
 use super::gradients::nodal_vectors;
 use super::nodal_values::{refuse_rotations, vector};
-use crate::variables::{NODAL_DAMPING_RATIO, NODAL_DISPLACEMENT_STIFFNESS};
+use crate::variables::{DISPLACEMENT, NODAL_DAMPING_RATIO, NODAL_DISPLACEMENT_STIFFNESS};
 
 /// Springs and dampers between two nodes in `DIM` dimensions.
 pub struct SpringDamper<const DIM: usize>;

@@ -5,11 +5,10 @@
 //! The linear bar has ε = (u_2 − u_1)·t/l_0 along its initial direction t. Mass: A l_0 DENSITY, half a node when lumped.
 //! S follows from the strain by the law of bars that the properties name.
 
-use crate::variables::DISPLACEMENT;
 use zelus_core::diagnostics::{Diagnostic, Result};
-use zelus_core::entities::Build;
-use zelus_core::entities::ElementEntry;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{
+    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+};
 use zelus_core::geometry::Shape;
 use zelus_core::register;
 use zelus_core::registry::find;
@@ -17,7 +16,7 @@ use zelus_core::vector3::{dot, norm, sub};
 
 use super::gradients::nodal_vectors;
 use crate::laws::{BarLaw, LawEntry, LawFactory, positive};
-use crate::variables::VOLUME_ACCELERATION;
+use crate::variables::{DISPLACEMENT, VOLUME_ACCELERATION};
 
 /// A bar in `DIM` dimensions; `LINEAR` for small displacements.
 pub struct Truss<const DIM: usize, const LINEAR: bool> {

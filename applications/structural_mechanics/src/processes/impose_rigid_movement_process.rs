@@ -8,7 +8,7 @@ use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Place, Report, Result};
 use zelus_core::model::{MasterSlaveConstraint, Model, ScalarVariable, SubPart};
 use zelus_core::parameters::{Interval, Settings};
-use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, scalars_of};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, check_unknowns, scalars_of};
 use zelus_core::register;
 
 struct ImposeRigidMovement {
@@ -79,50 +79,30 @@ fn components(settings: &Settings, key: &str, domain_size: usize) -> Result<Vec<
 impl Process for ImposeRigidMovement {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.root)?;
-        let first = part.constraints.len();
-        let mut id = part.constraints.iter().map(|c| c.id).max().unwrap_or(0);
-        for &node in &self.slaves {
-            for &(slave, master) in &self.variables {
-                id += 1;
-                part.constraints.push(MasterSlaveConstraint {
-                    id,
-                    slave: (node, slave),
-                    masters: vec![((self.master, master), self.relation)],
-                    forces: None,
-                    constant: self.constant,
-                    active: false,
-                });
-            }
-        }
-        self.made = first..part.constraints.len();
+        let pairs = self.slaves.iter().flat_map(|&node| self.variables.iter().map(move |&pair| (node, pair)));
+        let follows = |(node, (slave, master))| MasterSlaveConstraint {
+            constant: self.constant,
+            active: false,
+            ..MasterSlaveConstraint::new((node, slave), vec![((self.master, master), self.relation)])
+        };
+        let new: Vec<_> = pairs.map(follows).collect();
+        self.made = part.add_constraints(new);
         if part.part(&self.holder).is_err() {
             let nodes = self.slaves.iter().copied().chain([self.master]).collect();
             let mut new = SubPart { nodes, ..SubPart::new(self.holder.clone()) };
             new.normalise();
             part.tree.children.insert(self.holder.clone(), new);
         }
-        let indices = self.made.start as u32..self.made.end as u32;
-        part.part_mut(&self.holder)?.constraints.extend(indices.clone());
-        part.tree.constraints.extend(indices);
+        part.part_mut(&self.holder)?.constraints.extend(self.made.start as u32..self.made.end as u32);
         part.tree.normalise();
         Ok(())
     }
 
     fn check(&self, model: &Model, system: &System, _warnings: &mut Report) -> Result<()> {
-        let part = model.root(&self.root)?;
-        let missing = self.variables.iter().flat_map(|&(slave, master)| {
+        let unknowns = self.variables.iter().flat_map(|&(slave, master)| {
             self.slaves.iter().map(move |&node| (node, slave)).chain([(self.master, master)])
         });
-        match missing.into_iter().find(|&(node, variable)| system.dofs.number_of(variable, node).is_none()) {
-            None => Ok(()),
-            Some((node, variable)) => {
-                let fact = format!("{variable} is not an unknown of node {}", part.nodes.ids[node as usize]);
-                Err(Diagnostic::error("not-an-unknown", fact)
-                    .at(self.place.clone())
-                    .remedy("tie unknowns of nodes that belong to elements, e.g. \"DISPLACEMENT\"")
-                    .into())
-            }
-        }
+        check_unknowns(model.root(&self.root)?, system, unknowns, &self.place)
     }
 
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {

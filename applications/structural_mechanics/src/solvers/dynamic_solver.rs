@@ -1,7 +1,6 @@
 //! The solver of problems with inertia.
 
-use zelus_core::analysis::SolverEntry;
-use zelus_core::analysis::{NodalVariable, SolverDefinition};
+use zelus_core::analysis::{NodalVariable, SolverDefinition, SolverEntry};
 use zelus_core::register;
 
 pub(super) const VARIABLES: [NodalVariable; 10] = {

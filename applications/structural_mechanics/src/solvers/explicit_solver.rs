@@ -1,7 +1,6 @@
 //! The solver of explicit dynamics: `solver_type` "Dynamic" with `time_integration_method` "explicit".
 
-use zelus_core::analysis::SolverDefinition;
-use zelus_core::analysis::SolverEntry;
+use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::register;
 
 register! { SolverEntry "ExplicitDynamic",

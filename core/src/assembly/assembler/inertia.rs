@@ -4,8 +4,7 @@ use super::{Assembler, is_variable};
 use crate::assembly::{Dof, System};
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
-use crate::model::Role;
-use crate::model::{ModelPart, Nodes, Rates};
+use crate::model::{ModelPart, Nodes, Rates, Role};
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///

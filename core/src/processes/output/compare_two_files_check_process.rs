@@ -1,6 +1,5 @@
 //! Compares a file that the run writes with a reference, once the run is over.
 
-use crate::processes::ProcessEntry;
 use std::path::{Path, PathBuf};
 
 use super::place::one_of;
@@ -9,7 +8,7 @@ use crate::io::FileUse;
 use crate::model::Model;
 use crate::parameters::Defaults;
 use crate::processes::comparison::is_close;
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
 struct CompareTwoFiles {

@@ -3,9 +3,8 @@
 use super::points::{REQUIRED, points_output};
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::parameters::Defaults;
-use crate::processes::ProcessEntry;
 use crate::processes::target::read_text;
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {

@@ -1,6 +1,5 @@
 //! Quantities at Gauss points, as means of entities, as values at nodes, and as they are.
 
-use crate::model::Role;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
@@ -11,7 +10,7 @@ use crate::communication::Ranks;
 use crate::entities::{EntityBlock, Gauss, StepView};
 use crate::geometry::Shape;
 use crate::io::results::{Column, GaussResult};
-use crate::model::ModelPart;
+use crate::model::{ModelPart, Role};
 
 /// Not in the selection.
 const OUT: u32 = u32::MAX;

@@ -13,8 +13,7 @@ use super::place::{PartPath, append, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::assembly::System;
 use crate::communication::Ranks;
-use crate::diagnostics::unfit;
-use crate::diagnostics::{Diagnostic, Result};
+use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
 };

@@ -6,11 +6,9 @@ use super::quantity::GaussQuantity;
 use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::io::results::{Column, Values};
-use crate::model::Role;
-use crate::model::{Model, ModelPart, named};
+use crate::model::{Model, ModelPart, Role, named};
 use crate::parameters::Defaults;
-use crate::processes::ProcessEntry;
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
 struct Extrapolation {

@@ -7,8 +7,7 @@ use super::{lists, usual};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::io::results::{Column, Dataset};
-use crate::model::Role;
-use crate::model::{EntityTable, ModelPart, SubPart};
+use crate::model::{EntityTable, ModelPart, Role, SubPart};
 use crate::parameters::Settings;
 
 /// Which entities are the cells.

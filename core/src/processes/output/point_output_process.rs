@@ -3,8 +3,7 @@
 use super::points::{REQUIRED, points_output, position};
 use crate::diagnostics::Result;
 use crate::parameters::Defaults;
-use crate::processes::ProcessEntry;
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {

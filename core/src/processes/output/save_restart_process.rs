@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Carrier, State};
 
 use super::place::{PartPath, one_of};
-use crate::diagnostics::Result;
-use crate::diagnostics::unfit;
+use crate::diagnostics::{Result, unfit};
 use crate::model::Model;
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};

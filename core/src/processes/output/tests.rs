@@ -1,7 +1,5 @@
 //! Each output process on a model of two quadrilaterals whose Gauss values are known.
 
-use crate::model::EntityKind;
-use crate::model::Role;
 use std::ops::Range;
 use std::path::Path;
 
@@ -10,10 +8,9 @@ use crate::diagnostics::{Error, Report, Result};
 use crate::entities::{EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use crate::geometry::Shape;
 use crate::model::test_variables::{DISPLACEMENT, SLAVE};
-use crate::model::{Model, ModelPart, Nodes, SubPart};
+use crate::model::{EntityKind, Model, ModelPart, Nodes, Role, SubPart};
 use crate::parameters::Document;
-use crate::processes::ProcessEntry;
-use crate::processes::{Process, ProcessRequest};
+use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register_variable;
 use crate::registry::{self, Entry};
 
