@@ -189,7 +189,7 @@ impl MultigridSolver {
             let left = up_to_date(&mut self.left, constrained, system);
             self.hierarchy = Some(Hierarchy {
                 levels: Arc::new(constrained.hierarchy(system, left)),
-                size: left.size(),
+                size: left.size,
                 bulk_graph: system.bulk_graph,
                 prescribed: constrained.prescribed(),
                 is_old: false,
@@ -247,8 +247,7 @@ impl MultigridSolver {
                     iterations += up_to_date(latest, constrained, system).solve(&hierarchy.levels, b, aim, room);
                 } else {
                     iterations += 1;
-                    hierarchy.levels.apply_double(b);
-                    b.iter_mut().for_each(|b| *b /= hierarchy.size);
+                    hierarchy.levels.apply_double(b, hierarchy.size);
                 }
             };
             r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use zelus_linear_algebra::Multipliers;
+
 use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
@@ -10,7 +12,6 @@ use crate::model::{EntityKind, ModelPart, Rates, Role};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
 use crate::registry::{self, Registered};
-use zelus_linear_algebra::Multipliers;
 
 use crate::strategies::{
     Builder, BuilderEntry, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionEntry,

@@ -13,32 +13,32 @@ use crate::iterations::gmres;
 /// Directions kept in a solve, and its iterations at most.
 const RESTART: usize = 80;
 
+/// Replaces `b`, own entries, by what `solve` makes of it in single precision, divided by `size`; `solve` sees numbers up to one.
+/// Collective.
+pub(super) fn in_single(ghosts: &Ghosts, b: &mut [f64], size: f64, solve: impl FnOnce(&mut [f32])) {
+    let largest = ghosts.largest(b.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
+    if largest == 0.0 || !largest.is_finite() {
+        return b.fill(0.0);
+    }
+    let mut single: Vec<f32> = b.iter().map(|b| (b / largest) as f32).collect();
+    solve(&mut single);
+    b.iter_mut().zip(single).for_each(|(b, x)| *b = f64::from(x) * largest / size);
+}
+
 /// A matrix of blocks, own rows.
 pub(crate) struct Blocks {
     pub(super) matrix: Arc<BlockMatrix>,
     /// What the matrix was divided by.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// Which rows are those of the bulk.
     pub(super) of_bulk: Vec<bool>,
     pub(super) ghosts: Ghosts,
 }
 
 impl Blocks {
-    /// What the matrix was divided by.
-    pub(crate) fn size(&self) -> f64 {
-        self.size
-    }
-
     /// Replaces `b`, own entries, by an approximate solution that leaves the share `aim` of `b`; gives the iterations, at most `most`.
     /// Collective.
     pub(crate) fn solve(&self, levels: &Multigrid, b: &mut [f64], aim: f64, most: usize) -> usize {
-        let largest = self.ghosts.largest(b.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
-        if largest == 0.0 || !largest.is_finite() {
-            b.fill(0.0);
-            return 0;
-        }
-        let rhs: Vec<f32> = b.iter().map(|b| (b / largest) as f32).collect();
-        let mut x = vec![0.0_f32; rhs.len()];
         let mut all = Vec::new();
         let multiply = |x: &[f32], y: &mut [f32]| {
             if self.ghosts.processes().is_none() {
@@ -51,8 +51,13 @@ impl Blocks {
             self.matrix.mul_vec(&all, y, Into::Set);
         };
         let precondition = |r: &mut [f32], _: f64| levels.apply(r);
-        let progress = gmres(&self.ghosts, multiply, precondition, &rhs, &mut x, RESTART, most.min(RESTART), aim);
-        b.iter_mut().zip(&x).for_each(|(b, x)| *b = f64::from(*x) * largest / self.size);
-        progress.iterations
+        let mut iterations = 0;
+        in_single(&self.ghosts, b, self.size, |rhs| {
+            let mut x = vec![0.0; rhs.len()];
+            iterations =
+                gmres(&self.ghosts, multiply, precondition, rhs, &mut x, RESTART, most.min(RESTART), aim).iterations;
+            rhs.copy_from_slice(&x);
+        });
+        iterations
     }
 }

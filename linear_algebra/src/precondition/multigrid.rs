@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::aggregation::{NONE, Tentative, coarsen};
 use super::block_matrix::{BlockMatrix, BlockRow, Into, multiplier};
+use super::blocks::in_single;
 use super::shared_levels::{Aggregates, gathered};
 use crate::check;
 use crate::dense_lu;
@@ -169,16 +170,10 @@ impl Multigrid {
         self.coarsest.ghosts.processes().is_some()
     }
 
-    /// The same as [`Multigrid::apply`] in double precision; collective.
-    pub(crate) fn apply_double(&self, x: &mut [f64]) {
+    /// As [`Multigrid::apply`] in double precision, for the matrix times `size`; collective.
+    pub(crate) fn apply_double(&self, x: &mut [f64], size: f64) {
         let finest = self.levels.first().map_or(&self.coarsest.ghosts, |level| &level.ghosts);
-        let largest = finest.largest(x.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
-        if largest == 0.0 || !largest.is_finite() {
-            return;
-        }
-        let mut single: Vec<f32> = x.iter().map(|x| (x / largest) as f32).collect();
-        self.apply(&mut single);
-        x.iter_mut().zip(single).for_each(|(x, v)| *x = largest * f64::from(v));
+        in_single(finest, x, size, |x| self.apply(x));
     }
 
     /// Replaces `x`, own entries, by an approximation of `A⁻¹ x`; collective.

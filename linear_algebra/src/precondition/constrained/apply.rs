@@ -1,0 +1,82 @@
+//! The preconditioner: conditions first, then what is left, then the multipliers.
+
+use super::{Constrained, NONE};
+use crate::system::System;
+
+impl Constrained {
+    /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations.
+    /// `solve` does the same for what is left, own entries. Collective.
+    pub(crate) fn apply(&self, system: &System<'_>, solve: impl FnOnce(&mut [f64]), r: &mut [f64]) {
+        self.ghosts.spread(r, 1);
+        let mut z = vec![0.0; r.len()];
+        let mut prescribes = false;
+        for group in &self.groups {
+            let a = group.elimination.prescribed;
+            let values: Vec<f64> = (0..a).map(|k| group.condition(k, r)).collect();
+            prescribes |= values.iter().any(|v| *v != 0.0);
+            for (row, &e) in group.own.iter().enumerate() {
+                z[e as usize] = (0..a).map(|k| group.elimination.held[row * a + k] * values[k]).sum();
+            }
+        }
+        let idle_rows: Vec<f64> = self.idle.iter().map(|&(m, _)| r[m as usize]).collect();
+        let kept: Vec<Vec<f64>> =
+            self.groups.iter().map(|group| group.rows().map(|e| r[e as usize]).collect()).collect();
+        if prescribes {
+            // Only unknowns that groups prescribe differ from zero.
+            let changes: Vec<f64> =
+                self.beside.iter().map(|&e| system.row(e as usize).map(|(j, v)| v * z[j]).sum()).collect();
+            self.beside.iter().zip(changes).for_each(|(&e, change)| r[e as usize] -= change);
+        }
+        self.ghosts.spread(r, 1);
+        let mut b: Vec<f64> = self.equation.iter().map(|&e| if e == NONE { 0.0 } else { r[e as usize] }).collect();
+        let mut multipliers = vec![0.0; if self.groups.is_empty() { 0 } else { r.len() }];
+        for group in &self.groups {
+            let s = group.equations();
+            let known = group.stack(|e| r[e as usize]);
+            let times = |row: &[f64]| row.iter().zip(&known).map(|(a, b)| a * b).sum::<f64>();
+            for (k, &m) in group.multipliers.iter().enumerate() {
+                multipliers[m as usize] = times(&group.elimination.recovery[k * s..(k + 1) * s]) / group.action;
+            }
+            for (k, &e) in group.own.iter().enumerate() {
+                b[self.place[e as usize] as usize] =
+                    if k < group.tangential() { times(&group.elimination.left[k * s..(k + 1) * s]) } else { 0.0 };
+            }
+        }
+        for (e, load) in &self.loads {
+            b[self.place[*e as usize] as usize] -= load.iter().map(|&(m, v)| v * multipliers[m as usize]).sum::<f64>();
+        }
+        solve(&mut b[..self.blocks.own() * self.width]);
+        self.blocks.spread(&mut b, self.width);
+        for (&e, value) in self.equation.iter().zip(&b).filter(|(e, _)| **e != NONE) {
+            if self.group_of[e as usize] == NONE {
+                z[e as usize] = *value;
+            }
+        }
+        for group in &self.groups {
+            for (&e, follows) in group.own.iter().zip(&group.follows) {
+                z[e as usize] += follows.iter().map(|&(place, factor)| factor * b[place as usize]).sum::<f64>();
+            }
+        }
+        multipliers.fill(0.0);
+        for (group, kept) in self.groups.iter().zip(&kept) {
+            let mut kept = kept.iter();
+            let known = group.stack(|e| {
+                let known = kept.next().expect("as many as the group has rows");
+                known - system.row(e as usize).map(|(j, v)| v * z[j]).sum::<f64>()
+            });
+            let s = group.equations();
+            for (k, &m) in group.multipliers.iter().enumerate() {
+                let row = &group.elimination.recovery[k * s..(k + 1) * s];
+                multipliers[m as usize] = row.iter().zip(&known).map(|(a, b)| a * b).sum::<f64>() / group.action;
+            }
+        }
+        for group in &self.groups {
+            group.multipliers.iter().for_each(|&m| z[m as usize] = multipliers[m as usize]);
+        }
+        for (&(m, diagonal), value) in self.idle.iter().zip(idle_rows) {
+            let others: f64 = system.row(m as usize).map(|(j, v)| v * z[j]).sum();
+            z[m as usize] = (value - others) / diagonal;
+        }
+        r.copy_from_slice(&z);
+    }
+}

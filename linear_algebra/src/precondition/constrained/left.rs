@@ -1,0 +1,219 @@
+//! What is left of a system once its multipliers are gone, and how far it is from the system before.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::group::Group;
+use super::{Constrained, NONE};
+use crate::memory;
+use crate::precondition::block_matrix::{BlockMatrix, BlockRow, Sums};
+use crate::precondition::blocks::Blocks;
+use crate::system::System;
+
+/// Terms with the factors of equal indices added up, ascending.
+fn summed(mut terms: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+    terms.sort_by_key(|(at, _)| *at);
+    terms.dedup_by(|(at, value), (kept, sum)| {
+        let is_same = at == kept;
+        if is_same {
+            *sum += *value;
+        }
+        is_same
+    });
+    terms
+}
+
+impl Constrained {
+    /// Factors of the equations in what gives a multiplier.
+    fn recovery(&self, multiplier: u32) -> Vec<(u32, f64)> {
+        let group = &self.groups[self.group_of[multiplier as usize] as usize];
+        let at = group.slot_of_multiplier(multiplier);
+        let s = group.equations();
+        let row = &group.elimination.recovery[at * s..(at + 1) * s];
+        group.factors(row).into_iter().map(|(e, f)| (e, f / group.action)).collect()
+    }
+
+    /// Equations, with factors, whose sum stands at a place; `recovery` gives those that a multiplier follows from.
+    fn left<'a>(
+        &self,
+        place: usize,
+        load: Option<&[(u32, f64)]>,
+        recovery: impl Fn(u32) -> &'a [(u32, f64)],
+    ) -> Vec<(u32, f64)> {
+        let equation = self.equation[place];
+        let group = self.group_of[equation as usize];
+        if group == NONE {
+            let mut sum = vec![(equation, 1.0)];
+            for &(multiplier, value) in load.unwrap_or_default() {
+                sum.extend(recovery(multiplier).iter().map(|&(e, factor)| (e, -value * factor)));
+            }
+            return summed(sum);
+        }
+        let group = &self.groups[group as usize];
+        let s = group.equations();
+        let k = group.slot(equation);
+        if k >= group.tangential() {
+            return Vec::new();
+        }
+        group.factors(&group.elimination.left[k * s..(k + 1) * s])
+    }
+
+    /// What is left, the matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
+    pub(crate) fn left_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
+        let largest = (0..system.equations())
+            .filter(|&i| !system.layout.multiplier[i] && i < system.bulk.rows)
+            .fold(0.0_f64, |m, i| m.max(system.bulk.get(i, i).abs()));
+        let largest = self.ghosts.largest(largest);
+        let largest = if largest > 0.0 { largest } else { 1.0 };
+        let mut loads: Vec<Option<&[(u32, f64)]>> = vec![None; system.equations()];
+        self.loads.iter().for_each(|(e, load)| loads[*e as usize] = Some(load));
+        let mut plain = vec![true; system.equations()];
+        self.beside.iter().for_each(|&e| plain[e as usize] = false);
+        self.loads.iter().for_each(|(e, _)| plain[*e as usize] = false);
+        let (w, inverse) = (self.width, 1.0 / largest);
+        let at: Vec<(u32, u32)> = self
+            .place
+            .iter()
+            .map(|&place| if place == NONE { (NONE, 0) } else { (place / w as u32, place % w as u32) })
+            .collect();
+        let coupled = |i: usize| {
+            let rows = system.active_coupling().into_iter().map(move |coupling| coupling.row(i));
+            rows.flat_map(|(columns, values)| columns.iter().zip(values))
+                .filter(|(_, value)| **value != 0.0)
+                .map(|(&j, &value)| (j as usize, value))
+        };
+        let add = |row: &mut BlockRow, k: usize, place: u32, value: f64| {
+            row.block(place / w as u32)[place as usize % w * w + k] += (value * inverse) as f32;
+        };
+        let recovery = |group: &Group| group.multipliers.iter().map(|&m| self.recovery(m)).collect::<Vec<_>>();
+        let recoveries: Vec<_> = self.groups.par_iter().map(recovery).collect();
+        let recovery = |m: u32| {
+            let group = self.group_of[m as usize] as usize;
+            &recoveries[group][self.groups[group].slot_of_multiplier(m)][..]
+        };
+        let of_bulk = |b: usize| {
+            let mut equations = self.equation[b * w..(b + 1) * w].iter().filter(|&&e| e != NONE).map(|&e| e as usize);
+            equations.all(|i| plain[i] && self.group_of[i] == NONE && coupled(i).next().is_none())
+        };
+        let of_bulk: Vec<bool> = (0..self.blocks.own()).map(of_bulk).collect();
+        let earlier = earlier.filter(|earlier| self.blocks.processes().is_none() && earlier.size == largest);
+        let fill = |b: usize, row: &mut BlockRow, sums: &mut Sums| {
+            if let Some(earlier) = earlier.filter(|earlier| of_bulk[b] && earlier.of_bulk[b]) {
+                return row.copy(earlier.matrix.row(b));
+            }
+            let equations = &self.equation[b * w..(b + 1) * w];
+            if of_bulk[b] && !equations.contains(&NONE) {
+                let rows: Vec<(&[u32], &[f64])> = equations.iter().map(|&e| system.bulk.row(e as usize)).collect();
+                if rows.iter().all(|(columns, _)| *columns == rows[0].0) {
+                    // Unknowns of a node stand side by side.
+                    let (mut block, mut start) = (NONE, 0);
+                    for (c, (of, slot)) in rows[0].0.iter().map(|&j| at[j as usize]).enumerate() {
+                        if of == NONE {
+                            continue;
+                        }
+                        if of != block {
+                            (block, start) = (of, row.start(of));
+                        }
+                        let entries = &mut row.entries()[start + slot as usize * w..][..w];
+                        entries.iter_mut().zip(&rows).for_each(|(to, (_, values))| *to = (values[c] * inverse) as f32);
+                    }
+                    return;
+                }
+            }
+            row.block(b as u32);
+            // One bit for each unknown that the node does not have or whose motion is prescribed.
+            let mut idle = 0_u64;
+            for k in 0..w {
+                let equation = self.equation[b * w + k];
+                if equation == NONE {
+                    idle |= 1 << k;
+                    continue;
+                }
+                let i = equation as usize;
+                if plain[i] && self.group_of[i] == NONE {
+                    let (columns, values) = system.bulk.row(i);
+                    // Unknowns of a node stand side by side.
+                    let (mut block, mut start) = (NONE, 0);
+                    let filled = columns.iter().zip(values).filter(|(_, value)| **value != 0.0);
+                    for ((of, slot), value) in filled.map(|(&j, value)| (at[j as usize], value)) {
+                        if of != block && of != NONE {
+                            (block, start) = (of, row.start(of));
+                        }
+                        if of != NONE {
+                            row.entries()[start + slot as usize * w + k] += (value * inverse) as f32;
+                        }
+                    }
+                    for (j, value) in coupled(i).filter(|&(j, _)| self.place[j] != NONE) {
+                        add(row, k, self.place[j], value);
+                    }
+                    continue;
+                }
+                let mut spread = |j: u32, value: f64| {
+                    let (place, group) = (self.place[j as usize], self.group_of[j as usize]);
+                    if place != NONE && group != NONE {
+                        let group = &self.groups[group as usize];
+                        group.follows[group.slot(j)]
+                            .iter()
+                            .for_each(|&(place, weight)| add(row, k, place, value * weight));
+                    } else if place != NONE {
+                        add(row, k, place, value);
+                    }
+                };
+                if self.group_of[i] == NONE && loads[i].is_none() {
+                    system.row(i).for_each(|(j, value)| spread(j as u32, value));
+                    continue;
+                }
+                let left = self.left(b * w + k, loads[i], recovery);
+                idle |= u64::from(left.is_empty()) << k;
+                for (e, factor) in left {
+                    system.row(e as usize).for_each(|(j, value)| sums.add(j, factor * value));
+                }
+                sums.drain(spread);
+            }
+            let own = row.block(b as u32);
+            let diagonal = (0..w).fold(0.0_f32, |m, k| m.max(own[k * w + k].abs()));
+            for k in (0..w).filter(|&k| idle >> k & 1 == 1) {
+                own[k * w + k] = if diagonal > 0.0 { diagonal } else { 1.0 };
+            }
+        };
+        let shape = [self.blocks.own(), self.equation.len() / w];
+        let sums = || Sums::new(system.equations());
+        let matrix = Arc::new(BlockMatrix::from_rows_with(shape, [w; 2], sums, fill));
+        if self.blocks.processes().is_some() {
+            memory::give_back();
+        }
+        Blocks { matrix, size: largest, of_bulk, ghosts: self.blocks.clone() }
+    }
+
+    /// The near-null space of the layout on own blocks; translations where it has none.
+    pub(super) fn near_null_space(&self, system: &System<'_>) -> Vec<Vec<f64>> {
+        let mut on_blocks: Vec<Vec<f64>> = if system.layout.near_null_space.is_empty() {
+            let alike = |k: usize| {
+                let is_set = |at: usize| at % self.width == k && self.equation[at] != NONE;
+                (0..self.equation.len()).map(|at| f64::from(u8::from(is_set(at)))).collect()
+            };
+            (0..self.width).map(alike).collect()
+        } else {
+            let of = |vector: &Vec<f64>| {
+                self.equation.iter().map(|&e| if e == NONE { 0.0 } else { vector[e as usize] }).collect()
+            };
+            system.layout.near_null_space.iter().map(of).collect()
+        };
+        for vector in &mut on_blocks {
+            for group in &self.groups {
+                let free = group.tangential();
+                let motion: Vec<f64> = group.own.iter().map(|&e| vector[self.place[e as usize] as usize]).collect();
+                for (k, &e) in group.own.iter().enumerate() {
+                    vector[self.place[e as usize] as usize] = if k < free {
+                        motion.iter().enumerate().map(|(i, v)| group.elimination.free[i * free + k] * v).sum()
+                    } else {
+                        0.0
+                    };
+                }
+            }
+            vector.truncate(self.blocks.own() * self.width);
+        }
+        on_blocks
+    }
+}
