@@ -167,7 +167,7 @@ pub fn check_unknowns(
             let fact = format!("{variable} is not an unknown of node {}", part.nodes.ids[node as usize]);
             Err(Diagnostic::error("not-an-unknown", fact)
                 .at(place.clone())
-                .remedy("tie unknowns of nodes that belong to elements, e.g. \"DISPLACEMENT\"")
+                .remedy("tie unknowns of nodes that belong to elements")
                 .into())
         }
     }
