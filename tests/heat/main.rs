@@ -135,6 +135,65 @@ fn a_flow_makes_a_boundary_layer() {
     assert!(fine < 2e-3 && coarse / fine > 3.0, "{coarse:e} {fine:e}");
 }
 
+/// Temperatures that nothing but a flow to the right carries, in semi-implicit steps.
+fn carried(step: f64, end: f64, start: &str) -> Deck {
+    let velocity = json!({"model_part_name": "Heat.Body", "variable_name": "VELOCITY", "value": [1.0, 0.0, 0.0],
+        "constrained": false, "interval": [0.0, "End"]});
+    Deck::new("transient", step, end, 1.0)
+        .starts(json!(start))
+        .process("assign_vector_variable_process", velocity)
+        .set("time_integration_method", json!("semi_implicit"))
+        .set("pure_convection", json!(true))
+}
+
+#[test]
+fn paths_carry_a_slope_unchanged() {
+    for triangles in [false, true] {
+        let slab = Slab { triangles, ..Slab::new(20) };
+        let results = carried(0.03, 0.12, "2*x").run(&slab);
+        for column in 0..=20 {
+            let x = column as f64 / 20.0;
+            let found = last(&results, &slab, column);
+            // Paths of nodes at the left begin outside of the slab, and the next steps pass on what they miss.
+            assert!(x < 0.5 || (found - 2.0 * (x - 0.12)).abs() < 1e-12, "{x}: {found}");
+        }
+    }
+}
+
+#[test]
+fn paths_carry_a_pulse_to_second_order() {
+    let error = |cells: usize| {
+        let slab = Slab { height: 1.0 / cells as f64, ..Slab::new(cells) };
+        // Steps of one and a half elements.
+        let steps = cells / 5;
+        let results = carried(0.3 / steps as f64, 0.3, "exp(-100*(x-0.3)*(x-0.3))").run(&slab);
+        let exact = |x: f64| (-100.0 * (x - 0.6).powi(2)).exp();
+        (0..=cells).map(|c| (last(&results, &slab, c) - exact(c as f64 / cells as f64)).abs()).fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [error(80), error(160)];
+    assert!(fine < 1e-2 && coarse / fine > 3.5, "{coarse:e} {fine:e}");
+}
+
+/// Without a flow a semi-implicit step is one of Crank and Nicolson; sources heat as much as they give.
+#[test]
+fn what_is_not_carried_is_conducted_and_heated() {
+    let slab = Slab::new(10);
+    let (k, dt, steps) = (0.2, 0.05, 8);
+    let semi = |deck: Deck| deck.set("time_integration_method", json!("semi_implicit"));
+    let deck = held(Deck::new("transient", dt, dt * f64::from(steps), k), 0.0, 0.0)
+        .starts(json!("sin(3.14159265358979312*x)"));
+    let results = semi(deck).run(&slab);
+    let phase = (PI * 0.1).cos();
+    let eigenvalue = 600.0 * k * (1.0 - phase) / (2.0 + phase);
+    let exact = ((1.0 - 0.5 * eigenvalue * dt) / (1.0 + 0.5 * eigenvalue * dt)).powi(steps);
+    assert!((last(&results, &slab, 5) - exact).abs() < 1e-12, "{}", last(&results, &slab, 5) - exact);
+    let deck = Deck::new("transient", dt, dt * f64::from(steps), k).assign("Body", "HEAT_FLUX", json!(30.0), false);
+    let results = semi(deck).run(&slab);
+    for column in 0..=10 {
+        assert!((last(&results, &slab, column) - 12.0).abs() < 1e-11, "{}", last(&results, &slab, column));
+    }
+}
+
 /// Sources, radiation and storage at once.
 fn everything() -> Deck {
     Deck::new("transient", 0.02, 0.1, 1.5)
@@ -262,4 +321,5 @@ fn what_is_missing_is_said() {
     says(&held(at_rest(1.0), 1.0, 0.0).set("skip_entities_replace_and_check", json!(true)), 2, "has no physics");
     let theta = Deck::new("transient", 1.0, 1.0, 1.0).set("transient_parameters", json!({"theta": 0.2}));
     says(&held(theta, 1.0, 0.0), 2, "theta");
+    says(&carried(0.1, 0.1, "x").set("bfecc_substepping", json!(0)), 2, "bfecc_substepping");
 }

@@ -4,9 +4,10 @@ use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::find_kind;
 use zelus_core::geometry::{Shape, mapping};
 use zelus_core::model::{EntityTable, ModelPart, Role};
-use zelus_core::parameters::Settings;
+use zelus_core::parameters::{Node, Settings};
 
 use crate::columns::Columns;
+use crate::semi_implicit::DIFFUSION;
 
 /// Takes up a part as the settings say.
 ///
@@ -18,7 +19,10 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, report: &mut Report) -> 
         let ModelPart { nodes, elements, conditions, info, .. } = &mut *part;
         for (role, table) in [(Role::Element, &mut *elements), (Role::Condition, &mut *conditions)] {
             let key = format!("element_replace_settings.{}_name", role.word());
-            let name = settings.get_str(&key)?;
+            let name = match settings.node().get("time_integration_method").and_then(Node::as_str) {
+                Some("semi_implicit") if role == Role::Element => DIFFUSION,
+                _ => settings.get_str(&key)?,
+            };
             replace(role, table, name, info.domain_size).map_err(|problem| problem.at(settings.key_place(&key)))?;
         }
         let turned = turn(elements, &nodes.initial, info.domain_size);

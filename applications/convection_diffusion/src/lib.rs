@@ -10,6 +10,8 @@ pub mod elements;
 pub mod conditions;
 mod processes;
 pub mod scheme;
+pub mod transport;
+pub mod semi_implicit;
 pub mod adoption;
 pub mod coupling;
 pub mod solvers;

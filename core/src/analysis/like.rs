@@ -49,6 +49,12 @@ pub(super) fn lay_defaults(deck: &mut Node, program: &str, report: &mut Report) 
             for entry in registry::all::<SolverExtensionEntry>() {
                 if let Some(settings) = members.get_mut(entry.name) {
                     lay(settings, entry, program, &mut added)?;
+                    // An extension may be a solver beside the first.
+                    if let Ok(entry) = solver_entry(settings)
+                        && settings.get("solver_type").is_some()
+                    {
+                        lay(settings, entry, program, &mut added)?;
+                    }
                 }
             }
         }

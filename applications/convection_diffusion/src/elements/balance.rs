@@ -38,6 +38,10 @@ pub const DYNAMIC_TAU: &str = "DYNAMIC_TAU";
 pub const CROSS_WIND: &str = "CROSS_WIND_STABILIZATION_FACTOR";
 /// Value of the step data: gradients below it have no cross-wind diffusion.
 pub const LEAST_GRADIENT: &str = "CROSS_WIND_LEAST_GRADIENT";
+/// Mark of the step data: nothing is conducted after the temperature has been carried along.
+pub const PURE_CONVECTION: &str = "PURE_CONVECTION";
+/// Mark of the step data: elements that are carried through take gradients at their centre for all points.
+pub const AT_CENTRE: &str = "GRADIENTS_AT_CENTRE";
 /// Mark of the step data: each step is one linear solve.
 pub const LINEAR: &str = "LINEAR_HEAT";
 

@@ -1,7 +1,7 @@
 //! The kernel of all elements of heat: the balance at the points of a Gauss rule.
 //!
 //! Gradients are those of each point: quadrilaterals and hexahedra are integrated in full, where Kratos takes their gradients
-//! at one point. Nodes stand where the mesh is, so that bodies that have moved conduct as they are.
+//! at the centre, as `"gradients": "at_centre"` does. Nodes stand where the mesh is, so that bodies that have moved conduct as they are.
 
 use std::marker::PhantomData;
 
@@ -11,16 +11,16 @@ use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::scalar::{Dual, Real};
 use zelus_structural_mechanics::elements::physical_gradients;
 
-use super::balance::{Point, Step};
+use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step};
 use super::place::{full_order, stream_size};
-use crate::coefficient::Coefficient;
+use crate::coefficient::{Coefficient, Local};
 use crate::columns::{Columns, nodal};
 
 /// Which terms of the balance a kind of element has.
 pub trait Terms: Send + Sync + 'static {
     /// Storage and convection.
     const TRANSIENT: bool;
-    /// The value at the beginning of the step is that which was carried along, sources are left out, ends weigh alike.
+    /// The value at the beginning of the step is that which was carried along, ends weigh alike.
     const CARRIED: bool = false;
     /// A body of revolution about the x axis: y is the radius.
     const AXISYMMETRIC: bool = false;
@@ -33,10 +33,20 @@ pub struct Equation<T, const NODES: usize, const DIM: usize> {
     density: Coefficient,
     specific_heat: Coefficient,
     rule: &'static ShapeTable,
+    /// One point at the centre.
+    centre: &'static ShapeTable,
     terms: PhantomData<fn() -> T>,
 }
 
 impl<T: Terms, const NODES: usize, const DIM: usize> Equation<T, NODES, DIM> {
+    /// The gradients at the centre, and a share of the volume that is the same for all points.
+    fn at_centre(&self, x: &[[f64; 3]; NODES]) -> ([[f64; DIM]; NODES], f64) {
+        let points = self.rule.dn::<NODES, DIM>().iter().enumerate();
+        let volume: f64 = points.map(|(g, dn)| self.rule.weight(g) * physical_gradients(x, dn).1).sum();
+        let (dn, _) = physical_gradients(x, &self.centre.dn::<NODES, DIM>()[0]);
+        (dn, volume / self.rule.n::<NODES>().len() as f64)
+    }
+
     /// Velocity relative to the mesh, between both ends of the step.
     fn velocities(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>, theta: f64) -> [[f64; 3]; NODES] {
         let mut out = [[0.0; 3]; NODES];
@@ -81,6 +91,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             specific_heat: coefficient(columns.specific_heat, 1.0),
             columns,
             rule: ShapeTable::get(shape, full_order(shape)),
+            centre: ShapeTable::get(shape, 1),
             terms: PhantomData,
         })
     }
@@ -122,22 +133,28 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             true => nodal(entity, view, Some("PROJECTED_SCALAR1"), 0),
             false => nodal(entity, view, Some(unknown), 1),
         };
-        let source = nodal(entity, view, self.columns.volume_source.filter(|_| !T::CARRIED), 0);
+        let source = nodal(entity, view, self.columns.volume_source, 0);
         let velocity = self.velocities(entity, view, step.theta);
         let [conductivity, density, specific_heat] = [&self.conductivity, &self.density, &self.specific_heat]
             .map(|own| own.in_element(entity, view.nodes, &now));
-        if let Some(name) = self.conductivity.unknown_in(&conductivity) {
+        let is_pure = T::CARRIED && view.info.is(PURE_CONVECTION);
+        let conductivity = if is_pure { Local::Nodal([0.0; NODES]) } else { conductivity };
+        if let Some(name) = self.conductivity.unknown_in(&conductivity).filter(|_| !is_pure) {
             let id = entity.properties.id;
             return Err(format!(
                 "its properties {id} have no {name} (\"Variables\" of the materials), and no process sets it"
             ));
         }
         let size = stream_size(self.rule.shape(), &entity.current);
+        let is_centred = view.info.is(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;
+        let at_centre = is_centred.then(|| self.at_centre(&entity.current));
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
             let (dn, determinant) = physical_gradients(&entity.current, &self.rule.dn::<NODES, DIM>()[g]);
             if determinant <= 0.0 {
                 return Err("it is inverted".to_owned());
             }
+            let weight = self.rule.weight(g) * determinant;
+            let (dn, weight) = at_centre.unwrap_or((dn, weight));
             let value = |at: &[f64; NODES]| n.iter().zip(at).map(|(n, value)| n * value).sum::<f64>();
             let slope = |at: &[f64; NODES]| {
                 let mut out = [0.0; 3];
@@ -159,7 +176,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
                 size,
                 radius: T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][1]).sum()),
             };
-            let weight = self.rule.weight(g) * determinant * point.round();
+            let weight = weight * point.round();
             let (t, gradient) = (value(&now), slope(&now));
             if lhs.is_empty() {
                 let (a, b) = point.balance(t, gradient);

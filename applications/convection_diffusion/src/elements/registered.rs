@@ -108,7 +108,7 @@ on_shapes! { all, balance; "LaplacianElement", Laplacian,
 
 on_shapes! { all, balance; "EulerianDiffusion", Diffusion,
 "the second half of a semi-implicit step: conduction from PROJECTED_SCALAR1, which was carried along",
-"ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2)" }
+"ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2) + Q" }
 
 on_shapes! { plane, balance; "AxisymmetricEulerianConvectionDiffusion", Revolution,
 "EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring",

@@ -4,7 +4,9 @@ use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::register;
 
 use crate::adoption::warn_of_no_storage;
+use crate::elements::PURE_CONVECTION;
 use crate::scheme::SCHEME;
+use crate::semi_implicit::SEMI_IMPLICIT;
 
 register! { SolverEntry "transient",
     aliases: &["Transient"],
@@ -15,11 +17,13 @@ register! { SolverEntry "transient",
         variables: &super::VARIABLES,
         scheme: |settings| {
             let method = settings.get_str("time_integration_method")?;
-            if method == "implicit" {
-                return Ok(SCHEME.to_owned());
+            match method {
+                "implicit" => return Ok(SCHEME.to_owned()),
+                "semi_implicit" => return Ok(SEMI_IMPLICIT.to_owned()),
+                _ => {}
             }
             let problem = settings.error("time_integration_method", "time-integration", format!("\"time_integration_method\" is \"{method}\""));
-            Err(problem.remedy("use \"implicit\"").into())
+            Err(problem.remedy("use \"implicit\" or \"semi_implicit\"").into())
         },
         adapt: super::adapt,
         adopt: |settings, part, report| {
@@ -32,6 +36,7 @@ register! { SolverEntry "transient",
             let cross_wind = ["cross_wind_stabilization_factor", "cross_wind_least_gradient"];
             let parameters = [theta, read("dynamic_tau")?, read(cross_wind[0])?, read(cross_wind[1])?];
             super::take_up(settings, parameters, part, report)?;
+            part.info.marks.insert(PURE_CONVECTION, settings.get_bool("pure_convection")?);
             warn_of_no_storage(part, report);
             Ok(())
         },

@@ -47,6 +47,7 @@ impl NewtonRaphson {
             return Ok(vec![0.0; targets.len()]);
         }
         if self.scheme.begins_at_prescribed() {
+            self.scheme.predict(part, &system.dofs)?;
             impose_constraints(&mut part.nodes, &part.constraints);
             self.scheme.update(part);
             return Ok(vec![0.0; targets.len()]);

@@ -1,0 +1,81 @@
+//! Semi-implicit steps of heat: temperatures are carried along first, then conducted.
+
+use zelus_core::assembly::DofTable;
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::model::ModelPart;
+use zelus_core::register;
+use zelus_core::strategies::{Scheme, SchemeEntry, SchemeFactory};
+
+use crate::columns::Columns;
+use crate::transport::{Locator, Paths, carried};
+use crate::variables::PROJECTED_SCALAR1;
+
+/// Name of the scheme.
+pub const SEMI_IMPLICIT: &str = "semi_implicit_convection_diffusion";
+/// Elements of what follows upon the transport.
+pub const DIFFUSION: &str = "EulerianDiffusion";
+
+struct CarriedThenConducted {
+    /// Parts of a path in a step.
+    parts: usize,
+}
+
+impl Scheme for CarriedThenConducted {
+    fn prepare(&self, part: &mut ModelPart) {
+        part.nodes.history.add(&PROJECTED_SCALAR1);
+    }
+
+    fn is_static(&self) -> bool {
+        true
+    }
+
+    fn begins_at_prescribed(&self) -> bool {
+        true
+    }
+
+    fn predict(&mut self, part: &mut ModelPart, _dofs: &DofTable) -> Result<()> {
+        if part.share.is_some() {
+            let fact = "semi-implicit steps follow paths through the whole mesh, which several ranks have in parts";
+            let remedy = "run it on one rank with more threads, or use \"time_integration_method\": \"implicit\"";
+            return Err(Diagnostic::error("unsupported", fact).remedy(remedy).into());
+        }
+        let columns = Columns::of(part);
+        let values = part.nodes.history.level(columns.unknown.column, 0).to_vec();
+        let velocities = [0, 1].map(|level| relative(part, &columns, level));
+        let paths = Paths {
+            positions: &part.nodes.current,
+            velocities: velocities.each_ref().map(Vec::as_slice),
+            time: part.info.delta_time,
+            parts: self.parts,
+        };
+        let carried = carried(&Locator::new(part), &paths, &values);
+        part.nodes.history.values_mut(&PROJECTED_SCALAR1, 0).copy_from_slice(&carried);
+        Ok(())
+    }
+}
+
+/// Velocities of the nodes less those of the mesh.
+fn relative(part: &ModelPart, columns: &Columns, level: usize) -> Vec<[f64; 3]> {
+    let mut out = vec![[0.0; 3]; part.nodes.len()];
+    for (column, sign) in [(columns.velocity, 1.0), (columns.mesh_velocity, -1.0)] {
+        let values = column.map_or(&[][..], |column| part.nodes.history.level(column, level));
+        for (out, v) in out.iter_mut().zip(values.chunks_exact(3)) {
+            (0..3).for_each(|a| out[a] += sign * v[a]);
+        }
+    }
+    out
+}
+
+register! { SchemeEntry SEMI_IMPLICIT,
+    about: "heat is carried along the paths of points, back and forth against the error, then conducted",
+    source: "T* = T(x − ∫ v dt); ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2) + Q",
+    build: SchemeFactory::Implicit(|request| {
+        let settings = request.settings;
+        let parts = settings.get_usize("bfecc_substepping")?;
+        if parts == 0 {
+            let problem = settings.error("bfecc_substepping", "invalid-value", "\"bfecc_substepping\" is 0");
+            return Err(problem.remedy("write the number of parts of a path, from 1").into());
+        }
+        Ok(Box::new(CarriedThenConducted { parts }))
+    }),
+}
