@@ -291,3 +291,12 @@ fn defaults_of_kratos_fill_in_what_a_deck_leaves_out() {
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(said(&output).contains("unknown-program") && said(&output).contains("kratos"), "{}", said(&output));
 }
+
+#[test]
+fn a_program_in_python_is_sent_to_python() {
+    let folder = case("elements/load_patch_2D4N");
+    std::fs::write(folder.path().join("MainKratos.py"), "import KratosMultiphysics\n").expect("a program");
+    let output = zelus(folder.path(), &["run", "MainKratos.py"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("`python -m zelus MainKratos.py` runs it"), "{}", said(&output));
+}

@@ -3,12 +3,16 @@
 mod support;
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 use serde_json::{Value, json};
 use support::root;
+use zelus::core::analysis::{Driver, Point};
+use zelus::core::assembly::System;
 use zelus::core::model::Model;
+use zelus::core::parameters::Node;
 use zelus::core::processes::Process;
-use zelus::{Error, RunOptions, Silent, Simulation};
+use zelus::{Error, Result, RunOptions, Silent, Simulation};
 
 fn folder() -> PathBuf {
     root().join("tests/cases/contact_2d/matching")
@@ -126,4 +130,61 @@ fn errors_are_values() {
     };
     assert!(problems.iter().any(|problem| problem.to_string().contains("Nowhere")), "{problems:?}");
     assert!(Simulation::open(Path::new("no/such/deck.json"), &RunOptions::default()).is_err());
+}
+
+/// Notes the points of the loop, does nothing at one of them, and makes the processes named "counting".
+struct Noting {
+    points: Arc<Mutex<Vec<Point>>>,
+    leaves_out: Option<Point>,
+    counts: Arc<Mutex<usize>>,
+}
+
+impl Driver for Noting {
+    fn process(&mut self, entry: &Node, _model: &mut Model) -> Result<Option<Box<dyn Process>>> {
+        let is_own = entry.get("python_module").and_then(Node::as_str) == Some("counting");
+        let count = Arc::clone(&self.counts);
+        Ok(is_own.then(|| Box::new(Counting(count)) as Box<dyn Process>))
+    }
+
+    fn at(
+        &mut self,
+        point: Point,
+        root: &str,
+        model: &mut Model,
+        _system: &System,
+        act: &mut dyn FnMut(&mut Model) -> Result<()>,
+    ) -> Result<()> {
+        assert_eq!(root, "Structure");
+        self.points.lock().expect("one thread").push(point);
+        if self.leaves_out == Some(point) { Ok(()) } else { act(model) }
+    }
+}
+
+struct Counting(Arc<Mutex<usize>>);
+
+impl Process for Counting {
+    fn begin_step(&mut self, _model: &mut Model) -> Result<()> {
+        *self.0.lock().expect("one thread") += 1;
+        Ok(())
+    }
+}
+
+#[test]
+fn a_driver_makes_processes_and_decides_when_the_stage_acts() {
+    let run = |leaves_out: Option<Point>| {
+        let mut deck = deck(2, 1.0);
+        deck["processes"]["own"] = json!([{"python_module": "counting", "Parameters": {}}]);
+        let (points, counts) = (Arc::default(), Arc::default());
+        let mut simulation = Simulation::of_value(&deck, &folder(), &RunOptions::default()).expect("a deck");
+        let driver = Noting { points: Arc::clone(&points), leaves_out, counts: Arc::clone(&counts) };
+        simulation.set_driver(Box::new(driver));
+        simulation.run(&mut Silent).expect("a run");
+        let moved = displacement(&simulation).iter().any(|u| *u != 0.0);
+        (points.lock().expect("one thread").clone(), *counts.lock().expect("one thread"), moved)
+    };
+    let step = [Point::BeginStep, Point::EndStep, Point::Output];
+    let all = [&[Point::Read, Point::Ready, Point::BeforeLoop][..], &step, &step, &[Point::Finalize]].concat();
+    assert_eq!(run(None), (all.clone(), 2, true));
+    // nothing loads the bodies then
+    assert_eq!(run(Some(Point::BeginStep)), (all, 0, false));
 }

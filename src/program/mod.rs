@@ -19,7 +19,7 @@ mod terminal;
 mod warnings;
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -148,10 +148,24 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// A program in Python is no deck: says what runs it.
+fn refuse_script(file: &Path) -> Result<()> {
+    if file.extension().is_none_or(|ending| ending != "py") {
+        return Ok(());
+    }
+    let fact = format!("{} is a program in Python", file.display());
+    let remedy = format!(
+        "`python -m zelus {}` runs it, with the Python package; or name the deck that it reads",
+        file.display()
+    );
+    Err(Diagnostic::error("python-program", fact).remedy(remedy).into())
+}
+
 /// Does what is asked; `ran` says afterwards whether a step was made.
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
         Command::Run { file, threads, report, like, set, resume, quiet, verbose, log } => {
+            refuse_script(&file)?;
             let report = report.map(Report);
             if let Some(report) = &report {
                 report.check(&file)?;

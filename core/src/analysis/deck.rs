@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::driver::Driver;
 use super::report::RunReport;
 use super::solver::{INCOMPLETE, SolverSettings, flatten_bars};
 use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
@@ -259,11 +260,16 @@ pub(super) fn make_processes(
     deck: &Node,
     folder: &Path,
     model: &mut Model,
+    driver: &mut dyn Driver,
     problems: &mut Report,
 ) -> Vec<Box<dyn Process>> {
     let mut out = Vec::new();
     for item in listed(deck, problems) {
-        let made = make_process(item, folder, model, problems);
+        let made = match driver.process(item, model).map_err(|error| error.at(&item.place())) {
+            Ok(Some(process)) => Ok(process),
+            Ok(None) => make_process(item, folder, model, problems),
+            Err(error) => Err(error),
+        };
         out.extend(problems.absorb(made));
     }
     out

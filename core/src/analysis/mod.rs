@@ -10,6 +10,7 @@ mod carrier;
 mod checkpoints;
 mod cutting;
 mod deck;
+mod driver;
 mod like;
 mod mesh;
 mod older_decks;
@@ -26,6 +27,7 @@ mod time_stepping;
 mod unheeded;
 
 pub use cutting::Cutting;
+pub use driver::{Driver, Point, Unattended};
 pub use mesh::{DeckMesh, read_deck_mesh};
 pub use report::{RunReport, Sizes};
 pub use simulation::{RunOptions, Simulation};

@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::carrier::{OfRank, Regrouping};
 use super::checkpoints::{Checkpoints, Pointer};
 use super::deck::{StageDeck, open, stages};
+use super::driver::{Driver, Unattended};
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of, whole};
 use super::stage::{Stage, Systems};
@@ -66,6 +67,7 @@ pub struct Simulation {
     /// The model as the stage under way found it, where it is not the first.
     before: Option<Model>,
     systems: Systems,
+    driver: Box<dyn Driver>,
     /// Processes to act in the next stage.
     more: Vec<Box<dyn Process>>,
     pool: Arc<rayon::ThreadPool>,
@@ -117,6 +119,7 @@ impl Simulation {
             model: Model::new(options.ranks.clone()),
             before: None,
             systems: Systems::new(),
+            driver: Box::new(Unattended),
             more: Vec::new(),
             pool: Arc::new(pool),
             report,
@@ -129,6 +132,11 @@ impl Simulation {
     /// A process of the caller's, which acts after those of the deck: in the stage that is prepared next.
     pub fn add_process(&mut self, process: Box<dyn Process>) {
         self.more.push(process);
+    }
+
+    /// Lets a program of the caller's drive the run, in place of what did.
+    pub fn set_driver(&mut self, driver: Box<dyn Driver>) {
+        self.driver = driver;
     }
 
     /// Prepares the next stage, when none is under way: mesh, materials, processes, unknowns. Without it [`Simulation::step`]
@@ -389,7 +397,8 @@ impl Simulation {
         self.before = (self.over > 0).then(|| self.model.clone());
         let (stages, like) = (&self.stages[self.over..], self.like.as_deref());
         let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
-        let stage = Stage::prepare(stages, &self.folder, like, model, systems, report, monitor, more, &self.outputs)?;
+        let (driver, folder, outputs) = (self.driver.as_mut(), &self.folder, &self.outputs);
+        let stage = Stage::prepare(stages, folder, like, model, systems, report, monitor, driver, more, outputs)?;
         stage.root().clone_into(&mut self.root);
         monitor.begin_stage(&stage.plan(stages.len(), self.stages.len()));
         self.stage = Some(stage);
@@ -401,7 +410,7 @@ impl Simulation {
             self.prepare_stage(monitor)?;
             // A saved run may have been at its end.
             let Some(stage) = self.stage.as_mut() else { break };
-            let stepped = stage.step(&mut self.model, &mut self.report, monitor);
+            let stepped = stage.step(&mut self.model, &mut self.report, monitor, self.driver.as_mut());
             if matches!(stepped, Ok(true)) {
                 let wanted = stage.saves(&self.model);
                 return match wanted.iter().try_for_each(|path| self.save_named(path)) {
@@ -421,7 +430,8 @@ impl Simulation {
     fn end_stage(&mut self, result: Result<()>) -> Result<()> {
         let Some(stage) = self.stage.take() else { return result };
         self.before = None;
-        let ended = stage.finish(result, &mut self.model, &mut self.systems, &mut self.report);
+        let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
+        let ended = stage.finish(result, model, systems, report, self.driver.as_mut());
         self.over = if ended.is_ok() { self.over + 1 } else { self.stages.len() };
         self.report.converged = ended.is_ok() && self.over == self.stages.len();
         ended

@@ -11,6 +11,7 @@ use super::cutting::{Cutting, Lengths};
 use super::deck::{
     StageDeck, add_names_only, check_top_level, import, import_materials, make_processes, mesh_file, root_name,
 };
+use super::driver::{Driver, Point};
 use super::like::{lay_defaults, program};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
@@ -69,6 +70,7 @@ impl Stage {
         systems: &mut Systems,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
         more: Vec<Box<dyn Process>>,
         outputs: &[PathBuf],
     ) -> Result<Self> {
@@ -170,7 +172,10 @@ impl Stage {
         memory::give_back();
         // Ranks that have read no mesh know its parts only now.
         complete_part_names(&mut deck, &root, model, &mut problems);
-        let mut processes = make_processes(&deck, folder, model, &mut problems);
+        if is_whole && !problems.has_errors() {
+            driver.at(Point::Read, &root, model, &System::default(), &mut |_| Ok(()))?;
+        }
+        let mut processes = make_processes(&deck, folder, model, driver, &mut problems);
         processes.extend(more);
         // What several ranks say one process says alone.
         problems = problems_of_all(&ranks, problems)?;
@@ -232,6 +237,7 @@ impl Stage {
             tell_what_holds(part, &system, &prescribed, &mut problems);
         }
         tell(problems_of_all(&ranks, problems)?.finish()?, report, monitor);
+        driver.at(Point::Ready, &root, model, &system, &mut |_| Ok(()))?;
         report.add_seconds("set up", start.elapsed().as_secs_f64());
         Ok(Self {
             name: stage.name.clone(),
@@ -273,12 +279,14 @@ impl Stage {
         Ok(())
     }
 
-    fn begin(&mut self, model: &mut Model, report: &mut RunReport) -> Result<()> {
+    fn begin(&mut self, model: &mut Model, report: &mut RunReport, driver: &mut dyn Driver) -> Result<()> {
         self.begun = true;
         report.stages.push(self.name.clone());
-        for process in &mut self.processes {
-            model.ranks.clone().agree(process.before_loop(model))?;
-        }
+        let processes = &mut self.processes;
+        driver.at(Point::BeforeLoop, &self.root, model, &self.system, &mut |model| {
+            let ranks = model.ranks.clone();
+            processes.iter_mut().try_for_each(|process| ranks.agree(process.before_loop(model)))
+        })?;
         model.root_mut(&self.root)?.info.time = self.start_time;
         for process in &mut self.processes {
             model.ranks.clone().agree(process.print_start(model, &self.system))?;
@@ -337,12 +345,13 @@ impl Stage {
         model: &mut Model,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
     ) -> Result<bool> {
         if self.claims.is_none() {
             self.claim(&model.ranks)?;
         }
         if !self.begun {
-            self.begin(model, report)?;
+            self.begin(model, report, driver)?;
         }
         let part = model.root_mut(&self.root)?;
         let time = part.info.time;
@@ -358,7 +367,7 @@ impl Stage {
         }
         let length = self.strategy.step_length(part, &self.system, self.stepping.next(time)?)?;
         let target = self.stepping.target(time, length, self.end_time);
-        self.reach(target, model, report, monitor).map(|()| true)
+        self.reach(target, model, report, monitor, driver).map(|()| true)
     }
 
     /// Finalises the processes, also after a step that has failed; what elements remember goes to `systems`.
@@ -371,16 +380,21 @@ impl Stage {
         model: &mut Model,
         systems: &mut Systems,
         report: &mut RunReport,
+        driver: &mut dyn Driver,
     ) -> Result<()> {
         if result.is_err() {
             model.ranks.announce_failure();
         }
         let mut finals = Report::new();
-        for process in &mut self.processes {
-            let finalized = process.finalize(model);
-            finals.absorb(if result.is_ok() { model.ranks.agree(finalized) } else { finalized });
-            report.outputs.extend(process.outputs());
-        }
+        let processes = &mut self.processes;
+        let finalized = driver.at(Point::Finalize, &self.root, model, &self.system, &mut |model| {
+            for process in processes.iter_mut() {
+                let finalized = process.finalize(model);
+                finals.absorb(if result.is_ok() { model.ranks.agree(finalized) } else { finalized });
+                report.outputs.extend(process.outputs());
+            }
+            Ok(())
+        });
         for (phase, seconds) in self.strategy.phases().iter() {
             report.add_seconds(phase, seconds);
         }
@@ -389,7 +403,7 @@ impl Stage {
         report.add_seconds("assemble: elements", assembly.bulk);
         report.add_seconds("assemble: interactions", assembly.coupling);
         systems.insert(self.root, System { elements: self.system.elements, ..System::default() });
-        result.and(finals.finish().map(|_| ()))
+        result.and(finalized).and(finals.finish().map(|_| ()))
     }
 
     /// Solves up to `target`, in one step or, where that does not converge, in shorter ones.
@@ -399,6 +413,7 @@ impl Stage {
         model: &mut Model,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
     ) -> Result<()> {
         let whole = target - model.root(&self.root)?.info.time;
         let mut lengths = Lengths::new(self.cutting, whole, self.first_length.take());
@@ -408,7 +423,7 @@ impl Stage {
             let (to, last) = lengths.next(from, target);
             let part = model.root_mut(&self.root)?;
             let saved = self.strategy.can_retry().then(|| Saved::of(part, &mut self.system));
-            let record = self.attempt(to, model, report, monitor)?;
+            let record = self.attempt(to, model, report, monitor, driver)?;
             if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
                 let factor = self.cutting.factor;
                 monitor
@@ -417,7 +432,7 @@ impl Stage {
                 continue;
             }
             if record.converged {
-                self.accept(model, report, monitor)?;
+                self.accept(model, report, monitor, driver)?;
                 lengths.grow();
                 failed = None;
                 if last {
@@ -479,6 +494,7 @@ impl Stage {
         model: &mut Model,
         report: &mut RunReport,
         monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
     ) -> Result<StepRecord> {
         let part = model.root_mut(&self.root)?;
         part.info.step += 1;
@@ -488,9 +504,10 @@ impl Stage {
             monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
         }
         let ranks = model.ranks.clone();
-        for process in &mut self.processes {
-            ranks.agree(process.begin_step(model))?;
-        }
+        let processes = &mut self.processes;
+        driver.at(Point::BeginStep, &self.root, model, &self.system, &mut |model| {
+            processes.iter_mut().try_for_each(|process| ranks.agree(process.begin_step(model)))
+        })?;
         let start = Instant::now();
         let record = self.strategy.solve_step(model.root_mut(&self.root)?, &mut self.system, monitor)?;
         report.add_seconds("solve steps", start.elapsed().as_secs_f64());
@@ -502,28 +519,22 @@ impl Stage {
         Ok(record)
     }
 
-    fn accept(&mut self, model: &mut Model, report: &mut RunReport, monitor: &mut dyn Monitor) -> Result<()> {
+    fn accept(
+        &mut self,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
+    ) -> Result<()> {
         self.strategy.accept_step(model.root_mut(&self.root)?, &mut self.system)?;
         monitor.phase("output");
         let start = Instant::now();
         let ranks = model.ranks.clone();
-        for process in &mut self.processes {
-            ranks.agree(process.end_step(model, &self.system))?;
-        }
-        let mut writers = Vec::new();
-        for (at, process) in self.processes.iter_mut().enumerate() {
-            if process.is_output_step(model) {
-                writers.push(at);
-            }
-        }
-        if !writers.is_empty() {
-            for process in &mut self.processes {
-                ranks.agree(process.before_output(model, &self.system))?;
-            }
-            for at in writers {
-                ranks.agree(self.processes[at].print_output(model, &self.system))?;
-            }
-        }
+        let Self { processes, system, root, .. } = self;
+        driver.at(Point::EndStep, root, model, system, &mut |model| {
+            processes.iter_mut().try_for_each(|process| ranks.agree(process.end_step(model, system)))
+        })?;
+        driver.at(Point::Output, root, model, system, &mut |model| write_output(processes, model, system))?;
         report.add_seconds("output", start.elapsed().as_secs_f64());
         self.pass_on_messages(&ranks, report, monitor);
         Ok(())
@@ -535,6 +546,19 @@ impl Stage {
         own.extend(messages_of(&mut self.processes, &mut self.system));
         tell(ranks.problems_of_all(own), report, monitor);
     }
+}
+
+/// Lets those processes write that have output to write now.
+fn write_output(processes: &mut [Box<dyn Process>], model: &mut Model, system: &System) -> Result<()> {
+    let ranks = model.ranks.clone();
+    let writes: Vec<bool> = processes.iter_mut().map(|process| process.is_output_step(model)).collect();
+    if !writes.contains(&true) {
+        return Ok(());
+    }
+    processes.iter_mut().try_for_each(|process| ranks.agree(process.before_output(model, system)))?;
+    let mut writers = processes.iter_mut().zip(writes).filter(|(_, writes)| *writes);
+    writers.try_for_each(|(process, _)| ranks.agree(process.print_output(model, system)))?;
+    processes.iter_mut().try_for_each(|process| ranks.agree(process.after_output(model, system)))
 }
 
 /// Notes and warnings of processes and interactions.

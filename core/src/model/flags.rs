@@ -50,9 +50,14 @@ register_flags! {
 /// The text of a "did you mean" when the name is not known.
 pub fn flag(name: &str) -> Result<&'static str, String> {
     FLAGS.get(name).copied().ok_or_else(|| {
-        let known: Vec<&str> = FLAGS.iter().copied().collect();
+        let known = flag_names();
         did_you_mean(name, known.iter().copied()).unwrap_or_else(|| format!("known flags: {}", known.join(", ")))
     })
+}
+
+/// All registered flags, sorted.
+pub fn flag_names() -> Vec<&'static str> {
+    FLAGS.iter().copied().collect()
 }
 
 const UNDEFINED: i8 = -1;

@@ -103,6 +103,14 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// Output is written (Kratos: `ExecuteAfterOutputStep`).
+    ///
+    /// # Errors
+    /// As [`Process::initialize`].
+    fn after_output(&mut self, _model: &mut Model, _system: &System) -> Result<()> {
+        Ok(())
+    }
+
     /// Writes the state of a step that has failed, apart from results; gives where. On several ranks it is collective.
     ///
     /// # Errors

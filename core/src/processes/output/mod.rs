@@ -28,3 +28,4 @@ mod usual;
 mod vtk_output_process;
 
 pub use format::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};
+pub use picture::usual_results;

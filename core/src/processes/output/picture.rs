@@ -62,6 +62,22 @@ impl Mesh {
     }
 }
 
+/// The cells of a whole part on all its nodes, with what runs are looked at for and no column of the model holds: quantities of
+/// Gauss points as values at nodes and as means of cells, and the properties and sub part of each cell. Collective.
+pub fn usual_results(part: &ModelPart, system: &System) -> Dataset {
+    let mut mesh = Mesh::new(part, &part.tree, CellChoice::Automatic, false);
+    for quantity in usual::gauss(part, system) {
+        let elements = &part.tree.elements;
+        let nodal = gauss::at_nodes(part, system, Role::Element, elements, &mesh.nodes, &quantity, Share::Volume);
+        mesh.data.point_data.push(nodal);
+        mesh.data.cell_data.push(gauss::means(part, system, mesh.kind, &mesh.cells, &quantity));
+    }
+    let parts = usual::parts(&part.ranks, &part.tree, mesh.kind, &mesh.cells);
+    mesh.data.cell_data.push(Column::ids("PROPERTIES_ID", &mesh.data.cells.properties));
+    mesh.data.cell_data.push(Column::ids("PART", &parts));
+    mesh.data
+}
+
 /// Marks of nodes that any rank has set; collective.
 fn of_all(part: &ModelPart, marks: &[bool]) -> Vec<bool> {
     let Some(share) = &part.share else { return marks.to_vec() };

@@ -1,0 +1,23 @@
+//! The part of the Python package that is compiled: a run in a thread of its own, which Python drives from point to point.
+
+mod access;
+mod buffer;
+mod event;
+mod line;
+mod outcome;
+mod process;
+mod residual;
+mod session;
+mod words;
+mod worker;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _zelus(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<session::Session>()?;
+    module.add_function(wrap_pyfunction!(access::variable_kind, module)?)?;
+    module.add_function(wrap_pyfunction!(access::is_flag, module)?)?;
+    module.add_function(wrap_pyfunction!(access::names, module)?)
+}
