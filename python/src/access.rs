@@ -45,7 +45,7 @@ pub(crate) fn is_flag(name: &str) -> bool {
     flags::flag(name).is_ok()
 }
 
-pub(crate) fn wrong(error: Error) -> PyErr {
+fn wrong(error: Error) -> PyErr {
     PyKeyError::new_err(error.to_string())
 }
 
@@ -53,12 +53,16 @@ fn unknown(name: &str) -> PyErr {
     PyKeyError::new_err(format!("there is no variable {name}"))
 }
 
+pub(crate) fn read_only() -> PyErr {
+    PyRuntimeError::new_err("the model can only be read here")
+}
+
 fn root<'l>(lent: &'l Lent, path: &str) -> PyResult<&'l ModelPart> {
     lent.model().root(path).map_err(wrong)
 }
 
 fn root_mut<'l>(lent: &'l mut Lent, path: &str) -> PyResult<&'l mut ModelPart> {
-    let model = lent.model_mut().ok_or_else(|| PyRuntimeError::new_err("the model can only be read here"))?;
+    let model = lent.model_mut().ok_or_else(read_only)?;
     model.root_mut(path).map_err(wrong)
 }
 

@@ -2,6 +2,7 @@
 
 mod access;
 mod buffer;
+mod builtin;
 mod event;
 mod line;
 mod outcome;
@@ -17,6 +18,10 @@ use pyo3::prelude::*;
 fn _zelus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<session::Session>()?;
+    module.add_class::<builtin::Builtin>()?;
+    module.add_class::<builtin::Function>()?;
+    module.add_function(wrap_pyfunction!(builtin::in_interval, module)?)?;
+    module.add_function(wrap_pyfunction!(builtin::is_process, module)?)?;
     module.add_function(wrap_pyfunction!(access::variable_kind, module)?)?;
     module.add_function(wrap_pyfunction!(access::is_flag, module)?)?;
     module.add_function(wrap_pyfunction!(access::names, module)?)

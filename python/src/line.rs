@@ -53,6 +53,12 @@ impl Lent {
         self.writable.map(|model| unsafe { &mut *model })
     }
 
+    /// The model, to change, and what computes on it.
+    pub(crate) fn both(&mut self) -> Option<(&mut Model, Option<&System>)> {
+        // SAFETY: as above; they are apart.
+        self.writable.map(|model| unsafe { (&mut *model, self.system.map(|system| &*system)) })
+    }
+
     pub(crate) fn model(&self) -> &Model {
         // SAFETY: as above.
         unsafe { &*self.model }

@@ -147,3 +147,69 @@ def test_what_of_kratos_is_not_here_is_named():
         assert not KM.IsDistributedRun() and KM.DataCommunicator.GetDefault().SumAll(3.0) == 3.0
     with pytest.raises(NotImplementedError, match="mesh file"):
         zelus.Model().CreateModelPart("Structure")
+
+
+def test_processes_of_the_program_can_be_called_by_hand(inside):
+    reference = zelus.run("ProjectParameters.json", set={"problem_data.end_time": 0.5})
+    deck = json.loads((inside / "ProjectParameters.json").read_text())
+    deck["problem_data"]["end_time"] = 0.5
+    lists = {key: deck["processes"].pop(key) for key in ("constraints_process_list", "loads_process_list")}
+    with zelus.kratos.installed():
+        from KratosMultiphysics.assign_vector_variable_process import AssignVectorVariableProcess
+        from KratosMultiphysics.process_factory import KratosProcessFactory
+
+    class ByHand(zelus.AnalysisStage):
+        def ModifyInitialGeometry(self):
+            super().ModifyInitialGeometry()
+            held, loads = (zelus.Parameters(own) for own in lists.values())
+            self.own = [AssignVectorVariableProcess(self.model, item["Parameters"]) for item in held]
+            self.own += KratosProcessFactory(self.model).ConstructListOfProcesses(loads)
+            [process.ExecuteInitialize() for process in self.own]
+
+        def ModifyAfterSolverInitialize(self):
+            [process.ExecuteBeforeSolutionLoop() for process in self.own]
+
+        def ApplyBoundaryConditions(self):
+            super().ApplyBoundaryConditions()
+            [process.ExecuteInitializeSolutionStep() for process in self.own]
+
+    stage = ByHand(zelus.Model(), zelus.Parameters(json.dumps(deck)))
+    with pytest.warns(zelus.ZelusWarning, match="held-by-nothing"):
+        stage.Run()
+    assert (stage.result()["DISPLACEMENT"] == reference["DISPLACEMENT"]).all()
+
+
+def test_what_is_wrong_with_a_process_called_by_hand_is_said(inside):
+    class Wrong(zelus.AnalysisStage):
+        def ModifyInitialGeometry(self):
+            with pytest.raises(zelus.InputError, match="there is no model part") as raised:
+                settings = zelus.Parameters('{"model_part_name": "Structure.Nowhere", "variable_name": "DISPLACEMENT", "value": [0, 0, 0]}')
+                zelus.BuiltinProcess(self.model, "assign_vector_variable_process", settings).ExecuteInitialize()
+            assert raised.value.code == "unknown-model-part"
+            with pytest.raises(zelus.InputError, match="no process"):
+                zelus.BuiltinProcess(self.model, "assign_vectors_process", zelus.Parameters())
+            (contact,) = self.project_parameters["processes"]["contact_process_list"]
+            own = zelus.BuiltinProcess(self.model, "alm_contact_process", contact["Parameters"])
+            with pytest.raises(RuntimeError, match="belongs into the lists"):
+                own.ExecuteInitialize()
+            raise InterruptedError
+
+    with open("ProjectParameters.json") as file:
+        stage = Wrong(zelus.Model(), zelus.Parameters(file.read()))
+    with pytest.raises(InterruptedError):
+        stage.Run()
+
+
+def test_functions_and_intervals_are_those_of_decks():
+    with zelus.kratos.installed():
+        from KratosMultiphysics import DISPLACEMENT, DoubleVariable, GenericFunctionUtility, IntervalUtility, DISPLACEMENT_X
+
+    settings = zelus.Parameters('{"interval": [1.0, "End"]}')
+    interval = IntervalUtility(settings)
+    assert interval.IsInInterval(1.0) and not interval.IsInInterval(0.5) and settings["interval"][1].GetDouble() == 1e30
+    function = GenericFunctionUtility("2.0*t + x - X if y > 1 else 0")
+    assert function.DependsOnSpace() and function.CallFunction(3.0, 2.0, 0.0, 5.0, 1.0, 0.0, 0.0) == 12.0
+    assert function.CallFunction(3.0, 0.0, 0.0, 5.0) == 0.0
+    with pytest.raises(ValueError, match="character 7"):
+        GenericFunctionUtility("2.0*t+*")
+    assert isinstance(DISPLACEMENT_X, DoubleVariable) and not isinstance(DISPLACEMENT, DoubleVariable)

@@ -8,6 +8,7 @@
 from . import kratos
 from ._zelus import __version__
 from .analysis_stage import AnalysisStage, Solver
+from .builtin import BuiltinProcess
 from .errors import InputError, NotConvergedError, Problem, SystemFailure, ZelusError, ZelusWarning
 from .model import Model, ModelPart
 from .parameters import Parameters
@@ -19,6 +20,7 @@ from .variables import Flag, Variable, named
 
 __all__ = [
     "AnalysisStage",
+    "BuiltinProcess",
     "Entities",
     "Flag",
     "InputError",

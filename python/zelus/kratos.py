@@ -9,14 +9,16 @@ from __future__ import annotations
 import contextlib
 import importlib.abc
 import importlib.machinery
+import math
 import os
 import sys
 import types
 import unittest
+import warnings
 
 import numpy as np
 
-from . import _zelus, analysis_stage, model, parameters, process, variables
+from . import _zelus, analysis_stage, builtin, kratos_utilities, model, parameters, process, variables
 
 _TOP = "KratosMultiphysics"
 _APPLICATIONS = (
@@ -38,135 +40,6 @@ _ANALYSES = {
 
 # The program whose defaults analyses take where a deck names nothing.
 _like = None
-
-
-class Vector(np.ndarray):
-    """Numbers: of a length, all zero or of one value, or from a list."""
-
-    def __new__(cls, values=0, value=0.0):
-        own = np.full(values, value, float) if isinstance(values, int) else np.array(values, float)
-        return own.view(cls)
-
-    def Size(self):
-        """How many there are."""
-        return len(self)
-
-    def Resize(self, size):
-        """Makes it longer or shorter."""
-        self.resize(size, refcheck=False)
-
-
-class Matrix(np.ndarray):
-    """Rows of numbers: of a size, all zero, or from lists."""
-
-    def __new__(cls, rows=0, columns=0):
-        own = np.zeros((rows, columns)) if isinstance(rows, int) else np.array(rows, float)
-        return own.view(cls)
-
-    def Size1(self):
-        """Rows."""
-        return self.shape[0]
-
-    def Size2(self):
-        """Columns."""
-        return self.shape[1]
-
-
-def Array3(values=0.0):
-    """Three numbers."""
-    return Vector(3, values) if np.ndim(values) == 0 else Vector(values)
-
-
-class Logger:
-    """Prints lines."""
-
-    class Severity:
-        """How much is printed."""
-
-        INFO = WARNING = DETAIL = DEBUG = 0
-
-    @staticmethod
-    def PrintInfo(label="", *words):
-        """Prints a line."""
-        print(f"{label}:" if label else "", *words)
-
-    PrintWarning = Print = PrintWarningOnAllRanks = PrintInfoOnAllRanks = PrintInfo
-
-    @staticmethod
-    def Flush():
-        """Brings out what is printed."""
-        sys.stdout.flush()
-
-    @staticmethod
-    def GetDefaultOutput():
-        """What takes a severity and does not heed it."""
-        return types.SimpleNamespace(SetSeverity=lambda _: None)
-
-
-class _Globals:
-    """Variables by name."""
-
-    @staticmethod
-    def GetVariable(name):
-        """The variable of that name."""
-        found = variables.named(name)
-        if not isinstance(found, variables.Variable):
-            raise KeyError(f"there is no variable {name}")
-        return found
-
-    GetFlag = staticmethod(lambda name: variables.named(name))
-
-    @staticmethod
-    def HasVariable(name):
-        """Whether there is a variable of that name."""
-        return isinstance(variables.named(name), variables.Variable)
-
-    @staticmethod
-    def GetVariableType(name):
-        """The word for what it holds."""
-        kinds = {"scalar": "Double", "component": "Double", "vector3": "Array", "boolean": "Bool", "integer": "Integer"}
-        kind = _zelus.variable_kind(name)
-        return kinds.get(kind, (kind or "none").capitalize().replace("Text", "String"))
-
-
-class VariableUtils:
-    """Work on many nodes at once."""
-
-    def SetVariable(self, variable, value, nodes, *_):
-        """Writes one value with history to nodes."""
-        for node in nodes:
-            node.SetSolutionStepValue(variable, value)
-
-    SetScalarVar = SetVectorVar = SetVariable
-
-    def SetNonHistoricalVariable(self, variable, value, items):
-        """Writes one value without history to nodes, elements or conditions."""
-        for item in items:
-            item.SetValue(variable, value)
-
-    def SetHistoricalVariableToZero(self, variable, nodes):
-        """Writes zeros with history to nodes."""
-        is_vector = _zelus.variable_kind(str(variable)) == "vector3"
-        self.SetVariable(variable, [0.0] * 3 if is_vector else 0.0, nodes)
-
-    def SetFlag(self, flag, state, items):
-        """Sets or unsets a flag of nodes, elements or conditions."""
-        for item in items:
-            item.Set(flag, state)
-
-    def ApplyFixity(self, variable, fixed, nodes):
-        """Fixes or frees an unknown of nodes."""
-        for node in nodes:
-            (node.Fix if fixed else node.Free)(variable)
-
-    def SumHistoricalNodeScalarVariable(self, variable, part, step=0):
-        """The sum of a value with history over the nodes of a part."""
-        return sum(node.GetSolutionStepValue(variable, step) for node in part.Nodes)
-
-    SumHistoricalNodeVectorVariable = SumHistoricalNodeScalarVariable
-
-    def AddDof(self, *_):
-        """The solver adds its unknowns itself."""
 
 
 class _TestCase(unittest.TestCase):
@@ -230,23 +103,20 @@ class _Module(types.ModuleType):
 
 def _top(module):
     """What KratosMultiphysics itself has."""
-    members = {
-        "Array3": Array3,
+    names = """Array3 ApplyFunctionToNodesUtility GenericFunctionUtility IntervalUtility KratosGlobals Logger Matrix VariableUtils
+        Vector""".split()
+    members = {name: getattr(kratos_utilities, name) for name in names} | kratos_utilities.VARIABLE_CLASSES
+    members |= {
         "CheckForPreviousImport": lambda: None,
         "DataCommunicator": types.SimpleNamespace(GetDefault=model._Communicator),
         "Flags": variables.Flag,
         "IsDistributedRun": lambda: False,
-        "KratosGlobals": _Globals,
-        "Logger": Logger,
-        "Matrix": Matrix,
         "Model": model.Model,
         "ModelPart": model.ModelPart,
         "OutputProcess": process.OutputProcess,
         "Parameters": parameters.Parameters,
         "ParallelEnvironment": types.SimpleNamespace(GetDefaultDataCommunicator=model._Communicator),
         "Process": process.Process,
-        "VariableUtils": VariableUtils,
-        "Vector": Vector,
     }
     module.__dict__.update(members)
     return list(members)
@@ -258,12 +128,67 @@ def _tests(module):
         {
             "TestCase": _TestCase,
             "WorkFolderScope": _scope,
+            "isclose": math.isclose,
             "main": unittest.main,
             "skipIf": unittest.skipIf,
             "skipUnless": unittest.skipUnless,
             "skipIfApplicationsNotAvailable": lambda *names: unittest.skipIf(set(names) - set(_APPLICATIONS), "not here"),
         }
     )
+
+
+def _process(module, name):
+    """What the module of a process of the program has: its class by Kratos' name, and Factory."""
+
+    def begin(self, own_model, settings):
+        builtin.BuiltinProcess.__init__(self, own_model, name, settings)
+
+    own = "".join(word.capitalize() for word in name.split("_"))
+    made = type(own, (builtin.BuiltinProcess,), {"__init__": begin, "__doc__": f"The process {name}."})
+    module.__dict__.update({own: made, "Factory": lambda settings, own_model: made(own_model, settings["Parameters"])})
+    return [own, "Factory"]
+
+
+class _ProcessFactory:
+    """Makes the processes of a list of a deck."""
+
+    def __init__(self, own_model):
+        self.Model = own_model
+
+    def ConstructListOfProcesses(self, entries):
+        """The processes of all entries."""
+        own = process.process_of(self.Model, ".")
+        return [self._made(own, entry) for entry in entries]
+
+    def _made(self, own, entry):
+        name = entry["python_module"].GetString().rsplit(".", 1)[-1]
+        known = _zelus.is_process(name)
+        made = own(entry._value, known)
+        if made is None and not known:
+            raise KeyError(f"there is no process {name}")
+        return made or builtin.BuiltinProcess(self.Model, name, entry["Parameters"])
+
+
+class _CsvTable:
+    """Tables of files belong into the deck."""
+
+    def __init__(self, *_):
+        raise NotImplementedError("values from tables in files belong into the deck")
+
+
+def _utilities(module):
+    module.CheckIfApplicationsAvailable = lambda *wanted: set(wanted) <= set(_APPLICATIONS)
+    module.IssueDeprecationWarning = lambda label, *words: warnings.warn(f"{label}: {' '.join(words)}", stacklevel=2)
+    module.DeleteFileIfExisting = lambda file: os.path.exists(file) and os.remove(file)
+
+
+# Modules that are no packages, analyses or processes, and what fills them.
+_OTHERS = {
+    "KratosUnittest": _tests,
+    "kratos_utilities": _utilities,
+    "process_factory": lambda module: setattr(module, "KratosProcessFactory", _ProcessFactory),
+    "read_csv_table_utility": lambda module: setattr(module, "ReadCsvTableUtility", _CsvTable),
+}
 
 
 class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
@@ -275,7 +200,8 @@ class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         if top != _TOP:
             return None
         packages = {"", *_APPLICATIONS}
-        if rest not in packages | set(_ANALYSES) | {"KratosUnittest", "kratos_utilities"}:
+        is_here = rest in packages | set(_ANALYSES) | set(_OTHERS)
+        if not is_here and not _zelus.is_process(rest.rpartition(".")[2]):
             raise ModuleNotFoundError(f"zelus has no {name}", name=name)
         return importlib.machinery.ModuleSpec(name, self, is_package=rest in packages)
 
@@ -291,13 +217,11 @@ class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
             own = type(_ANALYSES[rest], (_Analysis,), {})
             setattr(module, own.__name__, own)
             names = [own.__name__]
-        elif rest == "KratosUnittest":
-            _tests(module)
+        elif rest in _OTHERS:
+            _OTHERS[rest](module)
             return
-        elif rest == "kratos_utilities":
-            module.CheckIfApplicationsAvailable = lambda *wanted: set(wanted) <= set(_APPLICATIONS)
-            module.DeleteFileIfExisting = lambda file: os.path.exists(file) and os.remove(file)
-            return
+        elif _zelus.is_process(rest.rpartition(".")[2]):
+            names = _process(module, rest.rpartition(".")[2])
         elif rest == "":
             names += _top(module)
             names += [name for name in variables._OF_STEPS if name not in names]
