@@ -148,6 +148,13 @@ fn bodies_without_contact() {
 
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn heat_through_contact() {
+    let deck = root().join("examples/bars_in_thermal_contact");
+    equals_serial(&deck.to_string_lossy(), &[], EXACT, true);
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn frictionless_contact_in_the_plane() {
     equals_serial("contact_2d/nonmatching", &[], EXACT, true);
     equals_serial("contact_2d/opening", &[], EXACT, true);

@@ -1,4 +1,5 @@
 //! Decks of two structured blocks on each other, mapped to any shape, written from code.
+#![allow(dead_code, reason = "each test binary uses its part")]
 
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -113,7 +114,8 @@ impl Mesh {
         self.parts.insert(name.to_owned(), [nodes, Vec::new(), conditions]);
     }
 
-    fn text(&self, load: &[usize]) -> String {
+    /// The mesh file; conditions in `load` are those of loads.
+    pub fn text(&self, load: &[usize]) -> String {
         let mut out = String::from("Begin Properties 0\nEnd Properties\nBegin Nodes\n");
         for (at, [x, y, z]) in self.nodes.iter().enumerate() {
             writeln!(out, "{} {x:e} {y:e} {z:e}", at + 1).expect("a string");

@@ -27,3 +27,5 @@ pub mod criteria;
 mod solver;
 pub mod interaction;
 mod processes;
+
+pub use processes::{check_slaves, surfaces_by_pair};

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry, SolverSettings};
 use zelus_core::assembly::{Assembler, System};
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
-use zelus_core::entities::EntityBlock;
+use zelus_core::entities::{EntityBlock, Interaction};
 use zelus_core::io::read_materials_of;
 use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
 use zelus_core::parameters::Settings;
@@ -90,6 +90,7 @@ fn around(
     settings: &Settings,
     part: &mut ModelPart,
     structure: Box<dyn SolutionStrategy>,
+    interactions: Vec<Box<dyn Interaction>>,
     report: &mut Report,
 ) -> Result<Box<dyn SolutionStrategy>> {
     let solver = SolverSettings::new(settings.node(), &mut Report::new())?;
@@ -97,7 +98,7 @@ fn around(
     let elements = table_of_heat(Role::Element, &part.elements, &solver.settings, space)?;
     let conditions = table_of_heat(Role::Condition, &part.conditions, &solver.settings, space)?;
     let own = (std::mem::replace(&mut part.elements, elements), std::mem::replace(&mut part.conditions, conditions));
-    let mut system = System::default();
+    let mut system = System { interactions, ..System::default() };
     let made = system.make_blocks(part);
     (part.elements, part.conditions) = own;
     made?;
@@ -163,6 +164,7 @@ impl SolutionStrategy for Coupled {
         }
         let mut record = self.structure.solve_step(part, system, monitor)?;
         record.interactions.push(("heat_iterations".to_owned(), heat.iterations.len() as f64));
+        record.interactions.extend(heat.interactions);
         if let (Some(all), Some(of_heat)) = (&mut record.balance, heat.balance) {
             all.unknowns.extend(of_heat.unknowns);
         }
@@ -182,8 +184,17 @@ impl SolutionStrategy for Coupled {
 
     fn messages(&mut self) -> Vec<Diagnostic> {
         let mut all = self.heat.messages();
+        all.extend(self.system.interactions.iter_mut().flat_map(|interaction| interaction.messages()));
         all.extend(self.structure.messages());
         all
+    }
+
+    fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
+        let interactions = self.system.interactions.iter();
+        interactions
+            .flat_map(|interaction| interaction.last_messages(part))
+            .chain(self.structure.last_messages(part))
+            .collect()
     }
 
     fn assembler(&self) -> &Assembler {

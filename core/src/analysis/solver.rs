@@ -7,7 +7,7 @@ use zelus_linear_algebra::Multipliers;
 use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
-use crate::entities::find_kind;
+use crate::entities::{Interaction, find_kind};
 use crate::model::{EntityKind, ModelPart, Rates, Role};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
@@ -106,11 +106,17 @@ pub struct ExtensionDefinition {
     ///
     /// An error names what of mesh or settings does not fit.
     pub adopt: fn(&Settings, &Path, &mut ModelPart, &mut Report) -> Result<()>,
-    /// The strategy around that of the solver; that itself where nothing is to be added.
+    /// The strategy around that of the solver; that itself where nothing is to be added. The interactions are those of this extension
+    /// ([`Interaction::extension`]).
     ///
     /// An error names a setting that does not fit.
-    pub around:
-        fn(&Settings, &mut ModelPart, Box<dyn SolutionStrategy>, &mut Report) -> Result<Box<dyn SolutionStrategy>>,
+    pub around: fn(
+        &Settings,
+        &mut ModelPart,
+        Box<dyn SolutionStrategy>,
+        Vec<Box<dyn Interaction>>,
+        &mut Report,
+    ) -> Result<Box<dyn SolutionStrategy>>,
     /// Whether its settings act without an interaction.
     pub acts_alone: bool,
 }
@@ -123,7 +129,7 @@ impl ExtensionDefinition {
         cutting: |_| Ok(None),
         values: |_| Ok(Vec::new()),
         adopt: |_, _, _, _| Ok(()),
-        around: |_, _, strategy, _| Ok(strategy),
+        around: |_, _, strategy, _, _| Ok(strategy),
         acts_alone: false,
     };
 }
@@ -354,9 +360,17 @@ impl SolverSettings {
         system: &mut System,
         report: &mut Report,
     ) -> Result<(Box<dyn SolutionStrategy>, String)> {
+        let theirs: Vec<Vec<_>> = self
+            .extensions
+            .iter()
+            .map(|(_, settings)| {
+                let is_theirs = |own: &mut Box<dyn Interaction>| own.extension() == Some(settings.name());
+                system.interactions.extract_if(.., is_theirs).collect()
+            })
+            .collect();
         let (mut strategy, says) = self.own_strategy(part, system, report)?;
-        for (extension, own) in &self.extensions {
-            strategy = (extension.around)(own, part, strategy, report)?;
+        for ((extension, own), theirs) in self.extensions.iter().zip(theirs) {
+            strategy = (extension.around)(own, part, strategy, theirs, report)?;
         }
         Ok((strategy, says))
     }

@@ -361,7 +361,7 @@ impl Stage {
                 monitor.note(&format!("{ends}: \"last_step\": \"shortened\" in \"time_stepping\" would end it there"));
             }
             let last = self.system.interactions.iter().flat_map(|interaction| interaction.last_messages(part));
-            let last = last.collect();
+            let last = last.chain(self.strategy.last_messages(part)).collect();
             tell(part.ranks.problems_of_all(last), report, monitor);
             return Ok(false);
         }

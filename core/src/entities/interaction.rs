@@ -69,6 +69,11 @@ pub trait Interaction: Send + Sync {
     /// Short name for the log.
     fn name(&self) -> &str;
 
+    /// The extension of a solver whose unknowns it acts on, where the solver has it; `None` for those of the solver itself.
+    fn extension(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Before anything runs: variables, geometry, parameters.
     ///
     /// # Errors

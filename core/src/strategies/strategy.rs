@@ -68,6 +68,11 @@ pub trait SolutionStrategy: Send {
         Vec::new()
     }
 
+    /// Warnings of what has not happened in any step to interactions of its own, asked for once after the last.
+    fn last_messages(&self, _part: &ModelPart) -> Vec<Diagnostic> {
+        Vec::new()
+    }
+
     /// The system of the last step.
     fn assembler(&self) -> &Assembler;
 

@@ -2,6 +2,7 @@
 
 mod contact_block;
 mod facet_operators;
+mod facing_points;
 mod family;
 mod grouping;
 mod nitsche_block;
@@ -13,6 +14,7 @@ pub use crate::formulations::Multiplier;
 pub use crate::mortar::condition_name;
 pub use contact_block::{ContactBlock, Present};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
+pub use facing_points::{FacingPoint, facing_points};
 pub use family::{
     ByNode, Family, FamilyEntry, Friction, PairRequest, TyingFamily, TyingFamilyEntry, find_family, find_tying_family,
     variables_of,

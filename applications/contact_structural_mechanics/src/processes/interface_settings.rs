@@ -64,7 +64,7 @@ pub(super) fn without_computing_part(defaults: Defaults) -> Defaults {
 ///
 /// # Errors
 /// No pair at all, or the first one without slaves.
-pub(super) fn check_slaves(
+pub fn check_slaves(
     settings: &Settings,
     key: &str,
     parts: &BTreeMap<String, Vec<String>>,

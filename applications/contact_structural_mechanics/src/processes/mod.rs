@@ -13,3 +13,6 @@ mod penalty_contact_process;
 mod perturbed_lagrangian_contact_process;
 mod touching;
 mod uzawa_contact_process;
+
+pub use interface_settings::check_slaves;
+pub use touching::by_pair as surfaces_by_pair;

@@ -1,0 +1,77 @@
+//! The points at which two facets face each other, for what acts between them without multipliers.
+
+use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::model::ModelPart;
+use zelus_core::vector3::{dot, sub};
+
+use crate::interface::Facet;
+use crate::mortar::points::for_each_point;
+use crate::mortar::shapes::for_shapes;
+use crate::mortar::{Choices, MOST_NODES, PairGeometry, SegmentationSettings};
+
+/// A point of the slave and the one of the master before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FacingPoint {
+    /// Shape functions of the slave, as many as it has nodes.
+    pub slave: [f64; MOST_NODES],
+    /// Shape functions of the master.
+    pub master: [f64; MOST_NODES],
+    /// The slave's point.
+    pub position: [f64; 3],
+    /// Length or area that it stands for.
+    pub weight: f64,
+    /// Way from the slave to the master along the slave's normal (length), negative inside the master.
+    pub gap: f64,
+}
+
+/// The points of the overlap of two facets where they are now; none where they do not overlap or carry no contact.
+/// `normal` gives the unit normal at a node of the slave.
+pub fn facing_points(
+    part: &ModelPart,
+    slave: &Facet,
+    master: &Facet,
+    normal: &dyn Fn(u32) -> [f64; 3],
+    settings: &SegmentationSettings,
+) -> Vec<FacingPoint> {
+    macro_rules! make {
+        ($slave:ty, $master:ty, $end:literal) => {
+            of_shapes::<$slave, $master>(part, slave, master, normal, settings)
+        };
+    }
+    for_shapes!(slave.shape, master.shape, make).flatten().unwrap_or_default()
+}
+
+fn of_shapes<S: FacetShape, M: FacetShape>(
+    part: &ModelPart,
+    slave: &Facet,
+    master: &Facet,
+    normal: &dyn Fn(u32) -> [f64; 3],
+    settings: &SegmentationSettings,
+) -> Option<Vec<FacingPoint>> {
+    let of = |facet: &Facet| Some(facet.normal(part)).filter(|normal| *normal != [0.0; 3]);
+    let position = |facet: &Facet, at: usize| part.nodes.current[facet.nodes[at] as usize];
+    let geometry = PairGeometry::<f64, S, M> {
+        slave: S::nodal(|j| position(slave, j)),
+        master: M::nodal(|l| position(master, l)),
+        nodal_normals: S::nodal(|j| normal(slave.nodes[j])),
+        slave_normal: of(slave)?,
+        master_normal: of(master)?,
+        choices: Choices { slivers: settings.slivers, ..Choices::default() },
+    };
+    let mut out = Vec::new();
+    for_each_point(&geometry, settings, |point| {
+        let x = S::interpolate(&point.slave, &geometry.slave);
+        let y = M::interpolate(&point.master, &geometry.master);
+        let mut found = FacingPoint {
+            slave: [0.0; MOST_NODES],
+            master: [0.0; MOST_NODES],
+            position: x,
+            weight: point.weight,
+            gap: dot(sub(y, x), geometry.slave_normal),
+        };
+        found.slave[..S::NODES].copy_from_slice(point.slave.as_slice());
+        found.master[..M::NODES].copy_from_slice(point.master.as_slice());
+        out.push(found);
+    });
+    Some(out)
+}

@@ -1,0 +1,190 @@
+//! Heat between the bodies of a part: facets that face each other are looked for when a step begins.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+use zelus_contact_structural_mechanics::interface::{Facet, Interface, Roles, interfaces};
+use zelus_contact_structural_mechanics::mortar::{SegmentationSettings, condition_name};
+use zelus_contact_structural_mechanics::pairs::{FacingPoint, PairKey, facing_points, group_by_shapes};
+use zelus_contact_structural_mechanics::register_pair_conditions;
+use zelus_contact_structural_mechanics::search::{SearchSettings, candidates};
+use zelus_contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_STATUS};
+use zelus_convection_diffusion::columns::Columns;
+use zelus_convection_diffusion::coupling::EXTENSION;
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};
+use zelus_core::model::{ModelPart, Role};
+use zelus_core::parameters::Interval;
+use zelus_core::vector3::{norm, sub};
+
+use crate::block::{ConductanceBlock, Point};
+use crate::law::{ConductanceLaw, Meeting};
+
+/// Name of the interaction.
+const NAME: &str = "thermal contact";
+/// Conditions of the pairs, without their shapes.
+const STEM: &str = "ContactConductanceCondition";
+
+register_pair_conditions! { "ContactConductanceCondition", "heat between two facets that face each other" }
+
+/// What a deck chooses.
+pub struct Chosen {
+    /// Parts of the interfaces by key.
+    pub parts: BTreeMap<String, Vec<String>>,
+    /// Parts on the slave side by key.
+    pub slaves: BTreeMap<String, Vec<String>>,
+    /// Times in which heat passes.
+    pub interval: Interval,
+    /// The laws whose sum is the conductance.
+    pub laws: Arc<[Box<dyn ConductanceLaw>]>,
+    /// Which facets are looked at.
+    pub search: SearchSettings,
+    /// How overlaps are cut and integrated.
+    pub segmentation: SegmentationSettings,
+    /// Share of a slave facet's size up to which a gap is none where no contact is computed.
+    pub touching: f64,
+    /// Whether bodies are of revolution about the x axis.
+    pub axisymmetric: bool,
+}
+
+/// Heat between the bodies of a part.
+pub struct ThermalContact {
+    chosen: Chosen,
+    interfaces: Vec<Interface>,
+    blocks: Vec<ConductanceBlock>,
+    keys: Vec<PairKey>,
+    graph: u64,
+    has_acted: bool,
+}
+
+impl ThermalContact {
+    /// Between the surfaces of a part.
+    ///
+    /// # Errors
+    /// Parts that do not exist or hold no facets.
+    pub fn new(chosen: Chosen, part: &mut ModelPart) -> Result<Self> {
+        // Contact of the structure marks the same nodes.
+        let flags = part.nodes.flags.clone();
+        let found = interfaces(part, &chosen.parts, &chosen.slaves);
+        part.nodes.flags = flags;
+        let interfaces = found?;
+        Ok(Self { chosen, interfaces, blocks: Vec::new(), keys: Vec::new(), graph: 1, has_acted: false })
+    }
+
+    /// The points of two facets at which heat passes.
+    fn points(
+        &self,
+        part: &ModelPart,
+        (slave, master): (&Facet, &Facet),
+        normals: &FxHashMap<u32, [f64; 3]>,
+    ) -> Vec<Point> {
+        let status = part.nodes.values.values(&CONTACT_STATUS, 0);
+        let is_computed =
+            slave.nodes.iter().all(|&node| status.get(node as usize).is_some_and(|status| *status >= 0.0));
+        let pressures = if is_computed { part.nodes.values.values(&CONTACT_PRESSURE, 0) } else { &[] };
+        let acts_apart = self.chosen.laws.iter().any(|law| law.acts_apart());
+        let size = size(part, slave);
+        let found = facing_points(part, slave, master, &|node| normals[&node], &self.chosen.segmentation);
+        let point = |found: FacingPoint| {
+            let pressure = match pressures {
+                [] => 0.0,
+                all => slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * all[node as usize]).sum::<f64>(),
+            };
+            let touches = if pressures.is_empty() { found.gap <= self.chosen.touching * size } else { pressure > 0.0 };
+            let round = if self.chosen.axisymmetric { std::f64::consts::TAU * found.position[1] } else { 1.0 };
+            let [masters, slaves] =
+                [(&found.master, master), (&found.slave, slave)].map(|(n, of)| &n[..of.nodes.len()]);
+            let meeting =
+                Meeting { pressure: pressure.max(0.0), gap: if touches { 0.0 } else { found.gap.max(0.0) }, touches };
+            (touches || acts_apart).then(|| Point {
+                n: [masters, slaves].concat(),
+                weight: found.weight * round,
+                meeting,
+            })
+        };
+        found.into_iter().filter_map(point).collect()
+    }
+
+    /// All pairs between which heat passes now.
+    fn pairs(&self, part: &ModelPart) -> Vec<(PairKey, Vec<Point>)> {
+        let mut all = Vec::new();
+        for (at, interface) in self.interfaces.iter().enumerate() {
+            let normals: FxHashMap<u32, [f64; 3]> = interface.normals_of(part, Roles::Slave).into_iter().collect();
+            let near = candidates(part, interface, &self.chosen.search);
+            let pair = |candidate: &zelus_contact_structural_mechanics::search::Candidate| {
+                let key = PairKey { interface: at as u32, slave: candidate.slave, master: candidate.master };
+                let facet = |at: u32| &interface.facets[at as usize];
+                let points = self.points(part, (facet(key.slave), facet(key.master)), &normals);
+                (!points.is_empty()).then_some((key, points))
+            };
+            let found: Vec<_> = near.par_iter().with_min_len(32).filter_map(pair).collect();
+            all.extend(found);
+        }
+        all
+    }
+}
+
+/// The longest way from the first node of a facet to another (length).
+fn size(part: &ModelPart, facet: &Facet) -> f64 {
+    let x = facet.positions(part);
+    x.iter().map(|y| norm(sub(*y, x[0]))).fold(0.0, f64::max)
+}
+
+impl Interaction for ThermalContact {
+    fn name(&self) -> &str {
+        NAME
+    }
+
+    fn extension(&self) -> Option<&'static str> {
+        Some(EXTENSION)
+    }
+
+    fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        let acts = self.chosen.interval.contains(part.info.time);
+        let pairs = if acts { self.pairs(part) } else { Vec::new() };
+        let keys: Vec<PairKey> = pairs.iter().map(|(key, _)| *key).collect();
+        self.graph += u64::from(keys != self.keys);
+        self.has_acted |= !keys.is_empty();
+        self.keys = keys;
+        self.blocks.clear();
+        let unknown = Columns::of(part).unknown;
+        for ((slave, master), (pairs, nodes)) in group_by_shapes(&self.interfaces, pairs, |(key, _)| *key) {
+            let entry = require_kind(Role::Condition, &condition_name(STEM, slave, master))?;
+            let points = pairs.into_iter().map(|(_, points)| points).collect();
+            let laws = self.chosen.laws.clone();
+            self.blocks.push(ConductanceBlock::new(entry, (points, nodes, master.nodes()), unknown, laws));
+        }
+        Ok(())
+    }
+
+    fn summary(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
+        let view = part.view();
+        let own: f64 = self.blocks.iter().map(|block| block.flow(&view, |nodes| part.evaluates_pair(nodes))).sum();
+        let flow = if part.share.is_some() { part.ranks.total(own) } else { own };
+        vec![("heat_pairs", self.keys.len() as f64), ("heat_from_slaves", flow)]
+    }
+
+    fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
+        let never = !part.ranks.any(self.has_acted);
+        let fact = "no heat has passed between the bodies of thermal_contact_process in any step";
+        let remedy = "look whether its parts face and touch each other; laws \"gas\" and \"radiation\" act across gaps";
+        never.then(|| Diagnostic::warning("never-met", fact).remedy(remedy)).into_iter().collect()
+    }
+
+    fn coupling(&self) -> Option<&dyn Coupling> {
+        Some(self)
+    }
+}
+
+impl Coupling for ThermalContact {
+    fn blocks(&self) -> Vec<&dyn EntityBlock> {
+        self.blocks.iter().map(|block| block as &dyn EntityBlock).collect()
+    }
+
+    fn graph_version(&self) -> u64 {
+        self.graph
+    }
+}

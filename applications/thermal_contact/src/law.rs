@@ -1,0 +1,54 @@
+//! How much heat passes between two bodies at a point.
+
+use zelus_core::Result;
+use zelus_core::parameters::Settings;
+use zelus_core::registered_kind;
+use zelus_core::scalar::Dual;
+
+/// A number with its derivatives by the temperatures of slave and master.
+pub type ByTemperatures = Dual<2>;
+
+/// How two bodies meet at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    /// By which they press on each other (force per area), 0 where they do not.
+    pub pressure: f64,
+    /// Between them (length), 0 where they touch.
+    pub gap: f64,
+    /// Whether they touch.
+    pub touches: bool,
+}
+
+/// The conductance of a contact.
+pub trait ConductanceLaw: Send + Sync {
+    /// Heat by area and difference of temperature (power per area and temperature) at the temperatures of slave and master.
+    fn conductance(&self, meeting: &Meeting, temperatures: [ByTemperatures; 2]) -> ByTemperatures;
+
+    /// Whether heat passes without touch.
+    fn acts_apart(&self) -> bool {
+        false
+    }
+}
+
+/// Makes a law from its settings, defaults filled in.
+pub type MakeLaw = fn(&Settings) -> Result<Box<dyn ConductanceLaw>>;
+
+registered_kind! {
+    /// A law of conductance that decks name.
+    pub struct ContactConductanceEntry("contact_conductance", "unknown-name") {
+        build: MakeLaw;
+    }
+}
+
+/// A number of the settings that must be positive.
+///
+/// # Errors
+/// One that is not.
+pub fn positive(settings: &Settings, key: &str) -> Result<f64> {
+    let value = settings.get_f64(key)?;
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    let fact = format!("\"{key}\" is {value}");
+    Err(settings.error(key, "invalid-value", fact).remedy("write a number above 0").into())
+}

@@ -1,0 +1,33 @@
+//! Conduction through the gas between two bodies.
+
+use zelus_core::register;
+use zelus_core::scalar::Real;
+
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting, positive};
+
+struct Gas {
+    conductivity: f64,
+    jump: f64,
+}
+
+impl ConductanceLaw for Gas {
+    fn conductance(&self, meeting: &Meeting, _temperatures: [ByTemperatures; 2]) -> ByTemperatures {
+        ByTemperatures::constant(self.conductivity / (meeting.gap + self.jump))
+    }
+
+    fn acts_apart(&self) -> bool {
+        true
+    }
+}
+
+register! { ContactConductanceEntry "gas",
+    about: "conduction through the gas in the gap, and in the pits of surfaces that touch",
+    source: "q = k/(g + g₀) (T₁ − T₂)",
+    defaults: include_str!("../../../../configs/contact_conductances/gas.json"),
+    build: |settings| {
+        Ok(Box::new(Gas {
+            conductivity: positive(settings, "conductivity")?,
+            jump: positive(settings, "jump_distance")?,
+        }))
+    },
+}

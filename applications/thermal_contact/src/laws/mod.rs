@@ -1,0 +1,6 @@
+//! The laws of conductance.
+
+mod constant;
+mod gas;
+mod pressure;
+mod radiation;

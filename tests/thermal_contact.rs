@@ -1,0 +1,263 @@
+//! Heat between two bars in contact, against closed forms: series of resistances, gas, radiation, a gap that heat closes.
+
+#[path = "support/blocks.rs"]
+mod blocks;
+mod support;
+
+use blocks::Mesh;
+use serde_json::{Value, json};
+use std::path::Path;
+use support::{Results, read_json, said, zelus};
+
+const LENGTHS: [f64; 2] = [1.0, 0.5];
+const CONDUCTIVITIES: [f64; 2] = [10.0, 2.0];
+
+/// Two bars end to end along a line, the ends held at 400 and 300.
+#[derive(Clone, Copy)]
+struct Bars {
+    space: usize,
+    simplices: bool,
+    gap: f64,
+    /// Turn about z.
+    angle: f64,
+    /// Elements across the bars, from which those along them follow.
+    across: [usize; 2],
+    /// Temperature of the first bar's far end.
+    hot: f64,
+}
+
+const PLANE: Bars = Bars { space: 2, simplices: false, gap: 0.0, angle: 0.0, across: [2, 3], hot: 400.0 };
+
+impl Bars {
+    fn mesh(&self) -> Mesh {
+        let mut mesh = if self.simplices { Mesh::of_simplices(self.space) } else { Mesh::new(self.space) };
+        let (sin, cos) = self.angle.sin_cos();
+        for (at, name) in ["First", "Second"].into_iter().enumerate() {
+            let begin = if at == 0 { 0.0 } else { LENGTHS[0] + self.gap };
+            let place = |x: [f64; 3]| {
+                let (along, up) = (begin + LENGTHS[at] * x[0], x[1]);
+                [cos * along - sin * up, sin * along + cos * up, x[2]]
+            };
+            let across = self.across[at];
+            let sides = mesh.block(name, [3, across, across], place);
+            let [near, far] = [(0, at), (0, 1 - at)].map(|side| sides[&side].clone());
+            mesh.part(&format!("{name}End"), near.0, near.1);
+            mesh.part(&format!("{name}Face"), far.0, far.1);
+        }
+        mesh
+    }
+
+    fn material(&self, at: usize) -> Value {
+        json!({"model_part_name": format!("Heat.{}", ["First", "Second"][at]), "properties_id": at + 1, "Material": {
+            "Variables": {"DENSITY": 1.0, "SPECIFIC_HEAT": 1.0, "CONDUCTIVITY": CONDUCTIVITIES[at]}, "Tables": {}}})
+    }
+
+    fn solver(&self) -> Value {
+        json!({"solver_type": "stationary", "model_part_name": "Heat", "domain_size": self.space, "echo_level": 0,
+            "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},
+            "material_import_settings": {"materials_filename": "heat.json"}, "time_stepping": {"time_step": 1e12},
+            "residual_relative_tolerance": 1e-12})
+    }
+
+    fn processes(&self, laws: &Value) -> Vec<Value> {
+        let hold = |part: &str, value: &Value| {
+            json!({"python_module": "assign_scalar_variable_process", "Parameters": {"model_part_name": format!("Heat.{part}"),
+                "variable_name": "TEMPERATURE", "value": value, "interval": [0.0, "End"]}})
+        };
+        let start = json!({"python_module": "assign_scalar_variable_process", "Parameters": {"model_part_name": "Heat",
+            "variable_name": "TEMPERATURE", "value": 300.0, "constrained": false, "interval": [0.0, 0.0]}});
+        let contact = json!({"python_module": "thermal_contact_process", "Parameters": {"model_part_name": "Heat",
+            "contact_model_part": {"0": ["FirstFace", "SecondFace"]}, "assume_master_slave": {"0": ["SecondFace"]},
+            "conductance": laws}});
+        let output = json!({"python_module": "json_output_process", "Parameters": {"model_part_name": "Heat",
+            "output_file_name": "results.json", "output_variables": ["TEMPERATURE", "REACTION_FLUX"], "time_frequency": 0.0}});
+        vec![start, hold("FirstEnd", &json!(self.hot)), hold("SecondEnd", &json!(300.0)), contact, output]
+    }
+
+    fn write(&self, folder: &Path, deck: &Value) {
+        std::fs::write(folder.join("mesh.mdpa"), self.mesh().text(&[])).expect("the mesh");
+        let materials = json!({"properties": [self.material(0), self.material(1)]});
+        for (name, value) in [("heat.json", &materials), ("ProjectParameters.json", deck)] {
+            std::fs::write(folder.join(name), value.to_string()).expect("a file");
+        }
+    }
+
+    fn deck(&self, laws: &Value) -> Value {
+        json!({"problem_data": {"problem_name": "bars", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
+            "end_time": 1e12}, "solver_settings": self.solver(), "processes": {"list": self.processes(laws)}})
+    }
+
+    /// Heat that supports feed and take up, with what the report says passes from slaves to masters.
+    fn run(&self, laws: &Value) -> ([f64; 2], f64) {
+        let scratch = tempfile::tempdir().expect("a scratch folder");
+        self.write(scratch.path(), &self.deck(laws));
+        let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "report.json"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let results = Results::read(&scratch.path().join("results.json")).expect("results");
+        let report = read_json(&scratch.path().join("report.json")).expect("the report");
+        (fed(&results, results.len() - 1), passed(&report, 0))
+    }
+}
+
+/// Heat that enters at supports, and that leaves there.
+fn fed(results: &Results, step: usize) -> [f64; 2] {
+    let all = results.nodal("REACTION_FLUX", step);
+    [1.0, -1.0].map(|sign| all.values().map(|value| (sign * value).max(0.0)).sum())
+}
+
+/// What the report says passes from slaves to masters in a step.
+fn passed(report: &Value, step: usize) -> f64 {
+    let numbers = report["steps"][step]["interactions"].as_array().expect("numbers of the interactions");
+    let own = numbers.iter().find(|pair| pair[0] == "heat_from_slaves").expect("heat from slaves");
+    own[1].as_f64().expect("a number")
+}
+
+/// Heat by area through both bars and a contact of this resistance.
+fn series(resistance: f64) -> f64 {
+    100.0 / (LENGTHS[0] / CONDUCTIVITIES[0] + resistance + LENGTHS[1] / CONDUCTIVITIES[1])
+}
+
+fn check(bars: &Bars, laws: &Value, exact: f64) {
+    let ([enters, leaves], passes) = bars.run(laws);
+    assert!((enters - exact).abs() < 1e-9 * exact, "{enters} {exact}");
+    assert!((enters - leaves).abs() < 1e-9 * exact, "{enters} {leaves}");
+    // The second bar is the slave, and heat comes from the first.
+    assert!((passes + exact).abs() < 1e-9 * exact, "{passes} {exact}");
+}
+
+#[test]
+fn resistances_of_bars_and_contact_add_up() {
+    let laws = json!([{"law": "constant", "conductance": 20.0}]);
+    let space = Bars { space: 3, ..PLANE };
+    for bars in [
+        PLANE,
+        Bars { simplices: true, ..PLANE },
+        Bars { angle: 0.7, ..PLANE },
+        Bars { across: [3, 2], ..PLANE },
+        space,
+        Bars { simplices: true, angle: 0.4, ..space },
+    ] {
+        check(&bars, &laws, series(1.0 / 20.0));
+    }
+}
+
+#[test]
+fn laws_act_beside_each_other() {
+    let laws =
+        json!([{"law": "constant", "conductance": 15.0}, {"law": "gas", "conductivity": 0.05, "jump_distance": 0.01}]);
+    check(&PLANE, &laws, series(1.0 / 20.0));
+}
+
+#[test]
+fn gas_conducts_across_a_gap() {
+    let laws = json!([{"law": "gas", "conductivity": 0.5, "jump_distance": 0.01},
+        {"law": "constant", "conductance": 1e3}]);
+    check(&Bars { gap: 0.04, ..PLANE }, &laws, series(0.05 / 0.5));
+}
+
+#[test]
+fn faces_radiate_across_a_gap() {
+    let laws = json!([{"law": "radiation", "emissivity_of_slave": 0.8, "emissivity_of_master": 0.5}]);
+    let emissivity = 1.0 / (1.0 / 0.8 + 1.0 / 0.5 - 1.0);
+    let (mut low, mut high) = (0.0, series(0.0));
+    for _ in 0..200 {
+        let q = 0.5 * (low + high);
+        let (hot, cold) = (400.0 - q * LENGTHS[0] / CONDUCTIVITIES[0], 300.0 + q * LENGTHS[1] / CONDUCTIVITIES[1]);
+        let radiated = emissivity * 5.67e-8 * (hot.powi(4) - cold.powi(4));
+        if radiated > q { low = q } else { high = q }
+    }
+    check(&Bars { gap: 0.04, ..PLANE }, &laws, low);
+}
+
+/// Two bars between walls, with heat and mechanics; the temperature of the first end rises with time.
+fn growing(gap: f64, laws: &Value, steps: usize, hot: &str) -> (Results, Value) {
+    let bars = Bars { gap, across: [2, 2], ..PLANE };
+    let mut structure = json!({"solver_type": "Static", "model_part_name": "Structure", "domain_size": 2, "echo_level": 0,
+        "analysis_type": "non_linear", "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},
+        "material_import_settings": {"materials_filename": "law.json"}, "time_stepping": {"time_step": 1.0},
+        "convergence_criterion": "contact_residual_criterion", "residual_relative_tolerance": 1e-9,
+        "contact_settings": {"mortar_type": "ALMContactFrictionless", "contact_residual_relative_tolerance": 1e-9}});
+    structure["max_iteration"] = json!(30);
+    let mut warm = bars.solver();
+    warm["model_import_settings"] = json!({"input_type": "use_input_model_part"});
+    warm["element_replace_settings"] = json!({"element_name": "LaplacianElement"});
+    let hold = |part: &str, variable: &str| {
+        json!({"python_module": "assign_scalar_variable_process", "Parameters": {"model_part_name": format!("Structure.{part}"),
+            "variable_name": variable, "value": 0.0, "interval": [0.0, "End"]}})
+    };
+    let mut processes = bars.processes(laws);
+    processes[1]["Parameters"]["value"] = json!(hot);
+    let across = ["First", "Second"].map(|part| hold(part, "DISPLACEMENT_Y"));
+    let along = ["FirstEnd", "SecondEnd"].map(|part| hold(part, "DISPLACEMENT_X"));
+    processes.extend(across.into_iter().chain(along));
+    processes.push(json!({"python_module": "alm_contact_process", "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
+        "Parameters": {"model_part_name": "Structure", "contact_model_part": {"0": ["FirstFace", "SecondFace"]},
+            "assume_master_slave": {"0": ["SecondFace"]}, "contact_type": "Frictionless"}}));
+    let deck = json!({"problem_data": {"problem_name": "bars", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
+        "end_time": steps as f64}, "solver_settings": {"solver_type": "ThermoMechanicallyCoupled", "domain_size": 2,
+        "structural_solver_settings": structure, "thermal_solver_settings": warm}, "processes": {"list": processes}});
+    let scratch = tempfile::tempdir().expect("a scratch folder");
+    bars.write(scratch.path(), &deck);
+    let law = |at: usize, name: &str| {
+        json!({"model_part_name": format!("Structure.{name}"), "properties_id": at, "Material": {
+            "constitutive_law": {"name": "ThermalLinearPlaneStress"}, "Tables": {}, "Variables": {"DENSITY": 1.0,
+            "YOUNG_MODULUS": 1e5, "POISSON_RATIO": 0.0, "THERMAL_EXPANSION_COEFFICIENT": 1e-4, "REFERENCE_TEMPERATURE": 300.0}}})
+    };
+    let laws = json!({"properties": [law(1, "First"), law(2, "Second")]});
+    std::fs::write(scratch.path().join("law.json"), laws.to_string()).expect("a file");
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "report.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let results = Results::read(&scratch.path().join("results.json")).expect("results");
+    (results, read_json(&scratch.path().join("report.json")).expect("the report"))
+}
+
+/// A bar that is alone is of its end's temperature throughout and grows by α L ΔT: 0.004 at the fourth step, so that heat passes from the fifth on.
+#[test]
+fn a_bar_grows_into_contact_and_conducts_from_then_on() {
+    let laws = json!([{"law": "constant", "conductance": 20.0}]);
+    let (results, report) = growing(0.0035, &laws, 8, "300+10*t");
+    for step in 0..8 {
+        let exact = if step < 4 { 0.0 } else { 10.0 * (step as f64 + 1.0) / 100.0 * series(1.0 / 20.0) };
+        let found = -passed(&report, step);
+        // Bars that press on each other are shorter, and conduct as they are.
+        assert!((found - exact).abs() < 5e-3 * exact + 1e-9, "step {}: {found} {exact}", step + 1);
+        let [enters, leaves] = fed(&results, step);
+        assert!((enters - found).abs() < 1e-9 * found.max(1.0) && (leaves - found).abs() < 1e-9 * found.max(1.0));
+    }
+}
+
+/// Bars between walls press on each other the more the warmer they are, and so conduct the better.
+#[test]
+fn conductance_follows_the_pressure() {
+    let laws = json!([{"law": "pressure", "conductance": 100.0, "hardness": 5e3}]);
+    let (_, report) = growing(0.0, &laws, 12, "400.0");
+    // Mean temperatures of both bars make the pressure, which makes the conductance, which makes the temperatures.
+    let mut q = series(0.01);
+    for _ in 0..200 {
+        let hot = 100.0 - 0.5 * q * LENGTHS[0] / CONDUCTIVITIES[0];
+        let cold = 0.5 * q * LENGTHS[1] / CONDUCTIVITIES[1];
+        let pressure = 1e5 * 1e-4 * (hot * LENGTHS[0] + cold * LENGTHS[1]) / (LENGTHS[0] + LENGTHS[1]);
+        q = series(1.0 / (100.0 * (pressure / 5e3).powf(0.95)));
+    }
+    let found = -passed(&report, 11);
+    // Strains are not small beside the tolerance: lengths change by 0.5 %.
+    assert!((found - q).abs() < 1e-2 * q, "{found} {q}");
+    let change = (found + passed(&report, 10)).abs();
+    assert!(change < 1e-5 * q, "the last steps differ by {change}");
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let says = |bars: &Bars, laws: Value, code: i32, word: &str| {
+        let scratch = tempfile::tempdir().expect("a scratch folder");
+        bars.write(scratch.path(), &bars.deck(&laws));
+        let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+        assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+        assert!(said(&output).contains(word), "{word}: {}", said(&output));
+    };
+    says(&PLANE, json!([]), 2, "names no law");
+    says(&PLANE, json!([{"law": "constnat", "conductance": 1.0}]), 2, "constant");
+    says(&PLANE, json!([{"law": "constant"}]), 2, "conductance");
+    says(&PLANE, json!([{"law": "constant", "conductance": 1.0, "colour": 1}]), 2, "colour");
+    says(&Bars { gap: 0.3, ..PLANE }, json!([{"law": "constant", "conductance": 1.0}]), 0, "no heat has passed");
+}
