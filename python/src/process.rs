@@ -19,6 +19,8 @@ pub(crate) struct PythonProcess {
     pub(crate) line: Arc<Line>,
     /// What its residual is of, where it has one.
     pub(crate) residual: Option<Description>,
+    /// Whether it was told that the loop begins; a run that goes on from a saved one does not tell.
+    pub(crate) has_begun: bool,
 }
 
 impl PythonProcess {
@@ -39,14 +41,19 @@ impl Process for PythonProcess {
     }
 
     fn check(&self, model: &Model, system: &System, report: &mut Report) -> Result<()> {
-        self.residual.as_ref().map_or(Ok(()), |own| residual::check(own, model, system, report))
+        self.residual.as_ref().map_or(Ok(()), |own| residual::check(own, model, system, report))?;
+        self.line.ask_of(Event::Call(self.number, "Check"), model).map(drop)
     }
 
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
+        self.has_begun = true;
         self.call("ExecuteBeforeSolutionLoop", model, None).map(drop)
     }
 
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {
+        if !self.has_begun {
+            self.before_loop(model)?;
+        }
         self.call("ExecuteInitializeSolutionStep", model, None).map(drop)
     }
 

@@ -95,7 +95,8 @@ impl Driver for Asking {
         let known = registry::find::<ProcessEntry>(name).is_some();
         match self.line.ask(Event::Make(entry.to_json().to_string(), known), model, None)? {
             Answer::Process(Some((number, residual))) => {
-                Ok(Some(Box::new(PythonProcess { number, line: Arc::clone(&self.line), residual })))
+                let line = Arc::clone(&self.line);
+                Ok(Some(Box::new(PythonProcess { number, line, residual, has_begun: false })))
             }
             _ => Ok(None),
         }

@@ -5,8 +5,9 @@ import pytest
 
 import zelus
 
-HOOKS = """ModifyInitialProperties ModifyInitialGeometry ModifyAfterSolverInitialize InitializeSolutionStep ApplyBoundaryConditions
-ChangeMaterialProperties FinalizeSolutionStep OutputSolutionStep Finalize""".split()
+HOOKS = """ModifyInitialProperties ModifyInitialGeometry Check ModifyAfterSolverInitialize ModifyBeforeSolutionLoop
+InitializeSolutionStep ApplyBoundaryConditions ChangeMaterialProperties SolveSolutionStep FinalizeSolutionStep OutputSolutionStep
+Finalize""".split()
 
 POINTS = [name for name in vars(zelus.Process) if name.startswith("Execute")]
 
@@ -49,10 +50,10 @@ def test_hooks_are_called_in_the_order_of_kratos(inside):
     own["processes"]["noting"] = [{"python_module": "noting_process", "Parameters": {"model_part_name": "Structure"}}]
     recording(log)(zelus.Model(), own).Run()
     step = """InitializeSolutionStep ApplyBoundaryConditions .ExecuteInitializeSolutionStep ChangeMaterialProperties
-        FinalizeSolutionStep .ExecuteFinalizeSolutionStep
+        SolveSolutionStep FinalizeSolutionStep .ExecuteFinalizeSolutionStep
         OutputSolutionStep .ExecuteBeforeOutputStep .PrintOutput .ExecuteAfterOutputStep"""
-    expected = f"""ModifyInitialProperties ModifyInitialGeometry .ExecuteInitialize ModifyAfterSolverInitialize .Check
-        .ExecuteBeforeSolutionLoop {step} {step} Finalize .ExecuteFinalize"""
+    expected = f"""ModifyInitialProperties ModifyInitialGeometry .ExecuteInitialize .Check Check
+        ModifyAfterSolverInitialize ModifyBeforeSolutionLoop .ExecuteBeforeSolutionLoop {step} {step} Finalize .ExecuteFinalize"""
     assert log == [word.replace(".", "  ") for word in expected.split()]
 
 
@@ -73,8 +74,7 @@ def test_a_loop_of_one_s_own(inside):
     while stage.time < 0.6:
         stage.time = stage._GetSolver().AdvanceInTime(stage.time)
         stage.InitializeSolutionStep()
-        stage._GetSolver().Predict()
-        assert stage._GetSolver().SolveSolutionStep()
+        assert stage.SolveSolutionStep()
         stage.FinalizeSolutionStep()
         stage.OutputSolutionStep()
         times.append(stage.time)
@@ -249,3 +249,46 @@ def test_errors_of_the_deck_come_out(inside):
     stage = zelus.AnalysisStage(zelus.Model(), own)
     with pytest.raises(zelus.InputError, match="max_iteration"):
         stage.Run()
+
+
+def test_a_process_that_finds_something_wrong_ends_the_run_before_it_begins(inside):
+    @zelus.register_process("checking_process")
+    class Checking(zelus.Process):
+        def __init__(self, model, settings):
+            self.part = model["Structure"]
+
+        def Check(self):
+            if self.part.NumberOfNodes() < 10**6:
+                raise ValueError("too few nodes")
+
+    with pytest.raises(ValueError, match="too few nodes"):
+        zelus.run("ProjectParameters.json", set={"processes.own": [{"python_module": "checking_process", "Parameters": {}}]})
+    assert not (inside / "vtu_output").exists()
+
+
+@pytest.mark.filterwarnings("ignore::zelus.ZelusWarning")
+def test_a_run_that_goes_on_tells_its_processes_that_it_begins(inside):
+    @zelus.register_process("telling_process")
+    class Telling(zelus.Process):
+        log = []
+
+        def __init__(self, model, settings):
+            self.part = model["Structure"]
+
+        def ExecuteBeforeSolutionLoop(self):
+            self.log.append("begins")
+
+        def ExecuteInitializeSolutionStep(self):
+            self.log.append(self.part.ProcessInfo[zelus.TIME])
+
+    own = {"python_module": "telling_process", "Parameters": {}}
+    saving = {"python_module": "save_restart_process", "Parameters": {"model_part_name": "Structure", "restart_save_frequency": 0.45}}
+    changes = {"processes.own": [own], "output_processes.saved": [saving]}
+    whole = zelus.run("ProjectParameters.json", set=changes)
+    log, Telling.log[:] = list(Telling.log), []
+    assert log == ["begins", 0.25, 0.5, 0.75, 1.0]
+    settings = {"input_type": "rest", "input_filename": "Structure", "restart_load_file_label": "0.5"}
+    changes["solver_settings.model_import_settings"] = settings
+    again = zelus.run("ProjectParameters.json", set=changes)
+    assert Telling.log == ["begins", 0.75, 1.0]
+    assert (again["DISPLACEMENT"] == whole["DISPLACEMENT"]).all()

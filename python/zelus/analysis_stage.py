@@ -104,8 +104,9 @@ class AnalysisStage:
         self._hook(self.ModifyInitialProperties)
         self._hook(self.ModifyInitialGeometry)
         self._pass("at", "ready")
-        self._hook(self.ModifyAfterSolverInitialize)
         self._hook(self.Check)
+        self._hook(self.ModifyAfterSolverInitialize)
+        self._hook(self.ModifyBeforeSolutionLoop)
         self._pass("idle")
         self.end_time = self._driving.end_time
         self._at = self._driving.do("step")
@@ -117,8 +118,7 @@ class AnalysisStage:
         while self.KeepAdvancingSolutionLoop():
             self.time = self._AdvanceTime()
             self._hook(self.InitializeSolutionStep)
-            self._hook(self._GetSolver().Predict)
-            self._hook(self._GetSolver().SolveSolutionStep)
+            self._hook(self.SolveSolutionStep)
             self._hook(self.FinalizeSolutionStep)
             self._hook(self.OutputSolutionStep)
 
@@ -143,7 +143,12 @@ class AnalysisStage:
         self.PrintAnalysisStageProgressInformation()
         self.ApplyBoundaryConditions()
         self.ChangeMaterialProperties()
+        self._GetSolver().Predict()
         self._GetSolver().InitializeSolutionStep()
+
+    def SolveSolutionStep(self):
+        """Solves the step."""
+        return self._GetSolver().SolveSolutionStep()
 
     def FinalizeSolutionStep(self):
         """The step is solved and accepted."""
@@ -169,6 +174,9 @@ class AnalysisStage:
     def ModifyAfterSolverInitialize(self):
         """All is ready to run."""
 
+    def ModifyBeforeSolutionLoop(self):
+        """All is ready to run."""
+
     def ApplyBoundaryConditions(self):
         """Lets the processes prescribe and load."""
         if self._at in (("at", "begin_step"), ("acted", "begin_step")):
@@ -181,9 +189,8 @@ class AnalysisStage:
         """Called as a step begins; the progress of a run tells itself."""
 
     def Check(self):
-        """Lets the processes of the deck that are Python's check themselves."""
-        for process in self._GetListOfProcesses():
-            process.Check()
+        """Called once all is ready; the processes of the deck have checked themselves."""
+        self._GetSolver().Check()
 
     # what there is
 
@@ -191,6 +198,14 @@ class AnalysisStage:
     def process_info(self):
         """Time, counters and named numbers."""
         return self._GetSolver().main_model_part.ProcessInfo
+
+    def GetComputingModelPart(self):
+        """The part that is solved for."""
+        return self._GetSolver().GetComputingModelPart()
+
+    def GetFinalData(self):
+        """What a stage hands on by name: nothing of its own."""
+        return {}
 
     def _GetSolver(self):
         if self._solver is None:
