@@ -99,7 +99,7 @@ def write(out, lower, upper, kind="frictionless", steps=1, solver_type=""):
         settings["linear_solver_settings"] = {"solver_type": solver_type}
     deck = {
         "problem_data": {"problem_name": "blocks", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
-                         "end_time": 1.0 - 0.5 / steps},
+                         "end_time": 1.0},
         "solver_settings": settings,
         "processes": {
             "constraints_process_list": constraints,

@@ -300,3 +300,32 @@ fn a_program_in_python_is_sent_to_python() {
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(said(&output).contains("`python -m zelus MainKratos.py` runs it"), "{}", said(&output));
 }
+
+/// The run ends at `end_time`: at no other share of a load that grows with time.
+#[test]
+fn the_run_ends_at_end_time() {
+    for (length, like, ends, shortened) in [
+        ("0.25", "", &[0.25, 0.5, 0.75, 1.0][..], false),
+        ("0.1", "", &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0], false),
+        ("0.3", "", &[0.3, 0.6, 0.9, 1.0], true),
+        ("1.1", "", &[1.0], true),
+        ("0.4, \"last_step\": \"whole\"", "", &[0.4, 0.8, 1.2], false),
+        ("0.3", "kratos", &[0.3, 0.6, 0.9, 1.2], false),
+        ("1.1", "kratos", &[1.1], false),
+    ] {
+        let scratch = case("structural/bar_plane_stress");
+        change(scratch.path(), "\"time_step\": 1.0", &format!("\"time_step\": {length}"));
+        let mut words = vec!["run", "ProjectParameters.json", "--report", "report.json"];
+        words.extend(if like.is_empty() { vec![] } else { vec!["--like", like] });
+        let output = zelus(scratch.path(), &words);
+        assert!(output.status.success(), "{}", said(&output));
+        let report = read_json(&scratch.path().join("report.json")).expect("a report");
+        let times =
+            report["steps"].as_array().expect("steps").iter().map(|step| step["time"].as_f64().expect("a time"));
+        let times: Vec<f64> = times.collect();
+        assert!(times.len() == ends.len(), "{length} {like}: {times:?}");
+        assert!(times.iter().zip(ends).all(|(time, end)| (time - end).abs() < 1e-15), "{length} {like}: {times:?}");
+        let line = format!("the last step is shortened from {length} to");
+        assert_eq!(said(&output).contains(&line), shortened, "{}", said(&output));
+    }
+}

@@ -82,7 +82,7 @@ fn check(name: &str, family: &Family, wish: Wish) {
         // Short implicit steps would make bodies so stiff by their mass that Uzawa's iteration takes long.
         let time_step = if explicit { 1e-5 } else { 1e-2 };
         solver["time_stepping"]["time_step"] = json!(time_step);
-        deck["problem_data"]["end_time"] = json!(2.5 * time_step);
+        deck["problem_data"]["end_time"] = json!(3.0 * time_step);
     }
     let contact = &mut deck["processes"]["contact_process_list"][0];
     contact["python_module"] = json!(process);

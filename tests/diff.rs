@@ -76,11 +76,11 @@ fn points_that_are_numbered_otherwise_are_told_by_their_places() {
 fn histories_are_compared_by_id_and_steps_are_counted() {
     let deck = |end: &str| {
         let folder = scratch_copy(&root().join("tests/cases/contact_2d/matching"));
-        change(folder.path(), DECK, "\"end_time\": 0.5", end);
+        change(folder.path(), DECK, "\"end_time\": 1.0", end);
         assert!(zelus(folder.path(), &["run", DECK]).status.success());
         folder
     };
-    let (one, two, longer) = (deck("\"end_time\": 0.5"), deck("\"end_time\": 0.5"), deck("\"end_time\": 1.5"));
+    let (one, two, longer) = (deck("\"end_time\": 1.0"), deck("\"end_time\": 1.0"), deck("\"end_time\": 2.0"));
     let (code, text) = diff(&[&path(&one, ""), &path(&two, "")]);
     assert!(code == Some(0) && text.contains("upper.json DISPLACEMENT"), "{text}");
     let (code, text) = diff(&[&path(&one, "upper.json"), &path(&longer, "upper.json")]);

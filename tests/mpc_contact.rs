@@ -286,7 +286,7 @@ fn run(problem: &Problem) -> Outcome {
     let dimension = if plane { 2 } else { 3 };
     let deck = json!({
         "problem_data": {"problem_name": "blocks", "parallel_type": "OpenMP", "start_time": 0.0,
-                         "end_time": problem.steps as f64 - 0.5},
+                         "end_time": problem.steps as f64},
         "solver_settings": {
             "solver_type": "Static", "model_part_name": "Structure", "domain_size": dimension, "echo_level": 0,
             "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},

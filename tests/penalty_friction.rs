@@ -26,7 +26,7 @@ fn sheared(course: &str, steps: usize, end: f64) -> Results {
         let modulus = load["Parameters"]["modulus"].as_f64().expect("a number");
         load["Parameters"]["modulus"] = json!(course.replace('F', &format!("{modulus}")));
     }
-    deck["problem_data"]["end_time"] = json!(end - 0.5 / steps as f64);
+    deck["problem_data"]["end_time"] = json!(end);
     deck["solver_settings"]["time_stepping"]["time_step"] = json!(end / steps as f64);
     write_json(&scratch.path().join(DECK), &deck);
     run(scratch.path());
@@ -107,7 +107,7 @@ fn thrown(speed: f64, friction: f64, time_step: f64, end: f64) -> Results {
         &folder.path().join(DECK),
         &json!({
             "problem_data": {"problem_name": "thrown", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
-                "end_time": end - 0.5 * time_step},
+                "end_time": end},
             "solver_settings": {
                 "solver_type": "Dynamic", "model_part_name": "Structure", "domain_size": 2, "echo_level": 0,
                 "time_integration_method": "explicit", "scheme_type": "central_differences",

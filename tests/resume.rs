@@ -158,7 +158,7 @@ fn a_deck_begins_with_a_restart_file_in_place_of_a_mesh() {
         deck["output_processes"] = json!({"saved": [{"python_module": "save_restart_process",
             "Parameters": {"model_part_name": "Structure", "restart_save_frequency": 0.35}}]});
     };
-    let scratch = deck("cases/contact_2d/friction_slide", 9, saving);
+    let scratch = deck("cases/contact_2d/friction_slide", 10, saving);
     let output = zelus(scratch.path(), &["run", DECK]);
     assert!(output.status.success(), "{}", said(&output));
     let whole = results(scratch.path());

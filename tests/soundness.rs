@@ -1,11 +1,17 @@
 //! Whether a model can have the answer that is asked for: bodies inside each other, states that no contact can be in.
 
 mod support;
+#[path = "support/thread_ranks.rs"]
+mod thread_ranks;
 
 use std::path::Path;
 
 use serde_json::{Value, json};
 use support::{change, read_json, root, said, scratch_copy, zelus};
+use thread_ranks::on_threads;
+use zelus::core::communication::Ranks;
+use zelus::core::diagnostics::Diagnostic;
+use zelus::{Monitor, RunOptions, Simulation};
 
 const DECK: &str = "ProjectParameters.json";
 
@@ -183,9 +189,98 @@ fn what_holds_a_body_is_said_before_the_run() {
     // With friction it is that.
     let (_, said) = run(without("contact_2d/friction_slide", 1).path(), "check");
     assert!(said.contains("note[held-by-friction]") && said.contains("part Upper"), "{said}");
-    // A body without contact.
+    // A body without contact, which the solver finds, too, and says where it is.
     let (_, said) = run(without("structural/self_weight", 0).path(), "check");
     assert!(said.contains("warning[held-by-nothing]") && said.contains("6 rigid motions"), "{said}");
+    let (code, said) = run(without("structural/self_weight", 0).path(), "run");
+    assert_eq!(code, Some(4), "{said}");
+    assert!(said.contains("; what moves is at node ") && said.contains(" of part Body"), "{said}");
+}
+
+/// Loads that follow each other, or are others, do not take each other's place.
+#[test]
+fn loads_that_do_not_meet_are_silent() {
+    let with = |change: fn(&mut Value)| {
+        case("contact_2d/matching", |deck| {
+            let loads = deck["processes"]["loads_process_list"].as_array_mut().expect("a list");
+            loads[0]["Parameters"]["interval"] = json!([0.0, 0.5]);
+            let mut other = loads[0].clone();
+            change(&mut other);
+            loads.push(other);
+        })
+    };
+    let later = with(|load| load["Parameters"]["interval"] = json!([0.5, "End"]));
+    let pressure = with(|load| {
+        load["python_module"] = json!("assign_scalar_variable_to_conditions_process");
+        let part = json!({"model_part_name": "Structure.Top", "variable_name": "POSITIVE_FACE_PRESSURE", "value": 1.0});
+        load["Parameters"] = part;
+    });
+    for scratch in [later, pressure] {
+        let (code, said) = run(scratch.path(), "check");
+        assert!(code == Some(0) && !said.contains("load-given-twice"), "{said}");
+    }
+}
+
+#[test]
+fn loads_without_area_are_named() {
+    let scratch = case("contact_2d/matching", |_| {});
+    change(scratch.path(), "mesh.mdpa", "\n7 0 22 21\n", "\n7 0 22 22\n");
+    let (code, said) = run(scratch.path(), "check");
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("LineLoadCondition2D2N 7") && said.contains("it has no size"), "{said}");
+}
+
+#[test]
+fn facets_without_area_are_named() {
+    let scratch = case("contact_2d/matching", |_| {});
+    change(scratch.path(), "mesh.mdpa", "\n14 0.333333333333 1 0\n", "\n14 0 1 0\n");
+    let (code, said) = run(scratch.path(), "check");
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("error[degenerate-facet]")
+            && said.contains("condition 4 on element 7 has no area: its nodes are 13, 14"),
+        "{said}"
+    );
+}
+
+/// What several ranks say holds a body is what one says.
+#[test]
+fn ranks_together_say_what_holds_a_body() {
+    for (name, keep) in [
+        ("contact_2d/matching", 3),
+        ("contact_2d/matching", 1),
+        ("contact_3d/friction_slide", 1),
+        ("structural/self_weight", 0),
+    ] {
+        let scratch = case(name, move |deck| {
+            deck["processes"]["constraints_process_list"].as_array_mut().expect("a list").truncate(keep);
+        });
+        let heard = |ranks: Ranks| {
+            let options = RunOptions { threads: Some(1), ranks, ..RunOptions::default() };
+            let mut simulation = Simulation::open(&scratch.path().join(DECK), &options).expect("a deck");
+            let mut heard = Held::default();
+            simulation.check(&mut heard).expect("no errors");
+            heard.0
+        };
+        let alone = heard(Ranks::default());
+        assert!(!alone.is_empty(), "{name}");
+        for count in [2, 3] {
+            assert!(on_threads(count, heard).contains(&alone), "{name} on {count} ranks, not {alone:?}");
+        }
+    }
+}
+
+/// Hears what holds bodies.
+#[derive(Default)]
+struct Held(Vec<String>);
+
+impl Monitor for Held {
+    fn warn(&mut self, warning: &Diagnostic) {
+        let said = warning.to_string();
+        if said.contains("held-by-") {
+            self.0.push(said);
+        }
+    }
 }
 
 #[test]

@@ -18,7 +18,7 @@ fn in_two_stages(deck: &Value) -> Value {
             settings["solver_settings"]["material_import_settings"] = json!({"materials_filename": ""});
         }
         settings["problem_data"]["start_time"] = json!(f64::from(number));
-        settings["problem_data"]["end_time"] = json!(f64::from(number) + 0.5);
+        settings["problem_data"]["end_time"] = json!(f64::from(number) + 1.0);
         for process in settings["processes"]["json_output_process_list"].as_array_mut().expect("outputs") {
             let name = &mut process["Parameters"]["output_file_name"];
             *name = json!(format!("{number}_{}", name.as_str().expect("a name")));

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use support::{read_json, root, said, scratch_copy, zelus};
 
 const DECK: &str = "ProjectParameters.json";
-const CODES: [&str; 18] = [
+const CODES: [&str; 20] = [
     "acts-on-nothing",
     "contradicting-values",
     "duplicate-key",
@@ -19,9 +19,11 @@ const CODES: [&str; 18] = [
     "interval-reversed",
     "invalid-tolerance",
     "listed-twice",
+    "load-given-twice",
     "mutual-pairs",
     "negative-friction",
     "no-friction",
+    "one-body",
     "repeated-properties",
     "settings-without-process",
     "slave-in-two-pairs",
@@ -59,7 +61,32 @@ const SLIDING: &str = "contact_2d/friction_slide";
 
 const CONSTRAINED: &str = "mpc/pressed_and_opened";
 
-const MISTAKES: [Mistake; 34] = [
+const MISTAKES: [Mistake; 37] = [
+    Mistake {
+        what: "one load by two processes",
+        case: PRESSED,
+        make: |deck, _| {
+            let loads = deck["processes"]["loads_process_list"].as_array_mut().expect("a list");
+            let mut other = loads[0].clone();
+            other["Parameters"]["direction"] = json!([1.0, 0.0, 0.0]);
+            other["Parameters"]["interval"] = json!([0.5, "End"]);
+            loads.push(other);
+        },
+        exit: 0,
+        code: "load-given-twice",
+        names: "LINE_LOAD of 3 conditions is given by",
+    },
+    Mistake {
+        what: "a pair of faces of one body",
+        case: PRESSED,
+        make: |deck, _| {
+            contact(deck)["contact_model_part"] = json!({"0": ["Slave", "Top"]});
+            contact(deck)["assume_master_slave"] = json!({"0": ["Slave"]});
+        },
+        exit: 2,
+        code: "one-body",
+        names: "both sides are faces of one body, that of node 13, and no slave node has the master before it",
+    },
     Mistake {
         what: "a surface load on lines",
         case: PRESSED,
@@ -106,7 +133,18 @@ const MISTAKES: [Mistake; 34] = [
         make: |deck, _| load(deck)["interval"] = json!([5.0, 6.0]),
         exit: 0,
         code: "interval-outside",
-        names: "0 to 0.5",
+        names: "0 to 1",
+    },
+    Mistake {
+        what: "an interval from zero to the end of the run",
+        case: PRESSED,
+        make: |deck, _| {
+            deck["solver_settings"]["time_stepping"] = json!({"time_step": 0.5});
+            load(deck)["interval"] = json!([0.0, 1.0]);
+        },
+        exit: 0,
+        code: "interval-end",
+        names: "leaves out the last step, which ends at 1",
     },
     Mistake {
         what: "contact settings without contact",

@@ -80,11 +80,10 @@ impl Terminal {
         if let Some(failed) = failed {
             self.log.iter_mut().for_each(|log| log.line(failed));
         } else if report.exit_code == 0 {
-            let converged: Vec<&StepRecord> = report.steps.iter().filter(|s| s.converged).collect();
-            let iterations: usize = converged.iter().map(|s| s.iterations.len()).sum();
             let text = format!(
-                "{} steps converged in {iterations} iterations, {:.2} s, {} unknowns, {} thread{}",
-                converged.len(),
+                "{} steps converged in {} iterations, {:.2} s, {} unknowns, {} thread{}",
+                report.converged_steps,
+                report.iterations,
                 self.begun.elapsed().as_secs_f64(),
                 report.sizes.unknowns,
                 report.threads,

@@ -47,7 +47,7 @@ pub const BAD_DECKS: &[BadDeck] = &[
     BadDeck("table file missing", Remove("pressure.csv"), &["pressure.csv"]),
     BadDeck("table with a word", Replace("pressure.csv", "1.0e5", "much"), &["pressure.csv", "much"]),
     // JSON
-    deck("trailing comma", "\"end_time\": 0.5", "\"end_time\": 0.5,", &[DECK]),
+    deck("trailing comma", "\"end_time\": 1.0", "\"end_time\": 1.0,", &[DECK]),
     BadDeck("missing brace", CutAt(DECK, "\"output_processes\""), &[DECK]),
     deck("half a number", "\"time_step\": 1.0", "\"time_step\": 1.e", &["ProjectParameters.json:18"]),
     deck("missing quote", "\"two_blocks\"", "\"two_blocks", &[DECK]),
@@ -69,7 +69,7 @@ pub const BAD_DECKS: &[BadDeck] = &[
     ),
     deck("negative time step", "\"time_step\": 1.0", "\"time_step\": -1.0", &["time_step", "-1"]),
     deck("zero time step", "\"time_step\": 1.0", "\"time_step\": 0.0", &["time_step"]),
-    deck("end before start", "\"end_time\": 0.5", "\"end_time\": -1.0", &["end_time"]),
+    deck("end before start", "\"end_time\": 1.0", "\"end_time\": -1.0", &["end_time"]),
     deck("four dimensions", "\"domain_size\": 2", "\"domain_size\": 4", &["domain_size", "4"]),
     deck("no iteration allowed", "\"max_iteration\": 10", "\"max_iteration\": 0", &["max_iteration"]),
     deck("negative penalty", "\"stiffness_factor\": 1.0", "\"stiffness_factor\": -1.0", &["stiffness_factor"]),
@@ -82,7 +82,7 @@ pub const BAD_DECKS: &[BadDeck] = &[
     deck("no domain size", "    \"domain_size\": 2,\n", "", &["domain_size"]),
     deck("no time stepping", "    \"time_stepping\": {\"time_step\": 1.0},\n", "", &["time_stepping"]),
     deck("no time step", "{\"time_step\": 1.0}", "{}", &["time_step"]),
-    deck("no end time", ",\n    \"end_time\": 0.5", "", &["end_time"]),
+    deck("no end time", ",\n    \"end_time\": 1.0", "", &["end_time"]),
     deck("no value", ",\n          \"value\": [\"0.0*t\", null, null]", "", &["value"]),
     deck("no module", "\"python_module\": \"json_output_process\",\n", "", &["python_module"]),
     // unknown names

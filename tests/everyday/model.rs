@@ -291,7 +291,7 @@ impl Model {
         variables.extend(self.friction.map(|_| "WEIGHTED_SLIP"));
         let deck = json!({
             "problem_data": {"problem_name": "everyday", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
-                "end_time": 1.0 - 0.5 * step},
+                "end_time": 1.0},
             "solver_settings": {
                 "solver_type": "Static", "model_part_name": "Structure", "domain_size": self.dim,
                 "analysis_type": "non_linear", "time_stepping": {"time_step": step},

@@ -14,7 +14,7 @@ fn last(results: &Results, slab: &Slab, column: usize) -> f64 {
     results.nodal("TEMPERATURE", results.len() - 1)[&(slab.node(column, 0) as u64)]
 }
 
-/// A deck whose storage is negligible.
+/// A deck without storage.
 fn at_rest(conductivity: f64) -> Deck {
     Deck::new("stationary", 1e12, 1e12, conductivity)
 }
@@ -322,4 +322,62 @@ fn what_is_missing_is_said() {
     let theta = Deck::new("transient", 1.0, 1.0, 1.0).set("transient_parameters", json!({"theta": 0.2}));
     says(&held(theta, 1.0, 0.0), 2, "theta");
     says(&carried(0.1, 0.1, "x").set("bfecc_substepping", json!(0)), 2, "bfecc_substepping");
+}
+
+/// What enters is what leaves, what the flow carries off and what is stored, in each step.
+#[test]
+fn heat_that_enters_leaves_or_is_stored() {
+    let slab = Slab::new(8);
+    let velocity = json!({"model_part_name": "Heat.Body", "variable_name": "VELOCITY", "value": [0.5, 0.0, 0.0],
+        "constrained": false, "interval": [0.0, "End"]});
+    for (speed, theta) in [(false, 0.5), (false, 1.0), (true, 0.5), (true, 1.0)] {
+        let mut deck = Deck::new("transient", 0.05, 0.2, 0.7)
+            .assign("Left", "TEMPERATURE", json!(1.0), true)
+            .assign("Body", "HEAT_FLUX", json!(2.0), false)
+            .starts(json!(0.0))
+            .process(
+                "apply_thermal_face_process",
+                json!({"model_part_name": "Heat.Right", "ambient_temperature": -0.5, "add_ambient_radiation": false,
+                    "add_ambient_convection": true, "convection_coefficient": 4.0}),
+            )
+            .set("residual_relative_tolerance", json!(1e-13))
+            .set("transient_parameters", json!({"theta": theta}));
+        if speed {
+            deck = deck.process("assign_vector_variable_process", velocity.clone());
+        }
+        let (results, report) = deck.run_and_report(&slab);
+        let steps = report["steps"].as_array().expect("steps");
+        assert_eq!(steps.len(), 4);
+        for step in steps {
+            let balance = &step["balance"]["unknowns"][0];
+            let [entering, leaving, stored] =
+                ["entering", "leaving", "stored"].map(|key| balance["flows"][key].as_f64().expect("a number"));
+            let carried = balance["forces"]["elements"][0].as_f64().expect("a number");
+            let left = entering - leaving + carried - stored;
+            assert!(left.abs() < 1e-10 * entering, "{entering} {leaving} {carried} {stored}: {left:e}");
+            assert!(stored.abs() > 1e-6 && leaving > 0.0 && (carried.abs() > 1e-3) == speed, "{balance}");
+        }
+        // What is stored is the change of the mean.
+        let balance = &steps[3]["balance"]["unknowns"][0];
+        let mean = |step: usize| {
+            let at = |c: usize| results.nodal("TEMPERATURE", step)[&(slab.node(c, 0) as u64)];
+            (0..8).map(|c| 0.5 * (at(c) + at(c + 1)) / 8.0).sum::<f64>()
+        };
+        let stored = (mean(3) - mean(2)) / 0.05 * slab.height;
+        assert!((balance["flows"]["stored"].as_f64().expect("a number") - stored).abs() < 1e-9, "{balance} {stored}");
+    }
+}
+
+/// Heat at rest is what it is, however long a step is; stored heat, as in Kratos, comes to rest after long ones alone.
+#[test]
+fn heat_at_rest_knows_no_time() {
+    let slab = Slab { height: 0.1, ..Slab::new(5) };
+    let middle = |step: f64, stores: bool| {
+        let deck = held(Deck::new("stationary", step, 1.0, 1.0), 0.0, 1.0).set("stores_heat", json!(stores));
+        last(&deck.run(&slab), &slab, 2)
+    };
+    for step in [0.25, 1.0, 1e12] {
+        assert!((middle(step, false) - 0.4).abs() < 1e-12, "{step}");
+    }
+    assert!((middle(1.0, true) - 0.4).abs() > 1e-3);
 }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use std::path::Path;
 
-use crate::support::{Results, said, zelus};
+use crate::support::{Results, read_json, said, zelus};
 
 /// A slab of cells from x = 0 to 1, `rows` of them high.
 #[derive(Clone, Copy)]
@@ -157,6 +157,16 @@ impl Deck {
     /// Runs it and reads its results.
     pub fn run(&self, slab: &Slab) -> Results {
         self.run_with(slab, &["run", "ProjectParameters.json"])
+    }
+
+    /// As [`Deck::run`], with the report.
+    pub fn run_and_report(&self, slab: &Slab) -> (Results, Value) {
+        let scratch = tempfile::tempdir().expect("a scratch folder");
+        self.write(scratch.path(), slab);
+        let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "report.json"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let results = Results::read(&scratch.path().join("results.json")).expect("results");
+        (results, read_json(&scratch.path().join("report.json")).expect("a report"))
     }
 
     /// As [`Deck::run`], with these arguments.

@@ -267,7 +267,7 @@ impl Deck {
         };
         json!({
             "problem_data": {"problem_name": "blocks", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
-                "end_time": 1.0 - 0.5 * step},
+                "end_time": 1.0},
             "solver_settings": {"solver_type": "Static", "model_part_name": "Structure", "domain_size": space,
                 "echo_level": 0, "analysis_type": "non_linear",
                 "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},

@@ -247,5 +247,5 @@ class Model:
             lists[kind].append(made)
         contacts = [self.contact(family, friction, **(contact or {}))] if self.pairs else []
         project = parameters("mesh", base, lists["constraints"], lists["loads"], contacts, outputs, end)
-        project["problem_data"]["end_time"] = end - 0.5 * base["time_stepping"]["time_step"]
+        project["problem_data"]["end_time"] = end
         return project

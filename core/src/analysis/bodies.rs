@@ -3,12 +3,14 @@
 //! Bodies are connected elements. Of each, its rigid motions that its elements do not resist are unknowns; supports, constraints,
 //! ties and places in contact are rows over them. Motions that all rows leave alone are free.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::entities::{Join, LocalSystems, Tangent, Want};
-use crate::model::{ModelPart, Rates, ScalarVariable};
+use crate::model::{ModelPart, Rates, ScalarVariable, bodies_of_nodes};
 use crate::processes::Prescription;
 use crate::strategies::body_of;
 use crate::vector3::{add, cross, dot, norm, scale, sub};
@@ -29,24 +31,24 @@ struct Motion {
     rotation: [f64; 3],
 }
 
-/// The bodies of a part and their motions.
+/// The bodies of a part and their motions; alike on all ranks but for `of_node`, which knows the nodes that are here.
 struct Bodies<'a> {
     part: &'a ModelPart,
     /// Body of each node; `usize::MAX` for nodes of none.
     of_node: Vec<usize>,
-    /// A node of each body, its centre and its size.
-    bodies: Vec<(u32, [f64; 3], f64)>,
+    /// The first node (id) of each body, its centre and its size.
+    bodies: Vec<(usize, [f64; 3], f64)>,
     motions: Vec<Motion>,
 }
 
-/// Says of bodies in statics that supports do not hold what does, before the run; one process only.
+/// Says of bodies in statics that supports do not hold what does, before the run; collective.
 pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[Prescription], problems: &mut Report) {
-    let Some(column) = Rates::moving(&part.nodes.history).filter(|_| part.ranks.size() == 1) else { return };
+    let Some(column) = Rates::moving(&part.nodes.history) else { return };
     let Some(joins): Option<Vec<Vec<Join>>> = system.interactions.iter().map(|own| own.joins(part)).collect() else {
         return;
     };
     let joins: Vec<Join> = joins.into_iter().flatten().collect();
-    let mut bodies = Bodies::of(part, system);
+    let mut bodies = Bodies::of(part);
     bodies.find_motions(system);
     if bodies.motions.is_empty() || bodies.motions.len() > MOST {
         return;
@@ -57,20 +59,17 @@ pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[P
     bodies.elements_on_ground(system, &mut rows);
     let tied = |join: &&Join| join.normal.is_none();
     joins.iter().filter(tied).for_each(|join| rows.join(&bodies, join, true));
-    let by_supports = rows.free();
+    let by_supports = rows.free(part);
     if by_supports.is_empty() {
         return;
     }
     joins.iter().filter(|join| !tied(join)).for_each(|join| rows.join(&bodies, join, false));
-    let by_contact = rows.free();
+    let by_contact = rows.free(part);
     joins.iter().filter(|join| join.friction).for_each(|join| rows.join(&bodies, join, true));
-    let by_friction = rows.free();
+    let by_friction = rows.free(part);
     for at in 0..bodies.bodies.len() {
         let [own, smooth, rough] = [&by_supports, &by_contact, &by_friction].map(|free| bodies.motions_of(at, free));
-        let name = bodies.name(at);
-        if own == 0 {
-            continue;
-        }
+        let Some(name) = bodies.name(at).filter(|_| own > 0) else { continue };
         let supports = format!("supports leave {name} {own} rigid motions");
         problems.push(if rough > 0 {
             let fact = format!("{supports}, and contact as it begins leaves {rough}: nothing holds it");
@@ -85,58 +84,40 @@ pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[P
 }
 
 impl<'a> Bodies<'a> {
-    fn of(part: &'a ModelPart, system: &System) -> Self {
-        let mut parents: Vec<u32> = (0..part.nodes.len() as u32).collect();
-        fn root(parents: &mut [u32], mut node: u32) -> u32 {
-            while parents[node as usize] != node {
-                parents[node as usize] = parents[parents[node as usize] as usize];
-                node = parents[node as usize];
-            }
-            node
+    fn of(part: &'a ModelPart) -> Self {
+        let names = bodies_of_nodes(part);
+        let mut boxes: BTreeMap<usize, [[f64; 3]; 2]> = BTreeMap::new();
+        for (name, &x) in names.iter().zip(&part.nodes.initial) {
+            let Some(name) = *name else { continue };
+            boxes.entry(name).and_modify(|own| *own = joined(*own, [x; 2])).or_insert([x; 2]);
         }
-        let mut used = vec![false; part.nodes.len()];
-        for block in &system.elements {
-            for nodes in (0..block.len()).map(|at| block.nodes(at)).filter(|nodes| nodes.len() > 1) {
-                let first = root(&mut parents, nodes[0]);
-                for &node in nodes {
-                    used[node as usize] = true;
-                    let other = root(&mut parents, node);
-                    parents[other as usize] = first;
-                }
-            }
+        let flat = boxes.iter().flat_map(|(&name, ends)| std::iter::once(name as f64).chain(ends.concat()));
+        for one in part.ranks.gather_numbers(&flat.collect::<Vec<f64>>()).concat().chunks_exact(7) {
+            let ends = [[one[1], one[2], one[3]], [one[4], one[5], one[6]]];
+            boxes.entry(one[0] as usize).and_modify(|own| *own = joined(*own, ends)).or_insert(ends);
         }
-        let mut of_node = vec![usize::MAX; part.nodes.len()];
-        let mut roots: Vec<u32> = Vec::new();
-        let mut boxes: Vec<[[f64; 3]; 2]> = Vec::new();
-        let mut number = vec![usize::MAX; part.nodes.len()];
-        for node in (0..part.nodes.len() as u32).filter(|&node| used[node as usize]) {
-            let root = root(&mut parents, node) as usize;
-            let x = part.nodes.initial[node as usize];
-            if number[root] == usize::MAX {
-                number[root] = roots.len();
-                roots.push(node);
-                boxes.push([x; 2]);
-            }
-            let [low, high] = &mut boxes[number[root]];
-            (0..3).for_each(|c| (low[c], high[c]) = (low[c].min(x[c]), high[c].max(x[c])));
-            of_node[node as usize] = number[root];
-        }
-        let body = |(node, [low, high]): (u32, [[f64; 3]; 2])| {
-            (node, scale(add(low, high), 0.5), norm(sub(high, low)).max(f64::MIN_POSITIVE))
+        let body = |(&name, [low, high]): (&usize, &[[f64; 3]; 2])| {
+            (name, scale(add(*low, *high), 0.5), norm(sub(*high, *low)).max(f64::MIN_POSITIVE))
         };
-        let bodies = roots.into_iter().zip(boxes).map(body).collect();
+        let bodies: Vec<(usize, [f64; 3], f64)> = boxes.iter().map(body).collect();
+        let place = |name: usize| bodies.binary_search_by_key(&name, |own| own.0).ok();
+        let of_node = names.into_iter().map(|name| name.and_then(place).unwrap_or(usize::MAX)).collect();
         Self { part, of_node, bodies, motions: Vec::new() }
     }
 
-    /// The rigid motions that an element of the body does not resist.
+    /// The rigid motions that an element of the body does not resist; collective.
     fn find_motions(&mut self, system: &System) {
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let space = self.part.info.domain_size;
-        let mut seen = vec![false; self.bodies.len()];
+        let rotations = if space == 2 { &axes[2..] } else { &axes[..] };
+        let translations = axes[..space].iter().map(|&translation| (translation, [0.0; 3]));
+        let all: Vec<_> = translations.chain(rotations.iter().map(|&r| ([0.0; 3], r))).collect();
+        // Of each body, the motions as bits; below zero where no element of it is here.
+        let mut free = vec![-1.0; self.bodies.len()];
         for block in &system.elements {
             for at in 0..block.len() {
                 let body = self.of_node[block.nodes(at)[0] as usize];
-                if block.nodes(at).len() < 2 || body == usize::MAX || std::mem::replace(&mut seen[body], true) {
+                if block.nodes(at).len() < 2 || body == usize::MAX || free[body] >= 0.0 {
                     continue;
                 }
                 let size = block.unknowns().len();
@@ -145,9 +126,8 @@ impl<'a> Bodies<'a> {
                 if block.local_systems(&self.part.view(), at..at + 1, Want::Both, &mut out).is_err() {
                     continue;
                 }
-                let translations = axes[..space].iter().map(|&translation| (translation, [0.0; 3]));
-                let rotations = if space == 2 { &axes[2..] } else { &axes[..] };
-                for (translation, rotation) in translations.chain(rotations.iter().map(|&r| ([0.0; 3], r))) {
+                free[body] = 0.0;
+                for (bit, &(translation, rotation)) in all.iter().enumerate() {
                     let motion = Motion { body, translation, rotation };
                     let values: Vec<f64> = block
                         .unknowns()
@@ -166,11 +146,15 @@ impl<'a> Bodies<'a> {
                         let largest = row.iter().fold(0.0_f64, |most, k| most.max(k.abs()));
                         sum.abs() <= RIGID * all.max(largest)
                     });
-                    if is_rigid {
-                        self.motions.push(motion);
-                    }
+                    free[body] += if is_rigid { f64::from(1_u8 << bit) } else { 0.0 };
                 }
             }
+        }
+        let of_ranks = self.part.ranks.gather_numbers(&free);
+        for body in 0..self.bodies.len() {
+            let bits = of_ranks.iter().map(|free| free[body]).find(|bits| *bits >= 0.0).unwrap_or(0.0) as u8;
+            let own = all.iter().enumerate().filter(|(bit, _)| bits >> bit & 1 == 1);
+            self.motions.extend(own.map(|(_, &(translation, rotation))| Motion { body, translation, rotation }));
         }
     }
 
@@ -205,7 +189,7 @@ impl<'a> Bodies<'a> {
                 moved.add(&row);
             }
         }
-        moved.free().iter().for_each(|motion| rows.add(motion));
+        moved.free(self.part).iter().for_each(|motion| rows.add(motion));
     }
 
     /// Rows of fixed unknowns and of linear constraints.
@@ -257,16 +241,28 @@ impl<'a> Bodies<'a> {
         own.rank(1e-4)
     }
 
-    /// The smallest part that holds it, and a node.
-    fn name(&self, body: usize) -> String {
-        let node = self.bodies[body].0;
-        let id = self.part.nodes.ids[node as usize];
-        body_of(&self.part.tree, node)
-            .map_or_else(|| format!("the body of node {id}"), |name| format!("the body of part {name} with node {id}"))
+    /// The smallest part that holds it, and its first node; `None` where another rank says it.
+    fn name(&self, body: usize) -> Option<String> {
+        let id = self.bodies[body].0;
+        let node = self.part.nodes.find(id).filter(|&node| self.part.owns_node(node as usize))?;
+        let part = body_of(&self.part.tree, node);
+        Some(
+            part.map_or_else(
+                || format!("the body of node {id}"),
+                |name| format!("the body of part {name} with node {id}"),
+            ),
+        )
     }
 }
 
-/// The sum of rᵀr over all rows r.
+/// The box around two.
+fn joined([low, high]: [[f64; 3]; 2], [lower, higher]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+    std::array::from_fn(|end| {
+        std::array::from_fn(|c| if end == 0 { low[c].min(lower[c]) } else { high[c].max(higher[c]) })
+    })
+}
+
+/// The sum of rᵀr over all rows r, those of this rank.
 struct Rows {
     gram: DMatrix<f64>,
 }
@@ -298,9 +294,11 @@ impl Rows {
         }
     }
 
-    /// Orthonormal motions that no row meets.
-    fn free(&self) -> Vec<Vec<f64>> {
-        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(self.gram.clone());
+    /// Orthonormal motions that no row of any rank meets; collective.
+    fn free(&self, part: &ModelPart) -> Vec<Vec<f64>> {
+        let mut gram = self.gram.clone();
+        part.ranks.sum(gram.as_mut_slice());
+        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(gram);
         let largest = eigenvalues.iter().copied().fold(0.0, f64::max);
         let none = |value: f64| value <= FREE * largest || largest == 0.0;
         let columns = (0..eigenvalues.len()).filter(|&at| none(eigenvalues[at]));

@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostics::Error;
 use crate::strategies::StepRecord;
 
+/// Most steps of which records are kept.
+const MOST_RECORDS: usize = 10_000;
+
 /// Sizes of a problem.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sizes {
@@ -38,8 +41,14 @@ pub struct RunReport {
     pub stages: Vec<String>,
     /// Sizes of the last stage.
     pub sizes: Sizes,
-    /// Accepted steps and failed attempts, in order.
+    /// Accepted steps and failed attempts, in order; of more than 10,000 every `kept_every`-th step, and the last one.
     pub steps: Vec<StepRecord>,
+    /// Of how many steps the records of one are kept.
+    pub kept_every: usize,
+    /// Steps that converged, all.
+    pub converged_steps: usize,
+    /// Their iterations.
+    pub iterations: usize,
     /// Exit code of the program: 0 done and converged, 2 bad input, 3 not converged, 4 system or solver failure, 5 stopped and
     /// saved.
     pub exit_code: u8,
@@ -77,6 +86,9 @@ impl Default for RunReport {
             stages: Vec::new(),
             sizes: Sizes::default(),
             steps: Vec::new(),
+            kept_every: 1,
+            converged_steps: 0,
+            iterations: 0,
             exit_code: 0,
             errors: Vec::new(),
             notes: Vec::new(),
@@ -93,6 +105,31 @@ impl Default for RunReport {
 }
 
 impl RunReport {
+    /// Puts down a step, or an attempt at it.
+    pub fn record(&mut self, record: StepRecord) {
+        if record.converged {
+            self.converged_steps += 1;
+            self.iterations += record.iterations.len();
+        }
+        let last = self.steps.last().map_or(record.step, |last| last.step);
+        if last != record.step && !self.keeps(last) {
+            self.steps.truncate(self.steps.len() - self.steps.iter().rev().take_while(|own| own.step == last).count());
+        }
+        self.steps.push(record);
+        while self.steps.len() > MOST_RECORDS && self.kept_every <= self.converged_steps {
+            self.kept_every *= 2;
+            let last = self.steps[self.steps.len() - 1].step;
+            let mut steps = std::mem::take(&mut self.steps);
+            steps.retain(|own| self.keeps(own.step) || own.step == last);
+            self.steps = steps;
+        }
+    }
+
+    /// Whether the records of a step stay.
+    fn keeps(&self, step: usize) -> bool {
+        step % self.kept_every == 1 % self.kept_every
+    }
+
     /// Adds seconds to a phase.
     pub fn add_seconds(&mut self, phase: &str, seconds: f64) {
         *self.seconds.entry(phase.to_owned()).or_insert(0.0) += seconds;
@@ -105,5 +142,36 @@ impl RunReport {
             Error::Input(problems) => self.errors.extend(problems.iter().map(ToString::to_string)),
             other => self.errors.push(other.to_string()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_of_very_many_steps_are_thinned_evenly() {
+        let mut report = RunReport::default();
+        for step in 1..=1_000_000 {
+            let attempts: &[bool] = if step % 1000 == 0 { &[false, true] } else { &[true] };
+            for &converged in attempts {
+                report.record(StepRecord { step, converged, ..StepRecord::default() });
+            }
+            assert!(report.steps.len() <= MOST_RECORDS && report.steps[report.steps.len() - 1].step == step);
+        }
+        assert_eq!((report.converged_steps, report.kept_every), (1_000_000, 128));
+        let evenly = report.steps.iter().take_while(|own| own.step < 1_000_000).map(|own| own.step);
+        assert!(evenly.eq((1..1_000_000).step_by(128)));
+    }
+
+    #[test]
+    fn attempts_at_kept_steps_are_all_kept() {
+        let mut report = RunReport::default();
+        for step in 1..=3 {
+            for converged in [false, false, true] {
+                report.record(StepRecord { step, converged, ..StepRecord::default() });
+            }
+        }
+        assert_eq!((report.steps.len(), report.converged_steps), (9, 3));
     }
 }

@@ -1,10 +1,10 @@
-//! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values.
+//! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values, loads that are given twice.
 
 use rustc_hash::FxHashMap;
 
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart};
-use crate::processes::{Prescription, Process};
+use crate::processes::{Load, LoadCarrier, Prescription, Process};
 
 /// Difference of two values that are the same, as a share of the larger.
 const SAME: f64 = 1e-12;
@@ -108,5 +108,37 @@ pub(super) fn warn_of_contradictions(
         if !found.is_empty() {
             return;
         }
+    }
+}
+
+/// Warns of loads that a later process gives in place of those of an earlier one, where both act at once; collective.
+pub(super) fn warn_of_loads_given_twice(part: &ModelPart, processes: &[Box<dyn Process>], problems: &mut Report) {
+    let loads: Vec<Load> = processes.iter().flat_map(|process| process.loads(part)).collect();
+    let pairs =
+        loads.iter().enumerate().flat_map(|(at, later)| loads[..at].iter().map(move |earlier| (earlier, later)));
+    let acts_with = |(one, other): &(&Load, &Load)| {
+        let [begin, end] = [one.interval.begin.max(other.interval.begin), one.interval.end.min(other.interval.end)];
+        one.on == other.on && begin < end && one.variables.iter().any(|variable| other.variables.contains(variable))
+    };
+    let pairs: Vec<(&Load, &Load)> = pairs.filter(acts_with).collect();
+    let shared = |(one, other): &(&Load, &Load)| {
+        let nodes = matches!(one.on, LoadCarrier::History | LoadCarrier::Nodes);
+        let own = one.members.iter().filter(|&&member| !nodes || part.owns_node(member as usize));
+        own.filter(|member| other.members.binary_search(member).is_ok()).count() as f64
+    };
+    let mut counts: Vec<f64> = pairs.iter().map(shared).collect();
+    part.ranks.sum(&mut counts);
+    for ((earlier, later), count) in pairs.into_iter().zip(counts).filter(|(_, count)| *count > 0.0) {
+        let word = match later.on {
+            LoadCarrier::History | LoadCarrier::Nodes => "nodes",
+            LoadCarrier::Conditions => "conditions",
+            LoadCarrier::Elements => "elements",
+        };
+        let fact = format!(
+            "{} of {count} {word} is given by {} at {}, and by {}, which takes its place: they do not add up",
+            later.variables[0].column, earlier.by, earlier.place, later.by
+        );
+        let remedy = "give the sum in one process, take what both have out of one of the parts, or let their intervals follow each other";
+        problems.push(Diagnostic::warning("load-given-twice", fact).at(later.place.clone()).remedy(remedy));
     }
 }

@@ -19,7 +19,7 @@ use super::saved::Saved;
 use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
 use super::sharing::{distribute, read_the_same_deck, read_the_same_files};
 use super::solver::{SolverSettings, TimeScheme, check_dimensions};
-use super::soundness::{prescriptions, warn_of_contradictions, warn_of_twins};
+use super::soundness::{prescriptions, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins};
 use super::time_stepping::TimeStepping;
 use super::unheeded::{check_tolerances, warn_of_extensions, warn_of_unheeded};
 use crate::assembly::System;
@@ -231,6 +231,7 @@ impl Stage {
         let (start_time, end_time) = times.expect("checked above");
         let part = model.root(&root)?;
         warn_of_twins(part, &mut problems);
+        warn_of_loads_given_twice(part, &processes, &mut problems);
         warn_of_contradictions(part, &processes, [0.5 * (start_time + end_time), end_time], &mut problems);
         if matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static()) && part.info.step == 0 {
             let prescribed = prescriptions(part, &processes, 0.5 * (start_time + end_time));
@@ -366,7 +367,13 @@ impl Stage {
             return Ok(false);
         }
         let length = self.strategy.step_length(part, &self.system, self.stepping.next(time)?)?;
-        let target = self.stepping.target(time, length, self.end_time);
+        let (target, is_shortened) = self.stepping.target(time, length, [self.start_time, self.end_time]);
+        if is_shortened {
+            monitor.note(&format!(
+                "the last step is shortened from {length} to {:.6e}, to end at {target}",
+                target - time
+            ));
+        }
         self.reach(target, model, report, monitor, driver).map(|()| true)
     }
 
@@ -515,7 +522,7 @@ impl Stage {
         if announced || !record.converged {
             monitor.end_step(&record);
         }
-        report.steps.push(record.clone());
+        report.record(record.clone());
         Ok(record)
     }
 

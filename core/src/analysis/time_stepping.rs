@@ -4,8 +4,10 @@ use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
 use crate::model::Table;
 use crate::parameters::{Interval, Node};
 
-/// Share of a step that sums of step lengths may be off by.
+/// Share of a step that the length of one step may be off by.
 const ROUND_OFF: f64 = 1e-9;
+/// Share of a step that is more than the round-off of a sum, however many steps there are.
+const LEAST_STEP: f64 = 1e-2;
 /// Steps beyond which they are not counted ahead.
 const MOST_COUNTED: usize = 1_000_000;
 
@@ -20,10 +22,10 @@ pub struct TimeStepping {
 /// The end of a run whose steps do not add up to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LastStep {
-    /// The last step is whole and goes beyond the end; what is round-off is no step.
-    Whole,
-    /// It is shortened.
+    /// The last step ends there; what is round-off is no step.
     Shortened,
+    /// It is whole and goes beyond the end; what is round-off is no step.
+    Whole,
     /// There are steps while the time, as a number, is below the end.
     WhileBelow,
 }
@@ -53,40 +55,42 @@ impl TimeStepping {
             warnings.push(problem.remedy(remedy));
         }
         let last_step = match node.get("last_step").map(|node| Ok::<_, Error>((node, node.str()?))).transpose()? {
-            None | Some((_, "whole")) => LastStep::Whole,
-            Some((_, "shortened")) => LastStep::Shortened,
+            None | Some((_, "shortened")) => LastStep::Shortened,
+            Some((_, "whole")) => LastStep::Whole,
             Some((_, "while_below")) => LastStep::WhileBelow,
             Some((node, word)) => {
                 return Err(Diagnostic::error("invalid-value", format!("\"last_step\" is {word:?}"))
                     .at(node.place())
-                    .remedy("write \"whole\", \"shortened\" or \"while_below\"")
+                    .remedy("write \"shortened\", \"whole\" or \"while_below\"")
                     .into());
             }
         };
         Ok(Self { rule: StepLength::from_node(node)?, last_step })
     }
 
-    /// End of the step of `length` from `time` in a run that ends at `end`.
-    pub fn target(&self, time: f64, length: f64, end: f64) -> f64 {
+    /// End of the step of `length` from `time` in a run from `start` to `end`, and whether that step is shortened.
+    pub fn target(&self, time: f64, length: f64, [start, end]: [f64; 2]) -> (f64, bool) {
         let beyond = time + length - end;
+        let sums = (1.0 + (time - start) / length) * f64::EPSILON * start.abs().max(end.abs());
+        let round_off = sums.clamp(ROUND_OFF * length, LEAST_STEP * length);
         match self.last_step {
-            LastStep::Whole if beyond.abs() <= ROUND_OFF * length => end,
-            LastStep::Shortened if beyond >= -ROUND_OFF * length => end,
-            _ => time + length,
+            LastStep::Shortened | LastStep::Whole if beyond.abs() <= round_off => (end, false),
+            LastStep::Shortened if beyond > 0.0 => (end, true),
+            _ => (time + length, false),
         }
     }
 
-    /// Steps from `time` to `end`, where they can be counted.
-    pub fn count(&self, time: f64, end: f64) -> Option<usize> {
-        self.times(time, end).map(|times| times.len() - 1)
+    /// Steps from `start` to `end`, where they can be counted.
+    pub fn count(&self, start: f64, end: f64) -> Option<usize> {
+        self.times(start, end).map(|times| times.len() - 1)
     }
 
-    /// `time` and the ends of the steps from there to `end`, where they can be counted.
-    pub fn times(&self, time: f64, end: f64) -> Option<Vec<f64>> {
-        let mut times = vec![time];
+    /// `start` and the ends of the steps from there to `end`, where they can be counted.
+    pub fn times(&self, start: f64, end: f64) -> Option<Vec<f64>> {
+        let mut times = vec![start];
         while times[times.len() - 1] < end && times.len() <= MOST_COUNTED {
             let time = times[times.len() - 1];
-            times.push(self.target(time, self.next(time).ok()?, end));
+            times.push(self.target(time, self.next(time).ok()?, [start, end]).0);
         }
         (times[times.len() - 1] >= end).then_some(times)
     }
@@ -170,12 +174,7 @@ mod tests {
     fn ends(stepping: &str, end: f64) -> Vec<f64> {
         let deck = Document::from_str(stepping, "deck.json").expect("JSON").root;
         let stepping = TimeStepping::from_node(&deck, &mut Report::new()).expect("steps");
-        let (mut time, mut ends) = (0.0, Vec::new());
-        while time < end {
-            time = stepping.target(time, stepping.next(time).expect("a length"), end);
-            ends.push(time);
-        }
-        ends
+        stepping.times(0.0, end).expect("a number of steps").split_off(1)
     }
 
     #[test]
@@ -185,16 +184,20 @@ mod tests {
         let tenths = Document::from_str(r#"{ "time_step": 0.1 }"#, "deck.json").expect("JSON").root;
         let tenths = TimeStepping::from_node(&tenths, &mut Report::new()).expect("steps");
         assert_eq!([tenths.count(0.0, 1.0), tenths.count(0.5, 1.0), tenths.count(0.0, 1e9)], [Some(10), Some(5), None]);
-        assert_eq!(ends(r#"{ "time_step": 1.1 }"#, 1.0), [1.1]);
-        let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
-        assert!(thirds.len() == 4 && thirds[3] > 1.19);
+        let many = ends(r#"{ "time_step": 1e-6 }"#, 1.0);
+        assert_eq!((many.len(), many[999_999]), (1_000_000, 1.0), "their sum is off by 8e-12");
+        let many = ends(r#"{ "time_step": 2e-6, "last_step": "whole" }"#, 1.0);
+        assert_eq!((many.len(), many[499_999]), (500_000, 1.0));
     }
 
     #[test]
     fn the_last_step_is_what_the_deck_says() {
-        let thirds = ends(r#"{ "time_step": 0.3, "last_step": "shortened" }"#, 1.0);
+        let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
         assert_eq!((thirds.len(), thirds[3]), (4, 1.0));
-        assert_eq!(ends(r#"{ "time_step": 2.0, "last_step": "shortened" }"#, 1.0), [1.0]);
+        assert_eq!(ends(r#"{ "time_step": 1.1 }"#, 1.0), [1.0]);
+        let thirds = ends(r#"{ "time_step": 0.3, "last_step": "whole" }"#, 1.0);
+        assert!(thirds.len() == 4 && thirds[3] > 1.19);
+        assert_eq!(ends(r#"{ "time_step": 1.1, "last_step": "whole" }"#, 1.0), [1.1]);
         let beyond = ends(r#"{ "time_step": 0.1, "last_step": "while_below" }"#, 1.0);
         assert!(beyond.len() == 11 && beyond[10] > 1.09, "ten tenths sum up to less than one");
     }

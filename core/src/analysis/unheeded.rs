@@ -87,6 +87,9 @@ const OF_PROCESS: [&str; 9] = [
     "implemented_in_module",
 ];
 
+/// Relative difference of two times that are one.
+const SAME_TIME: f64 = 1e-9;
+
 /// Keys that nothing reads, and intervals outside the times of the run.
 pub(super) fn warn_of_unheeded(deck: &Node, times: Option<((f64, f64), &TimeStepping)>, report: &mut Report) {
     for (path, known) in OBJECTS {
@@ -114,6 +117,14 @@ pub(super) fn warn_of_unheeded(deck: &Node, times: Option<((f64, f64), &TimeStep
         {
             let fact = format!("no step of the run ends in the interval {node}: the process never acts");
             Diagnostic::warning("interval-outside", fact).remedy("shorten the steps, or widen the interval")
+        } else if let Some(end) = steps.as_ref().and_then(|steps| steps.last())
+            && (end - last).abs() <= SAME_TIME * last.abs()
+            && !interval.contains(*end)
+        {
+            let fact = format!(
+                "the interval {node} begins at 0, so that its end is outside of it: the process leaves out the last step, which ends at {end}"
+            );
+            Diagnostic::warning("interval-end", fact).remedy("write \"End\"")
         } else {
             continue;
         };

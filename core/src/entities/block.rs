@@ -49,6 +49,8 @@ pub enum Want {
     Both,
     /// Only the external forces, e.g. body forces, of a block that has some apart ([`EntityBlock::has_external`]).
     External,
+    /// Only minus what is stored, of a block that stores by its own equation ([`EntityBlock::has_storage`]).
+    Storage,
 }
 
 /// Buffers for the local systems of a range of entities, one after another.
@@ -186,6 +188,11 @@ pub trait EntityBlock: Send + Sync {
 
     /// Whether the block has external forces of its own in this step, and gives them apart ([`Want::External`]).
     fn has_external(&self, _view: &StepView<'_>) -> bool {
+        false
+    }
+
+    /// Whether storage, as of heat, is part of the block's own equation, and it gives it apart ([`Want::Storage`]).
+    fn has_storage(&self) -> bool {
         false
     }
 

@@ -97,6 +97,11 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         false
     }
 
+    /// See [`EntityBlock::has_storage`].
+    fn has_storage(&self) -> bool {
+        false
+    }
+
     /// Adds the mass matrix row by row; `false` when the kind has none.
     fn mass(
         &self,
@@ -302,6 +307,10 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
 
     fn has_external(&self, view: &StepView<'_>) -> bool {
         self.kernel.has_external(view)
+    }
+
+    fn has_storage(&self) -> bool {
+        self.kernel.has_storage()
     }
 
     fn mass(

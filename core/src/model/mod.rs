@@ -4,6 +4,7 @@
 //! ([`Field`]) found by the name of their [`Variable`]. Nodes are stored in ascending order of id, so loops over indices
 //! run in the order in which the reference program loops over ids.
 
+mod bodies;
 mod constraint;
 mod entity_kind;
 mod entity_table;
@@ -33,6 +34,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use bodies::bodies_of_nodes;
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
 pub use entity_kind::{EntityKind, KindFinder, Role};
 pub use entity_table::EntityTable;

@@ -8,6 +8,7 @@ use crate::processes::ProcessEntry;
 use std::path::{Path, PathBuf};
 
 use super::assign_to_entities::{Container, centre};
+use super::prescription::{Load, LoadCarrier};
 use super::process::{Process, ProcessRequest};
 use super::target::{Target, read_text, scalar_variable};
 use crate::diagnostics::{Diagnostic, Place, Result};
@@ -190,6 +191,12 @@ impl Process for AssignScalarInput {
         let members = self.containers.iter().map(|&container| self.nearest(part, selection, container));
         self.members = members.collect::<Result<_>>()?;
         Ok(())
+    }
+
+    fn loads(&self, part: &ModelPart) -> Vec<Load> {
+        let carrier = |of: &Container| if self.history { LoadCarrier::History } else { of.carrier() };
+        let variable = || std::iter::once(self.variable);
+        self.containers.iter().filter_map(|of| self.target.load(part, variable(), carrier(of))).collect()
     }
 
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {

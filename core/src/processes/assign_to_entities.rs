@@ -4,6 +4,7 @@
 //! the last value stays.
 
 use super::local_axes::LocalAxes;
+use super::prescription::{Load, LoadCarrier};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
@@ -28,6 +29,15 @@ pub enum Container {
 impl Container {
     const NAMES: [(&'static str, Self); 3] =
         [("nodes", Self::Nodes), ("conditions", Self::Conditions), ("elements", Self::Elements)];
+
+    /// What carries its data as loads.
+    pub(super) fn carrier(self) -> LoadCarrier {
+        match self {
+            Self::Nodes => LoadCarrier::Nodes,
+            Self::Conditions => LoadCarrier::Conditions,
+            Self::Elements => LoadCarrier::Elements,
+        }
+    }
 
     /// Reads the list `"entities"`.
     ///
@@ -194,6 +204,11 @@ impl Process for AssignToEntities {
             );
         }
         Ok(())
+    }
+
+    fn loads(&self, part: &ModelPart) -> Vec<Load> {
+        let variables = || self.components.iter().map(|component| component.variable);
+        self.containers.iter().filter_map(|of| self.target.load(part, variables(), of.carrier())).collect()
     }
 
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {

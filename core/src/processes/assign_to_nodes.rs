@@ -6,7 +6,7 @@
 
 use super::assign_to_entities::is_load;
 use super::local_axes::LocalAxes;
-use super::prescription::Prescription;
+use super::prescription::{Load, LoadCarrier, Prescription};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
@@ -171,6 +171,12 @@ impl Process for AssignToNodes {
             }
         };
         self.components.iter().filter(|component| component.fixed).map(of_component).collect()
+    }
+
+    fn loads(&self, part: &ModelPart) -> Vec<Load> {
+        let set = self.components.iter().filter(|component| component.value.is_some());
+        let variables = set.map(|component| component.variable);
+        self.target.load(part, variables, LoadCarrier::History).into_iter().collect()
     }
 
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {

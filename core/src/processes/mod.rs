@@ -33,7 +33,7 @@ pub use assign_to_entities::{AssignToEntities, Container, EntityComponent};
 pub use assign_to_nodes::{AssignToNodes, NodalComponent};
 pub use local_axes::LocalAxes;
 pub use output::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown, usual_results};
-pub use prescription::Prescription;
+pub use prescription::{Load, LoadCarrier, Prescription};
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
 pub(crate) use scalar_value::tables_of;

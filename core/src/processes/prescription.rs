@@ -1,6 +1,8 @@
-//! What a process prescribes at a time, asked before anything runs.
+//! What a process prescribes and what it loads, asked before anything runs.
 
+use crate::diagnostics::Place;
 use crate::model::ScalarVariable;
+use crate::parameters::Interval;
 
 /// Values of one unknown that a process fixes.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,4 +13,34 @@ pub struct Prescription {
     pub variable: ScalarVariable,
     /// Nodes (index); the value, `None` where the unknown stays as it is.
     pub values: Vec<(u32, Option<f64>)>,
+}
+
+/// What carries the loads of a process.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LoadCarrier {
+    /// Nodes, in columns with history.
+    History,
+    /// Nodes, in columns without history.
+    Nodes,
+    /// Conditions.
+    Conditions,
+    /// Elements.
+    Elements,
+}
+
+/// A load that a process gives to members of a part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// The process and its part, for messages.
+    pub by: String,
+    /// Where the deck names the part.
+    pub place: Place,
+    /// When it acts.
+    pub interval: Interval,
+    /// The numbers that it sets.
+    pub variables: Vec<ScalarVariable>,
+    /// What it sets them on.
+    pub on: LoadCarrier,
+    /// Their places there, ascending.
+    pub members: Vec<u32>,
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::State;
 
-use super::prescription::Prescription;
+use super::prescription::{Load, Prescription};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
@@ -47,6 +47,11 @@ pub trait Process: Send {
 
     /// Unknowns of a root part that it fixes at a time, with their values, as far as that is known before the run.
     fn prescribes(&self, _part: &ModelPart, _time: f64) -> Vec<Prescription> {
+        Vec::new()
+    }
+
+    /// Loads that it gives to a root part, each in place of what an earlier process gave there.
+    fn loads(&self, _part: &ModelPart) -> Vec<Load> {
         Vec::new()
     }
 

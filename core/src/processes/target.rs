@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use super::assign_to_entities::is_load;
+use super::prescription::{Load, LoadCarrier};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
 use crate::model::{Model, ModelPart, Named, NodeUnknown, ScalarVariable, SubPart, VariableKind, named, variables};
@@ -48,6 +50,31 @@ impl Target {
     pub(super) fn selection<'t>(&self, tree: &'t SubPart) -> Result<&'t SubPart> {
         let gone = || Diagnostic::error("unknown-model-part", format!("the model part {:?} is gone", self.path));
         tree.find(self.below_root()).ok_or_else(|| gone().at(self.place.clone()).into())
+    }
+
+    /// The loads among these numbers, as given to members of its part; none where it is of another root than `part`.
+    pub(super) fn load(
+        &self,
+        part: &ModelPart,
+        variables: impl Iterator<Item = ScalarVariable>,
+        on: LoadCarrier,
+    ) -> Option<Load> {
+        let variables: Vec<ScalarVariable> = variables.filter(|variable| is_load(variable.column)).collect();
+        let is_here = self.path.split('.').next() == Some(part.tree.name.as_str());
+        let selection = self.selection(&part.tree).ok().filter(|_| is_here && !variables.is_empty())?;
+        let members = match on {
+            LoadCarrier::History | LoadCarrier::Nodes => &selection.nodes,
+            LoadCarrier::Conditions => &selection.conditions,
+            LoadCarrier::Elements => &selection.elements,
+        };
+        Some(Load {
+            by: format!("{} on {}", self.process, self.path),
+            place: self.place.clone(),
+            interval: self.interval,
+            variables,
+            on,
+            members: members.clone(),
+        })
     }
 
     /// An error for a value that is not finite.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::balance::{Balance, Energies, PairBalance, Sums, UnknownBalance};
+use super::balance::{Balance, Energies, Flows, PairBalance, Sums, UnknownBalance};
 use crate::Carrier;
 use crate::assembly::{Assembler, Inertia, NONE, Push, System};
 use crate::diagnostics::Result;
@@ -213,8 +213,8 @@ fn forces(
     loads.iter_mut().zip(more.into_iter().flatten()).for_each(|(load, more)| *load += more);
     let interactions = assembler.exchanged(part, system, |push| pairs.push(system, push))?;
     let taken_up = inertia.map(|inertia| assembler.inertia_forces(part, system, inertia)).transpose()?;
-    let inertia: Vec<f64> =
-        taken_up.map_or_else(|| vec![0.0; residual.len()], |taken| taken.iter().map(|force| -force).collect());
+    let mut inertia = assembler.storage(part, system)?;
+    inertia.iter_mut().zip(taken_up.into_iter().flatten()).for_each(|(own, taken)| *own -= taken);
     let others = loads.iter().zip(&interactions).zip(&inertia);
     let elements = residual.iter().zip(others).map(|(r, ((load, push), inertia))| r - load - push - inertia).collect();
     let equations = assembler.equations();
@@ -239,8 +239,11 @@ fn sums(
     columns.dedup();
     // Forces and moments of each kind, and of what is left over.
     let mut all = vec![[[[0.0; 3]; 2]; KINDS + 1]; columns.len()];
+    // What loads and supports feed in, and what they take out.
+    let mut through = vec![[0.0; 2]; columns.len()];
     for variable in variables {
-        let of_column = &mut all[columns.iter().position(|column| *column == variable.column).expect("one of them")];
+        let at = columns.iter().position(|column| *column == variable.column).expect("one of them");
+        let (of_column, [entering, leaving]) = (&mut all[at], &mut through[at]);
         let c = variable.offset();
         for (node, &number) in system.dofs.numbers(variable).iter().enumerate() {
             if number == NONE || !part.owns_node(node) {
@@ -248,6 +251,10 @@ fn sums(
             }
             let (n, arm) = (number as usize, sub(part.nodes.current[node], centre));
             let left = residual[n] + forces[REACTIONS][n];
+            for own in [forces[LOADS][n], forces[REACTIONS][n]] {
+                *entering += own.max(0.0);
+                *leaving += (-own).max(0.0);
+            }
             let values = forces.iter().map(|of_kind| of_kind[n]).chain([left]);
             for ([force, moment], value) in of_column.iter_mut().zip(values) {
                 force[c] += value;
@@ -259,10 +266,11 @@ fn sums(
     }
     let mut flat: Vec<f64> = all.iter().flatten().flatten().flatten().copied().collect();
     part.ranks.sum(&mut flat);
+    part.ranks.sum(through.as_flattened_mut());
     let size = flat.len() / columns.len().max(1);
-    let of_columns = columns.iter().zip(flat.chunks_exact(size.max(1)));
+    let of_columns = columns.iter().zip(through).zip(flat.chunks_exact(size.max(1)));
     of_columns
-        .map(|(column, flat)| {
+        .map(|((column, [entering, leaving]), flat)| {
             let moves = Rates::of(column).is_some_and(|rates| rates.moves_mesh);
             let pairs = if moves { pairs } else { &[] };
             let between = pairs.iter().map(|pair| pair.out_of_balance).fold([0.0; 3], add);
@@ -273,7 +281,8 @@ fn sums(
             let forces = Sums::of(vectors(0), between, pairs.iter().map(|pair| norm(pair.force)));
             let moments = Sums::of(vectors(1), [0.0; 3], pairs.iter().map(|pair| norm(pair.moment)));
             let moments = moves.then_some(moments);
-            UnknownBalance { unknown: (*column).to_owned(), forces, moments, centre }
+            let flows = Flows { entering, leaving, stored: -forces.inertia.iter().sum::<f64>() };
+            UnknownBalance { unknown: (*column).to_owned(), forces, moments, centre, flows: (!moves).then_some(flows) }
         })
         .collect()
 }

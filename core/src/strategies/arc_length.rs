@@ -138,13 +138,14 @@ impl ArcLength {
     ) -> Result<(Vec<f64>, Solved)> {
         let rhs = self.newton.assembler.equations().reduce(rhs);
         let mut solved = self.newton.solve(part, system, &rhs);
-        if let (Err(Failed::Singular(why)), Relaxation { amount: Some(amount), taken: taken @ false }) =
+        if let (Err(Failed::Singular(why, _)), Relaxation { amount: Some(amount), taken: taken @ false }) =
             (&solved, relaxation)
         {
-            self.newton.warn_of_redundancy(why);
             *taken = true;
             self.newton.assembler.relax_multipliers(&system.dofs, *amount);
-            solved = self.newton.solve(part, system, &rhs);
+            let relaxed = self.newton.solve(part, system, &rhs)?;
+            self.newton.warn_of_redundancy(why);
+            solved = Ok(relaxed);
         }
         let solved = solved?;
         Ok((self.newton.assembler.equations().expand(&solved.increment), solved))

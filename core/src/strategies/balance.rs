@@ -25,6 +25,20 @@ pub struct UnknownBalance {
     pub moments: Option<Sums>,
     /// Centre of the box around the initial mesh.
     pub centre: [f64; 3],
+    /// What goes through the body, of unknowns that move nothing, e.g. heat (power).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flows: Option<Flows>,
+}
+
+/// What goes in, out and stays: entering − leaving + elements + interactions = stored but for what is out of balance.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Flows {
+    /// What loads and supports feed in, node by node.
+    pub entering: f64,
+    /// What they take out.
+    pub leaving: f64,
+    /// What the body keeps, below zero where it gives.
+    pub stored: f64,
 }
 
 /// What adds up to nothing.
@@ -34,11 +48,11 @@ pub struct Sums {
     pub loads: [f64; 3],
     /// What supports and constraints to fixed unknowns carry.
     pub reactions: [f64; 3],
-    /// Internal forces: nothing but where elements hold to the ground, or turn around an axis.
+    /// Internal forces: nothing but where elements hold to the ground, or turn around an axis; of heat, what flow carries in.
     pub elements: [f64; 3],
     /// Interactions on both sides: nothing where they act between bodies.
     pub interactions: [f64; 3],
-    /// Minus what inertia and damping take up.
+    /// Minus what inertia, damping and storage take up.
     pub inertia: [f64; 3],
     /// What is left over on unknowns that nothing holds, and between the sides of pairs.
     pub out_of_balance: [f64; 3],

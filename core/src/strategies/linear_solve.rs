@@ -5,9 +5,10 @@ use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, v
 use super::condensing;
 use super::gathered::Gathered;
 use super::meaning::{Meaning, Meanings};
+use super::whereabouts::{body_of, whereabouts};
 use crate::assembly::{Assembler, DofTable, Numbering};
 use crate::diagnostics::Error;
-use crate::model::Nodes;
+use crate::model::{ModelPart, Nodes};
 
 /// Corrections for the load tangents before they are merged into the bulk.
 const CORRECTIONS: usize = 12;
@@ -30,18 +31,40 @@ pub(super) struct Solved {
 
 /// Why there is no increment.
 pub(super) enum Failed {
-    /// The matrix is singular, which another state of the interactions may mend.
-    Singular(String),
+    /// The matrix is singular, which another state of the interactions may mend; with ids of nodes that seem free.
+    Singular(String, Vec<usize>),
     /// The matrix is so nearly singular that the direct engine finds no increment.
     Inaccurate(String),
     /// Anything else.
     Other(Error),
 }
 
+impl Failed {
+    /// The same; what is singular says where nodes are that seem free, one of each part. Collective.
+    pub(super) fn in_part(self, part: &ModelPart) -> Self {
+        let Self::Singular(why, ids) = self else { return self };
+        let mut bodies: Vec<Option<&str>> = Vec::new();
+        let mut places = Vec::new();
+        for node in ids.iter().filter_map(|&id| part.nodes.find(id)).filter(|&node| part.owns_node(node as usize)) {
+            let body = body_of(&part.tree, node);
+            if !bodies.contains(&body) {
+                bodies.push(body);
+                places.push(format!("node {}{}", part.nodes.ids[node as usize], whereabouts(part, node)));
+            }
+        }
+        let places = part.ranks.lines_of_all(places).join(", ");
+        let why = match why.split_once('\n') {
+            Some((fact, remedy)) if !places.is_empty() => format!("{fact}; what moves is at {places}\n{remedy}"),
+            _ => why,
+        };
+        Self::Singular(why, ids)
+    }
+}
+
 impl From<Failed> for Error {
     fn from(failed: Failed) -> Self {
         match failed {
-            Failed::Singular(why) | Failed::Inaccurate(why) => Self::System(why),
+            Failed::Singular(why, _) | Failed::Inaccurate(why) => Self::System(why),
             Failed::Other(error) => error,
         }
     }
@@ -103,6 +126,14 @@ pub(super) fn solve(
     } else {
         Ok((Vec::new(), elsewhere()))
     };
+    let singular = match &solved {
+        Err(Failed::Singular(why, ids)) => (Some(why.clone()), ids.iter().map(|&id| id as f64).collect()),
+        _ => (None, Vec::new()),
+    };
+    if let Some(why) = ranks.first_to_say(singular.0) {
+        let ids = ranks.gather_numbers(&singular.1).concat();
+        return Err(Failed::Singular(why, ids.into_iter().map(|id| id as usize).collect()));
+    }
     let (increment, mut report) = ranks.agree(solved.map_err(Error::from))?;
     let reasons = [why, report.fallback.take()];
     report.fallback = reasons.into_iter().flatten().reduce(|first, then| first + "; " + &then);
@@ -230,8 +261,9 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_
     } else {
         "some body can move freely: support it, or check that contact holds it from the first step"
     };
-    Failed::Singular(format!(
-        "the system of equations is singular{rank}; suspicious: {}\n    {remedy}",
-        names.join(", ")
-    ))
+    let free = equations.iter().filter_map(|&e| meaning(e)).filter(|meaning| !meaning.multiplier);
+    Failed::Singular(
+        format!("the system of equations is singular{rank}; suspicious: {}\n    {remedy}", names.join(", ")),
+        free.map(|meaning| meaning.node).collect(),
+    )
 }

@@ -42,7 +42,7 @@ mod strategy;
 mod whereabouts;
 
 pub use arc_length::{ARC_LENGTH, ArcLength, ArcLengthSettings};
-pub use balance::{Balance, Energies, PairBalance, Sums, UnknownBalance};
+pub use balance::{Balance, Energies, Flows, PairBalance, Sums, UnknownBalance};
 pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
 pub use builder::{Builder, BuilderEntry};

@@ -268,7 +268,7 @@ impl NewtonRaphson {
         self.phases.add("linear: factor", known[1]);
         // With what engines spent that gave no answer.
         self.phases.add("linear: solve", start.elapsed().as_secs_f64() - known[0] - known[1]);
-        let (increment, report) = solved?;
+        let (increment, report) = solved.map_err(|failed| failed.in_part(part))?;
         let SolveReport { engine, relative_residual, iterations, mut fallback, .. } = report;
         if let Some(refused) = self.solver.not_condensed().or(self.gathered.not_condensed()) {
             // Said once, and with the names of nodes.

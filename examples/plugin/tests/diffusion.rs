@@ -52,7 +52,7 @@ fn deck(scheme: &str, steps: usize, dt: f64, mut processes: Vec<Value>) -> Value
         "output_variables": ["CONCENTRATION", "CONCENTRATION_RATE", "CONCENTRATION_SUPPLY"], "time_frequency": 0.0}}));
     json!({
         "problem_data": {"problem_name": "strip", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
-            "end_time": (steps as f64 - 0.5) * dt},
+            "end_time": steps as f64 * dt},
         "solver_settings": {"solver_type": "Diffusion", "model_part_name": "Body", "domain_size": 2, "scheme_type": scheme,
             "model_import_settings": {"input_type": "mdpa", "input_filename": "strip"}, "time_stepping": {"time_step": dt}},
         "processes": {"list": processes}

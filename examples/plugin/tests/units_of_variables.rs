@@ -56,7 +56,7 @@ fn iterations(unit: f64, criterion: &str, sums: bool) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let deck = json!({
         "problem_data": {"problem_name": "strip", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
-            "end_time": 0.5},
+            "end_time": 1.0},
         "solver_settings": {"solver_type": "Static", "model_part_name": "Body", "domain_size": 2,
             "model_import_settings": {"input_type": "mdpa", "input_filename": "strip"},
             "material_import_settings": {"materials_filename": "materials.json"},

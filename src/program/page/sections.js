@@ -49,6 +49,8 @@ if (balanced.length) {
   for (const [at, { unknown }] of last.balance.unknowns.entries()) {
     const line = (name, of) => overTime(name, (balance) => balance.unknowns[at] && of(balance.unknowns[at].forces));
     const rows = ["loads", "reactions", "elements", "interactions", "inertia", "out_of_balance"].map((key) => [key.replaceAll("_", " "), ...last.balance.unknowns[at].forces[key]]);
+    const flows = last.balance.unknowns[at].flows;
+    if (flows) rows.push(...["entering", "leaving", "stored"].map((key) => [key, flows[key]]));
     section(`Balance of ${unknown}`,
       chart([line("loads", (sums) => size(sums.loads)), line("reactions", (sums) => size(sums.reactions)), line("inertia", (sums) => size(sums.inertia))], { x: "time", y: "size of the sum" }),
       chart([line("out of balance", (sums) => sums.relative)], { x: "time", y: "by the largest sum", log: true }),

@@ -179,8 +179,9 @@ fn too_deep(part: &ModelPart, states: &SlaveStates, least: f64) -> Option<String
     let depths = depths.map(|(node, state)| (node, -state.gap().unwrap_or(0.0)));
     let deep: Vec<(u32, f64)> = depths.filter(|&(node, depth)| depth > least && share(node, depth) > most).collect();
     let (node, depth) = deep.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
+    let [x, y, z] = part.nodes.initial[node as usize];
     Some(format!(
-        "{} slave nodes in contact are inside the master by more than {most} of their mesh size, node {} by {depth:.3e} ({:.2} of it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
+        "{} slave nodes in contact are inside the master by more than {most} of their mesh size, node {} at ({x}, {y}, {z}) by {depth:.3e} ({:.2} of it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
         deep.len(),
         part.nodes.ids[node as usize],
         share(node, depth)

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Join, PairState};
-use zelus_core::model::ModelPart;
+use zelus_core::model::{ModelPart, bodies_of_nodes};
 use zelus_core::vector3::norm;
 
 use crate::interface::{Interface, Roles, notes_of_bodies};
@@ -79,6 +79,9 @@ pub(super) fn settle_all(part: &mut ModelPart, interfaces: &[Interface], parts: 
     let tolerance = part.info.is(ADJUST_INITIAL).then(|| part.info.value_or(ADJUST_TOLERANCE, 0.0));
     let refuses = part.info.value_or(LARGEST_PENETRATION, 0.0) > 0.0;
     let mut out = notes_of_bodies(part, parts.0);
-    out.extend(interfaces.iter().filter_map(|of| settle(part, of, &name(&of.key, parts), tolerance, refuses)));
+    let bodies = bodies_of_nodes(part);
+    let settled =
+        interfaces.iter().filter_map(|of| settle(part, of, &bodies, &name(&of.key, parts), tolerance, refuses));
+    out.extend(settled);
     out
 }

@@ -110,10 +110,12 @@ fn passed(part: &ModelPart, interface: &Interface, most: f64) -> Option<String> 
         tree.meeting(&way).into_iter().any(|master| goes_through(node, masters[master as usize]))
     };
     let nodes: Vec<u32> = interface.nodes_of(Roles::Slave).into_iter().filter(through).collect();
-    let ids: Vec<String> = nodes.iter().take(6).map(|&node| part.nodes.ids[node as usize].to_string()).collect();
-    (!ids.is_empty()).then(|| {
-        format!("{} slave nodes go through the master within the step, the first are {}", nodes.len(), ids.join(" "))
-    })
+    let first = *nodes.first()?;
+    let (id, [x, y, z]) = (part.nodes.ids[first as usize], part.nodes.initial[first as usize]);
+    let count = nodes.len();
+    Some(format!(
+        "{count} slave nodes go through the master within the step, the first is node {id} at ({x}, {y}, {z})"
+    ))
 }
 
 fn along(from: [f64; 3], to: [f64; 3], share: f64) -> [f64; 3] {

@@ -7,7 +7,7 @@ use zelus_core::Result;
 use zelus_core::analysis::INCOMPLETE;
 use zelus_core::diagnostics::{Diagnostic, Report, unfit};
 use zelus_core::geometry::Shape;
-use zelus_core::geometry::mapping::unit_normal;
+use zelus_core::geometry::mapping::{domain_size, unit_normal};
 use zelus_core::model::flags::INTERFACE;
 use zelus_core::model::{ModelPart, SubPart};
 use zelus_core::vector3::{add, dot, norm, scale, sub};
@@ -15,6 +15,9 @@ use zelus_core::vector3::{add, dot, norm, scale, sub};
 use super::facet::{Facet, FacetSource, Roles};
 use crate::flags::{MASTER, SLAVE};
 use crate::mortar::carries_contact;
+
+/// Share of its longest edge, squared in space, below which a facet has no area.
+const LEAST_AREA: f64 = 1e-13;
 
 /// The facets of one contact pair of a deck (one key).
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -385,9 +388,17 @@ fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource
     };
     let points: Vec<[f64; 3]> = nodes.iter().map(|&n| part.nodes.initial[n as usize]).collect();
     let outward = sub(centre(&nodes), centre(part.elements.nodes(element)));
-    let Some(normal) = unit_normal(shape, &points, shape.cell().centre) else {
-        let fact = format!("a facet of element {id} has no area");
-        return Err(Diagnostic::error("degenerate-facet", fact).remedy("mend the mesh").into());
+    let longest = (0..nodes.len()).map(|n| norm(sub(points[n], points[(n + 1) % nodes.len()]))).fold(0.0, f64::max);
+    let has_area = domain_size(shape, &points) > LEAST_AREA * longest.powi(shape.dim() as i32);
+    let Some(normal) = unit_normal(shape, &points, shape.cell().centre).filter(|_| has_area) else {
+        let ids: Vec<String> = nodes.iter().map(|&n| part.nodes.ids[n as usize].to_string()).collect();
+        let of = match source {
+            FacetSource::Condition(at) => format!("condition {} on element {id}", part.conditions.ids[at as usize]),
+            FacetSource::Face(_) => format!("a facet of element {id}"),
+        };
+        let fact = format!("{of} has no area: its nodes are {}", ids.join(", "));
+        let remedy = "nodes stand in one place or on one line: mend the mesh";
+        return Err(Diagnostic::error("degenerate-facet", fact).remedy(remedy).into());
     };
     if dot(normal, outward) < 0.0 {
         nodes.reverse();

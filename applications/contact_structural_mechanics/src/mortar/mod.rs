@@ -49,4 +49,6 @@ pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip
 pub use turn::Turn;
 
 #[cfg(test)]
+mod degenerate;
+#[cfg(test)]
 pub(crate) mod tests;

@@ -71,7 +71,9 @@ pub fn operators_by<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape
     let mut sums = Sums::new();
     let covered = Points { pair, motion }.visit(settings, |point| sums.add_point(point));
     match covered {
-        covered if covered > least_overlap(pair) => Overlap::Cells(sums.finish(pair.choices)),
+        // Points have no place on a master that is folded.
+        covered if covered > least_overlap(pair) && sums.is_finite() => Overlap::Cells(sums.finish(pair.choices)),
+        _ if !sums.is_finite() => Overlap::None,
         covered if covered > 0.0 => Overlap::Sliver,
         _ => Overlap::None,
     }
@@ -178,6 +180,10 @@ impl<T: Real, S: FacetShape, M: FacetShape> Sums<T, S, M> {
                 self.mixed[j][l].add_product(weighted, point.master[l]);
             }
         }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.mixed.iter().flat_map(|row| row.iter()).all(|x| x.value().is_finite())
     }
 
     /// D and M from the integrals.

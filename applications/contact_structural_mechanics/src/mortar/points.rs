@@ -8,7 +8,8 @@ use zelus_core::geometry::{FacetShape, Line2, ShapeTable, Triangle3};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{cross, dot, norm, sub, value};
 
-/// Share of the slave's measure below which a cell is skipped: its normal would be rounding noise.
+/// Share of the slave's measure below which a cell is skipped, and of a master's extent below which it has no area: normals would
+/// be rounding noise.
 const LEAST_CELL: f64 = 1e-13;
 
 /// A point of the slave that faces a point of the master.
@@ -66,11 +67,26 @@ impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> Points<'_, T,
     /// As [`for_each_point`].
     #[inline]
     pub(super) fn visit(&self, settings: &SegmentationSettings, visit: impl FnMut(&Point<T, S, M>)) -> f64 {
+        if !self.master_has_area() {
+            return 0.0;
+        }
         if S::SPACE == 2 {
             segmentation_2d::interval(self.pair, settings).map_or(0.0, |ends| self.of_interval(ends, settings, visit))
         } else {
             Polygon::new(self.pair, settings).map_or(0.0, |polygon| self.of_polygon(&polygon, settings, visit))
         }
+    }
+
+    /// Whether local coordinates on the master mean anything: its length counts beside the slave's, its area beside its edges.
+    fn master_has_area(&self) -> bool {
+        let master = M::map(&self.pair.master, value);
+        let measure = M::measure(&master);
+        if M::SPACE == 2 {
+            return measure > LEAST_CELL * S::measure(&S::map(&self.pair.slave, value));
+        }
+        let edge = |n: usize| sub(master[(n + 1) % M::CORNERS], master[n]);
+        let longest = (0..M::CORNERS).map(|n| dot(edge(n), edge(n))).fold(0.0, f64::max);
+        measure > LEAST_CELL * longest
     }
 
     /// Points of a segment of the slave line; gives its length.

@@ -32,7 +32,7 @@ struct Place {
     size: f64,
 }
 
-/// What became of the slave nodes of an interface, named `name`, before the first step.
+/// What became of the slave nodes of an interface, named `name`, before the first step; nodes are of `bodies`.
 ///
 /// Where `tolerance` is given, nodes whose distance is at most that many mesh sizes are moved onto the master, with their initial
 /// positions: without strain. Deeper ones, and all without it, are told; beyond a mesh size as an error where `refuses` holds.
@@ -40,6 +40,7 @@ struct Place {
 pub fn settle(
     part: &mut ModelPart,
     interface: &Interface,
+    bodies: &[Option<usize>],
     name: &str,
     tolerance: Option<f64>,
     refuses: bool,
@@ -49,6 +50,9 @@ pub fn settle(
     }
     find_nodal_h(part);
     let places = places(part, interface);
+    if let Some(problem) = one_body(part, interface, bodies, &places, name, refuses) {
+        return Some(problem);
+    }
     if let Some(tolerance) = tolerance {
         return adjust(part, &places, name, tolerance);
     }
@@ -80,6 +84,40 @@ pub fn settle(
          \"adjust_initial\": true in \"contact_settings\", or mend the mesh"
     };
     Some(make("initial-penetration", fact).remedy(remedy))
+}
+
+/// The problem that both sides are faces of one body, and that none faces the other but through the body: an error where
+/// `refuses` holds and there are such.
+fn one_body(
+    part: &ModelPart,
+    interface: &Interface,
+    bodies: &[Option<usize>],
+    places: &[Place],
+    name: &str,
+    refuses: bool,
+) -> Option<Diagnostic> {
+    let of_role = |role| {
+        let mut found: Vec<_> = interface.nodes_of(role).into_iter().map(|node| bodies[node as usize]).collect();
+        found.dedup();
+        found
+    };
+    let [slave, master] = [Roles::Slave, Roles::Master].map(of_role);
+    let &[Some(body)] = &slave[..] else { return None };
+    if master != slave || places.iter().any(|at| at.distance >= -SILENT * at.size) {
+        return None;
+    }
+    let through = places.iter().find(|at| at.distance < -at.size).map(|at| {
+        let [x, y, z] = part.nodes.initial[at.node as usize];
+        format!("; node {} at ({x}, {y}, {z}) faces the master through it", part.nodes.ids[at.node as usize])
+    });
+    let make = if refuses && through.is_some() { Diagnostic::error } else { Diagnostic::warning };
+    let fact = format!(
+        "contact pair {name}: both sides are faces of one body, that of node {body}, and no slave node has the master before it{}",
+        through.unwrap_or_default()
+    );
+    let remedy =
+        "name faces of the two bodies that meet; a body that is to meet itself needs no \"assume_master_slave\"";
+    Some(make("one-body", fact).remedy(remedy))
 }
 
 fn adjust(part: &mut ModelPart, places: &[Place], name: &str, tolerance: f64) -> Option<Diagnostic> {

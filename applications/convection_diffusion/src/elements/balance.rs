@@ -16,7 +16,7 @@ use crate::coefficient::Local;
 /// What the whole step shares.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
-    /// Its length in time.
+    /// Its length in time; infinite where heat is at rest.
     pub length: f64,
     /// Weight of its end in conduction and convection, 0 to 1.
     pub theta: f64,
@@ -42,6 +42,8 @@ pub const LEAST_GRADIENT: &str = "CROSS_WIND_LEAST_GRADIENT";
 pub const PURE_CONVECTION: &str = "PURE_CONVECTION";
 /// Mark of the step data: elements that are carried through take gradients at their centre for all points.
 pub const AT_CENTRE: &str = "GRADIENTS_AT_CENTRE";
+/// Mark of the step data: nothing is stored.
+pub const AT_REST: &str = "HEAT_AT_REST";
 /// Mark of the step data: each step is one linear solve.
 pub const LINEAR: &str = "LINEAR_HEAT";
 
@@ -49,7 +51,7 @@ impl Step {
     /// As the step data say.
     pub fn of(info: &ProcessInfo) -> Self {
         Self {
-            length: info.delta_time,
+            length: if info.is(AT_REST) { f64::INFINITY } else { info.delta_time },
             theta: info.value_or(THETA, 0.5),
             dynamic_tau: info.value_or(DYNAMIC_TAU, 1.0),
             cross_wind: info.value_or(CROSS_WIND, 0.0),
@@ -99,6 +101,15 @@ impl<const NODES: usize> Point<'_, NODES> {
         self.density.mean(temperature) * self.specific_heat.mean(temperature)
     }
 
+    /// Heat that is stored in a volume, by time.
+    pub fn stored<R: Real>(&self, temperature: R) -> R {
+        if !self.stores {
+            return R::zero();
+        }
+        let mean = (self.capacity(temperature) + self.capacity(self.old)) * 0.5;
+        mean * ((temperature - self.old) / self.step.length)
+    }
+
     /// The factors a of the shape functions and b of their gradients at a temperature and gradient.
     pub fn balance<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, [R; 3]) {
         let Self { step, old, old_gradient, velocity, .. } = *self;
@@ -108,10 +119,9 @@ impl<const NODES: usize> Point<'_, NODES> {
             true => (self.capacity(temperature), self.capacity(old)),
             false => (R::zero(), 0.0),
         };
-        let rate = if self.stores { (temperature - old) / step.length } else { R::zero() };
         let now_along = along(velocity, gradient);
         let old_along = along(velocity, old_gradient);
-        let a = (c + c_old) * 0.5 * rate + c * now_along * end + c_old * old_along * begin - self.source;
+        let a = self.stored(temperature) + c * now_along * end + c_old * old_along * begin - self.source;
         let mut b: [R; 3] = std::array::from_fn(|i| k * gradient[i] * end + k_old * old_gradient[i] * begin);
         let speed = along(velocity, velocity).sqrt();
         let inverse =

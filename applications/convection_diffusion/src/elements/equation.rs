@@ -112,12 +112,20 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         if varies || T::TRANSIENT && !T::CARRIED { Tangent::General } else { Tangent::Symmetric }
     }
 
+    fn has_external(&self, _view: &StepView<'_>) -> bool {
+        self.columns.volume_source.is_some()
+    }
+
+    fn has_storage(&self) -> bool {
+        T::TRANSIENT
+    }
+
     fn local_system(
         &self,
         entity: &Gather<'_, NODES>,
         (): &(),
         view: &StepView<'_>,
-        _want: Want,
+        want: Want,
         lhs: &mut [f64],
         rhs: &mut [f64; NODES],
     ) -> Result<(), String> {
@@ -178,6 +186,15 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             };
             let weight = weight * point.round();
             let (t, gradient) = (value(&now), slope(&now));
+            let apart = match want {
+                Want::External => Some(point.source),
+                Want::Storage => Some(-point.stored(t)),
+                Want::Residual | Want::Both => None,
+            };
+            if let Some(apart) = apart {
+                (0..NODES).for_each(|i| rhs[i] += weight * n[i] * apart);
+                continue;
+            }
             if lhs.is_empty() {
                 let (a, b) = point.balance(t, gradient);
                 for i in 0..NODES {

@@ -5,6 +5,8 @@ mod equation;
 mod place;
 mod registered;
 
-pub use balance::{AT_CENTRE, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, PURE_CONVECTION, Point, Step, THETA};
+pub use balance::{
+    AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, PURE_CONVECTION, Point, Step, THETA,
+};
 pub use equation::{Equation, Terms};
 pub use place::full_order;

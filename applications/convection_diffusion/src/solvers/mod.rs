@@ -10,7 +10,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Defaults, Node, Settings, Value};
 
 use crate::adoption;
-use crate::elements::{AT_CENTRE, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, THETA};
+use crate::elements::{AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, THETA};
 
 /// Variables that every node has; further ones are those that the deck names.
 const VARIABLES: [NodalVariable; 2] = [("TEMPERATURE", 1), ("REACTION_FLUX", 1)];
@@ -25,6 +25,7 @@ fn take_up(
     adoption::adopt(settings, part, report)?;
     part.info.values.extend([(THETA, theta), (DYNAMIC_TAU, tau), (CROSS_WIND, cross_wind), (LEAST_GRADIENT, least)]);
     part.info.marks.insert(LINEAR, settings.get_str("analysis_type")? == "linear");
+    part.info.marks.insert(AT_REST, false);
     part.info.marks.insert(AT_CENTRE, settings.get_str("gradients")? == "at_centre");
     for name in settings.get_strings("auxiliary_variables_list")? {
         match zelus_core::model::named(&name) {

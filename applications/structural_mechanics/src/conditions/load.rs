@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::{Shape, ShapeTable};
+use zelus_core::geometry::{Shape, ShapeTable, mapping};
 use zelus_core::model::Variable;
 
 use crate::variables::{DISPLACEMENT, NEGATIVE_FACE_PRESSURE, POSITIVE_FACE_PRESSURE, PRESSURE};
@@ -47,8 +47,11 @@ where
         Ok(Self { rule: ShapeTable::get(shape, shape.cell().default_order + 1), load: PhantomData })
     }
 
-    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
-        Ok(())
+    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+        match mapping::domain_size(self.rule.shape(), &entity.initial) > 0.0 {
+            true => Ok(()),
+            false => Err("it has no size, so that nothing is loaded by it".to_owned()),
+        }
     }
 
     fn tangent(&self) -> Tangent {

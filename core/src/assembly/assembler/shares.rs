@@ -55,6 +55,21 @@ impl Assembler {
         Ok(out)
     }
 
+    /// Minus what elements store by their own equations, over all unknowns; collective.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn storage(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+        let mut out = vec![0.0; system.dofs.len()];
+        let view = part.view();
+        let mut stores = system.elements.iter().zip(&self.element_numbers).filter(|(block, _)| block.has_storage());
+        let own = stores
+            .try_for_each(|(block, numbers)| add_residual(block.as_ref(), numbers, &view, Want::Storage, &mut out));
+        part.ranks.agree(own.map_err(Into::into))?;
+        self.add_up(&mut out);
+        Ok(out)
+    }
+
     /// Forces of interactions over all unknowns; `push` hears of those between pairs of bodies, those of this rank. Collective.
     ///
     /// # Errors

@@ -236,7 +236,7 @@ impl NewtonRaphson {
     ) -> Result<Solved, Failed> {
         let constraints = constraints_version(&system.interactions);
         let mut solved = self.solve_once(iteration, step, part, system, monitor);
-        while matches!(solved, Err(Failed::Singular(_))) && restrain_free_bodies(&mut system.interactions, part) {
+        while matches!(solved, Err(Failed::Singular(..))) && restrain_free_bodies(&mut system.interactions, part) {
             if constraints != constraints_version(&system.interactions) {
                 self.lay_out(part, system)?;
                 step.prescribed = self.followed(part, system, &step.prescribed);
@@ -247,16 +247,17 @@ impl NewtonRaphson {
             }
             solved = self.solve_once(iteration, step, part, system, monitor);
         }
-        let (Err(Failed::Singular(why) | Failed::Inaccurate(why)), None, Some(amount)) =
+        let (Err(Failed::Singular(why, _) | Failed::Inaccurate(why)), None, Some(amount)) =
             (&solved, step.relaxed, step.relaxation)
         else {
             return solved;
         };
-        self.warn_of_redundancy(why);
         step.relaxed = Some(amount);
         self.assembler.relax_multipliers(&system.dofs, amount);
         let rhs = self.assembler.equations().reduce(&step.residual);
-        self.solve(part, system, &rhs)
+        let relaxed = self.solve(part, system, &rhs)?;
+        self.warn_of_redundancy(why);
+        Ok(relaxed)
     }
 
     fn solve_once(
@@ -302,7 +303,7 @@ impl NewtonRaphson {
     ) -> Result<Turn> {
         match failed {
             // Interactions may have let a body go that a shorter step holds.
-            Failed::Singular(why) if !system.interactions.is_empty() => {
+            Failed::Singular(why, _) if !system.interactions.is_empty() => {
                 self.singular = true;
                 Ok(Turn::Failed(why))
             }
@@ -312,7 +313,7 @@ impl NewtonRaphson {
                 Ok(Turn::Failed(why + &worst.unwrap_or_default()))
             }
             // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
-            Failed::Singular(why)
+            Failed::Singular(why, _)
                 if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>
             {
                 let first = why.lines().next().unwrap_or_default();
