@@ -2,7 +2,6 @@
 //! right deck.
 
 mod support;
-#[allow(dead_code, reason = "each test binary uses its part")]
 #[path = "support/blocks.rs"]
 mod blocks;
 

@@ -1,7 +1,6 @@
 //! Masters that end just inside a slave facet: the pressure that is reported is usable, whatever the overlap of the last facet is.
 
 mod support;
-#[allow(dead_code, reason = "each test binary uses its part")]
 #[path = "support/blocks.rs"]
 mod blocks;
 
