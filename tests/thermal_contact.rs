@@ -4,7 +4,7 @@
 mod blocks;
 mod support;
 
-use blocks::Mesh;
+use blocks::{Deck, Joint, Mesh};
 use serde_json::{Value, json};
 use std::path::Path;
 use support::{Results, read_json, said, zelus};
@@ -107,8 +107,12 @@ fn fed(results: &Results, step: usize) -> [f64; 2] {
 
 /// What the report says passes from slaves to masters in a step.
 fn passed(report: &Value, step: usize) -> f64 {
+    number(report, step, "heat_from_slaves")
+}
+
+fn number(report: &Value, step: usize, name: &str) -> f64 {
     let numbers = report["steps"][step]["interactions"].as_array().expect("numbers of the interactions");
-    let own = numbers.iter().find(|pair| pair[0] == "heat_from_slaves").expect("heat from slaves");
+    let own = numbers.iter().find(|pair| pair[0] == name).unwrap_or_else(|| panic!("no {name}"));
     own[1].as_f64().expect("a number")
 }
 
@@ -244,6 +248,68 @@ fn conductance_follows_the_pressure() {
     assert!((found - q).abs() < 1e-2 * q, "{found} {q}");
     let change = (found + passed(&report, 10)).abs();
     assert!(change < 1e-5 * q, "the last steps differ by {change}");
+}
+
+/// A block that slides on another under a pressure p dissipates μ p v by area, which leaves through the ends of both.
+#[test]
+fn friction_heats_both_bodies() {
+    let (friction, pressure, way) = (0.3, 2.0, 0.2);
+    let mut mesh = Mesh::new(2);
+    let lower = mesh.block("Lower", [6, 2, 0], |x| [3.0 * x[0] - 1.0, x[1] - 1.0, 0.0]);
+    let upper = mesh.block("Upper", [3, 2, 0], |x| [x[0], x[1], 0.0]);
+    mesh.part("Slave", upper[&(1, 0)].0.clone(), upper[&(1, 0)].1.clone());
+    let both = [lower[&(1, 1)].clone(), upper[&(1, 0)].clone()];
+    mesh.part(
+        "Interface",
+        both.iter().flat_map(|side| side.0.clone()),
+        both.iter().flat_map(|side| side.1.clone()).collect(),
+    );
+    mesh.part("Bottom", lower[&(1, 0)].0.clone(), Vec::new());
+    mesh.part("Top", upper[&(1, 1)].0.clone(), upper[&(1, 1)].1.clone());
+    let slides = [json!(format!("{way}*t")), json!(null), json!(0.0)];
+    let supports = vec![("Bottom".to_owned(), [json!(0.0), json!(0.0), json!(0.0)]), ("Upper".to_owned(), slides)];
+    let deck = Deck { mesh, joint: Joint::Frictional(friction), supports, pressure, young: 1e4, steps: 10 };
+    let scratch = tempfile::tempdir().expect("a scratch folder");
+    deck.write(scratch.path(), |deck| {
+        let structure = deck["solver_settings"].take();
+        let mut heat = PLANE.solver();
+        heat["model_import_settings"] = json!({"input_type": "use_input_model_part"});
+        heat["element_replace_settings"] = json!({"element_name": "LaplacianElement"});
+        deck["solver_settings"] = json!({"solver_type": "ThermoMechanicallyCoupled", "domain_size": 2,
+            "structural_solver_settings": structure, "thermal_solver_settings": heat});
+        let hold = |part: &str| {
+            json!({"python_module": "assign_scalar_variable_process", "Parameters": {"model_part_name": format!("Heat.{part}"),
+                "variable_name": "TEMPERATURE", "value": 0.0, "interval": [0.0, "End"]}})
+        };
+        deck["processes"]["heat"] = json!([hold("Bottom"), hold("Top"),
+            {"python_module": "thermal_contact_process", "Parameters": {"model_part_name": "Heat",
+                "contact_model_part": {"0": ["Interface"]}, "assume_master_slave": {"0": ["Slave"]},
+                "conductance": [{"law": "constant", "conductance": 20.0}]}},
+            {"python_module": "json_output_process", "Parameters": {"model_part_name": "Heat",
+                "output_file_name": "heat_results.json", "output_variables": ["REACTION_FLUX"], "time_frequency": 0.0}}]);
+    });
+    let of = |name: &str, id: usize| {
+        json!({"model_part_name": format!("Heat.{name}"), "properties_id": id, "Material": {
+            "Variables": {"DENSITY": 1.0, "SPECIFIC_HEAT": 1.0, "CONDUCTIVITY": 5.0}, "Tables": {}}})
+    };
+    let materials = json!({"properties": [of("Lower", 1), of("Upper", 2)]});
+    std::fs::write(scratch.path().join("heat.json"), materials.to_string()).expect("a file");
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "report.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let report = read_json(&scratch.path().join("report.json")).expect("the report");
+    let results = Results::read(&scratch.path().join("heat_results.json")).expect("results");
+    let exact = friction * pressure * way;
+    for step in 3..results.len() {
+        let heat = number(&report, step, "heat_of_friction");
+        // The lower body gives way, so that slips are not quite those of the upper one.
+        assert!((heat - exact).abs() < 2e-2 * exact, "step {step}: {heat} {exact}");
+        let [enters, leaves] = fed(&results, step);
+        assert!((leaves - enters - heat).abs() < 1e-9 * heat, "step {step}: {enters} {leaves} {heat}");
+        let sum =
+            |step: usize| report["steps"][step]["balance"]["pairs"][0]["dissipated"].as_f64().expect("heat of a pair");
+        let last = sum(step - 1) - sum(step - 2);
+        assert!((last - heat * 0.1).abs() < 1e-9 * last, "step {step}: {last} {heat}");
+    }
 }
 
 #[test]

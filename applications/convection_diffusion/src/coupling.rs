@@ -27,6 +27,13 @@ pub const EXTENSION: &str = "thermal_solver_settings";
 /// Data of elements and conditions: id of the properties that heat has there, 0 for none.
 const PROPERTIES: &str = "THERMAL_PROPERTIES";
 
+/// The properties that heat has in an element, be it alone or beside a structure.
+pub fn properties_of_heat(part: &ModelPart, element: u32) -> Option<&Properties> {
+    let beside = part.elements.data.level(PROPERTIES, 0).get(element as usize).copied().unwrap_or(0.0);
+    let own = part.elements.properties.get(element as usize).copied();
+    part.properties.get(&if beside > 0.0 { beside as usize } else { own? })
+}
+
 /// Reads the materials of heat beside those of the structure.
 fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
     let solver = SolverSettings::new(settings.node(), report)?;

@@ -1,6 +1,7 @@
 //! Heat between pairs of facets of one pair of shapes: ∫ h (T₁ − T₂)(δT₁ − δT₂) over the points at which they face each other.
 //!
-//! What leaves one body enters the other at the same points by the same number, so that nothing is lost or gained.
+//! What leaves one body enters the other at the same points by the same number, so that nothing is lost or gained; friction adds what it
+//! has dissipated.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,6 +21,8 @@ pub struct Point {
     pub weight: f64,
     /// How the bodies meet there.
     pub meeting: Meeting,
+    /// Heat of friction that enters slave and master (power per area).
+    pub friction: [f64; 2],
 }
 
 /// Pairs with as many nodes each.
@@ -69,15 +72,17 @@ impl ConductanceBlock {
         self.nodes(at).iter().map(value).collect()
     }
 
-    /// Heat that passes from slaves to masters through the pairs that `counts` admits by their nodes (power).
-    pub fn flow(&self, view: &StepView<'_>, counts: impl Fn(&[u32]) -> bool) -> f64 {
-        let own = (0..self.pairs.len()).filter(|&at| counts(self.nodes(at)));
-        own.map(|at| {
+    /// Heat that passes from slaves to masters, and heat of friction, of the pairs that `counts` admits by their nodes (power).
+    pub fn flow(&self, view: &StepView<'_>, counts: impl Fn(&[u32]) -> bool) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for at in (0..self.pairs.len()).filter(|&at| counts(self.nodes(at))) {
             let nodal = self.nodal(view, at);
-            let of = |point: &Point| point.weight * self.flux(point, self.temperatures(point, &nodal)).value();
-            self.pairs[at].iter().map(of).sum::<f64>()
-        })
-        .sum()
+            for point in &self.pairs[at] {
+                sums[0] += point.weight * self.flux(point, self.temperatures(point, &nodal)).value();
+                sums[1] += point.weight * point.friction.iter().sum::<f64>();
+            }
+        }
+        sums
     }
 }
 
@@ -127,7 +132,8 @@ impl EntityBlock for ConductanceBlock {
             for point in &self.pairs[at] {
                 let flux = self.flux(point, self.temperatures(point, &nodal));
                 for i in 0..count {
-                    rhs[i] += sign(i) * point.weight * point.n[i] * flux.value();
+                    let friction = point.friction[usize::from(i < self.masters)];
+                    rhs[i] += point.weight * point.n[i] * (sign(i) * flux.value() + friction);
                 }
                 if want == Want::Both {
                     for i in 0..count {
@@ -171,7 +177,8 @@ mod tests {
         part.nodes = zelus_core::model::Nodes::new(vec![1, 2, 3, 4], vec![[0.0; 3]; 4]);
         part.nodes.history.add(&TEMPERATURE);
         let meeting = Meeting { pressure: 0.0, gap: 0.3, touches: false };
-        let point = |a: f64, b: f64| Point { n: vec![a, 1.0 - a, b, 1.0 - b], weight: 0.4, meeting };
+        let point =
+            |a: f64, b: f64| Point { n: vec![a, 1.0 - a, b, 1.0 - b], weight: 0.4, meeting, friction: [0.0; 2] };
         let entry = require_kind(Role::Condition, "ContactConductanceCondition2D2N").unwrap();
         let pairs = (vec![vec![point(0.2, 0.3), point(0.7, 0.9)]], vec![0, 1, 2, 3], 2);
         let block = ConductanceBlock::new(entry, pairs, TEMPERATURE.scalar(), Vec::from(laws).into());

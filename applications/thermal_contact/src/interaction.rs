@@ -10,15 +10,15 @@ use zelus_contact_structural_mechanics::mortar::{SegmentationSettings, condition
 use zelus_contact_structural_mechanics::pairs::{FacingPoint, PairKey, facing_points, group_by_shapes};
 use zelus_contact_structural_mechanics::register_pair_conditions;
 use zelus_contact_structural_mechanics::search::{SearchSettings, candidates};
-use zelus_contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_STATUS};
+use zelus_contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION};
 use zelus_convection_diffusion::columns::Columns;
-use zelus_convection_diffusion::coupling::EXTENSION;
+use zelus_convection_diffusion::coupling::{EXTENSION, properties_of_heat};
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};
 use zelus_core::model::{ModelPart, Role};
 use zelus_core::parameters::Interval;
-use zelus_core::vector3::{norm, sub};
+use zelus_core::vector3::{dot, norm, sub};
 
 use crate::block::{ConductanceBlock, Point};
 use crate::law::{ConductanceLaw, Meeting};
@@ -48,6 +48,8 @@ pub struct Chosen {
     pub touching: f64,
     /// Whether bodies are of revolution about the x axis.
     pub axisymmetric: bool,
+    /// Heat by the work of friction: its share, and what brings it to the units of heat.
+    pub friction: f64,
 }
 
 /// Heat between the bodies of a part.
@@ -87,6 +89,8 @@ impl ThermalContact {
         let pressures = if is_computed { part.nodes.values.values(&CONTACT_PRESSURE, 0) } else { &[] };
         let acts_apart = self.chosen.laws.iter().any(|law| law.acts_apart());
         let size = size(part, slave);
+        let work = work_of_friction(part);
+        let share = share_of_slave(part, [slave, master]);
         let found = facing_points(part, slave, master, &|node| normals[&node], &self.chosen.segmentation);
         let point = |found: FacingPoint| {
             let pressure = match pressures {
@@ -99,10 +103,16 @@ impl ThermalContact {
                 [(&found.master, master), (&found.slave, slave)].map(|(n, of)| &n[..of.nodes.len()]);
             let meeting =
                 Meeting { pressure: pressure.max(0.0), gap: if touches { 0.0 } else { found.gap.max(0.0) }, touches };
+            let work: f64 = match is_computed {
+                true => slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * work(node)).sum(),
+                false => 0.0,
+            };
+            let power = self.chosen.friction * work / part.info.delta_time;
             (touches || acts_apart).then(|| Point {
                 n: [masters, slaves].concat(),
                 weight: found.weight * round,
                 meeting,
+                friction: [share * power, (1.0 - share) * power],
             })
         };
         found.into_iter().filter_map(point).collect()
@@ -124,6 +134,32 @@ impl ThermalContact {
             all.extend(found);
         }
         all
+    }
+}
+
+/// The work that friction has done on a slave node in the last step (force times way per area).
+fn work_of_friction(part: &ModelPart) -> impl Fn(u32) -> f64 {
+    let values = |all: &'_ [f64], node: u32| match all.get(3 * node as usize..) {
+        Some(&[x, y, z, ..]) => [x, y, z],
+        _ => [0.0; 3],
+    };
+    let slips = part.nodes.values.values(&CONTACT_SLIP, 0);
+    let tractions = part.nodes.values.values(&CONTACT_TRACTION, 0);
+    move |node| dot(values(slips, node), values(tractions, node)).abs()
+}
+
+/// The share of the heat of friction that enters the slave: by the effusivities √(kρc) of both bodies, half where one has none.
+fn share_of_slave(part: &ModelPart, facets: [&Facet; 2]) -> f64 {
+    let columns = Columns::of(part);
+    let effusivity = |facet: &Facet| -> Option<f64> {
+        let properties = properties_of_heat(part, facet.element)?;
+        let number = |column: Option<&'static str>| column.map_or(Some(1.0), |name| properties.number(name));
+        let product = number(columns.diffusion)? * number(columns.density)? * number(columns.specific_heat)?;
+        Some(product.sqrt()).filter(|effusivity| *effusivity > 0.0)
+    };
+    match facets.map(effusivity) {
+        [Some(slave), Some(master)] => slave / (slave + master),
+        _ => 0.5,
     }
 }
 
@@ -162,9 +198,10 @@ impl Interaction for ThermalContact {
 
     fn summary(&self, part: &ModelPart) -> Vec<(&'static str, f64)> {
         let view = part.view();
-        let own: f64 = self.blocks.iter().map(|block| block.flow(&view, |nodes| part.evaluates_pair(nodes))).sum();
-        let flow = if part.share.is_some() { part.ranks.total(own) } else { own };
-        vec![("heat_pairs", self.keys.len() as f64), ("heat_from_slaves", flow)]
+        let of_blocks = self.blocks.iter().map(|block| block.flow(&view, |nodes| part.evaluates_pair(nodes)));
+        let own = of_blocks.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
+        let [flow, friction] = if part.share.is_some() { own.map(|own| part.ranks.total(own)) } else { own };
+        vec![("heat_pairs", self.keys.len() as f64), ("heat_from_slaves", flow), ("heat_of_friction", friction)]
     }
 
     fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {

@@ -28,6 +28,7 @@ struct Whole {
     integration_order: usize,
     normal_orientation_threshold: f64,
     axisymmetric: bool,
+    friction_heat: f64,
 }
 
 struct ThermalContactProcess {
@@ -84,6 +85,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         segmentation: SegmentationSettings { integration_order, slivers: true, ..SegmentationSettings::default() },
         touching: whole.touching_gap,
         axisymmetric: whole.axisymmetric,
+        friction: whole.friction_heat,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = ThermalContact::new(chosen, part)?;
