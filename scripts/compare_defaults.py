@@ -199,6 +199,8 @@ class Deck:
             path = os.path.join(work, DECK)
             parameters = json.load(open(path))
             merge(parameters["solver_settings"], self.reference.get("settings", {}))
+            # The reference has the times of Kratos.
+            complete(parameters["solver_settings"], ["time_stepping", "last_step"], "while_below")
             lists = parameters.setdefault("processes", {})
             for holder in (lists, parameters.get("output_processes", {})):
                 for name, items in holder.items():
