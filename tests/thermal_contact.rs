@@ -146,6 +146,26 @@ fn resistances_of_bars_and_contact_add_up() {
 }
 
 #[test]
+fn tied_temperatures_have_no_resistance() {
+    let mut deck = PLANE.deck(&json!([]));
+    deck["solver_settings"]["contact_settings"] = json!({"mortar_type": "ScalarMeshTying"});
+    deck["processes"]["list"][3] = json!({"python_module": "mesh_tying_process",
+        "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication", "Parameters": {"model_part_name": "Heat",
+        "mesh_tying_model_part": {"0": ["FirstFace", "SecondFace"]}, "assume_master_slave": {"0": ["SecondFace"]},
+        "variable_name": "TEMPERATURE"}});
+    let scratch = tempfile::tempdir().expect("a scratch folder");
+    PLANE.write(scratch.path(), &deck);
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let [enters, leaves] = fed(&Results::read(&scratch.path().join("results.json")).expect("results"), 0);
+    let exact = series(0.0);
+    assert!(
+        (enters - exact).abs() < 1e-9 * exact && (leaves - exact).abs() < 1e-9 * exact,
+        "{enters} {leaves} {exact}"
+    );
+}
+
+#[test]
 fn laws_act_beside_each_other() {
     let laws =
         json!([{"law": "constant", "conductance": 15.0}, {"law": "gas", "conductivity": 0.05, "jump_distance": 0.01}]);
