@@ -508,6 +508,31 @@ fn nine_mistakes_are_named_at_once() {
 }
 
 #[test]
+fn programs_read_problems_as_json() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let check = |edit: fn(&mut Value)| {
+        let mut deck = read_json(&path).expect("the deck");
+        edit(&mut deck);
+        std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+        let output = zelus(scratch.path(), &["check", DECK, "--format", "json"]);
+        let told: Value = serde_json::from_slice(&output.stdout).expect("JSON alone");
+        assert_eq!(told["exit_code"], json!(output.status.code()), "{told}");
+        told
+    };
+    let find = |told: &Value, code: &str| {
+        let problems = told["problems"].as_array().expect("a list");
+        problems.iter().find(|problem| problem["code"] == code).cloned().unwrap_or_else(|| panic!("no {code}: {told}"))
+    };
+    let warned = find(&check(|deck| load(deck)["variable_name"] = json!("SURFACE_LOAD")), "acts-on-nothing");
+    assert!(warned["severity"] == "warning" && warned["remedy"].is_string(), "{warned}");
+    let told = check(|deck| deck["solver_settings"]["residual_relative_tolerance"] = json!(-1.0));
+    let error = find(&told, "invalid-tolerance");
+    assert_eq!(told["exit_code"], 2);
+    assert!(error["severity"] == "error" && error["file"] == DECK && error["line"].as_u64() > Some(1), "{error}");
+}
+
+#[test]
 fn keys_given_twice_are_named() {
     let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
     let path = scratch.path().join(DECK);

@@ -8,6 +8,7 @@ mod log;
 mod matching;
 mod meshes;
 mod partition;
+mod problems;
 mod progress;
 mod report;
 mod results;
@@ -22,7 +23,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use zelus_core::analysis::{RunOptions, RunReport, Simulation};
 use zelus_core::communication::{self, Ranks};
 use zelus_core::diagnostics::Diagnostic;
@@ -30,6 +31,7 @@ use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
 use log::Log;
+use problems::Problems;
 use report::Report;
 use say::say;
 use stop::Stop;
@@ -92,6 +94,9 @@ enum Command {
         /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
+        /// How problems are told: text, or one JSON object with severity, code, place, fact and remedy of each.
+        #[arg(long, value_enum, default_value_t = Format::Text)]
+        format: Format,
     },
     /// Read a mesh of Gmsh, Abaqus, CalculiX or VTK and write it as an mdpa file; groups become sub model parts.
     Import(meshes::Import),
@@ -161,6 +166,13 @@ fn refuse_script(file: &Path) -> Result<()> {
     Err(Diagnostic::error("python-program", fact).remedy(remedy).into())
 }
 
+/// How `check` tells problems.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
 /// Does what is asked; `ran` says afterwards whether a step was made.
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
@@ -209,8 +221,14 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
             }
             Ok(ended.code())
         }
-        Command::Check { file, like, set } => {
+        Command::Check { file, like, set, format } => {
             let options = RunOptions { like, ranks: ranks.clone(), changes: changes(&set)?, ..RunOptions::default() };
+            if format == Format::Json && ranks.is_root() {
+                let mut problems = Problems::default();
+                let checked = Simulation::open(&file, &options).and_then(|mut deck| deck.check(&mut problems));
+                say(&format!("{:#}", problems.json(checked.as_ref().err())));
+                return Ok(checked.map_or_else(|error| ExitCode::from(error.exit_code()), |()| ExitCode::SUCCESS));
+            }
             let mut monitor: Box<dyn Monitor> =
                 if ranks.is_root() { Box::new(Terminal::new(Level::Usual, None)) } else { Box::new(Silent) };
             let mut simulation = Simulation::open(&file, &options)?;
