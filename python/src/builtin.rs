@@ -12,6 +12,7 @@ use zelus::core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus::core::registry;
 
 use crate::access::read_only;
+use crate::plain::plain;
 use crate::session::Session;
 use crate::words;
 
@@ -24,13 +25,12 @@ pub(crate) struct Builtin {
 
 #[pymethods]
 impl Builtin {
-    /// Makes the process of that name from its "Parameters" as JSON; relative file names start in `folder`.
+    /// Makes the process of that name from its "Parameters"; relative file names start in `folder`.
     #[new]
-    fn new(session: Py<Session>, name: &str, parameters: &str, folder: PathBuf) -> PyResult<Self> {
+    fn new(session: Py<Session>, name: &str, parameters: Bound<'_, PyAny>, folder: PathBuf) -> PyResult<Self> {
         let entry = registry::require::<ProcessEntry>(name).map_err(|problem| failed(&problem.into()))?;
-        let json = serde_json::from_str(parameters).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let place = Place::file(format!("the parameters of {name}"));
-        let node = Node::from_json(&json, &place).map_err(|error| failed(&error))?;
+        let node = Node::from_json(&plain(&parameters)?, &place).map_err(|error| failed(&error))?;
         let process = session.get().with(|lent| {
             let model = lent.model_mut().ok_or_else(read_only)?;
             let mut report = Report::new();

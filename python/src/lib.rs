@@ -6,6 +6,7 @@ mod builtin;
 mod event;
 mod line;
 mod outcome;
+mod plain;
 mod process;
 mod residual;
 mod session;

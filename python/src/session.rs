@@ -15,6 +15,7 @@ use zelus::{RunOptions, Simulation};
 use crate::event::Event;
 use crate::line::{Answer, Lent, Line, Root, Shelf, shelf};
 use crate::outcome::outcome;
+use crate::plain::plain;
 use crate::words;
 use crate::worker::{Asking, Command, Last, work};
 
@@ -33,21 +34,20 @@ pub(crate) struct Session {
 
 #[pymethods]
 impl Session {
-    /// Reads a deck: a file or, where `text` is given, JSON whose paths begin in the folder `path`.
+    /// Reads a deck: a file or, where `deck` is given, that value, whose paths begin in the folder `path`.
     #[new]
     fn new(
         path: PathBuf,
-        text: Option<&str>,
-        changes: Vec<(String, String)>,
+        deck: Option<Bound<'_, PyAny>>,
+        changes: Vec<(String, Bound<'_, PyAny>)>,
         threads: Option<usize>,
         like: Option<String>,
         attended: bool,
     ) -> PyResult<Self> {
-        let json = |text: &str| serde_json::from_str(text).map_err(|error| PyValueError::new_err(error.to_string()));
-        let changes = changes.into_iter().map(|(key, value)| Ok((key, json(&value)?))).collect::<PyResult<_>>()?;
+        let changes = changes.into_iter().map(|(key, value)| Ok((key, plain(&value)?))).collect::<PyResult<_>>()?;
         let options = RunOptions { threads, like, changes, ..RunOptions::default() };
-        let opened = match text {
-            Some(text) => Simulation::of_value(&json(text)?, &path, &options),
+        let opened = match deck {
+            Some(deck) => Simulation::of_value(&plain(&deck)?, &path, &options),
             None => Simulation::open(&path, &options),
         };
         let mut simulation = opened.map_err(|error| PyRuntimeError::new_err(words::error(&error)))?;

@@ -226,7 +226,8 @@ def test_what_a_hook_raises_comes_out(inside, hook):
     assert not stage.result().converged
 
 
-def test_steps_that_are_cut_set_their_boundary_conditions_anew(inside):
+@pytest.mark.parametrize("end_time", [1.0, 0.6])
+def test_steps_that_are_cut_set_their_boundary_conditions_anew(inside, end_time):
     times = []
 
     class Cut(zelus.AnalysisStage):
@@ -234,13 +235,30 @@ def test_steps_that_are_cut_set_their_boundary_conditions_anew(inside):
             super().ApplyBoundaryConditions()
             times.append(self.process_info[zelus.TIME])
 
-    own = parameters(inside, problem_data__end_time=1.0)
+    own = parameters(inside, problem_data__end_time=end_time)
     own["solver_settings"]["time_stepping"]["time_step"] = 1.0
     own["solver_settings"]["max_iteration"] = 4
+    (inside / "ProjectParameters.json").write_text(own.WriteJsonString())
     stage = Cut(zelus.Model(), own)
     stage.Run()
     result = stage.result()
-    assert times[0] == 1.0 > times[1] and times[-1] == 1.0 and times == result.steps["time"].tolist()
+    assert times[0] > times[1] and times[-1] == times[0] and times == result.steps["time"].tolist()
+    assert result.converged and result.report["steps"] == zelus.run("ProjectParameters.json").report["steps"]
+
+
+def test_a_loop_that_ends_within_a_step_that_was_cut_keeps_what_is_whole(inside):
+    class Short(zelus.AnalysisStage):
+        def KeepAdvancingSolutionLoop(self):
+            return self.time < 0.1
+
+    own = parameters(inside)
+    own["solver_settings"]["time_stepping"]["time_step"] = 1.0
+    own["solver_settings"]["max_iteration"] = 4
+    stage = Short(zelus.Model(), own)
+    stage.Run()
+    result = stage.result()
+    assert not result.converged and 0.1 <= result.times[-1] < 1.0 and result["CONTACT_PRESSURE"].max() > 0
+    assert (inside / f"vtu_output/Structure_{result.steps['step'][-1]}.vtu").exists()
 
 
 def test_errors_of_the_deck_come_out(inside):

@@ -12,8 +12,8 @@ class Session:
     def __init__(
         self,
         path: str,
-        text: str | None,
-        changes: list[tuple[str, str]],
+        deck: Any,
+        changes: list[tuple[str, Any]],
         threads: int | None,
         like: str | None,
         attended: bool,
@@ -63,7 +63,7 @@ class Session:
     def gauss(self, path: str, kind: str, at: int, name: str) -> Buffer | None: ...
 
 class Builtin:
-    def __init__(self, session: Session, name: str, parameters: str, folder: str) -> None: ...
+    def __init__(self, session: Session, name: str, parameters: Any, folder: str) -> None: ...
     def call(self, method: str) -> bool: ...
 
 class Function:

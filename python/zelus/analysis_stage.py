@@ -95,9 +95,8 @@ class AnalysisStage:
 
     def Initialize(self):
         """Reads mesh and materials, makes the processes and sets up the solver."""
-        text = self.project_parameters.WriteJsonString()
         make = process_of(self.model, self._folder)
-        self._driving = Driving(self._folder, text=text, attended=True, make=make, **self._options)
+        self._driving = Driving(self._folder, deck=self.project_parameters._value, attended=True, make=make, **self._options)
         self.model._attach(self._driving)
         self._at = self._driving.do("prepare")
         self._pass("at", "read")
@@ -126,17 +125,22 @@ class AnalysisStage:
         """Brings the processes to their end."""
         if self._is_over:
             return
+        self._settle()
+        if self._at[0] != "idle":
+            # what is left of a step that was cut, or one that was begun, is not made
+            self._leave(InterruptedError("ended within a step"))
+            return
+        self._at = self._driving.do("finish" if self.time < self.end_time else "step")
         while self._at[0] != "idle":
             self._pass_on()
-        if not self._is_over:
-            self._at = self._driving.do("finish" if self.time < self.end_time else "step")
-            while self._at[0] != "idle":
-                self._pass_on()
-            self._is_over = True
+        self._is_over = True
 
     def KeepAdvancingSolutionLoop(self):
-        """Whether there are steps to make."""
-        return not self._is_over and self.time < self.end_time
+        """Whether there are steps to make, or what is left of one that was cut."""
+        if self._is_over:
+            return False
+        self._settle()
+        return self._at == ("at", "begin_step") or self.time < self.end_time
 
     def InitializeSolutionStep(self):
         """Time has advanced: boundary conditions and loads."""
@@ -278,6 +282,11 @@ class AnalysisStage:
         """Goes on from a stop: processes come to their end, what else was left out by a hook is not done."""
         what = "act" if self._at == ("at", "finalize") else None
         self._stopping(lambda: self._driving.go(what))
+
+    def _settle(self):
+        """Goes on after a step, to where it is whole or the next part of it begins."""
+        while self._at[1] in ("end_step", "output"):
+            self._pass_on()
 
     def _pass(self, *wanted):
         """Goes on to a stop."""

@@ -25,7 +25,7 @@ class BuiltinProcess(Process):
 
     def __init__(self, model, name, parameters, folder="."):
         session = model._session
-        self._own = _raising(_zelus.Builtin, session, name, parameters.WriteJsonString(), str(Path(folder)))
+        self._own = _raising(_zelus.Builtin, session, name, parameters._value, str(Path(folder)))
 
     def IsOutputStep(self):
         """Whether it writes output after this step."""

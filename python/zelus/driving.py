@@ -22,8 +22,7 @@ class Driving:
     attended: whether it stops at the points of the loop.
     """
 
-    def __init__(self, path, *, text=None, changes=None, threads=None, like=None, attended=False, make=None, progress=None):
-        changes = [(key, json.dumps(value)) for key, value in (changes or {}).items()]
+    def __init__(self, path, *, deck=None, changes=None, threads=None, like=None, attended=False, make=None, progress=None):
         self.processes = []
         self.end_time = None
         self.interrupted = False
@@ -33,7 +32,7 @@ class Driving:
         self._warnings = []
         self._progress = Progress(progress)
         try:
-            self.session = _zelus.Session(os.fspath(path), text, changes, threads, like, attended)
+            self.session = _zelus.Session(os.fspath(path), deck, list((changes or {}).items()), threads, like, attended)
         except RuntimeError as error:
             raise error_of(str(error)) from None
 
