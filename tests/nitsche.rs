@@ -24,7 +24,7 @@ use zelus::contact_structural_mechanics::slave_states::SlaveStates;
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::{LocalSystems, Want, require_kind};
-use zelus_core::geometry::Shape;
+use zelus_core::geometry::{Shape, shape_functions};
 use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Role};
 use zelus_core::vector3::{add, cross, norm, sub};
 
@@ -32,7 +32,7 @@ use specimen::{Random, Vec3, difference, size};
 use support::{change, root, said, scratch_copy, zelus};
 
 /// Element, law, and the local nodes of its face, which lies in the plane of the last axis at its lower end.
-const KINDS: [(&str, &str, &[usize]); 11] = [
+const KINDS: [(&str, &str, &[usize]); 14] = [
     ("SmallDisplacementElement2D4N", "LinearElasticPlaneStrain2DLaw", &[0, 1]),
     ("SmallDisplacementElement2D3N", "LinearElasticPlaneStress2DLaw", &[0, 1]),
     ("SmallDisplacementBbarElement2D4N", "LinearElasticPlaneStrain2DLaw", &[0, 1]),
@@ -44,6 +44,9 @@ const KINDS: [(&str, &str, &[usize]); 11] = [
     ("SmallDisplacementElement3D6N", "LinearElastic3DLaw", &[0, 2, 1]),
     ("TotalLagrangianElement3D8N", "HyperElastic3DLaw", &[0, 3, 2, 1]),
     ("UpdatedLagrangianElement3D4N", "HyperElastic3DLaw", &[0, 2, 1]),
+    ("SmallDisplacementElement2D6N", "LinearElasticPlaneStrain2DLaw", &[0, 1, 3]),
+    ("AxisymSmallDisplacementElement2D8N", "LinearElasticAxisym2DLaw", &[0, 1, 4]),
+    ("SmallDisplacementElement3D10N", "LinearElastic3DLaw", &[0, 2, 1, 6, 5, 4]),
 ];
 const VARIANTS: [NitscheVariant; 3] = [NitscheVariant::Skew, NitscheVariant::Symmetric, NitscheVariant::Incomplete];
 
@@ -57,7 +60,7 @@ struct Contact {
 }
 
 impl Contact {
-    /// `turn` is applied to all initial positions; `masters` is the number of nodes of the facet.
+    /// `turn` is applied to all initial positions; `masters` is the number of nodes of the facet that it is over.
     fn new(
         (element, law, face): (&str, &str, &[usize]),
         masters: usize,
@@ -82,11 +85,19 @@ impl Contact {
             })
             .collect();
         let count = x.len();
-        let corners: &[Vec3] = match masters {
+        let shape = |nodes: usize| Shape::of(space - 1, nodes).expect("a shape");
+        let facing = shape(masters);
+        let corners: &[Vec3] = match facing.cell().corners() {
             2 => &[[0.4, 0.03, 0.0], [-1.6, 0.0, 0.0]],
             3 => &[[-0.9, -0.8, 0.04], [1.1, -0.7, 0.03], [0.1, 1.0, 0.02]],
             _ => &[[-0.9, -0.8, 0.02], [0.7, -0.9, 0.03], [0.8, 0.6, 0.01], [-0.7, 0.7, 0.04]],
         };
+        let place = |point: &Vec3| -> Vec3 {
+            let mut shares = vec![0.0; corners.len()];
+            shape_functions(facing.linear(), *point, &mut shares);
+            std::array::from_fn(|c| shares.iter().zip(corners).map(|(share, x)| share * x[c]).sum())
+        };
+        let corners: Vec<Vec3> = facing.cell().points.iter().map(place).collect();
         x.extend(corners.iter().map(|c| shaken([c[0] + 3.2, c[1], c[2]])));
         let x: Vec<Vec3> = x.into_iter().map(turn).collect();
 
@@ -107,7 +118,6 @@ impl Contact {
         part.elements.push(1, entry, 1, &nodes);
         part.elements.finish();
 
-        let shape = |nodes: usize| [Shape::Line2, Shape::Tri3, Shape::Quad4][nodes - 2];
         let facet = |nodes: Vec<u32>, role| {
             let shape = shape(nodes.len());
             Facet { nodes, shape, source: FacetSource::Face(0), element: 0, properties: 1, role }
@@ -210,7 +220,7 @@ impl Contact {
 fn walk(mut visit: impl FnMut(&str, &dyn Fn(&dyn Fn(Vec3) -> Vec3) -> Contact, &[Vec3], &[Vec3])) {
     for kind in KINDS {
         let space = require_kind(Role::Element, kind.0).expect("an element").space;
-        for masters in if space == 2 { vec![2] } else { vec![3, 4] } {
+        for masters in if space == 2 { vec![2, 3] } else { vec![3, 4, 6] } {
             for variant in VARIANTS {
                 for friction in [0.0, 0.15, 10.0] {
                     let name = format!("{} on {masters} nodes, {variant:?}, friction {friction}", kind.0);

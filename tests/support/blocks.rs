@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
+use zelus_core::geometry::{Shape, shape_functions};
 
 /// A point or a displacement.
 pub type Vec3 = [f64; 3];
@@ -34,6 +35,11 @@ impl Mesh {
     /// The same, its cells cut into triangles or tetrahedra, its facets in space into triangles.
     pub fn of_simplices(space: usize) -> Self {
         Self { simplices: true, ..Self::new(space) }
+    }
+
+    /// Whether the cells of blocks to come are cut as those of [`Mesh::of_simplices`].
+    pub fn cut_cells(&mut self, cut: bool) {
+        self.simplices = cut;
     }
 
     /// A cell as it is, or cut along the diagonals that rise in all coordinates: cells side by side agree on them.
@@ -114,6 +120,49 @@ impl Mesh {
         self.parts.insert(name.to_owned(), [nodes, Vec::new(), conditions]);
     }
 
+    /// Gives a block elements of second order with straight edges, `full` ones with nodes in the middle of faces and cells too.
+    /// New nodes belong to the parts that hold all corners of their edge, face or cell.
+    pub fn raise(&mut self, block: &str, full: bool) {
+        let [_, elements, facets] = self.parts[block].clone();
+        let mut made: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+        let solids = elements.into_iter().map(|at| (self.space, at, true));
+        for (dimension, at, solid) in solids.chain(facets.into_iter().map(|at| (self.space - 1, at, false))) {
+            let list = if solid { &mut self.elements } else { &mut self.facets };
+            let corners = list[at - 1].clone();
+            let nodes = match (dimension, corners.len()) {
+                (1, _) => 3,
+                (2, 3) => 6,
+                (2, _) => 8 + usize::from(full),
+                (_, 4) => 10,
+                _ => 20 + 7 * usize::from(full),
+            };
+            let shape = Shape::of(dimension, nodes).expect("a shape");
+            let mut all = corners.clone();
+            for point in &shape.cell().points[corners.len()..] {
+                let mut weights = vec![0.0; corners.len()];
+                shape_functions(shape.linear(), *point, &mut weights);
+                let mut between: Vec<usize> =
+                    corners.iter().zip(&weights).filter(|(_, weight)| **weight > 1e-9).map(|(&n, _)| n).collect();
+                between.sort_unstable();
+                let next = self.nodes.len() + 1;
+                let node = *made.entry(between.clone()).or_insert(next);
+                if node == next {
+                    let share = 1.0 / between.len() as f64;
+                    let place = std::array::from_fn(|c| between.iter().map(|&n| share * self.nodes[n - 1][c]).sum());
+                    self.nodes.push(place);
+                }
+                all.push(node);
+            }
+            list[at - 1] = all;
+        }
+        for [nodes, ..] in self.parts.values_mut() {
+            let own = |between: &Vec<usize>| between.iter().all(|n| nodes.binary_search(n).is_ok());
+            let new: Vec<usize> = made.iter().filter(|(between, _)| own(between)).map(|(_, &node)| node).collect();
+            nodes.extend(new);
+            nodes.sort_unstable();
+        }
+    }
+
     /// The mesh file; conditions in `load` are those of loads.
     pub fn text(&self, load: &[usize]) -> String {
         let mut out = String::from("Begin Properties 0\nEnd Properties\nBegin Nodes\n");
@@ -121,20 +170,24 @@ impl Mesh {
             writeln!(out, "{} {x:e} {y:e} {z:e}", at + 1).expect("a string");
         }
         let numbers = |list: &[usize]| list.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-        let shape = |of: &[Vec<usize>]| format!("{}D{}N", self.space, of[0].len());
-        let solid = shape(&self.elements);
-        writeln!(out, "End Nodes\nBegin Elements SmallDisplacementElement{solid}").expect("a string");
-        for (at, nodes) in self.elements.iter().enumerate() {
-            writeln!(out, "{} 0 {}", at + 1, numbers(nodes)).expect("a string");
-        }
-        out += "End Elements\n";
-        let (kind, shape) = (if self.space == 2 { "Line" } else { "Surface" }, shape(&self.facets));
-        for (name, loaded) in [("", false), ("Load", true)] {
-            writeln!(out, "Begin Conditions {kind}{name}Condition{shape}").expect("a string");
-            for (at, nodes) in self.facets.iter().enumerate().filter(|(at, _)| load.contains(&(at + 1)) == loaded) {
-                writeln!(out, "{} 0 {}", at + 1, numbers(nodes)).expect("a string");
+        out += "End Nodes\n";
+        let mut block = |sort: &str, name: String, list: &[Vec<usize>], wanted: &dyn Fn(usize) -> bool| {
+            let mut sizes: Vec<usize> = list.iter().map(Vec::len).collect();
+            sizes.sort_unstable();
+            sizes.dedup();
+            for size in sizes {
+                writeln!(out, "Begin {sort} {name}{}D{size}N", self.space).expect("a string");
+                for (at, nodes) in list.iter().enumerate().filter(|(at, nodes)| nodes.len() == size && wanted(at + 1)) {
+                    writeln!(out, "{} 0 {}", at + 1, numbers(nodes)).expect("a string");
+                }
+                writeln!(out, "End {sort}").expect("a string");
             }
-            out += "End Conditions\n";
+        };
+        block("Elements", "SmallDisplacementElement".to_owned(), &self.elements, &|_| true);
+        let kind = if self.space == 2 { "Line" } else { "Surface" };
+        for (name, loaded) in [("", false), ("Load", true)] {
+            let wanted = |at: usize| load.contains(&at) == loaded;
+            block("Conditions", format!("{kind}{name}Condition"), &self.facets, &wanted);
         }
         for (name, lists) in &self.parts {
             writeln!(out, "Begin SubModelPart {name}").expect("a string");

@@ -18,8 +18,8 @@ use zelus::contact_structural_mechanics::variables::{
 };
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::{EntityBlock, LocalSystems, Want, block_kinds, find_kind};
-use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
+use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::registry::all;
@@ -28,11 +28,12 @@ use zelus_core::vector3::{add, dot, normalised, scale, sub};
 use super::specimen::{Random, Vec3, difference, size};
 
 /// The shapes of facets.
-pub const FACETS: [Shape; 3] = [Shape::Line2, Shape::Tri3, Shape::Quad4];
+pub const FACETS: [Shape; 5] = [Shape::Line2, Shape::Line3, Shape::Tri3, Shape::Tri6, Shape::Quad4];
 
 /// One pair and everything its residual depends on.
 #[derive(Clone)]
 struct Setting {
+    shapes: [Shape; 2],
     slave: Vec<Vec3>,
     master: Vec<Vec3>,
     /// Displacements now and at the previous step; masters, then slaves.
@@ -51,24 +52,32 @@ struct Setting {
     order: usize,
 }
 
+/// Counts items at the nodes of a facet from another corner on: corners, then nodes on edges, then the rest.
+fn turn<T>(items: &mut [T], shape: Shape, by: usize) {
+    let corners = shape.cell().corners();
+    items.chunks_exact_mut(corners).for_each(|ring| ring.rotate_left(by));
+}
+
 impl Setting {
     /// A partly overlapping pair; `noise` distorts facets and normals.
     fn new(slave: Shape, master: Shape, seed: u64, noise: f64, states: [(bool, bool); 2]) -> Self {
         let mut random = Random(seed);
-        let space = if slave == Shape::Line2 { 2 } else { 3 };
+        let space = slave.dim() + 1;
+        // The first of a line is to the right, so that it faces up as surfaces do.
         let unit = |shape: Shape| -> Vec<Vec3> {
-            match shape {
-                Shape::Line2 => vec![[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
-                Shape::Tri3 => vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-                _ => vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+            let points = shape.cell().points.iter();
+            match shape.cell().corners() {
+                2 => points.map(|[xi, ..]| [0.5 - 0.5 * xi, 0.0, 0.0]).collect(),
+                3 => points.copied().collect(),
+                _ => points.map(|[xi, eta, _]| [0.5 + 0.5 * xi, 0.5 + 0.5 * eta, 0.0]).collect(),
             }
         };
         let shift = if space == 2 { [0.3, -0.02, 0.0] } else { [0.17, 0.12, 0.02] };
         let slave_x: Vec<Vec3> = unit(slave).into_iter().map(|x| add(x, random.vector(noise, space))).collect();
-        let master_x: Vec<Vec3> = unit(master)
+        let (master_unit, count) = (unit(master), master.nodes() as u32);
+        let master_x: Vec<Vec3> = reversed(master, &(0..count).collect::<Vec<u32>>())
             .into_iter()
-            .rev()
-            .map(|x| add(add(scale(x, 1.1), shift), random.vector(noise, space)))
+            .map(|n| add(add(scale(master_unit[n as usize], 1.1), shift), random.vector(noise, space)))
             .collect();
         let normal = |shape: Shape, x: &[Vec3]| unit_normal(shape, x, shape.cell().centre).expect("an area");
         let (slave_normal, master_normal) = (normal(slave, &slave_x), normal(master, &master_x));
@@ -86,6 +95,7 @@ impl Setting {
         let displacement = [displacements(), displacements()];
         let multipliers = slave_x.iter().map(|_| random.vector(1.0, space)).collect();
         Self {
+            shapes: [slave, master],
             multipliers,
             states: (0..slave_x.len()).map(|j| states[j % 2]).collect(),
             drift: if space == 2 { [0.03, 0.0, 0.0] } else { [0.03, -0.02, 0.0] },
@@ -102,11 +112,7 @@ impl Setting {
     }
 
     fn space(&self) -> usize {
-        if self.slave.len() == 2 { 2 } else { 3 }
-    }
-
-    fn shape(nodes: usize) -> Shape {
-        FACETS[nodes - 2]
+        self.shapes[0].dim() + 1
     }
 
     /// Everything turned by R and shifted.
@@ -131,22 +137,23 @@ impl Setting {
     fn recounted(&self, slave_by: usize, master_by: usize) -> Self {
         let mut other = self.clone();
         let masters = self.master.len();
-        other.slave.rotate_left(slave_by);
-        other.master.rotate_left(master_by);
-        other.normals.rotate_left(slave_by);
-        other.tangents.rotate_left(slave_by);
-        other.multipliers.rotate_left(slave_by);
-        other.states.rotate_left(slave_by);
+        let [slave, master] = self.shapes;
+        turn(&mut other.slave, slave, slave_by);
+        turn(&mut other.master, master, master_by);
+        turn(&mut other.normals, slave, slave_by);
+        turn(&mut other.tangents, slave, slave_by);
+        turn(&mut other.multipliers, slave, slave_by);
+        turn(&mut other.states, slave, slave_by);
         for level in &mut other.displacement {
-            level[..masters].rotate_left(master_by);
-            level[masters..].rotate_left(slave_by);
+            turn(&mut level[..masters], master, master_by);
+            turn(&mut level[masters..], slave, slave_by);
         }
         other
     }
 
     /// The family's block of this pair in a model part; `None` for shapes the family does not know.
     fn build(&self, family: &Family) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
-        let (slave, master) = (Self::shape(self.slave.len()), Self::shape(self.master.len()));
+        let [slave, master] = self.shapes;
         let name = condition_name(family.condition, slave, master);
         let entry = find_kind(Role::Condition, &name);
         let masters = self.master.len();
@@ -272,10 +279,8 @@ const SLIDING: (bool, bool) = (true, true);
 fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
     for (name, family) in families() {
         let mut shapes = 0;
-        for (slave, master) in FACETS.into_iter().flat_map(|s| FACETS.map(|m| (s, m))) {
-            if (slave == Shape::Line2) != (master == Shape::Line2) {
-                continue;
-            }
+        let pairs = FACETS.into_iter().flat_map(|slave| FACETS.map(|master| [slave, master]));
+        for [slave, master] in pairs.filter(|[slave, master]| slave.dim() == master.dim()) {
             for (at, states) in
                 [[INACTIVE; 2], [SLIDING; 2], [STICK; 2], [SLIDING, INACTIVE], [STICK, SLIDING]].into_iter().enumerate()
             {
@@ -377,9 +382,15 @@ fn the_order_of_a_facets_nodes_does_not_matter() {
             let (part, block) = setting.recounted(slave_by, master_by).build(family).expect("a block");
             let other = system(&part, block.as_ref(), Want::Residual).rhs;
             let mut back = other.clone();
-            back[..3 * masters].rotate_right(3 * master_by);
-            back[3 * masters..3 * (masters + slaves)].rotate_right(3 * slave_by);
-            back[3 * (masters + slaves)..].rotate_right(each * slave_by);
+            let [slave, master] = setting.shapes.map(|shape| shape.cell().corners());
+            let turn_back = |rows: &mut [f64], corners: usize, each: usize, by: usize| {
+                rows.chunks_exact_mut(corners * each).for_each(|ring| ring.rotate_right(each * by));
+            };
+            turn_back(&mut back[..3 * masters], master, 3, master_by);
+            turn_back(&mut back[3 * masters..3 * (masters + slaves)], slave, 3, slave_by);
+            if each > 0 {
+                turn_back(&mut back[3 * (masters + slaves)..], slave, each, slave_by);
+            }
             let error = difference(&rhs, &back);
             assert!(error <= 1e-8 * size(rhs.iter().copied()).max(1.0), "{name}: off by {error:e}");
         }

@@ -12,14 +12,14 @@ FORCE = 4 * MODULUS * HALF ** 3 / (3 * RADIUS)
 PEAK = 3 * FORCE / (2 * math.pi * HALF ** 2)
 
 
-def run(n, family="ALM", slave="sphere", **units):
+def run(n, family="ALM", slave="sphere", shape="3D8N", **units):
     m, size = Model(3, **units), 1.0 / n
     rise = lambda x, y: min(x * x + y * y, 4.5) / (2 * RADIUS)
     lines = stations(size, 1.3, WIDTH, 1.5)
     up = scaled(stations(size, 0.0, WIDTH, 1.5))
-    sphere = m.graded("Sphere", "3D8N", [lines, lines, up], lambda x, y, s: (x, y, rise(x, y) + s * (WIDTH - rise(x, y))))
+    sphere = m.graded("Sphere", shape, [lines, lines, up], lambda x, y, s: (x, y, rise(x, y) + s * (WIDTH - rise(x, y))))
     other = stations(1.2 * size, 1.3, WIDTH, 1.5)
-    block = m.graded("Block", "3D8N", [other, other, [-z for z in reversed(stations(1.2 * size, 0.0, WIDTH, 1.5))]])
+    block = m.graded("Block", shape, [other, other, [-z for z in reversed(stations(1.2 * size, 0.0, WIDTH, 1.5))]])
     for body in (sphere, block):
         m.material(body, "3d", YOUNG, POISSON)
         m.roll(body.side_nodes["x0"], x=0.0)
@@ -45,4 +45,4 @@ CASE = Case(
     [Quantity("contact radius", 1.0, (0.05, 0.04)), Quantity("peak pressure", 1.0, (0.06, 0.05)), Quantity("load", 1.0, 5e-3, order=False)],
     (3, 5), run, size=lambda n: 1 / n,
     variants={"ALM": {}, "block as slave": {"slave": "block"}, "components": {"family": "ALM components"}, "penalty": {"family": "penalty"},
-              "Uzawa": {"family": "Uzawa"}, "perturbed": {"family": "perturbed"}, "micrometres": {"length": 1e6, "stress": 1e-12}}, quick=["ALM"])
+              "3D10N": {"shape": "3D10N"}, "Uzawa": {"family": "Uzawa"}, "perturbed": {"family": "perturbed"}, "micrometres": {"length": 1e6, "stress": 1e-12}}, quick=["ALM"])

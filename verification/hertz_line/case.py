@@ -10,7 +10,7 @@ YOUNG, POISSON, HALF = 1e3, 0.3, 1.0  # lengths in half-widths of contact
 MODULUS = YOUNG / (2 * (1 - POISSON ** 2))
 
 
-def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, friction=None, **units):
+def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, friction=None, shape="2D4N", **units):
     """`ratio` is that of half-width and radius."""
     radius = HALF / ratio
     force = math.pi * HALF ** 2 * MODULUS / (4 * (radius / 2))
@@ -20,7 +20,7 @@ def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, friction=None, **u
     for name, sign, size in (("Lower", -1, 1.0 / n), ("Upper", 1, 0.9 / n)):
         s = scaled(stations(size, 0.0, width))
         s = s if sign > 0 else [1.0 - v for v in reversed(s)]
-        bodies.append(m.graded(name, "2D4N", [stations(size, 1.5, width), s], bulge(radius, arc, width, sign)))
+        bodies.append(m.graded(name, shape, [stations(size, 1.5, width), s], bulge(radius, arc, width, sign)))
         m.material(bodies[-1], "strain", YOUNG, POISSON)
     lower, upper = bodies
     m.roll(lower.side_nodes["x0"] + upper.side_nodes["x0"], x=0.0)
@@ -48,6 +48,6 @@ CASE = Case(
     variants={"a/R = 0.2": {"ratio": 0.2}, "a/R = 0.1": {"ratio": 0.1}, "a/R = 0.02": {"ratio": 0.02}, "a/R = 0.002": {},
               "a/R = 1e-5": {"ratio": 1e-5}, "lower as slave": {"slave": "lower"}, "components": {"family": "ALM components"},
               "penalty": {"family": "penalty"}, "Uzawa": {"family": "Uzawa"}, "perturbed": {"family": "perturbed"},
-              "4 steps": {"steps": 4}, "frictional": {"family": "ALM frictional", "friction": 0.2},
+              "4 steps": {"steps": 4}, "2D6N": {"shape": "2D6N"}, "2D8N": {"shape": "2D8N"}, "2D9N": {"shape": "2D9N"}, "frictional": {"family": "ALM frictional", "friction": 0.2},
               "micrometres": {"length": 1e6, "stress": 1e-12}},
     picture="a/R = 0.002", quick=["a/R = 0.002"])

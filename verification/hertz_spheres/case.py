@@ -10,7 +10,7 @@ YOUNG, POISSON, HALF = 1e3, 0.3, 1.0
 MODULUS = YOUNG / (2 * (1 - POISSON ** 2))
 
 
-def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, **units):
+def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, shape="2D4N", **units):
     radius = HALF / ratio
     force = 4 * MODULUS * HALF ** 3 / (3 * (radius / 2))
     peak = 3 * force / (2 * math.pi * HALF ** 2)
@@ -19,7 +19,7 @@ def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, **units):
     for name, sign, size in (("Lower", -1, 1.0 / n), ("Upper", 1, 0.9 / n)):
         s = scaled(stations(size, 0.0, width))
         s = s if sign > 0 else [1.0 - v for v in reversed(s)]
-        bodies.append(m.graded(name, "2D4N", [stations(size, 1.5, width), s], bulge(radius, arc, width, sign),
+        bodies.append(m.graded(name, shape, [stations(size, 1.5, width), s], bulge(radius, arc, width, sign),
                                element="AxisymSmallDisplacementElement"))
         m.material(bodies[-1], "axis", YOUNG, POISSON)
     lower, upper = bodies
@@ -46,5 +46,6 @@ CASE = Case(
     (6, 12, 24), run, size=lambda n: 1 / n,
     variants={"a/R = 0.1": {"ratio": 0.1}, "a/R = 0.02": {"ratio": 0.02}, "a/R = 0.002": {}, "a/R = 1e-5": {"ratio": 1e-5},
               "lower as slave": {"slave": "lower"}, "components": {"family": "ALM components"}, "penalty": {"family": "penalty"},
+              "2D6N": {"shape": "2D6N"}, "2D8N": {"shape": "2D8N"}, "2D9N": {"shape": "2D9N"},
               "Uzawa": {"family": "Uzawa"}, "perturbed": {"family": "perturbed"}, "micrometres": {"length": 1e6, "stress": 1e-12}},
     picture="a/R = 0.002", quick=["a/R = 0.002"])

@@ -5,7 +5,7 @@ is, and `turn` (an angle in degrees about z) where the case's x axis points in t
 import itertools, math
 
 from deck import KRATOS, contact_process, parameters, process
-from mesh import Box, Mesh
+from mesh import SHAPES, Box, Mesh
 
 STRUCTURE = KRATOS + ".StructuralMechanicsApplication"
 # name of the family -> process, contact type, mortar type
@@ -63,6 +63,7 @@ class Model:
     def box(self, name, shape, divisions, low, high, mapping=None, wrap=None, element="SmallDisplacementElement", **more):
         """A body of cells; `mapping` bends it; `wrap` joins the two sides across that axis ("x", "y") to a ring."""
         body = Box(self.mesh, name, shape, list(divisions), list(low), list(high), mapping, element=element, **more)
+        self._give_middles(body, mapping)
         if wrap:
             self._join(body, wrap)
         self.bodies.append(body)
@@ -72,11 +73,26 @@ class Model:
 
     def graded(self, name, shape, stations, mapping=None, **more):
         """A body whose planes of nodes stand at the given `stations` along each axis."""
+        exact = lambda k: 0.5 * round(2 * k)  # middle nodes of second order stand half-way
         def at(*i):
-            point = [s[round(k)] for s, k in zip(stations, i)]
+            point = [s[int(k)] + (k - int(k)) * (s[min(int(k) + 1, len(s) - 1)] - s[int(k)]) for s, k in zip(stations, map(exact, i))]
             return mapping(*point) if mapping else point
         counts = [len(s) - 1 for s in stations]
         return self.box(name, shape, counts, [0] * len(counts), counts, at, **more)
+
+    def _give_middles(self, body, mapping):
+        """Middle nodes of a body of second order: on the curves that the mapping makes of edges, and in the facets of its sides."""
+        _, groups = SHAPES[body.shape]
+        corners = len(body.cells[0]) - len(groups)
+        middle = {tuple(sorted(cell[i] for i in g)): node for cell in body.cells for g, node in zip(groups, cell[corners:])}
+        for node in middle.values():
+            if mapping:
+                self.mesh.nodes[node] = tuple(mapping(*body.reference[node])) + (0.0,) * (3 - self.dim)
+        def raised(facet):
+            ends = zip(facet, facet[1:] + facet[:1]) if len(facet) > 2 else [facet]
+            keys = [tuple(sorted(e)) for e in ends] + [tuple(sorted(facet))] * (len(facet) > 2)
+            return facet + tuple(middle[k] for k in keys if k in middle)
+        body.facets = {side: [raised(tuple(f)) for f in facets] for side, facets in body.facets.items()}
 
     def _join(self, body, axis):
         mesh, into = self.mesh, {}

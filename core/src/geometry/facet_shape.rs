@@ -6,8 +6,9 @@ use std::fmt::Debug;
 use std::ops::{Index, IndexMut};
 
 use super::Shape;
+use super::pieces::pieces;
 use super::shape_functions::{barycentric, linear, product, quadratic, quadratic_simplex, serendipity};
-use crate::scalar::{Dual, Real};
+use crate::scalar::{Differentiated, Dual, Real};
 use crate::vector3::{cross, dot, norm, normalised, sub, value};
 
 /// Newton steps of the closest-point search; it is quadratic, three or four are the rule.
@@ -66,8 +67,15 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
     const SPACE: usize = Self::SHAPE.dim() + 1;
     /// Whether its map is affine, so that it is flat and its tangents are constant.
     const AFFINE: bool = Self::NODES == Self::SPACE;
+    /// Whether it is of second order, with nodes beside its corners.
+    const CURVED: bool = Self::NODES > Self::CORNERS;
+    /// Its linear pieces, each by its nodes.
+    const PIECES: &'static [&'static [usize]] = pieces(Self::SHAPE);
     /// Local coordinates of its centre.
     const CENTRE: [f64; 2] = [Self::SHAPE.cell().centre[0], Self::SHAPE.cell().centre[1]];
+
+    /// Numbers with derivatives by one variable a node.
+    type ByNode: Differentiated;
 
     /// An array of one value a node.
     type Nodal<V: NodeValue>: NodeArray<V>;
@@ -142,6 +150,65 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
         normalised(Self::area_normal(nodes, xi))
     }
 
+    /// [`FacetShape::area_normal`] at a local point that moves.
+    fn area_normal_at<T: Real>(nodes: &Self::Nodal<[T; 3]>, xi: [T; 2]) -> [T; 3] {
+        let at = xi.map(T::value);
+        let [mut t, mut s] = Self::tangents(nodes, at);
+        let [first, mixed, last] = bend_at::<Self>(&Self::map(nodes, value), at);
+        for a in 0..2 {
+            let (moved, [by_t, by_s]) = (xi[a] - at[a], [[first, mixed], [mixed, last]][a]);
+            for c in 0..3 {
+                t[c].add_scaled(moved, by_t[c]);
+                s[c].add_scaled(moved, by_s[c]);
+            }
+        }
+        if Self::SPACE == 2 { [t[1], -t[0], T::zero()] } else { cross(t, s) }
+    }
+
+    /// Local coordinates of the point in which the straight line through `point` along `direction` meets the facet, extended
+    /// beyond its edges; `None` where the search for it does not settle.
+    ///
+    /// As in [`FacetShape::closest_point`] it runs on values, and one correction gives the derivative.
+    fn point_along<T: Real>(
+        nodes: &Self::Nodal<[T; 3]>,
+        point: [T; 3],
+        direction: [T; 3],
+        guess: [f64; 2],
+    ) -> Option<[T; 2]> {
+        let (x, p, n) = (Self::map(nodes, value), value(point), value(direction));
+        let (mut xi, mut distance) = (guess, 0.0);
+        let mut settled = false;
+        let columns = |xi: [f64; 2]| {
+            let [t, s] = Self::tangents(&x, xi);
+            [t, if Self::SPACE == 2 { [0.0, 0.0, 1.0] } else { s }, n.map(|n| -n)]
+        };
+        for _ in 0..MAX_STEPS {
+            let on = Self::combine(&Self::values(xi), &x);
+            let apart: [f64; 3] = std::array::from_fn(|c| on[c] - p[c] - distance * n[c]);
+            let [a, b, d] = solve(&columns(xi), apart);
+            xi = [xi[0] - a, xi[1] - b];
+            distance -= d;
+            settled = a.abs().max(b.abs()) < 1e-13;
+            if settled {
+                break;
+            }
+        }
+        if !settled {
+            return None;
+        }
+        let on = Self::combine(&Self::values(xi), nodes);
+        let apart: [T; 3] = std::array::from_fn(|c| on[c] - point[c] - direction[c] * distance);
+        let inverse = [0, 1, 2].map(|c| {
+            let unit: [f64; 3] = std::array::from_fn(|k| f64::from(u8::from(k == c)));
+            solve(&columns(xi), unit)
+        });
+        let mut local = xi.map(T::constant);
+        for a in 0..Self::SPACE - 1 {
+            (0..3).for_each(|c| local[a].add_scaled(apart[c], -inverse[c][a]));
+        }
+        Some(local)
+    }
+
     /// Length of a line, or area of a surface, as it is at the centre.
     #[inline]
     fn measure(nodes: &Self::Nodal<[f64; 3]>) -> f64 {
@@ -161,7 +228,7 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
         for _ in 0..MAX_STEPS {
             let step = state.solve([dot(state.tangent[0], state.gap), dot(state.tangent[1], state.gap)]);
             xi = [xi[0] - step[0], xi[1] - step[1]];
-            if Self::NODES > Self::CORNERS {
+            if Self::CURVED {
                 bend = bend_at::<Self>(&x, xi);
             }
             state = HalfSquare::new::<Self>(&x, p, xi, &bend);
@@ -217,6 +284,12 @@ fn bend_at<S: FacetShape>(x: &S::Nodal<[f64; 3]>, [xi, eta]: [f64; 2]) -> [[f64;
     [first, mixed, last]
 }
 
+/// The factors of three vectors that add up to another, by Cramer's rule.
+fn solve([a, b, c]: &[[f64; 3]; 3], sum: [f64; 3]) -> [f64; 3] {
+    let whole = 1.0 / dot(*a, cross(*b, *c));
+    [dot(sum, cross(*b, *c)) * whole, dot(*a, cross(sum, *c)) * whole, dot(*a, cross(*b, sum)) * whole]
+}
+
 /// First and second derivatives of half the squared distance, at one local point.
 struct HalfSquare {
     tangent: [[f64; 3]; 2],
@@ -266,6 +339,7 @@ macro_rules! facet_shapes {
 
         impl FacetShape for $name {
             const SHAPE: Shape = Shape::$shape;
+            type ByNode = Dual<$nodes>;
             type Nodal<V: NodeValue> = [V; $nodes];
 
             #[inline(always)]
@@ -354,6 +428,36 @@ mod tests {
                     S::SHAPE,
                     dual[a].gradient[variable]
                 );
+            }
+        }
+
+        // The point along a slanted line, the normal there, and how both move with a node.
+        let slanted: [f64; 3] =
+            std::array::from_fn(|c| normal[c] + if S::SPACE > c { 0.2 * (c as f64 - 0.5) } else { 0.0 });
+        let off: [f64; 3] = std::array::from_fn(|c| on[c] - 0.3 * slanted[c]);
+        let at = |nodes: &S::Nodal<[f64; 3]>| {
+            let xi = S::point_along(nodes, off, slanted, S::CENTRE).unwrap();
+            let [x, y, z] = S::area_normal(nodes, xi);
+            assert_eq!(S::area_normal_at(nodes, xi), [x, y, z]);
+            [xi[0], xi[1], x, y, z]
+        };
+        let found = at(&nodes);
+        assert!((0..S::SPACE - 1).all(|c| (found[c] - inside[c]).abs() < 1e-12), "{:?}: {found:?}", S::SHAPE);
+        for c in 0..S::SPACE {
+            let mut moving = S::map(&nodes, |x| x.map(Dual::<1>::constant));
+            moving[1][c].gradient[0] = 1.0;
+            let xi = S::point_along(&moving, off.map(Dual::constant), slanted.map(Dual::constant), S::CENTRE).unwrap();
+            let normal = S::area_normal_at(&moving, xi);
+            let dual = [xi[0], xi[1], normal[0], normal[1], normal[2]].map(|d| d.gradient[0]);
+            let moved = |h: f64| {
+                let mut nodes = nodes;
+                nodes[1][c] += h;
+                at(&nodes)
+            };
+            let (plus, minus) = (moved(1e-6), moved(-1e-6));
+            for k in (0..5).filter(|&k| S::SPACE == 3 || k != 1) {
+                let slope = (plus[k] - minus[k]) / 2e-6;
+                assert!((slope - dual[k]).abs() < 1e-8, "{:?} {k}: {slope} {}", S::SHAPE, dual[k]);
             }
         }
     }

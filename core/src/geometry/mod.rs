@@ -8,6 +8,7 @@
 mod cells;
 mod facet_shape;
 pub mod mapping;
+mod pieces;
 mod quadrature;
 mod reference_cell;
 mod shape;
@@ -20,6 +21,7 @@ pub use facet_shape::{
     FacetShape, Line2, Line3, NodeArray, NodeValue, Quadrilateral4, Quadrilateral8, Quadrilateral9, Triangle3,
     Triangle6,
 };
+pub use pieces::{parts, pieces, reversed};
 pub use quadrature::{MAX_ORDER, QuadraturePoint, quadrature};
 pub use reference_cell::{Facet, ReferenceCell};
 pub use shape::Shape;

@@ -45,7 +45,7 @@ register_contact_family! { "HardeningPenaltyContactFrictionless",
     source: "a cubic spring",
     conditions: [
         "HardeningPenaltyFrictionlessMortarContactCondition",
-        "HardeningPenaltyFrictionlessAxisymMortarContactCondition2D2N"
+        "HardeningPenaltyFrictionlessAxisymMortarContactCondition"
     ],
     build: Family::of::<HardeningPenalty>(
         "HardeningPenaltyFrictionlessMortarContactCondition",

@@ -52,7 +52,7 @@ impl Formulation for SoftLayer {
 register_contact_family! { "ALMContactSoftLayer",
     about: "frictionless contact through a soft layer",
     source: "p = c g",
-    conditions: ["SoftLayerMortarContactCondition", "SoftLayerAxisymMortarContactCondition2D2N"],
+    conditions: ["SoftLayerMortarContactCondition", "SoftLayerAxisymMortarContactCondition"],
     build: Family::of::<SoftLayer>(
         "SoftLayerMortarContactCondition",
         &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],

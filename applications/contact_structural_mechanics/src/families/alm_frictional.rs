@@ -222,7 +222,7 @@ const fn family(friction: Friction) -> Family {
 register_contact_family! { "ALMContactFrictional",
     about: "Coulomb friction, augmented Lagrangian, one multiplier a slave node and direction",
     source: "eq. 4.9, D.11, D.13",
-    conditions: ["ALMFrictionalMortarContactCondition", "ALMFrictionalAxisymMortarContactCondition2D2N"],
+    conditions: ["ALMFrictionalMortarContactCondition", "ALMFrictionalAxisymMortarContactCondition"],
     build: family(Friction::Coulomb),
 }
 register_contact_family! { "ALMContactFrictionalPureSlip",

@@ -59,7 +59,7 @@ impl Formulation for AlmFrictionless {
 register_contact_family! { "ALMContactFrictionless",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node along its normal",
     source: "eq. 4.9, D.11",
-    conditions: ["ALMFrictionlessMortarContactCondition", "ALMFrictionlessAxisymMortarContactCondition2D2N"],
+    conditions: ["ALMFrictionlessMortarContactCondition", "ALMFrictionlessAxisymMortarContactCondition"],
     build: Family {
         weighted_gaps: true,
         ..Family::of::<AlmFrictionless>(

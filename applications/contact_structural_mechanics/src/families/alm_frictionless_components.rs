@@ -59,7 +59,7 @@ register_contact_family! { "ALMContactFrictionlessComponents",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node and direction",
     source: "eq. 4.9, D.11 by components",
     conditions: [
-        "ALMFrictionlessComponentsMortarContactCondition", "ALMFrictionlessComponentsAxisymMortarContactCondition2D2N"
+        "ALMFrictionlessComponentsMortarContactCondition", "ALMFrictionlessComponentsAxisymMortarContactCondition"
     ],
     build: Family {
         weighted_gaps: true,

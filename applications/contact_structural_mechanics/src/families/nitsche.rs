@@ -8,7 +8,7 @@ use crate::register_contact_family;
 register_contact_family! { "NitscheContactFrictionless",
     about: "frictionless contact by Nitsche's method: tractions of the slave's elements, no multipliers",
     source: "Chouly, Hild and Renard (2015)",
-    conditions: ["NitscheFrictionlessMortarContactCondition", "NitscheFrictionlessAxisymMortarContactCondition2D2N"],
+    conditions: ["NitscheFrictionlessMortarContactCondition", "NitscheFrictionlessAxisymMortarContactCondition"],
     build: Family {
         decide: |node, _| active_set::of_points(node),
         block: |slave, master, request| nitsche_block(slave, master, request, false),
@@ -18,7 +18,7 @@ register_contact_family! { "NitscheContactFrictionless",
 register_contact_family! { "NitscheContactFrictional",
     about: "Coulomb friction by Nitsche's method: tractions of the slave's elements, no multipliers",
     source: "Chouly, Hild and Renard (2015)",
-    conditions: ["NitscheFrictionalMortarContactCondition", "NitscheFrictionalAxisymMortarContactCondition2D2N"],
+    conditions: ["NitscheFrictionalMortarContactCondition", "NitscheFrictionalAxisymMortarContactCondition"],
     build: Family {
         friction: Friction::Coulomb,
         decide: |node, _| active_set::of_points(node),

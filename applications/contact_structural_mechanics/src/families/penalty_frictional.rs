@@ -128,6 +128,6 @@ static EXPLICIT: Family = Family {
 register_contact_family! { "PenaltyContactFrictional",
     about: "Coulomb friction, penalty method",
     source: "eq. D.3",
-    conditions: ["PenaltyFrictionalMortarContactCondition", "PenaltyFrictionalAxisymMortarContactCondition2D2N"],
+    conditions: ["PenaltyFrictionalMortarContactCondition", "PenaltyFrictionalAxisymMortarContactCondition"],
     build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }

@@ -56,6 +56,6 @@ static EXPLICIT: Family = Family::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR
 register_contact_family! { "PenaltyContactFrictionless",
     about: "frictionless contact, penalty method",
     source: "eq. D.3",
-    conditions: ["PenaltyFrictionlessMortarContactCondition", "PenaltyFrictionlessAxisymMortarContactCondition2D2N"],
+    conditions: ["PenaltyFrictionlessMortarContactCondition", "PenaltyFrictionlessAxisymMortarContactCondition"],
     build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }

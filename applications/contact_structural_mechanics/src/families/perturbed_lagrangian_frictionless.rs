@@ -9,7 +9,7 @@ register_contact_family! { "PerturbedLagrangianContactFrictionless",
     source: "Simo, Wriggers and Taylor (1985)",
     conditions: [
         "PerturbedLagrangianFrictionlessMortarContactCondition",
-        "PerturbedLagrangianFrictionlessAxisymMortarContactCondition2D2N"
+        "PerturbedLagrangianFrictionlessAxisymMortarContactCondition"
     ],
     build: Family {
         compliant: true,

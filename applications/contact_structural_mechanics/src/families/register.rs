@@ -1,7 +1,7 @@
 //! How a family gets its names.
 
 /// Registers a [`Family`](crate::pairs::Family) under its `mortar_type`, and its conditions, one a pair of shapes, under Kratos'
-/// names: `conditions` are their beginning and the name of the one about an axis.
+/// names: `conditions` are their beginnings, in plane and space and about an axis.
 #[macro_export]
 macro_rules! register_contact_family {
     ($name:literal, about: $about:literal, source: $source:literal, build: $family:expr $(,)?) => {
@@ -16,7 +16,9 @@ macro_rules! register_contact_family {
     ) => {
         $crate::register_contact_family! { $name, about: $about, source: $source, build: $family }
         $crate::register_pair_conditions! { $stem, concat!("pair of the family ", $name) }
-        $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the family ", $name), (Line2, Line2, "") }
+        $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the family ", $name),
+            (Line2, Line2, "2D2N") (Line2, Line3, "2D2N3N") (Line3, Line2, "2D3N2N") (Line3, Line3, "2D3N")
+        }
     };
 }
 

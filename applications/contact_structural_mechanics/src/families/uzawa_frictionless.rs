@@ -7,7 +7,7 @@ use crate::register_contact_family;
 register_contact_family! { "UzawaContactFrictionless",
     about: "frictionless contact, perturbed Lagrangian whose penetration an outer loop of multiplier updates takes away",
     source: "eq. D.10",
-    conditions: ["UzawaFrictionlessMortarContactCondition", "UzawaFrictionlessAxisymMortarContactCondition2D2N"],
+    conditions: ["UzawaFrictionlessMortarContactCondition", "UzawaFrictionlessAxisymMortarContactCondition"],
     build: Family {
         compliant: true,
         updated: true,

@@ -12,7 +12,8 @@
 //! −θ/γ ∫ (f − f°)·δt, where f° = t with friction and σ n without. θ = 1 is symmetric, 0 incomplete, −1 skew. The term is
 //! there too where p = 0; beside the master there is none, and no force (Chouly, Hild and Renard 2015). M is the stiffness of
 //! the material across the face, A the face, V the volume of the element, all in the initial state: γ = M A/V is what the
-//! trace inequality of an element of constant stress asks of the symmetric variant.
+//! trace inequality of an element of constant stress asks of the symmetric variant; of one of linear stress in d dimensions it asks
+//! 2 (d + 1)/d times as much (Warburton and Hesthaven 2003), which M has of faces of second order.
 //!
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
@@ -22,7 +23,7 @@ use super::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveN
 use crate::friction_law::Bound;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
-use crate::mortar::{PairGeometry, SegmentationSettings, Turn, inner_point, inner_values, tangential};
+use crate::mortar::{PairGeometry, SegmentationSettings, Turn, inner_point, inner_values, nodal_shares, tangential};
 use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, value};
@@ -105,7 +106,9 @@ pub struct PointForces<T: Real, S: FacetShape, M: FacetShape> {
     pub slave: S::Nodal<[T; 3]>,
     /// Forces on master nodes.
     pub master: M::Nodal<[T; 3]>,
-    /// ∫ N (τ − t + σ n) over the points in contact, with friction.
+    /// ∫ L f: area times traction of the slave nodes, with what they have of each point ([`nodal_shares`]).
+    pub traction: S::Nodal<[f64; 3]>,
+    /// ∫ L (τ − t + σ n) over the points in contact, with friction.
     pub carried: S::Nodal<[T; 3]>,
     /// What works on changes of the tractions at the inner points (a length times an area).
     pub by_traction: S::Nodal<[T; 3]>,
@@ -125,6 +128,7 @@ impl Nitsche {
         let mut out = PointForces::<T, S, M> {
             slave: S::nodal(|_| zero),
             master: M::nodal(|_| zero),
+            traction: S::nodal(|_| [0.0; 3]),
             carried: S::nodal(|_| zero),
             by_traction: S::nodal(|_| zero),
         };
@@ -160,6 +164,7 @@ impl Nitsche {
             let pressing = held || pressure.value() < 0.0;
             let mut force = if pressing { scale(normal, pressure) } else { zero };
             let mut own = scale(normal, stress);
+            let shares = nodal_shares(point);
             if let Some(ratio) = self.friction {
                 own = traction;
                 if pressing {
@@ -178,7 +183,7 @@ impl Nitsche {
                     force = add(force, friction);
                     let apart = sub(friction, along);
                     for k in 0..S::NODES {
-                        let weight = point.slave[k] * point.weight;
+                        let weight = shares[k] * point.weight;
                         (0..3).for_each(|c| out.carried[k][c].add_product(weight, apart[c]));
                     }
                 }
@@ -186,6 +191,8 @@ impl Nitsche {
             for k in 0..S::NODES {
                 let weight = point.slave[k] * point.weight;
                 (0..3).for_each(|c| out.slave[k][c].add_product(weight, force[c]));
+                let own = (shares[k] * point.weight).value();
+                (0..3).for_each(|c| out.traction[k][c] += own * force[c].value());
             }
             for l in 0..M::NODES {
                 let weight = point.master[l] * point.weight;

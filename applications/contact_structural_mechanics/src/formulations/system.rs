@@ -4,9 +4,9 @@ use super::held::restate;
 use super::pair::{Kinematics, PairResidual, SlaveNode};
 use super::{Formulation, Multiplier};
 use crate::kratos::FirstIterateTangent;
-use crate::mortar::{MOST_NODES, Operators, Overlap, PairGeometry, SegmentationSettings, operators};
+use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, operators, variable_from};
 use zelus_core::geometry::{FacetShape, NodeArray};
-use zelus_core::scalar::{Dual, Real};
+use zelus_core::scalar::{Differentiated, Dual, Real};
 use zelus_core::vector3::constant;
 
 /// Number of local unknowns of a pair.
@@ -38,14 +38,14 @@ pub fn residual<F: Formulation, S: FacetShape, M: FacetShape>(
 }
 
 /// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns); zero without overlap.
-/// `geometry` comes from [`PairGeometry::seeded`]; `NU` is its number of displacement unknowns. `lhs` has a row for each
+/// `seeded` gives the pair with `LANES` of its displacement unknowns as variables, from a number on. `lhs` has a row for each
 /// unknown, each of `width` numbers that begin with those of the unknowns. Returns the operators.
 ///
 /// # Panics
 /// If `rhs` does not have [`local_size`] entries, or `lhs` not `width` for each of them.
-pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize>(
+pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usize>(
     formulation: &F,
-    geometry: &PairGeometry<Dual<NU>, S, M>,
+    seeded: impl Fn(usize) -> PairGeometry<Dual<LANES>, S, M>,
     settings: &SegmentationSettings,
     knows: FirstIterateTangent,
     nodes: &S::Nodal<SlaveNode>,
@@ -59,57 +59,62 @@ pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize>(
     assert_eq!(lhs.len(), n * width, "one row per local unknown");
     lhs.fill(0.0);
     rhs.fill(0.0);
-    let found = knows.operators(geometry, settings);
-    let Some(dual) = found else { return Overlap::None };
-
-    let out = stated(formulation, &kinematics(geometry, dual, multipliers), nodes, history);
-    for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b: Dual<NU>| {
-        rhs[row] = b.value;
-        for column in 0..NU {
-            lhs[row * width + column] = -b.gradient[column];
-        }
-    });
+    let unknowns = PairGeometry::<f64, S, M>::UNKNOWNS;
+    let mut last = None;
+    for first in (0..unknowns).step_by(LANES) {
+        let geometry = seeded(first);
+        let Some(dual) = knows.operators(&geometry, settings) else { return Overlap::None };
+        let out = stated(formulation, &kinematics(&geometry, dual, multipliers), nodes, history);
+        for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b: Dual<LANES>| {
+            rhs[row] = b.value;
+            for lane in 0..LANES.min(unknowns - first) {
+                lhs[row * width + first + lane] = -b.gradient[lane];
+            }
+        });
+        last = Some((geometry.values(), dual.values()));
+    }
 
     // The residual is affine in the multipliers, so their columns need no operators with derivatives.
-    let values = geometry.values();
-    let plain = dual.values();
+    let (values, plain) = last.expect("a pair has unknowns");
     let count = F::MULTIPLIER.count(S::SPACE);
     for c in 0..count {
-        let mut pair: Kinematics<Dual<MOST_NODES>, S, M> =
+        let mut pair: Kinematics<S::ByNode, S, M> =
             kinematics(&values.as_constants(), plain.as_constants(), multipliers);
         for j in 0..S::NODES {
-            pair.multipliers[j][c] = Dual::variable(multipliers[j][c], j);
+            pair.multipliers[j][c] = S::ByNode::of_variable(multipliers[j][c], j);
         }
         let out = stated(formulation, &pair, nodes, history);
-        for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b: Dual<MOST_NODES>| {
-            for j in 0..S::NODES {
-                lhs[row * width + NU + count * j + c] = -b.gradient[j];
+        for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b: S::ByNode| {
+            for (j, derivative) in b.derivatives().iter().enumerate() {
+                lhs[row * width + unknowns + count * j + c] = -derivative;
             }
         });
     }
     Overlap::Cells(plain)
 }
 
-/// Visits the rows of a pair with ∂b/∂n: the derivatives by the components of the normals of its slave nodes, node by node;
-/// nothing without overlap.
-pub fn by_normals<F: Formulation, S: FacetShape, M: FacetShape, const NN: usize>(
+/// Visits the rows of a pair with ∂b/∂n: the derivatives by the components of the normals of its slave nodes, node by node,
+/// `LANES` at once from a number on; nothing without overlap.
+pub fn by_normals<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usize>(
     formulation: &F,
     geometry: &PairGeometry<f64, S, M>,
     settings: &SegmentationSettings,
     nodes: &S::Nodal<SlaveNode>,
     multipliers: &S::Nodal<[f64; 3]>,
     history: &F::History<S, M>,
-    mut visit: impl FnMut(usize, &[f64; NN]),
+    mut visit: impl FnMut(usize, usize, &[f64]),
 ) {
-    let dim = S::SPACE;
-    assert_eq!(NN, dim * S::NODES, "one variable per component of a normal");
-    let mut seeded: PairGeometry<Dual<NN>, S, M> = geometry.as_constants();
-    for (j, normal) in seeded.nodal_normals.iter_mut().enumerate() {
-        (0..dim).for_each(|c| normal[c] = Dual::variable(normal[c].value, dim * j + c));
+    let (dim, count) = (S::SPACE, PairGeometry::<f64, S, M>::NORMALS);
+    for first in (0..count).step_by(LANES) {
+        let mut seeded: PairGeometry<Dual<LANES>, S, M> = geometry.as_constants();
+        for (j, normal) in seeded.nodal_normals.iter_mut().enumerate() {
+            (0..dim).for_each(|c| normal[c] = variable_from(first, dim * j + c, normal[c].value));
+        }
+        let Some(operators) = operators(&seeded, settings).cells() else { return };
+        let out = stated(formulation, &kinematics(&seeded, operators, multipliers), nodes, history);
+        let known = LANES.min(count - first);
+        for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b| visit(row, first, &b.gradient[..known]));
     }
-    let Some(operators) = operators(&seeded, settings).cells() else { return };
-    let out = stated(formulation, &kinematics(&seeded, operators, multipliers), nodes, history);
-    for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b| visit(row, &b.gradient));
 }
 
 /// The residual of a pair, with the equations of nodes that supports hold.

@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
+use zelus_core::geometry::parts;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::CRITICAL_STEP;
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NODAL_MASS};
@@ -77,9 +78,11 @@ fn note(step: f64, penalty: f64, most: f64) -> Diagnostic {
 fn load(part: &ModelPart, interfaces: &[Interface], revolution: Option<f64>) -> [f64; 2] {
     let mut areas = vec![0.0; part.nodes.len()];
     for facet in interfaces.iter().flat_map(|interface| &interface.facets) {
-        let size = facet.size(part) / facet.nodes.len() as f64;
+        let size = facet.size(part);
         let ring = |node: u32| revolution.map_or(1.0, |factor| factor * part.nodes.current[node as usize][0].abs());
-        facet.nodes.iter().for_each(|&node| areas[node as usize] += size * ring(node));
+        for (local, &node) in facet.nodes.iter().enumerate() {
+            areas[node as usize] += size / parts(facet.shape, local) * ring(node);
+        }
     }
     let masses = part.nodes.values.values(&NODAL_MASS, 0);
     let dimension = part.info.domain_size as u8;

@@ -6,6 +6,7 @@
 //! the sliver on their own.
 
 use zelus_core::geometry::mapping::vector_area;
+use zelus_core::geometry::parts;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::norm;
 
@@ -28,10 +29,12 @@ pub(super) fn isolate_beside(
     let facets = || interfaces.iter().flat_map(|i| &i.facets).filter(|facet| facet.role == Roles::Slave);
     let mut whole = NodalSums::<1>::new(part.nodes.len(), &slaves);
     for facet in facets() {
-        let own = norm(vector_area(facet.shape, &facet.positions(part))) / facet.nodes.len() as f64;
+        let size = norm(vector_area(facet.shape, &facet.positions(part)));
         let mean = facet.nodes.iter().map(|&node| weight(node)).sum::<f64>() / facet.nodes.len() as f64;
         // What the shape function of a node integrates of a weight along a line: on the axis it is not nothing.
-        facet.nodes.iter().for_each(|&node| whole[node][0] += own * (weight(node) + 2.0 * mean) / 3.0);
+        for (local, &node) in facet.nodes.iter().enumerate() {
+            whole[node][0] += size / parts(facet.shape, local) * (weight(node) + 2.0 * mean) / 3.0;
+        }
     }
     let share = |node: u32| match whole[node] {
         [whole] if whole > 0.0 => states[node].area / whole,

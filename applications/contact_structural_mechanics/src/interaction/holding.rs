@@ -93,8 +93,10 @@ impl Holding {
                 let points = master.positions(part);
                 let foot = foot(part, node, master, &points);
                 let Some(image) = local_coordinates(master.shape, &points, foot) else { continue };
+                // Those of its corners, which are positive all over a facet of second order, too.
                 let mut shares = [0.0; MOST_NODES];
-                shape_functions(master.shape, image.xi, &mut shares[..master.nodes.len()]);
+                let linear = master.shape.linear();
+                shape_functions(linear, image.xi, &mut shares[..linear.nodes()]);
                 let beside = shares.iter().fold(0.0_f64, |most, share| most.max(-share));
                 let distance = norm(sub(foot, part.nodes.current[node as usize])) + image.distance;
                 let place = [if beside > BESIDE { beside } else { 0.0 }, distance];

@@ -25,7 +25,7 @@ use super::meetings::Meetings;
 use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_relation::{Hold, NodeRelation, can_follow};
 use super::mpc_relations::Relations;
-use super::mpc_settings::MpcSettings;
+use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
 use super::pair_states::{joins, pair_states, settle_all};
 use super::reach::Reach;
 use crate::active_set::SlipRule;
@@ -98,6 +98,7 @@ impl MpcInteraction {
     /// Parts that do not exist or hold no facets.
     pub fn new(settings: MpcSettings, part: &mut ModelPart) -> Result<Self> {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
+        require_slaves_of_first_order(part, &interfaces)?;
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(&settings.slaves, &interfaces);
         if !settings.ties() {

@@ -2,10 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::model::ModelPart;
 use zelus_core::parameters::Interval;
 
 use super::friction::FrictionSettings;
 use super::mpc_relation::Weights;
+use crate::interface::{Facet, Interface, Roles};
 use crate::mortar::SegmentationSettings;
 use crate::mpc_kind::MpcKind;
 use crate::search::SearchSettings;
@@ -52,4 +56,22 @@ impl MpcSettings {
     pub(super) fn consistent(&self) -> bool {
         self.weights == Weights::Consistent
     }
+}
+
+/// Refuses slaves of second order: their D has entries between nodes, while a constraint makes one node follow masters alone.
+///
+/// # Errors
+/// The first such facet.
+pub(super) fn require_slaves_of_first_order(part: &ModelPart, interfaces: &[Interface]) -> Result<()> {
+    let may_be_slave = |interface: &Interface, facet: &Facet| interface.open || facet.role == Roles::Slave;
+    let slaves = interfaces.iter().flat_map(|i| i.facets.iter().filter(move |facet| may_be_slave(i, facet)));
+    let Some(found) = slaves.into_iter().find(|facet| facet.shape != facet.shape.linear()) else { return Ok(()) };
+    let id = part.elements.ids[found.element as usize];
+    let fact = format!(
+        "contact by constraints needs slaves of first order, and a slave facet of element {id} is of shape {:?}",
+        found.shape
+    );
+    Err(Diagnostic::error("contact-facet", fact)
+        .remedy("let the side of first order be the slave, or use alm_contact_process or mesh_tying_process, which take every shape")
+        .into())
 }

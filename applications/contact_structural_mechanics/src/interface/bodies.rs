@@ -240,9 +240,12 @@ impl Face {
             });
             across = across.max(stretched.sum());
         }
+        // What the trace inequality of linear stress asks beyond that of constant stress.
+        let space = S::SPACE as f64;
+        let by_degree = if S::CURVED { 2.0 * (space + 1.0) / space } else { 1.0 };
         let size = places.iter().flat_map(|a| places.iter().map(|b| norm(sub(*a, *b))));
         let step = STEP * size.fold(0.0, f64::max);
-        Ok(Self { block: of_block, at, points, densities, stiffness: across * by_depth, step })
+        Ok(Self { block: of_block, at, points, densities, stiffness: across * by_depth * by_degree, step })
     }
 }
 

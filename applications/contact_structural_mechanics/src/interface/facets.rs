@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap;
 use zelus_core::Result;
 use zelus_core::analysis::INCOMPLETE;
 use zelus_core::diagnostics::{Diagnostic, Report, unfit};
-use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::{domain_size, unit_normal};
+use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::INTERFACE;
 use zelus_core::model::{ModelPart, SubPart};
 use zelus_core::vector3::{add, dot, norm, scale, sub};
@@ -371,11 +371,14 @@ fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource
     if !carries_contact(shape) || shape.dim() + 1 != space {
         let fact =
             format!("a face of element {id} is of shape {shape:?}, which cannot carry contact in {space} dimensions");
-        let curved = shape.nodes() > shape.cell().corners();
-        let why =
-            if curved { "mesh bodies in contact by elements of first order" } else { "is \"domain_size\" right?" };
+        let why = match shape {
+            Shape::Quad8 | Shape::Quad9 => {
+                "mesh the body by hexahedra of 8 nodes, or by tetrahedra of 10, which are of second order"
+            }
+            _ => "is \"domain_size\" right?",
+        };
         let remedy = format!(
-            "contact works on lines of 2 nodes in the plane, triangles of 3 and quadrilaterals of 4 in space: {why}"
+            "contact works on lines of 2 and 3 nodes in the plane, triangles of 3 and 6 and quadrilaterals of 4 in space: {why}"
         );
         return Err(Diagnostic::error("contact-facet", fact).remedy(remedy).into());
     }
@@ -401,7 +404,7 @@ fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource
         return Err(Diagnostic::error("degenerate-facet", fact).remedy(remedy).into());
     };
     if dot(normal, outward) < 0.0 {
-        nodes.reverse();
+        nodes = reversed(shape, &nodes);
     }
     let own = match source {
         FacetSource::Condition(at) => Some(part.conditions.properties[at as usize]),
@@ -450,16 +453,14 @@ mod tests {
         assert_eq!(skin("SmallDisplacementElement2D3N", 2).unwrap()[0].facets.len(), 3);
         assert_eq!(skin("SmallDisplacementElement3D8N", 3).unwrap()[0].facets.len(), 6);
         // Lines of three nodes have as many as triangles, quadrilaterals of eight as nothing else.
-        for (name, space, shape) in [
-            ("SmallDisplacementElement2D6N", 3, "Line3"),
-            ("SmallDisplacementElement2D6N", 2, "Line3"),
-            ("SmallDisplacementElement3D10N", 3, "Tri6"),
-            ("SmallDisplacementElement3D20N", 3, "Quad8"),
-            ("SmallDisplacementElement3D27N", 3, "Quad9"),
-        ] {
-            let said = skin(name, space).unwrap_err().to_string();
-            assert!(said.contains(shape) && said.contains("first order"), "{name}: {said}");
+        assert_eq!(skin("SmallDisplacementElement2D6N", 2).unwrap()[0].facets[0].shape, Shape::Line3);
+        assert_eq!(skin("SmallDisplacementElement3D10N", 3).unwrap()[0].facets[0].shape, Shape::Tri6);
+        for (name, shape) in [("SmallDisplacementElement3D20N", "Quad8"), ("SmallDisplacementElement3D27N", "Quad9")] {
+            let said = skin(name, 3).unwrap_err().to_string();
+            assert!(said.contains(shape) && said.contains("tetrahedra of 10"), "{said}");
         }
+        let said = skin("SmallDisplacementElement2D6N", 3).unwrap_err().to_string();
+        assert!(said.contains("Line3") && said.contains("domain_size"), "{said}");
         let said = skin("SmallDisplacementElement2D3N", 3).unwrap_err().to_string();
         assert!(said.contains("Line2") && said.contains("domain_size"), "{said}");
     }

@@ -2,7 +2,7 @@
 //!
 //! The normal of a node is S/|S| with the sum S of v over its facets. Everything in the present configuration, outward. At a
 //! node of a facet whose next and previous nodes lie along the edges a and b (in the plane a line has one edge, the other is
-//! the axis z), v is one of
+//! the axis z; of a facet of second order they are the tangents of its surface at the node), v is one of
 //!
 //! - a × b/(|a|² |b|²), which gives the normal of the sphere or circle that nodes lie on, however unlike their facets are
 //!   (Max, 1999);
@@ -15,6 +15,7 @@
 
 use std::collections::BTreeMap;
 
+use zelus_core::geometry::local_gradients;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{cross, dot, norm, scale, sub};
 use zelus_structural_mechanics::variables::NORMAL;
@@ -31,65 +32,28 @@ const AXIS: [f64; 3] = [0.0, 0.0, 1.0];
 pub struct Corner {
     /// Interface and facet, by their positions.
     pub facet: [u32; 2],
-    /// The node that follows; none at the end of a line.
-    next: Option<u32>,
-    /// The node before; none at the beginning of a line.
-    previous: Option<u32>,
+    /// Where the terms of its edges a and b stand; none for the edge that a line has not.
+    edges: [Option<[u32; 2]>; 2],
 }
 
-impl Corner {
-    fn new(at: [u32; 2], facet: &Facet, local: usize) -> Self {
-        let corners = facet.shape.cell().corners();
-        let (next, previous) = (facet.nodes[(local + 1) % corners], facet.nodes[(local + corners - 1) % corners]);
-        let line = facet.shape.dim() == 1;
-        Self {
-            facet: at,
-            next: (!line || local == 0).then_some(next),
-            previous: (!line || local > 0).then_some(previous),
-        }
-    }
+/// A term of an edge: the way from the node to this one, times a number.
+type Term = (u32, f64);
 
-    /// The edges a and b at a node.
-    fn edges(self, node: u32, places: &[[f64; 3]]) -> [[f64; 3]; 2] {
-        [self.next, self.previous].map(|end| end.map_or(AXIS, |end| sub(places[end as usize], places[node as usize])))
-    }
-
-    /// v; `None` without area.
-    fn normal(self, node: u32, places: &[[f64; 3]], weights: NodalNormals) -> Option<[f64; 3]> {
-        let [a, b] = self.edges(node, places);
-        let across = cross(a, b);
-        let size = match weights {
-            NodalNormals::ByEdges => dot(a, a) * dot(b, b),
-            NodalNormals::ByFacets => norm(across),
+/// The terms of the edges a and b at a node of a facet.
+fn edges(facet: &Facet, local: usize) -> [Option<Vec<Term>>; 2] {
+    let cell = facet.shape.cell();
+    let (corners, line) = (cell.corners(), facet.shape.dim() == 1);
+    if facet.nodes.len() > corners {
+        let mut gradients = vec![[0.0; 3]; facet.nodes.len()];
+        local_gradients(facet.shape, cell.points[local], &mut gradients);
+        let terms = |axis: usize| -> Vec<Term> {
+            let all = facet.nodes.iter().zip(&gradients).enumerate().filter(|(n, _)| *n != local);
+            all.map(|(_, (&node, gradient))| (node, gradient[axis])).filter(|(_, factor)| *factor != 0.0).collect()
         };
-        (norm(across) > 0.0).then(|| scale(across, 1.0 / size))
+        return [Some(terms(0)), (!line).then(|| terms(1))];
     }
-
-    /// Visits the ends of its edges with ∂v/∂x; the node itself moves against them.
-    fn variation(
-        self,
-        node: u32,
-        places: &[[f64; 3]],
-        weights: NodalNormals,
-        mut visit: impl FnMut(u32, [[f64; 3]; 3]),
-    ) {
-        let Some(v) = self.normal(node, places, weights) else { return };
-        let [a, b] = self.edges(node, places);
-        let turned = match weights {
-            NodalNormals::ByEdges => projector([0.0; 3], dot(a, a) * dot(b, b)),
-            NodalNormals::ByFacets => projector(v, norm(cross(a, b))),
-        };
-        // δ × b = −b × δ, and a × δ.
-        for (end, moved, other) in [(self.next, a, scale(b, -1.0)), (self.previous, b, a)] {
-            let Some(end) = end else { continue };
-            let mut by_end = product(turned, crossing(other));
-            if weights == NodalNormals::ByEdges {
-                let by_length = -2.0 / dot(moved, moved);
-                (0..3).for_each(|r| (0..3).for_each(|c| by_end[r][c] += by_length * v[r] * moved[c]));
-            }
-            visit(end, by_end);
-        }
-    }
+    let to = |local: usize| vec![(facet.nodes[local % corners], 1.0)];
+    [(!line || local == 0).then(|| to(local + 1)), (!line || local > 0).then(|| to(local + corners - 1))]
 }
 
 /// How facets count in the normal of a node.
@@ -114,6 +78,7 @@ pub struct NormalPatches {
     /// First corner of each node, and the end.
     starts: Vec<u32>,
     corners: Vec<Corner>,
+    terms: Vec<Term>,
     weights: NodalNormals,
     /// Components that the normals of nodes on planes of symmetry lack.
     planes: BTreeMap<u32, Fixed>,
@@ -125,12 +90,18 @@ impl NormalPatches {
         let mut met = vec![false; count];
         let meeting = interfaces.iter().filter(|i| i.open).flat_map(|i| &i.facets).filter(|f| f.role != Roles::Open);
         meeting.flat_map(|f| &f.nodes).for_each(|&node| met[node as usize] = true);
-        let mut at_nodes: Vec<(u32, Corner)> = Vec::new();
+        let (mut at_nodes, mut terms): (Vec<(u32, Corner)>, Vec<Term>) = Default::default();
+        let mut keep = |edge: Vec<Term>| {
+            let first = terms.len() as u32;
+            terms.extend(edge);
+            [first, terms.len() as u32]
+        };
         for (i, interface) in interfaces.iter().enumerate() {
             for (f, facet) in interface.facets.iter().enumerate() {
                 for (local, &node) in facet.nodes.iter().enumerate() {
                     if facet.role != Roles::Open || !met[node as usize] {
-                        at_nodes.push((node, Corner::new([i as u32, f as u32], facet, local)));
+                        let edges = edges(facet, local).map(|edge| edge.map(&mut keep));
+                        at_nodes.push((node, Corner { facet: [i as u32, f as u32], edges }));
                     }
                 }
             }
@@ -144,6 +115,7 @@ impl NormalPatches {
             nodes,
             starts,
             corners: at_nodes.into_iter().map(|(_, corner)| corner).collect(),
+            terms,
             weights,
             planes: BTreeMap::new(),
         }
@@ -175,13 +147,68 @@ impl NormalPatches {
 
     /// The nodes, beside itself, that turn the normal of a node.
     pub fn neighbours(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
-        self.corners(node).iter().flat_map(|corner| [corner.next, corner.previous]).flatten()
+        let edges = self.corners(node).iter().flat_map(|corner| corner.edges).flatten();
+        edges.flat_map(|edge| self.terms(edge)).map(|(node, _)| *node)
+    }
+
+    fn terms(&self, [from, to]: [u32; 2]) -> &[Term] {
+        &self.terms[from as usize..to as usize]
+    }
+
+    /// The edges a and b of a corner at a node.
+    fn edges(&self, corner: &Corner, node: u32, places: &[[f64; 3]]) -> [[f64; 3]; 2] {
+        corner.edges.map(|edge| {
+            let Some(edge) = edge else { return AXIS };
+            let mut sum = [0.0; 3];
+            for &(end, factor) in self.terms(edge) {
+                let way = sub(places[end as usize], places[node as usize]);
+                (0..3).for_each(|c| sum[c] += factor * way[c]);
+            }
+            sum
+        })
+    }
+
+    /// v of a corner at a node; `None` without area.
+    fn normal(&self, corner: &Corner, node: u32, places: &[[f64; 3]]) -> Option<[f64; 3]> {
+        let [a, b] = self.edges(corner, node, places);
+        let across = cross(a, b);
+        let size = match self.weights {
+            NodalNormals::ByEdges => dot(a, a) * dot(b, b),
+            NodalNormals::ByFacets => norm(across),
+        };
+        (norm(across) > 0.0).then(|| scale(across, 1.0 / size))
+    }
+
+    /// Visits the other ends of a corner's edges with ∂v/∂x; the node itself moves against them.
+    fn corner_variation(
+        &self,
+        corner: &Corner,
+        node: u32,
+        places: &[[f64; 3]],
+        mut visit: impl FnMut(u32, [[f64; 3]; 3]),
+    ) {
+        let Some(v) = self.normal(corner, node, places) else { return };
+        let [a, b] = self.edges(corner, node, places);
+        let turned = match self.weights {
+            NodalNormals::ByEdges => projector([0.0; 3], dot(a, a) * dot(b, b)),
+            NodalNormals::ByFacets => projector(v, norm(cross(a, b))),
+        };
+        // δ × b = −b × δ, and a × δ.
+        for (edge, moved, other) in [(corner.edges[0], a, scale(b, -1.0)), (corner.edges[1], b, a)] {
+            let Some(edge) = edge else { continue };
+            let mut by_edge = product(turned, crossing(other));
+            if self.weights == NodalNormals::ByEdges {
+                let by_length = -2.0 / dot(moved, moved);
+                (0..3).for_each(|r| (0..3).for_each(|c| by_edge[r][c] += by_length * v[r] * moved[c]));
+            }
+            self.terms(edge).iter().for_each(|&(end, factor)| visit(end, by_edge.map(|row| scale(row, factor))));
+        }
     }
 
     /// S.
     pub(super) fn sum(&self, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for v in self.corners(node).iter().filter_map(|corner| corner.normal(node, places, self.weights)) {
+        for v in self.corners(node).iter().filter_map(|corner| self.normal(corner, node, places)) {
             (0..3).for_each(|c| sum[c] += v[c]);
         }
         let lacks = self.lacks(node);
@@ -208,7 +235,7 @@ impl NormalPatches {
         outer.iter_mut().for_each(|row| (0..3).filter(|&c| lacks[c]).for_each(|c| row[c] = 0.0));
         for corner in self.corners(node).iter().filter(|corner| knows(corner)) {
             let mut own = [[0.0; 3]; 3];
-            corner.variation(node, places, self.weights, |end, by_end| {
+            self.corner_variation(corner, node, places, |end, by_end| {
                 let by_end = product(outer, by_end);
                 (0..3).for_each(|r| (0..3).for_each(|c| own[r][c] -= by_end[r][c]));
                 visit(end, by_end);
@@ -257,9 +284,18 @@ mod tests {
     use zelus_core::geometry::Shape;
 
     fn interface(facets: &[&[u32]]) -> Interface {
+        let line =
+            facets.iter().all(|nodes| nodes.len() < 4) && facets.iter().flat_map(|nodes| nodes.iter()).all(|n| *n < 5);
         let facet = |nodes: &&[u32]| Facet {
             nodes: nodes.to_vec(),
-            shape: [Shape::Line2, Shape::Tri3, Shape::Quad4][nodes.len() - 2],
+            shape: match nodes.len() {
+                2 => Shape::Line2,
+                3 if line => Shape::Line3,
+                3 => Shape::Tri3,
+                4 => Shape::Quad4,
+                6 => Shape::Tri6,
+                _ => Shape::Quad8,
+            },
             source: FacetSource::Face(0),
             element: 0,
             properties: 0,
@@ -281,8 +317,28 @@ mod tests {
         let mut sheet =
             [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]].map(|[x, y]| [x, y, 0.0]);
         sheet.iter_mut().for_each(|x| (0..3).for_each(|c| x[c] += 0.2 * noise.next()));
-        let cases: [(&[&[u32]], &[[f64; 3]], usize); 2] =
-            [(&[&[0, 1], &[1, 2]], &line, 2), (&[&[0, 1, 4, 3], &[1, 2, 4], &[2, 5, 4]], &sheet, 3)];
+        let curved = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.1], [4.0, 0.5], [3.0, 0.4]].map(|[x, y]| [x, y, 0.0]);
+        let mut wide = [
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 2.0],
+            [0.0, 2.0],
+            [1.0, 0.0],
+            [2.0, 1.0],
+            [1.0, 2.0],
+            [0.0, 1.0],
+            [4.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 1.0],
+        ]
+        .map(|[x, y]| [x, y, 0.0]);
+        wide.iter_mut().for_each(|x| (0..3).for_each(|c| x[c] += 0.2 * noise.next()));
+        let cases: [(&[&[u32]], &[[f64; 3]], usize); 4] = [
+            (&[&[0, 1], &[1, 2]], &line, 2),
+            (&[&[0, 1, 4, 3], &[1, 2, 4], &[2, 5, 4]], &sheet, 3),
+            (&[&[0, 1, 2], &[1, 3, 4]], &curved, 2),
+            (&[&[0, 1, 2, 3, 4, 5, 6, 7], &[1, 8, 2, 9, 10, 5]], &wide, 3),
+        ];
         for ((facets, places, space), weights) in cases
             .into_iter()
             .flat_map(|case| [NodalNormals::ByEdges, NodalNormals::ByFacets].map(|weights| (case, weights)))

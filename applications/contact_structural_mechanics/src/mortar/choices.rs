@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct Choices {
     /// Local coordinates on the slave near which the vertex lies that all cells share.
     pub origin: Option<[f64; 2]>,
-    /// Whether plain functions stand in for dual ones.
-    pub plain: bool,
+    /// The linear pieces of the slave, a bit each, on which plain functions stand in for dual ones.
+    pub plain: u8,
     /// Whether slivers count: an overlap with one triangle more or less then changes nothing by a jump, and no area is lost.
     pub slivers: bool,
 }
@@ -51,7 +51,7 @@ mod tests {
             panic!("they overlap")
         };
         let kept = choices_of(&pair(1e-9, Choices::default()), &SegmentationSettings::default(), &found);
-        assert!(kept.origin.is_some() && !kept.plain);
+        assert!(kept.origin.is_some() && kept.plain == 0);
         assert!(jump(Choices::default()) > 1e-4, "{}", jump(Choices::default()));
         assert!(jump(kept) < 1e-7, "{}", jump(kept));
     }

@@ -23,6 +23,15 @@ pub struct PairGeometry<T: Real, S: FacetShape, M: FacetShape> {
     pub choices: Choices,
 }
 
+/// Variable `number` where it is among those from `first` on, else a constant.
+#[inline]
+pub fn variable_from<const LANES: usize>(first: usize, number: usize, value: f64) -> Dual<LANES> {
+    match number.checked_sub(first) {
+        Some(lane) if lane < LANES => Dual::variable(value, lane),
+        _ => Dual::constant(value),
+    }
+}
+
 impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
     /// Number of displacement unknowns: those of the master nodes, then those of the slave nodes.
     pub const UNKNOWNS: usize = S::SPACE * (S::NODES + M::NODES);
@@ -30,14 +39,20 @@ impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
     /// Number of components of nodal normals.
     pub const NORMALS: usize = S::SPACE * S::NODES;
 
-    /// The same pair with its coordinates as the first variables in the order master, slave, node by node; normals are constant.
+    /// The same pair with its coordinates as variables in the order master, slave, node by node; normals are constant.
     /// Replace a normal by one with a gradient to include its variation.
     #[inline]
     pub fn seeded<const NU: usize>(&self) -> PairGeometry<Dual<NU>, S, M> {
         const { assert!(NU >= Self::UNKNOWNS, "one variable per displacement component of the pair") };
+        self.seeded_from(0)
+    }
+
+    /// The same with `LANES` of the variables only, from the one numbered `first` on.
+    #[inline]
+    pub fn seeded_from<const LANES: usize>(&self, first: usize) -> PairGeometry<Dual<LANES>, S, M> {
         let dim = S::SPACE;
-        let seed = |x: [f64; 3], first: usize| {
-            std::array::from_fn(|c| if c < dim { Dual::variable(x[c], first + c) } else { Dual::constant(x[c]) })
+        let seed = |x: [f64; 3], number: usize| {
+            std::array::from_fn(|c| if c < dim { variable_from(first, number + c, x[c]) } else { Dual::constant(x[c]) })
         };
         PairGeometry {
             slave: S::nodal(|n| seed(self.slave[n], dim * (M::NODES + n))),

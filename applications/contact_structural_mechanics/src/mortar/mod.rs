@@ -13,6 +13,8 @@
 //! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments;
 //! 8. [`turn`]: how a facet has turned since, with what it carries along.
 //!
+//! Facets of second order are cut into linear pieces first: `curved`.
+//!
 //! All of it is continuous in the positions but for a few choices, which a pair can keep: [mod@choices].
 //!
 //! With normals that belong to the present geometry, D, M and g̃ agree with the reference program to 1e-10 (its inverse
@@ -25,6 +27,7 @@
 //! solution, so that dual numbers cost a small multiple of the plain kernel and are exact.
 
 pub mod choices;
+mod curved;
 pub mod gap;
 pub mod geometry;
 pub mod operators;
@@ -38,13 +41,14 @@ pub mod slip;
 pub mod turn;
 
 pub use choices::Choices;
+pub use curved::nodal_shares;
 pub use gap::{weighted_gap, weighted_jump};
-pub use geometry::PairGeometry;
+pub use geometry::{PairGeometry, variable_from};
 pub use inner::{inner_point, inner_values};
 pub use operators::{Operators, Overlap, choices_of, operators, operators_by};
 pub use points::MasterMotion;
 pub use settings::{IntegrationOrder, SegmentationSettings};
-pub use shapes::{MOST_NODES, carries_contact, condition_name};
+pub use shapes::{MOST_NODES, carries_contact, condition_name, lanes};
 pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential, turned_slip};
 pub use turn::Turn;
 

@@ -6,7 +6,10 @@
 //! Where Me cannot be inverted, Φ = N¹ and D = Me is full. With the usual three points a triangle this is so for every
 //! quadrilateral slave whose overlap is a single triangle: three points cannot tell four functions apart.
 
+use std::marker::PhantomData;
+
 use super::choices::Choices;
+use super::curved;
 use super::geometry::PairGeometry;
 use super::points::{ExactMotion, MasterMotion, Point, Points};
 use super::segmentation_3d::Polygon;
@@ -42,6 +45,19 @@ pub enum Overlap<O> {
 }
 
 impl<O> Overlap<O> {
+    /// That of a pair whose cells have this length or area.
+    fn of<T: Real, S: FacetShape, M: FacetShape>(
+        covered: f64,
+        pair: &PairGeometry<T, S, M>,
+        operators: impl FnOnce() -> O,
+    ) -> Self {
+        match covered {
+            covered if covered > least_overlap(pair) => Self::Cells(operators()),
+            covered if covered > 0.0 => Self::Sliver,
+            _ => Self::None,
+        }
+    }
+
     /// The operators, if any.
     pub fn cells(self) -> Option<O> {
         match self {
@@ -51,7 +67,7 @@ impl<O> Overlap<O> {
     }
 }
 
-/// Computes D and M of a pair: lines in the plane, triangles and quadrilaterals in space.
+/// Computes D and M of a pair: lines in the plane, triangles and quadrilaterals in space; those of second order as [`curved`] says.
 ///
 /// With dual numbers the gradients are exact derivatives of the values, through cells, points and dual functions, as
 /// long as the kinds of the overlap's vertices do not change.
@@ -68,14 +84,59 @@ pub fn operators_by<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape
     settings: &SegmentationSettings,
     motion: &P,
 ) -> Overlap<Operators<T, S, M>> {
-    let mut sums = Sums::new();
-    let covered = Points { pair, motion }.visit(settings, |point| sums.add_point(point));
-    match covered {
+    ByOrder::<T, P, S, M>::OPERATORS(pair, settings, motion)
+}
+
+/// What differs by the order of the shapes. As constants, so that only what a pair of shapes needs is compiled for it.
+struct ByOrder<T: Real, P, S: FacetShape, M: FacetShape>(PhantomData<(T, P, S, M)>);
+
+impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> ByOrder<T, P, S, M> {
+    const OPERATORS: fn(&PairGeometry<T, S, M>, &SegmentationSettings, &P) -> Overlap<Operators<T, S, M>> =
+        if S::CURVED || M::CURVED { Self::curved } else { Self::straight };
+
+    fn straight(
+        pair: &PairGeometry<T, S, M>,
+        settings: &SegmentationSettings,
+        motion: &P,
+    ) -> Overlap<Operators<T, S, M>> {
+        let mut sums = Sums::new();
+        let covered = Points { pair, motion }.visit(settings, |point| sums.add_point(point));
         // Points have no place on a master that is folded.
-        covered if covered > least_overlap(pair) && sums.is_finite() => Overlap::Cells(sums.finish(pair.choices)),
-        _ if !sums.is_finite() => Overlap::None,
-        covered if covered > 0.0 => Overlap::Sliver,
-        _ => Overlap::None,
+        if sums.is_finite() { Overlap::of(covered, pair, || sums.finish(pair.choices)) } else { Overlap::None }
+    }
+
+    fn curved(pair: &PairGeometry<T, S, M>, settings: &SegmentationSettings, _: &P) -> Overlap<Operators<T, S, M>> {
+        let (found, covered) = curved::operators(pair, settings);
+        if found.is_finite() { Overlap::of(covered, pair, || found) } else { Overlap::None }
+    }
+}
+
+/// The choices that gave operators, by the order of the shapes.
+struct ChoicesByOrder<S: FacetShape, M: FacetShape>(PhantomData<(S, M)>);
+
+impl<S: FacetShape, M: FacetShape> ChoicesByOrder<S, M> {
+    const OF: fn(&PairGeometry<f64, S, M>, &SegmentationSettings, &Operators<f64, S, M>) -> Choices =
+        if S::CURVED || M::CURVED { Self::curved } else { Self::straight };
+
+    fn straight(
+        pair: &PairGeometry<f64, S, M>,
+        settings: &SegmentationSettings,
+        found: &Operators<f64, S, M>,
+    ) -> Choices {
+        let origin = || {
+            // Intervals of the plane have no such choice.
+            let polygon = if S::SPACE == 2 { None } else { Polygon::new(pair, settings) }?;
+            Some(polygon.local(polygon.vertices()[0]))
+        };
+        Choices {
+            origin: pair.choices.origin.or_else(origin),
+            plain: pair.choices.plain | u8::from(!found.is_diagonal()),
+            slivers: true,
+        }
+    }
+
+    fn curved(pair: &PairGeometry<f64, S, M>, settings: &SegmentationSettings, _: &Operators<f64, S, M>) -> Choices {
+        Choices { plain: curved::plain_pieces(pair, settings), slivers: true, ..pair.choices }
     }
 }
 
@@ -85,16 +146,7 @@ pub fn choices_of<S: FacetShape, M: FacetShape>(
     settings: &SegmentationSettings,
     found: &Operators<f64, S, M>,
 ) -> Choices {
-    let origin = || {
-        // Intervals of the plane have no such choice.
-        let polygon = if S::SPACE == 2 { None } else { Polygon::new(pair, settings) }?;
-        Some(polygon.local(polygon.vertices()[0]))
-    };
-    Choices {
-        origin: pair.choices.origin.or_else(origin),
-        plain: pair.choices.plain || !found.is_diagonal(),
-        slivers: true,
-    }
+    ChoicesByOrder::<S, M>::OF(pair, settings, found)
 }
 
 /// Length or area above which an overlap counts.
@@ -133,6 +185,12 @@ impl<T: Real, S: FacetShape, M: FacetShape> Operators<T, S, M> {
             d: S::nodal(|j| S::nodal(|k| self.d[j][k] - previous.d[j][k])),
             m: S::nodal(|j| M::nodal(|l| self.m[j][l] - previous.m[j][l])),
         }
+    }
+
+    /// Whether all entries are numbers.
+    fn is_finite(&self) -> bool {
+        let d = self.d.iter().flat_map(|row| row.iter());
+        d.chain(self.m.iter().flat_map(|row| row.iter())).all(|x| x.value().is_finite())
     }
 
     /// Whether D is diagonal, so that dual functions were in use.
@@ -193,7 +251,7 @@ impl<T: Real, S: FacetShape, M: FacetShape> Sums<T, S, M> {
                 self.me[j][k] = self.me[k][j];
             }
         }
-        let inverse = inverse::<S>(&S::map(&self.me, |row| S::map(&row, T::value))).filter(|_| !choices.plain);
+        let inverse = inverse::<S>(&S::map(&self.me, |row| S::map(&row, T::value))).filter(|_| choices.plain == 0);
         let Some(inverse) = inverse else {
             return Operators { d: self.me, m: self.mixed };
         };
@@ -234,7 +292,7 @@ fn frobenius<R: NodeArray<f64>>(rows: &[R]) -> f64 {
 }
 
 /// Inverse by elimination with row exchanges; `None` if the matrix is too badly conditioned to trust it.
-fn inverse<S: FacetShape>(matrix: &S::Nodal<S::Nodal<f64>>) -> Option<S::Nodal<S::Nodal<f64>>> {
+pub(super) fn inverse<S: FacetShape>(matrix: &S::Nodal<S::Nodal<f64>>) -> Option<S::Nodal<S::Nodal<f64>>> {
     let mut work = *matrix;
     let mut inverse = S::nodal(|j| S::nodal(|k| f64::from(u8::from(j == k))));
     for pivot in 0..S::NODES {

@@ -1,5 +1,8 @@
 //! The integration points of the overlap of a pair: Gauss points on its cells, and where they go on the master.
 
+use std::marker::PhantomData;
+
+use super::curved;
 use super::geometry::PairGeometry;
 use super::segmentation_2d;
 use super::segmentation_3d::{Polygon, Vertex};
@@ -29,9 +32,33 @@ pub struct Point<T: Real, S: FacetShape, M: FacetShape> {
 pub fn for_each_point<T: Real, S: FacetShape, M: FacetShape>(
     pair: &PairGeometry<T, S, M>,
     settings: &SegmentationSettings,
-    visit: impl FnMut(&Point<T, S, M>),
+    mut visit: impl FnMut(&Point<T, S, M>),
 ) -> f64 {
-    Points { pair, motion: &ExactMotion }.visit(settings, visit)
+    ByOrder::<T, S, M>::VISIT(pair, settings, &mut visit)
+}
+
+/// The walk over points by the order of the shapes. A constant, so that only what a pair of shapes needs is compiled for it.
+struct ByOrder<T: Real, S: FacetShape, M: FacetShape>(PhantomData<(T, S, M)>);
+
+impl<T: Real, S: FacetShape, M: FacetShape> ByOrder<T, S, M> {
+    const VISIT: fn(&PairGeometry<T, S, M>, &SegmentationSettings, &mut dyn FnMut(&Point<T, S, M>)) -> f64 =
+        if S::CURVED || M::CURVED { Self::curved } else { Self::straight };
+
+    fn straight(
+        pair: &PairGeometry<T, S, M>,
+        settings: &SegmentationSettings,
+        visit: &mut dyn FnMut(&Point<T, S, M>),
+    ) -> f64 {
+        Points { pair, motion: &ExactMotion }.visit(settings, visit)
+    }
+
+    fn curved(
+        pair: &PairGeometry<T, S, M>,
+        settings: &SegmentationSettings,
+        visit: &mut dyn FnMut(&Point<T, S, M>),
+    ) -> f64 {
+        curved::for_each_point(pair, settings, &mut |_, point| visit(point))
+    }
 }
 
 /// How points of the slave move on the master: where they are is the same for all.

@@ -31,6 +31,7 @@ pub(super) enum Vertex {
 
 /// The vertices of an overlap, anticlockwise about the slave's normal.
 pub(super) struct Polygon<T: Real, S: FacetShape, M: FacetShape> {
+    plane: Plane<T>,
     slave: S::Nodal<[T; 2]>,
     master: M::Nodal<[T; 2]>,
     vertices: [Vertex; CAPACITY],
@@ -56,7 +57,7 @@ impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
             return None;
         }
         list.sort();
-        let mut polygon = Self { slave, master, vertices: list.vertices, len: list.len };
+        let mut polygon = Self { plane, slave, master, vertices: list.vertices, len: list.len };
         if let Some(origin) = pair.choices.origin {
             polygon.begin_near(origin);
         }
@@ -96,6 +97,25 @@ impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
                 numbers[slave] * (1.0 - t) + numbers[(slave + 1) % S::CORNERS] * t
             }
             Vertex::Master(_) => T::zero(),
+        }
+    }
+
+    /// A point in coordinates of the plane, projected along its normal.
+    pub(super) fn flattened(&self, x: [T; 3]) -> [T; 3] {
+        let [a, b] = self.plane.coordinates(x);
+        [a, b, T::zero()]
+    }
+
+    /// Where a vertex is in the plane.
+    pub(super) fn place(&self, vertex: Vertex) -> [T; 2] {
+        match vertex {
+            Vertex::Slave(n) => self.slave[n],
+            Vertex::Master(n) => self.master[n],
+            Vertex::Crossing { slave, master } => {
+                let t = self.crossing(slave, master);
+                let (start, end) = (self.slave[slave], self.slave[(slave + 1) % S::CORNERS]);
+                std::array::from_fn(|c| start[c] + (end[c] - start[c]) * t)
+            }
         }
     }
 

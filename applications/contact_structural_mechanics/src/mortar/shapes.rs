@@ -10,10 +10,18 @@ macro_rules! with_pairs_of_shapes {
     ([$($with:tt)*] $($first:tt)*) => {
         $($with)*! { $($first)*
             (Line2, Line2, "2D2N")
+            (Line2, Line3, "2D2N3N")
+            (Line3, Line2, "2D3N2N")
+            (Line3, Line3, "2D3N")
             (Triangle3, Triangle3, "3D3N")
             (Triangle3, Quadrilateral4, "3D3N4N")
             (Quadrilateral4, Triangle3, "3D4N3N")
             (Quadrilateral4, Quadrilateral4, "3D4N")
+            (Triangle3, Triangle6, "3D3N6N")
+            (Quadrilateral4, Triangle6, "3D4N6N")
+            (Triangle6, Triangle3, "3D6N3N")
+            (Triangle6, Quadrilateral4, "3D6N4N")
+            (Triangle6, Triangle6, "3D6N")
         }
     };
 }
@@ -53,6 +61,15 @@ pub const MOST_NODES: usize = {
     }
     most
 };
+
+/// Variables by which pairs with a facet of second order are differentiated at once.
+const LANES: usize = 12;
+
+/// By how many of its variables a pair is differentiated at once: by all, where both facets are of first order. Others would
+/// make code that takes long to compile and is no faster.
+pub const fn lanes<S: FacetShape, M: FacetShape>(variables: usize) -> usize {
+    if S::CURVED || M::CURVED { LANES } else { variables }
+}
 
 /// Whether facets of a shape carry contact.
 pub fn carries_contact(shape: Shape) -> bool {

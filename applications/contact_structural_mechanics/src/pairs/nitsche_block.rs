@@ -16,8 +16,8 @@ use super::pair::{Integral, Pair};
 use super::pair_block::PairBlock;
 use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
 use crate::interface::{Bodies, Tractions};
-use crate::mortar::PairGeometry;
 use crate::mortar::shapes::for_shapes;
+use crate::mortar::{PairGeometry, lanes, variable_from};
 use crate::slave_states::SlaveStates;
 
 /// The block of Nitsche's method for a pair of shapes (slave, master); `None` for shapes that carry no contact.
@@ -29,27 +29,31 @@ pub fn nitsche_block(
 ) -> Option<Box<dyn ContactBlock>> {
     macro_rules! make {
         ($slave:ty, $master:ty, $end:literal) => {{
-            const NU: usize = PairGeometry::<f64, $slave, $master>::UNKNOWNS;
-            const NN: usize = PairGeometry::<f64, $slave, $master>::NORMALS;
-            NitscheBlock::<$slave, $master, NU, NN, { NU + 2 * NN }>::boxed(request, friction)
+            const ALL: usize = variables::<$slave, $master>();
+            const LANES: usize = lanes::<$slave, $master>(ALL);
+            NitscheBlock::<$slave, $master, LANES>::boxed(request, friction)
         }};
     }
     for_shapes!(slave, master, make)
 }
 
-/// Pairs of two shapes with `NU` displacement unknowns of the facets, `NN` components of nodal normals,
-/// and `NV` = `NU` + 2 `NN` variables: displacements, normals, and tractions at the inner points of the slave.
+/// Variables of the formula of a pair: its displacements, components of nodal normals, and tractions at the inner points of the slave.
+const fn variables<S: FacetShape, M: FacetShape>() -> usize {
+    PairGeometry::<f64, S, M>::UNKNOWNS + 2 * PairGeometry::<f64, S, M>::NORMALS
+}
+
+/// Pairs of two shapes, differentiated by `LANES` variables at once.
 ///
 /// Other nodes of the slave's element are among those around the pair.
-struct NitscheBlock<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> {
-    pairs: PairBlock<Nitsche, S, M, NU, NN>,
+struct NitscheBlock<S: FacetShape, M: FacetShape, const LANES: usize> {
+    /// By operators it has no forces, so that its own derivatives are not asked for.
+    pairs: PairBlock<Nitsche, S, M, 1, 1>,
     bodies: Arc<Bodies>,
 }
 
-impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> NitscheBlock<S, M, NU, NN, NV> {
+impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES> {
     /// The block of a request, with friction or without.
     fn boxed(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
-        const { assert!(NV == NU + 2 * NN && NN == S::SPACE * S::NODES, "a variable for each unknown of the formula") };
         let (bodies, parameters) = (request.bodies.clone(), request.parameters.clone());
         let friction = friction.then_some(parameters.tangent_factor);
         let formulation = Nitsche { friction, ..parameters.nitsche };
@@ -117,54 +121,60 @@ impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: u
         let Tractions { values, by } = self.bodies.tractions::<S>(key, view, true)?;
         let states = self.pairs.states();
         let plain = self.pairs.geometry(at, view, states);
-        let mut geometry = self.pairs.seeded::<NV>(&plain);
-        let variable = |vector: [f64; 3], first: usize| -> [Dual<NV>; 3] {
-            let mut out = constant(vector);
-            (0..dim).for_each(|c| out[c] = Dual::variable(vector[c], first + c));
-            out
-        };
-        if self.pairs.parameters().normal_variation.knows_nodes() {
-            geometry.nodal_normals = S::nodal(|j| variable(plain.nodal_normals[j], NU + dim * j));
-        }
-        let tractions = S::nodal(|g| variable(values[g], NU + NN + dim * g));
-        let Some(out) = self.forces(at, (view, states), &geometry, &tractions) else { return Ok(()) };
-
-        // The rows of all local unknowns by the variables of the formula.
-        let mut rows = vec![[0.0; NV]; width];
-        let facets = out.master.iter().chain(out.slave.iter()).flat_map(|force| &force[..dim]);
-        for (row, force) in facets.enumerate() {
-            rhs[row] += force.value;
-            rows[row] = force.gradient;
-        }
+        let (displacements, normals) = (PairGeometry::<f64, S, M>::UNKNOWNS, PairGeometry::<f64, S, M>::NORMALS);
+        let all = variables::<S, M>();
         let unknowns = self.bodies.unknowns(key);
         let size = unknowns.len();
         let places: Vec<usize> = unknowns.iter().map(|&(node, c)| self.pairs.first_row(at, node) + c).collect();
-        for (r, &row) in places.iter().enumerate() {
-            for g in 0..S::NODES {
-                for c in 0..dim {
-                    let factor = by[g * size + r][c];
-                    rhs[row] += out.by_traction[g][c].value * factor;
-                    let gradient = &out.by_traction[g][c].gradient;
-                    rows[row].iter_mut().zip(gradient).for_each(|(sum, d)| *sum += factor * d);
+        let turns = self.pairs.parameters().normal_variation.knows_nodes();
+        // The rows of all local unknowns by the variables of the formula, and what works on changes of the tractions.
+        let mut rows = vec![0.0; width * all];
+        let mut weights = S::nodal(|_| [0.0; 3]);
+        for first in (0..all).step_by(LANES) {
+            let mut geometry = self.pairs.seeded::<LANES>(&plain, first);
+            let variable = |vector: [f64; 3], number: usize| -> [Dual<LANES>; 3] {
+                let mut out = constant(vector);
+                (0..dim).for_each(|c| out[c] = variable_from(first, number + c, vector[c]));
+                out
+            };
+            if turns {
+                geometry.nodal_normals = S::nodal(|j| variable(plain.nodal_normals[j], displacements + dim * j));
+            }
+            let tractions = S::nodal(|g| variable(values[g], displacements + normals + dim * g));
+            let Some(out) = self.forces(at, (view, states), &geometry, &tractions) else { return Ok(()) };
+            let mut add = |row: usize, factor: f64, force: Dual<LANES>| {
+                if first == 0 {
+                    rhs[row] += factor * force.value;
+                }
+                let of_row = &mut rows[row * all + first..(row + 1) * all];
+                of_row.iter_mut().zip(force.gradient).for_each(|(sum, d)| *sum += factor * d);
+            };
+            let facets = out.master.iter().chain(out.slave.iter()).flat_map(|force| &force[..dim]);
+            facets.enumerate().for_each(|(row, force)| add(row, 1.0, *force));
+            for (r, &row) in places.iter().enumerate() {
+                for g in 0..S::NODES {
+                    (0..dim).for_each(|c| add(row, by[g * size + r][c], out.by_traction[g][c]));
                 }
             }
+            weights = S::map(&out.by_traction, |work| work.map(|w| w.value));
         }
 
-        for (row, derivatives) in rows.iter().enumerate() {
+        for (row, derivatives) in rows.chunks_exact(all).enumerate() {
             let lhs = &mut lhs[row * width..(row + 1) * width];
-            lhs.iter_mut().zip(&derivatives[..NU]).for_each(|(entry, d)| *entry -= d);
+            lhs.iter_mut().zip(&derivatives[..displacements]).for_each(|(entry, d)| *entry -= d);
             for (r, &column) in places.iter().enumerate() {
-                let (by_traction, by) = (&derivatives[NU + NN..], &by);
+                let (by_traction, by) = (&derivatives[displacements + normals..], &by);
                 let slope = |g: usize| (0..dim).map(move |c| by_traction[dim * g + c] * by[g * size + r][c]);
                 lhs[column] -= (0..S::NODES).flat_map(slope).sum::<f64>();
             }
         }
-        if self.pairs.parameters().normal_variation.knows_nodes() {
-            let by_normals: Vec<[f64; NN]> = rows.iter().map(|row| std::array::from_fn(|n| row[NU + n])).collect();
+        if turns {
+            let of_normals = displacements..displacements + normals;
+            let by_normals: Vec<f64> =
+                rows.chunks_exact(all).flat_map(|row| row[of_normals.clone()].to_vec()).collect();
             self.pairs.spread_turning(at, view, &by_normals, (lhs, width));
         }
         if self.pairs.formulation().theta != 0.0 {
-            let weights = S::map(&out.by_traction, |work| work.map(|w| w.value));
             self.bodies
                 .add_second_derivative::<S>(key, view, &weights, |r, s, d| lhs[places[r] * width + places[s]] -= d)?;
         }
@@ -172,9 +182,7 @@ impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: u
     }
 }
 
-impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> EntityBlock
-    for NitscheBlock<S, M, NU, NN, NV>
-{
+impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBlock<S, M, LANES> {
     fn entry(&self) -> &'static EntityKind {
         self.pairs.entry()
     }
@@ -226,9 +234,7 @@ impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: u
     }
 }
 
-impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: usize> ContactBlock
-    for NitscheBlock<S, M, NU, NN, NV>
-{
+impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheBlock<S, M, LANES> {
     fn pairs(&self) -> &[Pair] {
         self.pairs.pairs()
     }
@@ -255,7 +261,7 @@ impl<S: FacetShape, M: FacetShape, const NU: usize, const NN: usize, const NV: u
                 let Ok(tractions) = self.bodies.tractions::<S>(self.key(at), view, false) else { return };
                 let geometry = self.pairs.geometry(at, view, states);
                 if let Some(forces) = self.forces(at, (view, states), &geometry, &tractions.values) {
-                    found.trial[..S::NODES].copy_from_slice(forces.slave.as_slice());
+                    found.trial[..S::NODES].copy_from_slice(forces.traction.as_slice());
                     found.carried[..S::NODES].copy_from_slice(forces.carried.as_slice());
                 }
             },

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::unfit;
-use zelus_core::geometry::FacetShape;
+use zelus_core::geometry::{FacetShape, NodeArray};
 
 use crate::interface::{Interface, Roles};
 use crate::mortar::{Choices, MOST_NODES, Operators};
@@ -33,18 +33,32 @@ pub fn check_pairs(interfaces: &[Interface], mut keys: impl Iterator<Item = Pair
 }
 
 /// Operators at the start of the step, against which slip is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Previous {
-    /// D of the start of the step, in the leading rows and columns.
-    pub d: [[f64; MOST_NODES]; MOST_NODES],
+    /// D of the start of the step, row by row; empty without overlap.
+    d: Vec<f64>,
     /// M of the start of the step.
-    pub m: [[f64; MOST_NODES]; MOST_NODES],
+    m: Vec<f64>,
 }
 
 impl Previous {
-    /// D and M of a pair with these numbers of nodes.
+    /// What a pair is to remember.
+    pub fn of<S: FacetShape, M: FacetShape>(operators: &Operators<f64, S, M>) -> Self {
+        Self {
+            d: operators.d.iter().flat_map(|row| row.iter().copied()).collect(),
+            m: operators.m.iter().flat_map(|row| row.iter().copied()).collect(),
+        }
+    }
+
+    /// D and M of the pair.
     pub fn operators<S: FacetShape, M: FacetShape>(&self) -> Operators<f64, S, M> {
-        Operators { d: S::nodal(|j| S::nodal(|k| self.d[j][k])), m: S::nodal(|j| M::nodal(|l| self.m[j][l])) }
+        if self.d.is_empty() {
+            return Operators::zero();
+        }
+        Operators {
+            d: S::nodal(|j| S::nodal(|k| self.d[j * S::NODES + k])),
+            m: S::nodal(|j| M::nodal(|l| self.m[j * M::NODES + l])),
+        }
     }
 }
 
@@ -82,7 +96,7 @@ pub struct Integral {
     pub overlapping: bool,
     /// Whether they overlap at all.
     pub facing: bool,
-    /// D_jj (area).
+    /// Row sums of D (area).
     pub area: [f64; MOST_NODES],
     /// Weighted gap, negative in penetration.
     pub gap: [f64; MOST_NODES],
@@ -92,6 +106,4 @@ pub struct Integral {
     pub trial: [[f64; 3]; MOST_NODES],
     /// Area times traction that the body lacks, where integration points decide on friction.
     pub carried: [[f64; 3]; MOST_NODES],
-    /// D and M themselves.
-    pub operators: Previous,
 }

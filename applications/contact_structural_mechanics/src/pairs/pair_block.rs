@@ -21,8 +21,11 @@ use crate::formulations::{
 use crate::interface::{Corner, NormalPatches};
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::shapes::for_shapes;
-use crate::mortar::{Choices, MOST_NODES, Overlap, PairGeometry, choices_of, operators, weighted_gap};
+use crate::mortar::{Choices, Operators, Overlap, PairGeometry, choices_of, lanes, operators, weighted_gap};
 use crate::slave_states::SlaveStates;
+
+/// A pair as it is now, with its operators.
+type PairNow<S, M> = (PairGeometry<f64, S, M>, Overlap<Operators<f64, S, M>>);
 
 /// The block of a formulation for a pair of shapes (slave, master); `None` for shapes that carry no contact.
 pub(super) fn pair_block<F: Formulation>(
@@ -32,15 +35,15 @@ pub(super) fn pair_block<F: Formulation>(
 ) -> Option<Box<dyn ContactBlock>> {
     macro_rules! make {
         ($slave:ty, $master:ty, $end:literal) => {{
-            const NU: usize = PairGeometry::<f64, $slave, $master>::UNKNOWNS;
-            const NN: usize = PairGeometry::<f64, $slave, $master>::NORMALS;
+            const NU: usize = lanes::<$slave, $master>(PairGeometry::<f64, $slave, $master>::UNKNOWNS);
+            const NN: usize = lanes::<$slave, $master>(PairGeometry::<f64, $slave, $master>::NORMALS);
             PairBlock::<F, $slave, $master, NU, NN>::boxed(request)
         }};
     }
     for_shapes!(slave, master, make)
 }
 
-/// Pairs of two shapes with `NU` displacement unknowns and `NN` components of nodal normals.
+/// Pairs of two shapes, differentiated by `NU` displacement unknowns and by `NN` components of nodal normals at once.
 ///
 /// Their rows are those of the formulation; nodes around a pair follow as columns, for they turn its normals.
 pub struct PairBlock<F, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> {
@@ -127,9 +130,14 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         }
     }
 
-    /// The pair with displacements as variables, and normals of facets too where the settings ask for it.
-    pub(super) fn seeded<const NV: usize>(&self, geometry: &PairGeometry<f64, S, M>) -> PairGeometry<Dual<NV>, S, M> {
-        let mut seeded = geometry.seeded::<NV>();
+    /// The pair with displacements from the one numbered `first` on as variables, and normals of facets too where the settings
+    /// ask for it.
+    pub(super) fn seeded<const LANES: usize>(
+        &self,
+        geometry: &PairGeometry<f64, S, M>,
+        first: usize,
+    ) -> PairGeometry<Dual<LANES>, S, M> {
+        let mut seeded = geometry.seeded_from::<LANES>(first);
         if self.parameters.normal_variation.knows_facets() {
             seeded.slave_normal = S::unit_normal(&seeded.slave, S::CENTRE);
             seeded.master_normal = M::unit_normal(&seeded.master, M::CENTRE);
@@ -148,9 +156,13 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         history: &F::History<S, M>,
         (lhs, width): (&mut [f64], usize),
     ) {
-        let mut by_normals = [[0.0; NN]; MOST_ROWS];
-        let keep = |row: usize, derivatives: &[f64; NN]| by_normals[row] = *derivatives;
-        formulations::by_normals(
+        let (rows, count) = (width - S::SPACE * self.around, PairGeometry::<f64, S, M>::NORMALS);
+        let mut by_normals = vec![0.0; rows * count];
+        let keep = |row: usize, first: usize, derivatives: &[f64]| {
+            let at = row * count + first;
+            by_normals[at..at + derivatives.len()].copy_from_slice(derivatives);
+        };
+        formulations::by_normals::<_, _, _, NN>(
             &self.formulation,
             geometry,
             &self.parameters.segmentation,
@@ -159,16 +171,15 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
             history,
             keep,
         );
-        let rows = width - S::SPACE * self.around;
-        self.spread_turning(at, view, &by_normals[..rows], (lhs, width));
+        self.spread_turning(at, view, &by_normals, (lhs, width));
     }
 
-    /// Adds −∂b/∂n ∂n/∂x to the first rows of a tangent, whose ∂b/∂n are given.
+    /// Adds −∂b/∂n ∂n/∂x to the first rows of a tangent, whose ∂b/∂n are given, row by row.
     pub(super) fn spread_turning(
         &self,
         at: usize,
         view: &StepView<'_>,
-        by_normals: &[[f64; NN]],
+        by_normals: &[f64],
         (lhs, width): (&mut [f64], usize),
     ) {
         let dim = S::SPACE;
@@ -181,7 +192,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
             }
             self.patches.variation(node, &view.nodes.current, knows, |by, matrix| {
                 let column = self.first_row(at, by);
-                for (row, derivatives) in by_normals.iter().enumerate() {
+                for (row, derivatives) in by_normals.chunks_exact(PairGeometry::<f64, S, M>::NORMALS).enumerate() {
                     let entries = &mut lhs[row * width + column..row * width + column + dim];
                     for (c, entry) in entries.iter_mut().enumerate() {
                         *entry -= (0..dim).map(|r| derivatives[dim * j + r] * matrix[r][c]).sum::<f64>();
@@ -237,6 +248,13 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         })
     }
 
+    /// The pair in the present state with its operators, if it is this rank's.
+    fn operators_now(&self, at: usize, present: Present<'_>) -> Option<PairNow<S, M>> {
+        let geometry = (present.own)(self.nodes(at)).then(|| self.geometry(at, present.view, present.states))?;
+        let found = operators(&geometry, &self.parameters.segmentation);
+        Some((geometry, found))
+    }
+
     fn multipliers(&self, at: usize, view: &StepView<'_>) -> S::Nodal<[f64; 3]> {
         S::map(&self.slaves(at), |n| F::MULTIPLIER.value(view.nodes, n))
     }
@@ -246,9 +264,6 @@ fn vector(column: &[f64], node: u32) -> [f64; 3] {
     let at = 3 * node as usize;
     [column[at], column[at + 1], column[at + 2]]
 }
-
-/// Rows of the largest pair: displacements and multipliers of two facets in space.
-const MOST_ROWS: usize = 9 * MOST_NODES;
 
 impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> EntityBlock
     for PairBlock<F, S, M, NU, NN>
@@ -305,7 +320,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
                 let lhs = &mut lhs[..rows * width];
                 formulations::tangent(
                     &self.formulation,
-                    &self.seeded::<NU>(&geometry),
+                    |first| self.seeded::<NU>(&geometry, first),
                     settings,
                     FirstIterateTangent::of(view, S::SPACE),
                     &nodes,
@@ -346,17 +361,13 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
     }
 
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
-        let Present { view, states, own } = present;
+        let Present { view, states, .. } = present;
         (0..self.pairs.len())
             .into_par_iter()
             .with_min_len(32)
             .map(|at| {
                 let mut out = Integral::default();
-                if !own(self.nodes(at)) {
-                    return out;
-                }
-                let geometry = self.geometry(at, view, states);
-                let found = operators(&geometry, &self.parameters.segmentation);
+                let Some((geometry, found)) = self.operators_now(at, present) else { return out };
                 out.facing = !matches!(found, Overlap::None);
                 if let Overlap::Cells(operators) = found {
                     out.overlapping = true;
@@ -376,8 +387,6 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
                         out.gap[j] = gaps[j];
                         out.slip[j] = slip[j];
                         out.trial[j] = trial.map_or([0.0; 3], |trial| trial[j]);
-                        (0..S::NODES).for_each(|k| out.operators.d[j][k] = operators.d[j][k]);
-                        (0..M::NODES).for_each(|l| out.operators.m[j][l] = operators.m[j][l]);
                     }
                 }
                 out
@@ -386,18 +395,20 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
     }
 
     fn keep_operators(&mut self, present: Present<'_>) {
-        let kept: Vec<Previous> = self.integrate(present).into_iter().map(|integral| integral.operators).collect();
+        let kept = |at: usize| {
+            let found = self.operators_now(at, present).map(|(_, found)| found).and_then(Overlap::cells);
+            found.map_or_else(Previous::default, |found| Previous::of(&found))
+        };
+        let kept: Vec<Previous> = (0..self.pairs.len()).into_par_iter().with_min_len(32).map(kept).collect();
         self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
     }
 
     fn freeze_choices(&mut self, present: Present<'_>) {
-        let Present { view, states, own } = present;
         let choices = |at: usize| {
-            let geometry = self.geometry(at, view, states);
-            let found = own(self.nodes(at)).then(|| operators(&geometry, &self.parameters.segmentation).cells());
-            let found = found.flatten();
-            found.map_or(geometry.choices, |found| choices_of(&geometry, &self.parameters.segmentation, &found))
+            let (geometry, found) = self.operators_now(at, present)?;
+            Some(choices_of(&geometry, &self.parameters.segmentation, &found.cells()?))
         };
+        let choices = |at: usize| choices(at).unwrap_or(self.pairs[at].choices);
         let choices: Vec<Choices> = (0..self.pairs.len()).into_par_iter().map(choices).collect();
         self.pairs.iter_mut().zip(choices).for_each(|(pair, choices)| pair.choices = choices);
     }

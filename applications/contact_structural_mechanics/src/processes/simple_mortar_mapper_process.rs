@@ -168,6 +168,41 @@ impl Mapper {
     }
 }
 
+/// Steps after which what neighbours add to each other is round-off: each takes it to a third or less.
+const STEPS: usize = 40;
+
+impl Mapper {
+    /// Areas times the values v at slave nodes for which D v is `sums`, each node with as many numbers as it has components.
+    ///
+    /// Where slaves are of second order D has entries beside its diagonal, which is the larger part: v is that of simple
+    /// iterations. Elsewhere D counts as diagonal.
+    fn without_neighbours(&self, sums: Vec<f64>, areas: &[f64]) -> Vec<f64> {
+        let count = self.origin.components;
+        let slave = |pair: &FacetPair| &self.interface[pair.key.interface as usize].facets[pair.key.slave as usize];
+        let is_curved = |pair: &&FacetPair| slave(pair).shape != slave(pair).shape.linear();
+        let curved: Vec<&FacetPair> = self.pairs.iter().filter(is_curved).collect();
+        let mut mapped = sums.clone();
+        for _ in 0..if curved.is_empty() { 0 } else { STEPS } {
+            let mut next = sums.clone();
+            for pair in &curved {
+                let nodes = &slave(pair).nodes;
+                for (row, &node) in pair.operators.d.iter().zip(nodes) {
+                    let own: f64 = row[..nodes.len()].iter().sum();
+                    for (k, (&other, d)) in nodes.iter().zip(row).enumerate() {
+                        let beside = if nodes[k] == node { d - own } else { *d };
+                        for c in 0..count {
+                            let value = mapped[count * other as usize + c] / areas[other as usize];
+                            next[count * node as usize + c] -= beside * value;
+                        }
+                    }
+                }
+            }
+            mapped = next;
+        }
+        mapped
+    }
+}
+
 impl Process for Mapper {
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.root)?;
@@ -195,12 +230,13 @@ impl Process for Mapper {
                 }
             }
         }
+        let mapped = self.without_neighbours(sums, &areas);
         let offset = self.destination.offset;
         let to = self.destination.field(part)?;
         let width = to.components;
         for (node, area) in areas.iter().enumerate().filter(|(_, area)| **area > 0.0) {
             for c in 0..count {
-                to.levels[0][width * node + offset + c] = self.coefficient * sums[count * node + c] / area;
+                to.levels[0][width * node + offset + c] = self.coefficient * mapped[count * node + c] / area;
             }
         }
         Ok(())

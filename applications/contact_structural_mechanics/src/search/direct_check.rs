@@ -1,8 +1,8 @@
 //! The direct check of a pair: which slave nodes touch the master facet itself.
 
-use zelus_core::geometry::mapping::local_coordinates;
+use zelus_core::geometry::mapping::{local_coordinates, position, unit_normal};
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{dot, scale, sub};
+use zelus_core::vector3::{add, dot, scale, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
 use crate::interface::Facet;
@@ -11,7 +11,10 @@ use crate::variables::NODAL_H;
 /// Slack of local coordinates at the edge of the master.
 const EDGE: f64 = 1e-9;
 
-/// Nodes of `slave` whose distance to the plane of `master` is below `factor` mesh sizes and whose foot lies on it.
+/// Steps with which the point of a facet of second order is looked for.
+const STEPS: usize = 8;
+
+/// Nodes of `slave` whose distance to `master` is below `factor` mesh sizes and whose foot lies on it.
 ///
 /// The distance runs along the node's normal, or along the master's where the first misses.
 pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f64) -> Vec<u32> {
@@ -22,7 +25,7 @@ pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f
     let touches = |node: u32, direction: [f64; 3]| {
         let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
         let (low, high) = (-size, factor * size);
-        distance_along(&points, normal, x, direction).is_some_and(|distance| {
+        distance_along(master, &points, normal, x, direction).is_some_and(|distance| {
             distance <= high && distance >= low && meets(&points, master, x, direction, distance)
         })
     };
@@ -30,9 +33,29 @@ pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f
     slave.nodes.iter().copied().filter(|&n| touches(n, nodal(n)) || touches(n, scale(normal, -1.0))).collect()
 }
 
-/// Way from `x` along `direction` to the plane with this normal through the facet at `points`; `None` where it is parallel.
-pub(super) fn distance_along(points: &[[f64; 3]], normal: [f64; 3], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
-    Some(dot(sub(points[0], x), normal) / dot(direction, normal)).filter(|distance| distance.is_finite())
+/// Way from `x` along `direction` to the plane with this normal through the facet at `points`, of a facet of second order to
+/// itself; `None` where it is parallel.
+pub(super) fn distance_along(
+    facet: &Facet,
+    points: &[[f64; 3]],
+    normal: [f64; 3],
+    x: [f64; 3],
+    direction: [f64; 3],
+) -> Option<f64> {
+    let to_plane = |on: [f64; 3], normal: [f64; 3]| {
+        Some(dot(sub(on, x), normal) / dot(direction, normal)).filter(|distance| distance.is_finite())
+    };
+    let mut distance = to_plane(points[0], normal)?;
+    if points.len() > facet.shape.cell().corners() {
+        // By the tangent planes under the point.
+        for _ in 0..STEPS {
+            let point = add(x, scale(direction, distance));
+            let Some(at) = local_coordinates(facet.shape, points, point) else { break };
+            let Some(normal) = unit_normal(facet.shape, points, at.xi) else { break };
+            distance = to_plane(position(facet.shape, points, at.xi), normal)?;
+        }
+    }
+    Some(distance)
 }
 
 /// Whether the foot at that distance lies on the facet at `points`.

@@ -166,7 +166,7 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
                 if dot(of_facet, normal) >= -FACING || facet.nodes.contains(&node) {
                     return None;
                 }
-                let distance = distance_along(&points, of_facet, x, normal)?;
+                let distance = distance_along(facet, &points, of_facet, x, normal)?;
                 meets(&points, facet, x, normal, distance).then_some((distance, facet.nodes[0]))
             });
             met.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
