@@ -24,7 +24,7 @@ fn operators(slaves: usize, masters: usize, random: &mut Random) -> FacetOperato
 }
 
 fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart, Box<dyn EntityBlock>)> {
-    let space = if slave == Shape::Line2 { 2 } else { 3 };
+    let space = slave.dim() + 1;
     let multipliers = family.multiplier.unknowns(space);
     let tied = match family.multiplier {
         Multiplier::Scalar(_) | Multiplier::None | Multiplier::Body => {

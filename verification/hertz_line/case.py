@@ -50,4 +50,4 @@ CASE = Case(
               "penalty": {"family": "penalty"}, "Uzawa": {"family": "Uzawa"}, "perturbed": {"family": "perturbed"},
               "4 steps": {"steps": 4}, "2D6N": {"shape": "2D6N"}, "2D8N": {"shape": "2D8N"}, "2D9N": {"shape": "2D9N"}, "frictional": {"family": "ALM frictional", "friction": 0.2},
               "micrometres": {"length": 1e6, "stress": 1e-12}},
-    picture="a/R = 0.002", quick=["a/R = 0.002"])
+    picture="a/R = 0.002", quick=["a/R = 0.002", "2D8N"])
