@@ -19,9 +19,14 @@ pub struct TimeStepping {
     last_step: LastStep,
 }
 
+/// Share of a step beyond the end up to which decks mean the whole step: they write an end a little before that of their last step.
+const MEANT: f64 = 0.5 + 1e-6;
+
 /// The end of a run whose steps do not add up to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LastStep {
+    /// It is whole where at least half of it is left, or where it is the only one; it is shortened otherwise.
+    Automatic,
     /// The last step ends there; what is round-off is no step.
     Shortened,
     /// It is whole and goes beyond the end; what is round-off is no step.
@@ -55,13 +60,14 @@ impl TimeStepping {
             warnings.push(problem.remedy(remedy));
         }
         let last_step = match node.get("last_step").map(|node| Ok::<_, Error>((node, node.str()?))).transpose()? {
-            None | Some((_, "shortened")) => LastStep::Shortened,
+            None | Some((_, "automatic")) => LastStep::Automatic,
+            Some((_, "shortened")) => LastStep::Shortened,
             Some((_, "whole")) => LastStep::Whole,
             Some((_, "while_below")) => LastStep::WhileBelow,
             Some((node, word)) => {
                 return Err(Diagnostic::error("invalid-value", format!("\"last_step\" is {word:?}"))
                     .at(node.place())
-                    .remedy("write \"shortened\", \"whole\" or \"while_below\"")
+                    .remedy("write \"automatic\", \"shortened\", \"whole\" or \"while_below\"")
                     .into());
             }
         };
@@ -73,10 +79,14 @@ impl TimeStepping {
         let beyond = time + length - end;
         let sums = (1.0 + (time - start) / length) * f64::EPSILON * start.abs().max(end.abs());
         let round_off = sums.clamp(ROUND_OFF * length, LEAST_STEP * length);
+        let whole = (time + length, false);
         match self.last_step {
-            LastStep::Shortened | LastStep::Whole if beyond.abs() <= round_off => (end, false),
-            LastStep::Shortened if beyond > 0.0 => (end, true),
-            _ => (time + length, false),
+            LastStep::WhileBelow => whole,
+            _ if beyond.abs() <= round_off => (end, false),
+            LastStep::Whole => whole,
+            LastStep::Automatic if time <= start || beyond <= MEANT * length => whole,
+            LastStep::Shortened if beyond <= 0.0 => whole,
+            LastStep::Automatic | LastStep::Shortened => (end, true),
         }
     }
 
@@ -194,7 +204,14 @@ mod tests {
     fn the_last_step_is_what_the_deck_says() {
         let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
         assert_eq!((thirds.len(), thirds[3]), (4, 1.0));
-        assert_eq!(ends(r#"{ "time_step": 1.1 }"#, 1.0), [1.0]);
+        for (step, end, last) in
+            [(1.1, 1.0, 1.1), (1e6, 1.0, 1e6), (1.0, 3.99, 4.0), (0.02, 0.19, 0.2), (0.7, 1.0, 1.0)]
+        {
+            let found = ends(&format!("{{ \"time_step\": {step} }}"), end);
+            assert!((found[found.len() - 1] - last).abs() < 1e-12 * last, "{step} to {end}: {found:?}");
+        }
+        assert_eq!(ends(r#"{ "time_step": 1.1, "last_step": "shortened" }"#, 1.0), [1.0]);
+        assert_eq!(ends(r#"{ "time_step": 0.6, "last_step": "shortened" }"#, 1.0), [0.6, 1.0]);
         let thirds = ends(r#"{ "time_step": 0.3, "last_step": "whole" }"#, 1.0);
         assert!(thirds.len() == 4 && thirds[3] > 1.19);
         assert_eq!(ends(r#"{ "time_step": 1.1, "last_step": "whole" }"#, 1.0), [1.1]);
