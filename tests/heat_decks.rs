@@ -3,7 +3,7 @@
 mod support;
 
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use support::{read_json, root, said};
 
@@ -28,49 +28,15 @@ fn folder() -> Option<PathBuf> {
     there.then_some(folder)
 }
 
-/// Copies decks, to which it gives the two defaults of Kratos that the known answers depend on: the last step is whole, and solvers of
-/// heat at rest store heat.
-fn copy_as_known(from: &Path, to: &Path) {
-    std::fs::create_dir(to).expect("a folder");
-    for entry in std::fs::read_dir(from).expect("a folder").map(|entry| entry.expect("an entry").path()) {
-        let target = to.join(entry.file_name().expect("a name"));
-        if entry.is_dir() {
-            copy_as_known(&entry, &target);
-        } else if entry.ends_with("ProjectParameters.json") {
-            let mut deck = read_json(&entry).expect("a deck");
-            lay_defaults(&mut deck);
-            std::fs::write(&target, deck.to_string()).expect("a deck");
-        } else {
-            std::fs::copy(&entry, &target).expect("a file");
-        }
-    }
-}
-
-fn lay_defaults(node: &mut Value) {
-    if node["solver_type"].as_str().is_some_and(|name| name.eq_ignore_ascii_case("stationary")) {
-        node["stores_heat"] = true.into();
-    }
-    for (key, value) in node.as_object_mut().into_iter().flatten() {
-        match key.as_str() {
-            "time_stepping" => value["last_step"] = "while_below".into(),
-            _ if value.is_object() => lay_defaults(value),
-            _ => {}
-        }
-    }
-}
-
 #[test]
 fn every_deck_has_its_known_answer() {
     let Some(folder) = folder() else { return };
     let scratch = tempfile::tempdir().expect("a scratch folder");
     let scores = scratch.path().join("scores.json");
-    copy_as_known(&folder.join("decks"), &scratch.path().join("decks"));
     let output = Command::new("python3")
         .arg(folder.join("tools/heat_scoreboard.py"))
         .args(["--run", concat!(env!("CARGO_BIN_EXE_zelus"), " run ProjectParameters.json"), "--json"])
         .arg(&scores)
-        .arg("--decks")
-        .arg(scratch.path().join("decks"))
         .output()
         .expect("python3");
     let scores = read_json(&scores).unwrap_or_else(|why| panic!("{why}: {}", said(&output)));
