@@ -18,7 +18,7 @@ use crate::diagnostics::{Diagnostic, Error, Place, Result};
 /// The first bytes of every saved run.
 const MARK: &[u8; 16] = b"zelus saved run\n";
 /// Version of the contents: one more with every change of what is saved.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Bytes before the lengths.
 const HEAD: usize = MARK.len() + 4 + 4;
 /// Bytes of the head for each rank: length and checksum.
