@@ -2,7 +2,6 @@
 //! transmitted exactly (ANALYTIC), whatever the shapes.
 
 mod support;
-#[allow(dead_code, reason = "each test binary uses its part")]
 #[path = "support/blocks.rs"]
 mod blocks;
 

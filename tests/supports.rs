@@ -3,7 +3,6 @@
 //! ANALYTIC: patch tests, whose tolerance is the strain, by which loads and contact act on deformed facets. ANALYTIC: a half
 //! or a quarter is the whole.
 
-#[allow(dead_code, reason = "each test binary uses its part")]
 #[path = "support/blocks.rs"]
 mod blocks;
 mod support;
