@@ -67,7 +67,7 @@ impl<O> Overlap<O> {
     }
 }
 
-/// Computes D and M of a pair: lines in the plane, triangles and quadrilaterals in space; those of second order as [`curved`] says.
+/// Computes D and M of a pair: lines in the plane, triangles and quadrilaterals in space; those of second order as `curved` says.
 ///
 /// With dual numbers the gradients are exact derivatives of the values, through cells, points and dual functions, as
 /// long as the kinds of the overlap's vertices do not change.
