@@ -15,9 +15,10 @@ use table::{BAD_DECKS, BadDeck, Change};
 /// The good deck, with results of an earlier run that a bad run must leave alone.
 fn good_deck() -> tempfile::TempDir {
     let scratch = scratch_copy(&root().join("tests/bad_decks/good"));
-    std::fs::write(scratch.path().join("results.json"), "earlier results").expect("a file");
+    std::fs::write(scratch.path().join("results.json"), "{\"TIME\": []}").expect("a file");
     std::fs::create_dir(scratch.path().join("vtk_output")).expect("a folder");
-    std::fs::write(scratch.path().join("vtk_output/Structure_0_1.vtk"), "an earlier picture").expect("a file");
+    std::fs::write(scratch.path().join("vtk_output/Structure_0_1.vtk"), "# vtk DataFile of an earlier run")
+        .expect("a file");
     scratch
 }
 

@@ -196,6 +196,7 @@ fn every_setting_of_kratos_is_named_with_its_source() {
             "static",
             "dynamic",
             "explicit_dynamic",
+            "explicit_transient",
             "stationary",
             "transient",
             "vtk_output_process",

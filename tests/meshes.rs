@@ -110,3 +110,26 @@ fn what_is_no_mesh_is_refused() {
         assert!(said(&output).contains(fact), "{arguments:?}: {}", said(&output));
     }
 }
+
+/// Two rings of CalculiX, one on the other under a pressure, which is that of the contact.
+#[test]
+fn contact_of_bodies_of_revolution_counts_the_way_round() {
+    let scratch = tempfile::tempdir().unwrap();
+    let rings = "*NODE\n1,1,0\n2,2,0\n3,2,1\n4,1,1\n5,1,1\n6,2,1\n7,2,2\n8,1,2\n\
+        *ELEMENT,TYPE=CAX4,ELSET=LOWER\n1,1,2,3,4\n*ELEMENT,TYPE=CAX4,ELSET=UPPER\n2,5,6,7,8\n*NSET,NSET=BOTTOM\n1,2\n\
+        *SURFACE,NAME=SLO\nLOWER,S3\n*SURFACE,NAME=SUP\nUPPER,S1\n*SURFACE,NAME=STOP\nUPPER,S3\n\
+        *MATERIAL,NAME=M\n*ELASTIC\n1000,0.3\n*SOLID SECTION,ELSET=LOWER,MATERIAL=M\n*SOLID SECTION,ELSET=UPPER,MATERIAL=M\n\
+        *SURFACE INTERACTION,NAME=I\n*CONTACT PAIR,INTERACTION=I\nSUP,SLO\n\
+        *STEP\n*STATIC\n*BOUNDARY\nBOTTOM,2,2\n*DSLOAD\nSTOP,P,10\n*END STEP\n";
+    std::fs::write(scratch.path().join("rings.inp"), rings).unwrap();
+    for words in [
+        &["new", "--from", "rings.inp", "-o", "deck"][..],
+        &["run", "deck/ProjectParameters.json", "--report", "run.json"],
+    ] {
+        let output = zelus(scratch.path(), words);
+        assert!(output.status.success(), "{}", said(&output));
+    }
+    let report = support::read_json(&scratch.path().join("run.json")).unwrap();
+    let pressure = report["largest"]["CONTACT_PRESSURE"].as_f64().unwrap();
+    assert!((pressure / 10.0 - 1.0).abs() < 0.03, "{pressure}");
+}

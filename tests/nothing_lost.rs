@@ -52,14 +52,37 @@ fn inputs_are_no_outputs() {
     let plain = deck(|_| {});
     fs::write(plain.path().join("notes.txt"), "mine").expect("a file");
     is_refused(plain.path(), &["--report", DECK], "is read by the run");
-    is_refused(plain.path(), &["--report", "mesh.mdpa"], "is no report");
-    is_refused(plain.path(), &["--report", "notes.txt"], "is no report");
+    is_refused(plain.path(), &["--report", "mesh.mdpa"], "is nothing that an earlier run");
+    is_refused(plain.path(), &["--report", "notes.txt"], "is nothing that an earlier run");
     is_refused(plain.path(), &["--report", "/dev/null"], "no file");
     is_refused(plain.path(), &["--report", "lower.json"], "is written twice");
     for name in ["mesh.mdpa", "StructuralMaterials.json", DECK, "./mesh.mdpa"] {
         let scratch = deck(|deck| *json_output(deck) = json!(name));
         is_refused(scratch.path(), &[], "is read by the run");
     }
+    // Files of others, whatever writes there.
+    let strange = |name: &str, edit: &dyn Fn(&mut Value)| {
+        let scratch = deck(edit);
+        let path = scratch.path().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, "{\"mine\": 1}").expect("a file");
+        is_refused(scratch.path(), &[], "is nothing that an earlier run has written");
+    };
+    strange("upper.json", &|_| {});
+    strange("pictures/Structure_7.vtu", &|deck| pictures(deck, "pictures"));
+    strange("pictures/Structure_0_7.vtk", &|deck| {
+        pictures(deck, "pictures");
+        deck["output_processes"]["vtu"][0]["python_module"] = json!("vtk_output_process");
+    });
+    strange("point.dat", &|deck| {
+        let parameters = json!({"model_part_name": "Structure", "position": [0.0, 0.0, 0.0], "output_file_settings":
+            {"file_name": "point.dat"}, "output_variables": ["DISPLACEMENT"]});
+        deck["output_processes"] = json!({"p": [{"python_module": "point_output_process", "Parameters": parameters}]});
+    });
+    strange("Structure__restart_files/Structure_1.rest", &|deck| {
+        let parameters = json!({"model_part_name": "Structure"});
+        deck["output_processes"] = json!({"s": [{"python_module": "save_restart_process", "Parameters": parameters}]});
+    });
     let twice = deck(|deck| *json_output(deck) = json!("upper.json"));
     is_refused(twice.path(), &[], "is written twice");
     let long = deck(|deck| *json_output(deck) = json!("x".repeat(300)));
@@ -96,10 +119,45 @@ fn limits_of_files_are_told() {
     assert!(matches!(code, Some(2 | 4)) && said(&output).contains("File too large"), "{code:?}: {}", said(&output));
 }
 
+/// A disk with room for the probe of nothing is refused; one that fills up while a run writes ends it in words, and what was whole stays.
+#[test]
+fn full_disks_are_told() {
+    let run = |kilobytes: usize, steps: usize| {
+        let scratch = deck(|deck| {
+            pictures(deck, "disk/pictures");
+            deck["problem_data"]["end_time"] = json!(steps);
+            deck["processes"].as_object_mut().expect("lists").remove("json_output_process_list");
+        });
+        let (program, folder) = (env!("CARGO_BIN_EXE_zelus"), scratch.path().display());
+        let script = format!(
+            "mkdir disk && mount -t tmpfs -o size={kilobytes}k none disk || exit 77; {program} run {DECK}; code=$?; \
+             ls disk/pictures > {folder}/left; cp -r disk/pictures {folder}/seen; exit $code"
+        );
+        let words = ["-rm", "bash", "-c", &script];
+        let output = Command::new("unshare").args(words).current_dir(scratch.path()).output();
+        output.ok().filter(|output| !matches!(output.status.code(), Some(1 | 77))).map(|output| (scratch, output))
+    };
+    let Some((_scratch, output)) = run(40, 1) else {
+        println!("skipped: this machine makes no file systems for users");
+        return;
+    };
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("No space left") && said(&output).contains("nothing was run"), "{}", said(&output));
+    let (scratch, output) = run(100, 200).expect("it was made before");
+    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
+    assert!(said(&output).contains("No space left"), "{}", said(&output));
+    let seen = contents(&scratch.path().join("seen"));
+    let pictures = seen.iter().filter(|(name, _)| name.extension().is_some_and(|ending| ending == "vtu"));
+    let whole = pictures.filter(|(_, text)| text.trim_ascii_end().ends_with(b"</VTKFile>")).count();
+    assert!(whole > 3, "{whole} pictures stay");
+    let names = seen.keys().map(|name| name.to_string_lossy());
+    assert!(names.into_iter().all(|name| !name.ends_with(".part")), "halves of files stay");
+}
+
 #[test]
 fn links_are_followed() {
     let scratch = deck(|_| {});
-    fs::write(scratch.path().join("real.json"), "{}").expect("a file");
+    fs::write(scratch.path().join("real.json"), "{\"TIME\": []}").expect("a file");
     std::os::unix::fs::symlink("real.json", scratch.path().join("lower.json")).expect("a link");
     let output = zelus(scratch.path(), &["run", DECK]);
     assert!(output.status.success(), "{}", said(&output));
@@ -114,7 +172,7 @@ fn results_stay_until_there_are_others() {
     let scratch = deck(|deck| pictures(deck, "pictures"));
     let (folder, pictures) = (scratch.path(), scratch.path().join("pictures"));
     fs::create_dir(&pictures).expect("a folder");
-    fs::write(pictures.join("Structure_99.vtu"), "of an earlier run").expect("a file");
+    fs::write(pictures.join("Structure_99.vtu"), "<?xml of an earlier run").expect("a file");
     fs::write(pictures.join("Other_1.vtu"), "of a stranger").expect("a file");
     for file in ["lower.json", "upper.json", "slave.json"] {
         fs::write(folder.join(file), "{\"TIME\": [7.0]}").expect("a file");

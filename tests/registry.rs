@@ -136,3 +136,34 @@ fn names_of_the_reference_program_are_answered() {
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
+
+/// What `describe` shows as an example is taken by the object.
+#[test]
+fn examples_fit_the_settings_of_their_objects() {
+    for (kind, entry) in entries().into_iter().filter(|(_, entry)| !entry.defaults.is_empty()) {
+        let defaults = Defaults::parse(entry.name, entry.defaults).unwrap();
+        let example = defaults.example().unwrap_or_else(|| panic!("{kind} {} has no example", entry.name)).clone();
+        if let Err(error) = Settings::check(&example, &defaults) {
+            panic!("the example of {kind} {}: {error}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn describe_shows_an_example_of_every_kind_of_object() {
+    let shown = |name: &str| {
+        let output = zelus(&root(), &["describe", name]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let example = text.split("  example:\n").nth(1).unwrap_or_else(|| panic!("no example of {name} in {text}"));
+        example.lines().map(|line| &line[4..]).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(
+        shown("SmallDisplacementElement2D4N"),
+        "Begin Elements SmallDisplacementElement2D4N\n    1 1 1 2 3 4\nEnd Elements"
+    );
+    let json = |name: &str| serde_json::from_str::<serde_json::Value>(&shown(name)).expect("an example in JSON");
+    assert_eq!(json("alm_contact_process")["python_module"], "alm_contact_process");
+    assert_eq!(json("bossak")["solver_settings"]["scheme_type"], "bossak");
+    assert_eq!(json("LinearElastic3DLaw")["Material"]["constitutive_law"]["name"], "LinearElastic3DLaw");
+    assert_eq!(json("gmsh")["solver_settings"]["model_import_settings"]["input_type"], "gmsh");
+}

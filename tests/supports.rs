@@ -10,7 +10,7 @@ mod support;
 use blocks::{Deck, Joint, Mesh, POISSON, Vec3};
 use serde_json::{Value, json};
 use std::path::Path;
-use support::{Results, said, zelus};
+use support::{Results, read_json, root, said, scratch_copy, zelus};
 use zelus as _;
 
 const NULL: Value = Value::Null;
@@ -413,5 +413,42 @@ fn a_slave_node_at_the_origin_is_as_any_other() {
         };
         let error = difference(&found, &deck.mesh.nodes, field, strain);
         assert!(error < 10.0 * strain, "shift {shift:?}: off by {error:e}");
+    }
+}
+
+/// What supports move on both sides slides, however little: the friction is that of Coulomb's law for any length of the slip.
+#[test]
+fn driven_sides_slide_however_little() {
+    let force = |motion: &str| {
+        let scratch = scratch_copy(&root().join("examples/thermoelastic_instability"));
+        let path = scratch.path().join("ProjectParameters.json");
+        let mut deck = read_json(&path).expect("the deck");
+        deck["problem_data"]["end_time"] = json!(0.005);
+        for list in deck["processes"].as_object_mut().expect("lists").values_mut() {
+            for process in list.as_array_mut().expect("a list") {
+                let parameters = &mut process["Parameters"];
+                if parameters["variable_name"] == "DISPLACEMENT_X" {
+                    parameters["value"] = json!(motion);
+                }
+                if parameters["friction_heat"].is_number() {
+                    parameters["friction_heat"] = json!(0.0);
+                }
+            }
+        }
+        std::fs::write(&path, deck.to_string()).expect("the deck");
+        let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "run.json"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let report = read_json(&scratch.path().join("run.json")).expect("the report");
+        let steps = report["steps"].as_array().expect("steps");
+        let pair = &steps[steps.len() - 1]["balance"]["pairs"][0];
+        [0, 1].map(|c| pair["force"][c].as_f64().expect("a force"))
+    };
+    for share in [1.0, -1.0, 1e-2, -1e-2, 1e-4] {
+        // On and on, and back in the second half.
+        for (motion, sign) in [(format!("{}*t", 0.1 * share), -1.0), (format!("{}*t*(0.003-t)", 30.0 * share), 1.0)] {
+            let [along, across] = force(&motion);
+            let wanted = sign * 0.3 * across * f64::signum(share);
+            assert!(across > 0.5 && (along - wanted).abs() < 1e-6 * across, "{motion}: {along}, not {wanted}");
+        }
     }
 }

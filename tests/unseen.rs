@@ -1,31 +1,24 @@
 //! Bodies that do not meet, or that are in each other where contact sees nothing: no wrong answer ends with exit 0, and what never
 //! happened is said at the end.
 
+#[path = "support/blocks_of_case.rs"]
+mod blocks_of_case;
 mod support;
 
 use std::path::Path;
 
+use blocks_of_case::raised;
 use serde_json::{Value, json};
 use support::{read_json, root, said, scratch_copy, zelus};
 
 const DECK: &str = "ProjectParameters.json";
-/// The first node of the upper block of the case, and the last.
-const UPPER: std::ops::RangeInclusive<usize> = 13..=24;
 
 /// Two blocks of this height, a gap between them, the upper one moved by its top; `change` has the last word.
 fn blocks(height: f64, gap: f64, motion: f64, change: impl FnOnce(&mut Value)) -> tempfile::TempDir {
     let scratch = scratch_copy(&root().join("tests/cases/contact_2d/matching"));
     let mesh = scratch.path().join("mesh.mdpa");
     let text = std::fs::read_to_string(&mesh).expect("the mesh");
-    let (before, rest) = text.split_once("Begin Nodes\n").expect("nodes");
-    let (nodes, after) = rest.split_once("End Nodes").expect("an end");
-    let moved = nodes.lines().map(|line| {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let (id, y): (usize, f64) = (words[0].parse().expect("an id"), words[2].parse().expect("a number"));
-        format!("{id} {} {} 0\n", words[1], height * y + if UPPER.contains(&id) { gap } else { 0.0 })
-    });
-    let moved: String = moved.collect();
-    std::fs::write(&mesh, format!("{before}Begin Nodes\n{moved}End Nodes{after}")).expect("a file");
+    std::fs::write(&mesh, raised(&text, height, gap)).expect("a file");
     let mut deck = read_json(&scratch.path().join(DECK)).expect("the deck");
     deck["problem_data"]["end_time"] = json!(1.0);
     let processes = deck["processes"].as_object_mut().expect("lists");

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::check;
 use crate::csr::{Csr, Runs};
 use crate::direct::DirectSolver;
-use crate::iterations::{Answers, Progress, gmres};
+use crate::iterations::{Answer, Answers, Progress, gmres};
 use crate::memory;
 use crate::precondition::{Blocks, Constrained, Multigrid};
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
@@ -226,7 +226,15 @@ impl MultigridSolver {
             scale(y);
         };
         if !ghosts.any(start.iter().any(|x| *x != 0.0)) {
-            self.learnt.answers.start(system.bulk_graph, ghosts, multiply, &b, 0.5 * self.tolerance, &mut start);
+            let product = |answer: &mut Answer, y: &mut [f64]| {
+                if system.shared.is_some() {
+                    return multiply(&answer.x, y);
+                }
+                y.copy_from_slice(answer.product(system.bulk_values, |x, y| system.bulk_product(runs, x, y)));
+                system.add_coupling_product(&answer.x, y);
+                scale(y);
+            };
+            self.learnt.answers.start(system.bulk_graph, ghosts, product, &b, 0.5 * self.tolerance, &mut start);
         }
         let (tolerance, most) = (self.tolerance, self.settings.iterations.min(most));
         let (mut iterations, mut before, mut rate, mut solves_left) = (0, None, 0.0_f64, !hierarchy.is_old);

@@ -123,16 +123,24 @@ impl<'a> System<'a> {
     /// When a length is not the number of equations.
     pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
         self.bulk.mul_vec(x, y);
-        if let Some(coupling) = self.active_coupling() {
-            coupling.mul_vec_add(x, y);
-        }
+        self.add_coupling_product(x, y);
     }
 
     /// As [`System::mul_vec`], to the bit, with the runs of the bulk's rows.
     pub(crate) fn mul_vec_by_runs(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
+        self.bulk_product(runs, x, y);
+        self.add_coupling_product(x, y);
+    }
+
+    /// `y = bulk x`.
+    pub(crate) fn bulk_product(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
         let (own, others) = y.split_at_mut(self.bulk.rows);
         self.bulk.mul_vec_by_runs(runs, &x[..self.bulk.rows], own);
         others.fill(0.0);
+    }
+
+    /// `y += coupling x`.
+    pub(crate) fn add_coupling_product(&self, x: &[f64], y: &mut [f64]) {
         if let Some(coupling) = self.active_coupling() {
             coupling.mul_vec_add(x, y);
         }

@@ -34,7 +34,9 @@ impl Builtin {
         let process = session.get().with(|lent| {
             let model = lent.model_mut().ok_or_else(read_only)?;
             let mut report = Report::new();
-            let request = &mut ProcessRequest { entry, parameters: &node, model, folder: &folder, report: &mut report };
+            let (parameters, folder) = (&node, folder.as_path());
+            let request =
+                &mut ProcessRequest { entry, parameters, model, folder, results: folder, report: &mut report };
             let made = (entry.build)(request).map_err(|error| error.at(&place));
             let made = made.and_then(|made| report.finish().map(|_| made));
             made.map_err(|error| failed(&error))

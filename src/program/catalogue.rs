@@ -6,8 +6,12 @@ use zelus_core::entities::find_kind;
 use zelus_core::model::{Role, VariableKind, variables};
 use zelus_core::registry::{self, Entry, Kind};
 
+use super::example::example;
 use super::kratos_names::{done_here, without_shape};
 use super::say::say;
+
+/// What the line of an example begins with in a file of defaults.
+const EXAMPLE: &str = "\"$example\"";
 
 /// Prints the names of one kind, or of all.
 pub(super) fn list(kind: Option<&str>) -> Result<()> {
@@ -67,11 +71,16 @@ pub(super) fn describe(name: &str) -> Result<()> {
         say(&format!("  code: {}:{}", entry.file, entry.line));
         if !entry.defaults.is_empty() {
             say("  settings with their defaults:");
-            entry.defaults.lines().for_each(|line| say(&format!("    {line}")));
+            let settings = entry.defaults.lines().filter(|line| !line.trim_start().starts_with(EXAMPLE));
+            settings.for_each(|line| say(&format!("    {line}")));
         }
         for (program, values) in entry.like {
             say(&format!("  with --like {program}, where a deck names nothing:"));
             values.lines().for_each(|line| say(&format!("    {line}")));
+        }
+        if let Some(text) = example(kind, entry)? {
+            say("  example:");
+            text.lines().for_each(|line| say(&format!("    {line}")));
         }
     }
     let variable = variables().get(name);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use zelus_core::diagnostics::{Diagnostic, Place};
-use zelus_core::io::replace_own_file;
+use zelus_core::io::{Mark, replace_own_file};
 use zelus_core::{Error, Result};
 
 use super::report::check_output;
@@ -36,12 +36,7 @@ pub(super) struct Arguments {
 /// A file that is no report, results that cannot be read, an output that cannot be written or would replace something else.
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { report: path, output } = arguments;
-    check_output("the page", output, &[path])?;
-    if std::fs::read(output).is_ok_and(|text| !text.is_empty() && !text.starts_with(MARK.as_bytes())) {
-        let fact = format!("{} is no page of this program, and would be replaced", output.display());
-        let problem = Diagnostic::error("output-file", fact);
-        return Err(problem.remedy("give the page another name, or remove the file").into());
-    }
+    check_output("the page", output, &[path], Mark::Begins(&[MARK]))?;
     let report = read(path)?;
     let (views, missing) = views(path)?;
     let page = page(&report, &views, &missing);

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use zelus_core::diagnostics::Diagnostic;
+use zelus_core::io::Mark;
 use zelus_core::{Error, Result};
 
 use super::report::check_output;
@@ -28,12 +28,7 @@ impl Log {
     /// # Errors
     /// A file that is the deck, is no log, or cannot be written.
     pub(super) fn begin(path: &Path, deck: &Path) -> Result<Self> {
-        check_output("the log", path, &[deck])?;
-        if std::fs::read(path).is_ok_and(|text| !text.is_empty() && !text.starts_with(MARK.as_bytes())) {
-            let fact = format!("{} is no log of an earlier run, and would be replaced", path.display());
-            let problem = Diagnostic::error("output-file", fact);
-            return Err(problem.remedy("give the log another name, or remove the file").into());
-        }
+        check_output("the log", path, &[deck], Mark::Begins(&[MARK]))?;
         let file = File::create(path).map_err(|error| Error::System(format!("{}: {error}", path.display())))?;
         let mut log = Self { file, begun: Instant::now(), failed: false };
         let words: Vec<String> = std::env::args().skip(1).collect();

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, Place};
+use zelus_core::io::Mark;
 use zelus_core::io::mdpa::MdpaDocument;
 use zelus_core::parameters::{Node, Object, Value};
 use zelus_meshes::format;
@@ -58,7 +59,7 @@ pub(super) fn import(arguments: Import) -> Result<()> {
 /// Writes a mesh in the format of the ending of its new name.
 pub(super) fn convert(arguments: &Convert) -> Result<()> {
     let (from, to) = (&arguments.from, &arguments.to);
-    check_output("the mesh", to, &[from])?;
+    check_output("the mesh", to, &[from], Mark::None)?;
     let target = format(to, None)?;
     let write = target.write.ok_or_else(|| {
         let fact = format!("meshes of the format {} are read only", target.name);

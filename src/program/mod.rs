@@ -2,6 +2,7 @@
 
 mod catalogue;
 mod diff;
+mod example;
 mod html;
 mod kratos_names;
 mod log;
@@ -12,29 +13,30 @@ mod problems;
 mod progress;
 mod report;
 mod results;
+mod run;
 mod say;
+mod schema;
 mod skin;
 mod starter;
 mod stop;
+mod sweep;
+mod table;
 mod terminal;
 mod warnings;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
-use zelus_core::analysis::{RunOptions, RunReport, Simulation};
+use zelus_core::analysis::{RunOptions, Simulation};
 use zelus_core::communication::{self, Ranks};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::strategies::{Monitor, Silent};
 use zelus_core::{Error, Result};
 
-use log::Log;
 use problems::Problems;
-use report::Report;
 use say::say;
-use stop::Stop;
 use terminal::{Level, Terminal};
 
 /// Multiphysics finite elements: runs Kratos contact decks unmodified.
@@ -55,35 +57,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a deck.
-    Run {
-        /// The deck, e.g. ProjectParameters.json.
-        file: PathBuf,
-        /// Threads; all of the machine when not given. Results do not depend on it.
-        #[arg(long)]
-        threads: Option<usize>,
-        /// Write the report of the run (sizes, iterations, contact state, timings, warnings) to this JSON file.
-        #[arg(long)]
-        report: Option<PathBuf>,
-        /// Take the defaults of this program where the deck names nothing, e.g. kratos.
-        #[arg(long, value_name = "PROGRAM")]
-        like: Option<String>,
-        /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
-        #[arg(long, value_name = "KEY=VALUE")]
-        set: Vec<String>,
-        /// Go on from the latest saved run of the deck, with the bits of a run that was not stopped; from the start where
-        /// none was saved.
-        #[arg(long)]
-        resume: bool,
-        /// Say nothing but warnings and errors.
-        #[arg(short, long, conflicts_with = "verbose")]
-        quiet: bool,
-        /// Also say who solved how, which nodes changed their state, and where the time went.
-        #[arg(short, long)]
-        verbose: bool,
-        /// Write all that --verbose says, with the seconds since the start, to this file as well.
-        #[arg(long, value_name = "FILE")]
-        log: Option<PathBuf>,
-    },
+    Run(run::Arguments),
     /// Check everything about a deck that can be known without solving.
     Check {
         /// The deck, e.g. ProjectParameters.json.
@@ -114,6 +88,12 @@ enum Command {
     List {
         /// A kind, e.g. process or condition.
         kind: Option<String>,
+    },
+    /// Print the JSON Schema of decks or of materials, by which editors complete and check them.
+    Schema {
+        /// What of.
+        #[arg(value_enum, default_value_t = schema::Of::Deck)]
+        of: schema::Of,
     },
     /// Print the completions of a shell, e.g. for bash: source <(zelus completions bash).
     Completions {
@@ -153,19 +133,6 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// A program in Python is no deck: says what runs it.
-fn refuse_script(file: &Path) -> Result<()> {
-    if file.extension().is_none_or(|ending| ending != "py") {
-        return Ok(());
-    }
-    let fact = format!("{} is a program in Python", file.display());
-    let remedy = format!(
-        "`python -m zelus {}` runs it, with the Python package; or name the deck that it reads",
-        file.display()
-    );
-    Err(Diagnostic::error("python-program", fact).remedy(remedy).into())
-}
-
 /// How `check` tells problems.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
@@ -176,51 +143,7 @@ enum Format {
 /// Does what is asked; `ran` says afterwards whether a step was made.
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
-        Command::Run { file, threads, report, like, set, resume, quiet, verbose, log } => {
-            refuse_script(&file)?;
-            let report = report.map(Report);
-            if let Some(report) = &report {
-                report.check(&file)?;
-            }
-            let stop = Stop::listen()?;
-            let mut also = like.as_ref().map(|like| format!("--like {like} ")).unwrap_or_default();
-            set.iter().for_each(|change| also += &format!("--set '{change}' "));
-            let outputs = report.iter().map(|report| &report.0).chain(&log).cloned().collect();
-            let options = RunOptions { threads, like, ranks: ranks.clone(), outputs, changes: changes(&set)? };
-            if !ranks.is_root() {
-                let mut simulation = Simulation::open(&file, &options)?;
-                return drive(&mut simulation, &mut Silent, resume, &stop).map(|ended| ended.code());
-            }
-            let level = match (quiet, verbose) {
-                (true, _) => Level::Quiet,
-                (_, true) => Level::Verbose,
-                _ => Level::Usual,
-            };
-            let log = log.map(|log| Log::begin(&log, &file)).transpose()?;
-            let mut terminal = Terminal::new(level, log);
-            let (result, mut run) = match Simulation::open(&file, &options) {
-                Ok(mut simulation) => (drive(&mut simulation, &mut terminal, resume, &stop), simulation.into_report()),
-                Err(error) => (Err(error), RunReport::default()),
-            };
-            *ran = !run.steps.is_empty();
-            match &result {
-                Ok(ended) => run.exit_code = ended.exit_code(),
-                Err(error) => run.fail(error),
-            }
-            let failed = result.as_ref().err().map(|error| explain(error, *ran));
-            terminal.finish(&run, failed.as_deref());
-            let written = report.map_or(Ok(()), |report| report.write(&run, result.as_ref().err()));
-            let ended = result?;
-            written?;
-            if let Ended::Stopped { saved, time } = &ended {
-                say(&format!(
-                    "stopped at time {time}, and saved in {}: `zelus run {} {also}--resume` goes on",
-                    saved.display(),
-                    file.display()
-                ));
-            }
-            Ok(ended.code())
-        }
+        Command::Run(arguments) => run::run(&arguments, ranks, ran),
         Command::Check { file, like, set, format } => {
             let options = RunOptions { like, ranks: ranks.clone(), changes: changes(&set)?, ..RunOptions::default() };
             if format == Format::Json && ranks.is_root() {
@@ -253,6 +176,10 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
         Command::Partition(arguments) => partition::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Report(arguments) => html::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Schema { of } => {
+            say(&format!("{:#}", schema::schema(of)?));
+            Ok(ExitCode::SUCCESS)
+        }
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(shell, &mut Arguments::command(), "zelus", &mut text);
@@ -282,39 +209,6 @@ fn changes(given: &[String]) -> Result<Vec<(String, serde_json::Value)>> {
         Ok((key.trim().to_owned(), value))
     };
     given.iter().map(of).collect()
-}
-
-/// How a run came to its end.
-enum Ended {
-    Done,
-    Stopped { saved: PathBuf, time: f64 },
-}
-
-impl Ended {
-    fn exit_code(&self) -> u8 {
-        if matches!(self, Self::Done) { 0 } else { 5 }
-    }
-
-    fn code(&self) -> ExitCode {
-        ExitCode::from(self.exit_code())
-    }
-}
-
-/// Makes the steps of a deck, until a signal asks to stop after the one under way.
-fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, stop: &Stop) -> Result<Ended> {
-    if resume {
-        match simulation.resume(monitor)? {
-            Some(saved) => monitor.note(&format!("goes on from {}", saved.display())),
-            None => monitor.note("no run of this deck was saved: it is run from its start"),
-        }
-    }
-    while simulation.step(monitor)? {
-        if simulation.model().ranks.any(stop.is_asked()) {
-            let time = simulation.time().unwrap_or_default();
-            return Ok(Ended::Stopped { saved: simulation.suspend()?, time });
-        }
-    }
-    Ok(Ended::Done)
 }
 
 fn explain(error: &Error, ran: bool) -> String {

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 
 use serde_json::json;
 use zelus_core::analysis::{DeckMesh, read_deck_mesh};
-use zelus_core::io::replace_own_file;
 use zelus_core::io::results::{Cells, Column, Dataset, write_piece};
+use zelus_core::io::{Mark, replace_own_file};
 use zelus_core::model::ModelPart;
 use zelus_core::partition::{Counts, Partition, RankCounts, Repeats, Traffic, partition};
 use zelus_core::{Error, Result};
 
-use super::report::{check_earlier, check_output};
+use super::report::check_output;
 use super::say::say;
 
 /// Up to this number of ranks every rank has its line.
@@ -43,14 +43,15 @@ pub(super) struct Arguments {
 }
 
 /// A key that every file of a partition has.
-const MARK: &str = "\"repeats\"";
+const MARK: Mark = Mark::Holds("\"repeats\"");
 
 /// Cuts the mesh, prints the table and writes the files asked for.
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    for (what, path, mark) in [("partition", &arguments.json, MARK), ("picture", &arguments.vtu, "<VTKFile")] {
+    for (what, path, mark) in
+        [("partition", &arguments.json, MARK), ("picture", &arguments.vtu, Mark::Holds("<VTKFile"))]
+    {
         let Some(path) = path else { continue };
-        check_output(&format!("the {what}"), path, &[&arguments.file])?;
-        check_earlier(what, path, mark)?;
+        check_output(&format!("the {what}"), path, &[&arguments.file], mark)?;
     }
     let DeckMesh { part, surfaces, common } = read_deck_mesh(&arguments.file)?;
     let cut = partition(&part, &surfaces, arguments.ranks)?;

@@ -4,41 +4,36 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use zelus_core::analysis::RunReport;
-use zelus_core::diagnostics::Diagnostic;
-use zelus_core::io::{FileUse, check_files, replace_own_file};
+use zelus_core::io::{FileUse, Mark, check_files, replace_own_file};
 use zelus_core::{Error, Result};
 
 /// A key that every report has.
-const MARK: &str = "\"laid_defaults\"";
+const MARK: Mark = Mark::Holds("\"laid_defaults\"");
 
-/// Refuses a file that the command line names as an output: in no folder, or one that is an input or cannot be written.
+/// Refuses a file that the command line names as an output: in no folder, or one that is an input, cannot be written, or is not of an
+/// earlier run, which has the mark.
 ///
 /// # Errors
 /// The reason, before anything is read.
-pub(super) fn check_output(what: &str, path: &Path, inputs: &[&Path]) -> Result<()> {
+pub(super) fn check_output(what: &str, path: &Path, inputs: &[&Path], mark: Mark) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         let missing = format!("cannot write {what} to {}: there is no folder {}", path.display(), folder.display());
         return Err(Error::System(missing));
     }
     let mut files: Vec<FileUse> = inputs.iter().map(|input| FileUse::Reads((*input).to_owned())).collect();
-    files.push(FileUse::Writes(path.to_owned()));
-    let problems = check_files(&files);
+    files.push(FileUse::Writes(path.to_owned(), mark));
+    let problems = check_files(&files, 0);
     if problems.is_empty() { Ok(()) } else { Err(Error::Input(problems)) }
 }
 
-/// Refuses to replace a file that an earlier run has not written: one without the `mark` that all such files have.
+/// Makes a folder for results, where it is not there.
 ///
 /// # Errors
-/// The stranger's file.
-pub(super) fn check_earlier(what: &str, path: &Path, mark: &str) -> Result<()> {
-    let is_strange = |text: Vec<u8>| !text.is_empty() && !String::from_utf8_lossy(&text).contains(mark);
-    if !std::fs::read(path).is_ok_and(is_strange) {
-        return Ok(());
-    }
-    let fact = format!("{} is no {what} of an earlier run, and would be replaced", path.display());
-    let problem = Diagnostic::error("output-file", fact);
-    Err(problem.remedy(format!("give the {what} another name, or remove the file")).into())
+/// A folder that cannot be made.
+pub(super) fn made_folder(folder: &Path) -> Result<()> {
+    let failed = |error| Error::System(format!("{}: cannot be made: {error}", folder.display()));
+    std::fs::create_dir_all(folder).map_err(failed)
 }
 
 /// The report of a run, to be written at its end.
@@ -51,9 +46,7 @@ impl Report {
     /// # Errors
     /// The reason, before anything is read.
     pub(super) fn check(&self, deck: &Path) -> Result<()> {
-        let path = &self.0;
-        check_output("the report", path, &[deck])?;
-        check_earlier("report", path, MARK)
+        check_output("the report", &self.0, &[deck], MARK)
     }
 
     /// Writes the report, unless the run has ended since files would have been lost.

@@ -1,5 +1,7 @@
 //! Heat against closed forms: conduction, storage, convection, radiation; and that nothing but physics changes an answer.
 
+mod damage;
+mod explicit;
 mod slab;
 #[path = "../support/mod.rs"]
 mod support;

@@ -46,7 +46,7 @@ impl Slab {
                 text += &format!("{} {:?} {:?} 0.0\n", self.node(column, row), c * x - s * y, s * x + c * y);
             }
         }
-        let (mut elements, mut near, mut far) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut elements, mut near, mut far, mut middle) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for column in 0..self.cells {
             for row in 0..self.rows {
                 let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| self.node(column + i, row + j));
@@ -54,6 +54,7 @@ impl Slab {
                 let pieces = if self.triangles { vec![vec![a, b, c], vec![a, c, d]] } else { vec![vec![a, b, c, d]] };
                 for piece in pieces {
                     half.push(elements.len() + 1);
+                    middle.extend((column == self.cells / 2).then_some(elements.len() + 1));
                     elements.push(piece);
                 }
             }
@@ -61,7 +62,7 @@ impl Slab {
         if self.reversed {
             let last = elements.len() + 1;
             elements.reverse();
-            near.iter_mut().chain(&mut far).for_each(|id| *id = last - *id);
+            near.iter_mut().chain(&mut far).chain(&mut middle).for_each(|id| *id = last - *id);
         }
         text += &format!("End Nodes\nBegin Elements {}2D{}N\n", self.element, if self.triangles { 3 } else { 4 });
         for (at, nodes) in elements.iter().enumerate() {
@@ -79,6 +80,7 @@ impl Slab {
         text += &part("Body", &columns(0, self.cells), &all, &[]);
         text += &part("Near", &columns(0, self.cells.div_ceil(2)), &near, &[]);
         text += &part("Far", &columns(self.cells.div_ceil(2), self.cells), &far, &[]);
+        text += &part("Middle", &columns(self.cells / 2, self.cells / 2 + 1), &middle, &[]);
         text += &part("Left", &column(0), &[], &[]);
         text += &part("Foot", &(0..=self.cells).map(|column| self.node(column, 0)).collect::<Vec<_>>(), &[], &[]);
         text += &part("Right", &column(self.cells), &[], &faces);
@@ -140,7 +142,11 @@ impl Deck {
 
     /// Writes the deck into a folder.
     pub fn write(&self, folder: &Path, slab: &Slab) {
-        let mut variables = vec!["TEMPERATURE", "REACTION_FLUX"];
+        let mut variables = if self.solver["solver_type"] == "Static" {
+            vec!["REACTION_X"]
+        } else {
+            vec!["TEMPERATURE", "REACTION_FLUX"]
+        };
         variables.extend((slab.element != "Element").then_some("DISPLACEMENT_Y"));
         let output = json!({"python_module": "json_output_process", "Parameters": {"model_part_name": "Heat",
             "output_file_name": "results.json", "output_variables": variables, "time_frequency": 0.0}});

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
 use zelus_core::entities::{Interaction, Observer};
-use zelus_core::io::{FileUse, replace_file};
+use zelus_core::io::{FileUse, Mark, replace_file};
 use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
@@ -61,7 +61,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         request.settings_with(|defaults| defaults.require(&["model_part_name", "output_file_name", "columns"]))?;
     Ok(Box::new(IterateOutput {
         root: settings.get_str("model_part_name")?.to_owned(),
-        file: request.folder.join(settings.get_str("output_file_name")?),
+        file: request.results.join(settings.get_str("output_file_name")?),
         columns: settings.get("columns")?.parse("columns")?,
         place: settings.key_place("columns"),
         table: Table::default(),
@@ -122,7 +122,7 @@ impl Process for IterateOutput {
     }
 
     fn files(&self) -> Vec<FileUse> {
-        vec![FileUse::Writes(self.file.clone())]
+        vec![FileUse::Writes(self.file.clone(), Mark::Holds("\"iterates\""))]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

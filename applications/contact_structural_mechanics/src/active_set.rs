@@ -87,6 +87,8 @@ pub struct SlaveNumbers {
     pub tangent: [f64; 3],
     /// Stiffness c: what a gap counts with against tractions (stress by length).
     pub stiffness: f64,
+    /// Whether supports move both sides: what slips then cannot stick, however little it is.
+    pub driven: bool,
     /// Limit of the tangential traction.
     pub friction: Bound,
     /// Scale factor k.
@@ -119,6 +121,11 @@ impl SlaveNumbers {
 
     fn presses(&self, pressure: f64) -> bool {
         self.resolution.exceeds(-pressure, 0.0, self.state.is_active())
+    }
+
+    /// Whether supports move the sides along each other.
+    fn is_dragged(&self) -> bool {
+        self.driven && norm(self.slip) > 0.0
     }
 
     /// Whether the slip of a sliding node is against the traction that should oppose it.
@@ -200,7 +207,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         }
         NodeState::Stick => {
             let q = node.trial(0.0);
-            (q, node.resolution.exceeds(norm(q), bound, false))
+            (q, node.is_dragged() || node.resolution.exceeds(norm(q), bound, false))
         }
         _ => {
             // A node that enters while it moves more along the surface than into it was not held: holding it at once would
@@ -208,7 +215,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
             let least = node.friction.coefficient.max(1.0) * node.gap.abs();
             let dragged = is_more(norm(node.slip), least);
             let q = node.trial(1.0);
-            (q, dragged || node.resolution.exceeds(norm(q), bound, false))
+            (q, dragged || node.is_dragged() || node.resolution.exceeds(norm(q), bound, false))
         }
     };
     let slips = rule == SlipRule::Pure || node.friction.is_smooth() || over;
@@ -334,6 +341,7 @@ mod tests {
             trial: [0.0; 3],
             tangent: [1.0, 0.0, 0.0],
             stiffness: 2.0,
+            driven: false,
             friction: Bound { coefficient: 0.3, threshold: 0.0 },
             scale_factor: 4.0,
             tangent_factor: 0.5,
@@ -428,6 +436,16 @@ mod tests {
         assert_eq!(alm_frictional(&turned(0.39), margin).state, NodeState::Stick);
         let pure = alm_frictional(&node(NodeState::Slip, [0.0, 0.0, -1.0]), SlipRule::Pure);
         assert_eq!((pure.state, pure.slip_changed), (NodeState::Slip, false));
+    }
+
+    #[test]
+    fn what_supports_move_slides_however_little() {
+        let little = SlaveNumbers { slip: [-1e-9, 0.0, 0.0], ..node(NodeState::Stick, [-1e-9, 0.0, -1.0]) };
+        assert_eq!(alm_frictional(&little, COULOMB).state, NodeState::Stick);
+        let driven = alm_frictional(&SlaveNumbers { driven: true, ..little }, COULOMB);
+        assert_eq!((driven.state, driven.slip_changed), (NodeState::Slip, true));
+        let at_rest = SlaveNumbers { driven: true, slip: [0.0; 3], ..little };
+        assert_eq!(alm_frictional(&at_rest, COULOMB).state, NodeState::Stick);
     }
 
     #[test]

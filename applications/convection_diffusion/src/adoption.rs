@@ -79,8 +79,8 @@ fn turn(table: &mut EntityTable, positions: &[[f64; 3]], space: usize) -> usize 
     count
 }
 
-/// Warns of materials in which heat is not stored: they are at rest at each time.
-pub fn warn_of_no_storage(part: &ModelPart, report: &mut Report) {
+/// Warns of materials that do not say how much heat is stored, and of what then `follows`.
+pub fn warn_of_no_storage(part: &ModelPart, follows: &str, report: &mut Report) {
     let columns = Columns::of(part);
     let mut ids = part.elements.properties.clone();
     ids.sort_unstable();
@@ -89,8 +89,7 @@ pub fn warn_of_no_storage(part: &ModelPart, report: &mut Report) {
         let says =
             |name: &str| properties.values.contains_key(name) || properties.tables.keys().any(|(_, of)| of == name);
         if let Some(name) = [columns.density, columns.specific_heat].into_iter().flatten().find(|name| !says(name)) {
-            let fact =
-                format!("properties {} have no {name}: unless a process sets it, they store no heat", properties.id);
+            let fact = format!("properties {} have no {name}: {follows}", properties.id);
             let warning = Diagnostic::warning("no-storage", fact).at(properties.place.clone());
             report.push(warning.remedy(format!("add \"{name}\" to the \"Variables\" of this material")));
         }

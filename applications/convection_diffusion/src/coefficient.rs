@@ -49,6 +49,12 @@ impl Coefficient {
         Self { column, own }
     }
 
+    /// Itself, or a constant where the material says nothing.
+    pub fn or(self, value: f64) -> Self {
+        let own = if self.is_missing() { Own::Constant(value) } else { self.own };
+        Self { own, ..self }
+    }
+
     /// Whether it depends on the unknown.
     pub fn varies(&self) -> bool {
         matches!(self.own, Own::Table(_))

@@ -107,6 +107,28 @@ pub fn nodal<const NODES: usize>(
     }
 }
 
+/// Velocities at the nodes of an entity relative to the mesh, `share` of the way from the beginning of the step to its end.
+pub fn velocities<const NODES: usize>(
+    entity: &Gather<'_, NODES>,
+    view: &StepView<'_>,
+    columns: &Columns,
+    share: f64,
+) -> [[f64; 3]; NODES] {
+    let mut out = [[0.0; 3]; NODES];
+    for (column, sign) in [(columns.velocity, 1.0), (columns.mesh_velocity, -1.0)] {
+        for (level, share) in [(0, share), (1, 1.0 - share)] {
+            let values = column.map_or(&[][..], |column| view.nodes.history.level(column, level));
+            if values.is_empty() {
+                continue;
+            }
+            for (out, v) in out.iter_mut().zip(entity.vectors(values)) {
+                (0..3).for_each(|a| out[a] += sign * share * v[a]);
+            }
+        }
+    }
+    out
+}
+
 /// The name of a choice among the data of the part.
 fn stored(key: &str) -> String {
     format!("{SETTINGS}.{key}")

@@ -229,6 +229,9 @@ impl SolutionStrategy for Coupled {
 
 register! { SolverExtensionEntry "thermal_solver_settings",
     about: "heat beside the structure: the settings of a solver of heat, \"stationary\" or \"transient\"",
-    defaults: "{}",
+    defaults: r#"// Settings of a solver of heat, all of them: `zelus describe stationary` and transient.
+{
+    "$example": {"solver_type": "transient", "time_stepping": {"time_step": 0.25}}
+}"#,
     build: ExtensionDefinition { adopt, around, acts_alone: true, ..ExtensionDefinition::NOTHING },
 }

@@ -12,6 +12,7 @@ mod processes;
 pub mod scheme;
 pub mod transport;
 pub mod semi_implicit;
+mod runge_kutta;
 pub mod adoption;
 pub mod coupling;
 pub mod solvers;

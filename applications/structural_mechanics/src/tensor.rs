@@ -13,6 +13,8 @@ pub const IDENTITY: Tensor = Tensor::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
 
 /// Steps of the eigenvalue iteration that are allowed; without a bound it does not end where a number is not finite.
 const SWEEPS: usize = 100;
+/// Share of its diagonal by which a tangent that is symmetric differs from its transpose.
+const ROUND_OFF: f64 = 1e-12;
 
 /// Tensor indices of the `S` Voigt components: 3 plane, 4 axisymmetric, 6 solid.
 pub const fn pairs<const S: usize>() -> [(usize, usize); S] {
@@ -72,7 +74,7 @@ pub fn congruent(f: &Tensor, a: &Tensor) -> Tensor {
     f * a * f.transpose()
 }
 
-/// Spatial tangent c = F F F F : D / det F of a material tangent, both in Voigt form.
+/// Spatial tangent c = F F F F : D / det F of a material tangent, both in Voigt form; symmetric to the bit where D is so to round-off.
 pub fn push_forward<const S: usize>(d: &[[f64; S]; S], f: &Tensor, det_f: f64) -> [[f64; S]; S] {
     let pairs = pairs::<S>();
     let mut map = [[0.0; S]; S];
@@ -88,10 +90,14 @@ pub fn push_forward<const S: usize>(d: &[[f64; S]; S], f: &Tensor, det_f: f64) -
             half[s][t] = (0..S).map(|k| map[s][k] * d[k][t]).sum();
         }
     }
+    let is_round_off = |s: usize, t: usize| (d[s][t] - d[t][s]).abs() <= ROUND_OFF * (d[s][s].abs() + d[t][t].abs());
+    let symmetric = (0..S).all(|s| (0..s).all(|t| is_round_off(s, t)));
     for s in 0..S {
-        for t in s..S {
+        for t in if symmetric { s } else { 0 }..S {
             out[s][t] = (0..S).map(|k| half[s][k] * map[t][k]).sum::<f64>() / det_f;
-            out[t][s] = out[s][t];
+            if symmetric {
+                out[t][s] = out[s][t];
+            }
         }
     }
     out

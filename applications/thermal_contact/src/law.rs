@@ -39,16 +39,3 @@ registered_kind! {
         build: MakeLaw;
     }
 }
-
-/// A number of the settings that must be positive.
-///
-/// # Errors
-/// One that is not.
-pub fn positive(settings: &Settings, key: &str) -> Result<f64> {
-    let value = settings.get_f64(key)?;
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    let fact = format!("\"{key}\" is {value}");
-    Err(settings.error(key, "invalid-value", fact).remedy("write a number above 0").into())
-}

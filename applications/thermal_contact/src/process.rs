@@ -7,7 +7,6 @@ use zelus_contact_structural_mechanics::mortar::{IntegrationOrder, SegmentationS
 use zelus_contact_structural_mechanics::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 use zelus_contact_structural_mechanics::{check_slaves, surfaces_by_pair};
 use zelus_core::Result;
-use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::Interaction;
 use zelus_core::model::Model;
 use zelus_core::parameters::{Defaults, Interval, Node, Settings};
@@ -23,8 +22,6 @@ struct Whole {
     model_part_name: String,
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
-    touching_gap: f64,
-    search_factor: f64,
     integration_order: usize,
     normal_orientation_threshold: f64,
     axisymmetric: bool,
@@ -63,19 +60,13 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         let fact = format!("\"integration_order\" is {}, it must be 1 to 5", whole.integration_order);
         settings.error("integration_order", "integration-order", fact)
     })?;
-    for (key, value) in [("touching_gap", whole.touching_gap), ("search_factor", whole.search_factor)] {
-        if value.is_nan() || value <= 0.0 {
-            let problem: Diagnostic = settings.error(key, "invalid-value", format!("\"{key}\" is {value}"));
-            return Err(problem.remedy("write a number above 0").into());
-        }
-    }
     let chosen = Chosen {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,
         interval: Interval::from_node(settings.get("interval")?)?,
         laws: laws.into(),
         search: SearchSettings {
-            factor: whole.search_factor,
+            factor: settings.get_positive("search_factor")?,
             distance: SearchDistance::BetweenFacets,
             within_step: WithinStep::Lost,
             normal_orientation_threshold: whole.normal_orientation_threshold,
@@ -83,7 +74,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
             dynamic: false,
         },
         segmentation: SegmentationSettings { integration_order, slivers: true, ..SegmentationSettings::default() },
-        touching: whole.touching_gap,
+        touching: settings.get_positive("touching_gap")?,
         axisymmetric: whole.axisymmetric,
         friction: whole.friction_heat,
     };

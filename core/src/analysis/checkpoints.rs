@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::deck::StageDeck;
+use super::deck::{Folders, StageDeck};
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Place, Result, did_you_mean};
 use crate::io::{format_of, replace_file};
@@ -34,7 +34,7 @@ impl Checkpoints {
     ///
     /// # Errors
     /// Stages that are not there; keys of another type.
-    pub(super) fn new(deck: &Node, stages: &[StageDeck], folder: &Path) -> Result<Self> {
+    pub(super) fn new(deck: &Node, stages: &[StageDeck], folders: &Folders) -> Result<Self> {
         let setting = |key: &str| deck.get_path(&format!("orchestrator.settings.{key}")).filter(|node| !node.is_null());
         let names: Vec<String> = stages.iter().map(|stage| stage.name.clone()).collect();
         let after = match setting("stage_checkpoints") {
@@ -55,17 +55,17 @@ impl Checkpoints {
         let checkpoints = setting("stage_checkpoints_folder").map(Node::str).transpose()?.unwrap_or("checkpoints");
         let mut from = None;
         if let Some(node) = setting("load_from_checkpoint") {
-            from = Some(Beginning { path: folder.join(node.str()?), place: node.place() });
+            from = Some(Beginning { path: folders.deck.join(node.str()?), place: node.place() });
         }
         let mut mesh = None;
         if let Some(import) = stages.first().and_then(|first| first.settings.get_path(IMPORT)) {
             let name = import.get("input_filename").map(Node::str).transpose()?;
             match import.get("input_type").and_then(Node::as_str) {
-                Some("rest") => from = Some(restart(import, folder)?),
+                Some("rest") => from = Some(restart(import, &folders.deck)?),
                 _ => mesh = name.map(str::to_owned),
             }
         }
-        Ok(Self { folder: folder.join(checkpoints), after, from, mesh })
+        Ok(Self { folder: folders.results.join(checkpoints), after, from, mesh })
     }
 
     /// The file to save to after a stage, where the deck asks for one.
@@ -109,16 +109,16 @@ fn restart(import: &Node, folder: &Path) -> Result<Beginning> {
     })
 }
 
-/// The file beside a deck that names its latest saved run.
+/// The file that names the latest saved run of a deck, beside the deck or where its results are.
 pub(super) struct Pointer(PathBuf);
 
 impl Pointer {
-    /// That of a deck.
-    pub(super) fn of(deck: &Path) -> Self {
-        Self(deck.with_extension("resume"))
+    /// That of a deck with results in this folder.
+    pub(super) fn of(deck: &Path, results: &Path) -> Self {
+        Self(results.join(deck.file_name().unwrap_or_default()).with_extension("resume"))
     }
 
-    /// A saved run beside the deck.
+    /// A saved run beside it.
     pub(super) fn beside(&self) -> PathBuf {
         self.0.with_extension("rest")
     }

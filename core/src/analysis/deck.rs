@@ -119,9 +119,12 @@ pub(super) fn root_name(settings: &Settings) -> Result<String> {
     Ok(name.to_owned())
 }
 
+/// The key by which a deck names its JSON Schema to editors.
+const SCHEMA: &str = "$schema";
+
 /// Warns of keys beside the sections of a deck.
 pub(super) fn check_top_level(deck: &Node, known: &[&str], problems: &mut Report) -> Result<()> {
-    for key in deck.object()?.keys().filter(|key| !known.contains(key)) {
+    for key in deck.object()?.keys().filter(|key| !known.contains(key) && *key != SCHEMA) {
         problems.push(if key.starts_with('_') {
             let fact = format!("\"{key}\" starts with an underscore and is not read");
             Diagnostic::warning("disabled-key", fact).at(deck.key_place(key))
@@ -255,10 +258,19 @@ pub(super) fn listed<'a>(deck: &'a Node, problems: &mut Report) -> Vec<&'a Node>
     out
 }
 
+/// Where names of files begin.
+#[derive(Debug, Clone)]
+pub(super) struct Folders {
+    /// Those that are read: the folder of the deck.
+    pub deck: PathBuf,
+    /// Those that are written.
+    pub results: PathBuf,
+}
+
 /// The processes of a deck.
 pub(super) fn make_processes(
     deck: &Node,
-    folder: &Path,
+    folders: &Folders,
     model: &mut Model,
     driver: &mut dyn Driver,
     problems: &mut Report,
@@ -267,7 +279,7 @@ pub(super) fn make_processes(
     for item in listed(deck, problems) {
         let made = match driver.process(item, model).map_err(|error| error.at(&item.place())) {
             Ok(Some(process)) => Ok(process),
-            Ok(None) => make_process(item, folder, model, problems),
+            Ok(None) => make_process(item, folders, model, problems),
             Err(error) => Err(error),
         };
         out.extend(problems.absorb(made));
@@ -275,7 +287,7 @@ pub(super) fn make_processes(
     out
 }
 
-fn make_process(item: &Node, folder: &Path, model: &mut Model, problems: &mut Report) -> Result<Box<dyn Process>> {
+fn make_process(item: &Node, folders: &Folders, model: &mut Model, problems: &mut Report) -> Result<Box<dyn Process>> {
     let module = match item.get("python_module") {
         Some(module) => module,
         None => item.get("name").ok_or_else(|| {
@@ -288,7 +300,8 @@ fn make_process(item: &Node, folder: &Path, model: &mut Model, problems: &mut Re
     let empty = Node::new(Value::Object(Default::default()), &item.place());
     let parameters = item.get("Parameters").unwrap_or(&empty);
     let place = parameters.place();
-    let made = (entry.build)(&mut ProcessRequest { entry, parameters, model, folder, report: problems });
+    let Folders { deck: folder, results } = folders;
+    let made = (entry.build)(&mut ProcessRequest { entry, parameters, model, folder, results, report: problems });
     made.map_err(|error| match error.at(&place) {
         Error::Input(mut list) => {
             let mut more = other_problems(entry, parameters, model);

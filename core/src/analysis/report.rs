@@ -71,6 +71,13 @@ pub struct RunReport {
     pub threads: usize,
     /// Files and folders a user would open.
     pub outputs: Vec<PathBuf>,
+    /// Files that were read: deck, mesh, materials, tables; of the last stage.
+    #[serde(default)]
+    pub inputs: Vec<PathBuf>,
+    /// The largest size at a node of each usual result, by name: unknowns, reactions, what contact finds; at the end of a run that
+    /// came to it.
+    #[serde(default)]
+    pub largest: BTreeMap<String, f64>,
     /// Whether every step converged.
     pub converged: bool,
 }
@@ -99,6 +106,8 @@ impl Default for RunReport {
             memory: 0,
             threads: 0,
             outputs: Vec::new(),
+            inputs: Vec::new(),
+            largest: BTreeMap::new(),
             converged: false,
         }
     }
@@ -122,6 +131,13 @@ impl RunReport {
             let mut steps = std::mem::take(&mut self.steps);
             steps.retain(|own| self.keeps(own.step) || own.step == last);
             self.steps = steps;
+        }
+    }
+
+    /// Adds what processes tell of the last step.
+    pub fn add_numbers(&mut self, numbers: impl IntoIterator<Item = (&'static str, f64)>) {
+        if let Some(last) = self.steps.last_mut() {
+            last.interactions.extend(numbers.into_iter().map(|(name, value)| (name.to_owned(), value)));
         }
     }
 

@@ -181,7 +181,7 @@ pub(super) fn earlier_system(part: &ModelPart, mut states: Vec<States>, regroupe
 /// Another mesh than that of the saved run, or values and shares that cannot be of it.
 pub(super) fn check_mesh(saved: &ModelPart, read: &ModelPart) -> Result<()> {
     let same = saved.nodes.ids == read.nodes.ids
-        && saved.nodes.initial == read.nodes.initial
+        && (saved.nodes.reshaped > 0 || saved.nodes.initial == read.nodes.initial)
         && saved.info.domain_size == read.info.domain_size
         && [(&saved.elements, &read.elements), (&saved.conditions, &read.conditions)].into_iter().all(|(a, b)| {
             a.ids == b.ids

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::carrier::{OfRank, Regrouping};
 use super::checkpoints::{Checkpoints, Pointer};
-use super::deck::{StageDeck, open, stages};
+use super::deck::{Folders, StageDeck, open, stages};
 use super::driver::{Driver, Unattended};
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of, whole};
@@ -36,6 +36,8 @@ pub struct RunOptions {
     /// Values to take in place of what the deck says, by dotted paths, which may hold places in lists: `problem_data.end_time`,
     /// `processes.loads.0.Parameters.modulus`. They are checked as if the deck said them.
     pub changes: Vec<(String, serde_json::Value)>,
+    /// Where relative names of files that are written start; `None` for the folder of the deck.
+    pub results: Option<PathBuf>,
 }
 
 /// Lays the caller's changes over a deck.
@@ -60,7 +62,7 @@ pub struct Simulation {
     stage: Option<Stage>,
     /// The part that the present or the last stage solves for.
     root: String,
-    folder: PathBuf,
+    folders: Folders,
     like: Option<String>,
     outputs: Vec<PathBuf>,
     model: Model,
@@ -89,7 +91,7 @@ impl Simulation {
         change(&mut deck.root, options)?;
         let mut simulation = Self::new(&deck.root, folder, options)?;
         simulation.untold.splice(..0, deck.warnings);
-        simulation.pointer = Some(Pointer::of(path));
+        simulation.pointer = Some(Pointer::of(path, &simulation.folders.results));
         Ok(simulation)
     }
 
@@ -107,13 +109,15 @@ impl Simulation {
         let (pool, fewer) = threads::pool(options.threads)?;
         let mut report = RunReport { threads: pool.current_num_threads(), ..RunReport::default() };
         let stages = stages(deck, &mut report)?;
-        let checkpoints = Checkpoints::new(deck, &stages, &folder)?;
+        let results = options.results.clone().unwrap_or_else(|| folder.clone());
+        let folders = Folders { deck: folder, results };
+        let checkpoints = Checkpoints::new(deck, &stages, &folders)?;
         Ok(Self {
             stages,
             over: 0,
             stage: None,
             root: String::new(),
-            folder,
+            folders,
             like: options.like.clone(),
             outputs: options.outputs.clone(),
             model: Model::new(options.ranks.clone()),
@@ -397,8 +401,8 @@ impl Simulation {
         self.before = (self.over > 0).then(|| self.model.clone());
         let (stages, like) = (&self.stages[self.over..], self.like.as_deref());
         let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
-        let (driver, folder, outputs) = (self.driver.as_mut(), &self.folder, &self.outputs);
-        let stage = Stage::prepare(stages, folder, like, model, systems, report, monitor, driver, more, outputs)?;
+        let (driver, folders, outputs) = (self.driver.as_mut(), &self.folders, &self.outputs);
+        let stage = Stage::prepare(stages, folders, like, model, systems, report, monitor, driver, more, outputs)?;
         stage.root().clone_into(&mut self.root);
         monitor.begin_stage(&stage.plan(stages.len(), self.stages.len()));
         self.stage = Some(stage);

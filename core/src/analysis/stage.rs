@@ -9,7 +9,7 @@ use zelus_linear_algebra::memory;
 use super::bodies::tell_what_holds;
 use super::cutting::{Cutting, Lengths};
 use super::deck::{
-    StageDeck, add_names_only, check_top_level, import, import_materials, make_processes, mesh_file, root_name,
+    Folders, StageDeck, add_names_only, check_top_level, import, import_materials, make_processes, mesh_file, root_name,
 };
 use super::driver::{Driver, Point};
 use super::like::{lay_defaults, program};
@@ -26,13 +26,16 @@ use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Report, Result, Severity, unfit};
 use crate::entities::Interaction;
-use crate::io::{Claim, FileUse, MeshFormatEntry, check_files};
+use crate::io::{Claim, FileUse, Mark, MeshFormatEntry, check_files};
 use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::parameters::Node;
-use crate::processes::{Process, tables_of};
+use crate::processes::{Process, largest_results, tables_of};
 use crate::registry;
 use crate::strategies::{Monitor, Plan, SolutionStrategy, StepRecord, unknowns_of_all};
+
+/// Bytes that a node takes in a picture at least: its displacement, compressed.
+const LEAST_OF_NODE: usize = 16;
 
 /// The systems of earlier stages by their root parts: what elements remember goes on with them.
 pub(super) type Systems = BTreeMap<String, System>;
@@ -64,7 +67,7 @@ impl Stage {
     /// Every problem of the deck that can be found, gathered.
     pub(super) fn prepare(
         stages: &[StageDeck],
-        folder: &Path,
+        folders: &Folders,
         like: Option<&str>,
         model: &mut Model,
         systems: &mut Systems,
@@ -143,10 +146,10 @@ impl Stage {
         let by_root = ranks.size() > 1 && model.parts.is_empty();
         let [mut is_read, mut is_whole] = [true; 2];
         if ranks.is_root() || !by_root {
-            [is_read, is_whole] = read_model(stage, &solver, domain_size, &root, folder, model, &mut problems);
+            [is_read, is_whole] = read_model(stage, &solver, domain_size, &root, &folders.deck, model, &mut problems);
         }
         problems = problems_of_ranks(&ranks, problems)?;
-        if !is_read && add_names_only(&solver, &root, folder, model).is_none() {
+        if !is_read && add_names_only(&solver, &root, &folders.deck, model).is_none() {
             return Err(finish(problems));
         }
         report.add_seconds("read", start.elapsed().as_secs_f64());
@@ -160,7 +163,7 @@ impl Stage {
             decks.push(deck);
         }
         let changes = later.iter().any(|later| !later.modelers.is_empty());
-        let (of_mesh, mut inputs) = inputs_of(stage, &deck, folder);
+        let (of_mesh, mut inputs) = inputs_of(stage, &deck, &folders.deck);
         read_the_same_files(&ranks, &inputs)?;
         if !by_root {
             read_the_same_files(&ranks, &of_mesh)?;
@@ -175,7 +178,7 @@ impl Stage {
         if is_whole && !problems.has_errors() {
             driver.at(Point::Read, &root, model, &System::default(), &mut |_| Ok(()))?;
         }
-        let mut processes = make_processes(&deck, folder, model, driver, &mut problems);
+        let mut processes = make_processes(&deck, folders, model, driver, &mut problems);
         processes.extend(more);
         // What several ranks say one process says alone.
         problems = problems_of_all(&ranks, problems)?;
@@ -206,9 +209,12 @@ impl Stage {
         let mut files: Vec<FileUse> = processes.iter().flat_map(|process| process.files()).collect();
         read_the_same_files(&ranks, &files)?;
         files.extend(inputs);
-        files.extend(outputs.iter().cloned().map(FileUse::Writes));
+        report.inputs = files.iter().filter_map(FileUse::input).map(Path::to_owned).collect();
+        files.extend(outputs.iter().cloned().map(|path| FileUse::Writes(path, Mark::None)));
         if ranks.is_root() {
-            check_files(&files).into_iter().for_each(|problem| problems.push(problem));
+            check_files(&files, LEAST_OF_NODE * part.nodes.len())
+                .into_iter()
+                .for_each(|problem| problems.push(problem));
         }
         problems = problems_of_all(&ranks, problems)?;
         report.parameters = tell_parameters(part, &system, monitor);
@@ -409,6 +415,8 @@ impl Stage {
         report.add_seconds("assemble: residual", assembly.residual);
         report.add_seconds("assemble: elements", assembly.bulk);
         report.add_seconds("assemble: interactions", assembly.coupling);
+        let part = model.parts.get(&self.root).filter(|_| result.is_ok());
+        report.largest = part.map(largest_results).unwrap_or_default();
         systems.insert(self.root, System { elements: self.system.elements, ..System::default() });
         result.and(finalized).and(finals.finish().map(|_| ()))
     }
@@ -541,6 +549,7 @@ impl Stage {
         driver.at(Point::EndStep, root, model, system, &mut |model| {
             processes.iter_mut().try_for_each(|process| ranks.agree(process.end_step(model, system)))
         })?;
+        report.add_numbers(processes.iter().flat_map(|process| process.summary()));
         driver.at(Point::Output, root, model, system, &mut |model| write_output(processes, model, system))?;
         report.add_seconds("output", start.elapsed().as_secs_f64());
         self.pass_on_messages(&ranks, report, monitor);

@@ -56,7 +56,7 @@ impl TimeStepping {
         for unknown in node.object()?.iter().filter(|member| !KEYS.contains(&member.key.as_str())) {
             let fact = format!("\"time_stepping\" has no key {:?}: nothing reads it", unknown.key);
             let remedy = did_you_mean(&unknown.key, KEYS).unwrap_or_else(|| format!("there is: {}", KEYS.join(", ")));
-            let problem = Diagnostic::warning("key-without-effect", fact).at(node.key_place(&unknown.key));
+            let problem = Diagnostic::warning("unknown-key-ignored", fact).at(node.key_place(&unknown.key));
             warnings.push(problem.remedy(remedy));
         }
         let last_step = match node.get("last_step").map(|node| Ok::<_, Error>((node, node.str()?))).transpose()? {

@@ -83,6 +83,8 @@ pub struct Assembler {
     tangent_key: Option<[f64; 4]>,
     damping: Option<([f64; 2], Vec<f64>)>,
     redistribution: Redistribution,
+    /// Of which shape of the bodies its matrices are.
+    shape: u64,
     traits: Traits,
     ranks: Ranks,
     distribution: Option<Distribution>,
@@ -200,6 +202,11 @@ impl Assembler {
     /// # Errors
     /// Constraints that contradict each other.
     pub fn begin_step(&mut self, part: &ModelPart, system: &System) -> Result<()> {
+        if self.shape != part.nodes.reshaped {
+            self.shape = part.nodes.reshaped;
+            (self.bulk, self.constant, self.damping) = (None, None, None);
+            (self.mass, self.tangent_key) = (None, None);
+        }
         let equations = part.ranks.agree(Equations::new(&system.dofs, &part.nodes, &part.constraints))?;
         let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
         let changed = part.ranks.any(changed);

@@ -11,12 +11,15 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::outputs::Mark;
 use super::replace::replace_own_file;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 
 /// The first bytes of every saved run.
-const MARK: &[u8; 16] = b"zelus saved run\n";
+const MARK: &str = "zelus saved run\n";
+/// How a saved run is known.
+pub(crate) const SAVED: Mark = Mark::Begins(&[MARK]);
 /// Version of the contents: one more with every change of what is saved.
 const VERSION: u32 = 3;
 /// Bytes before the lengths.
@@ -46,7 +49,7 @@ pub fn write_saved(ranks: &Ranks, path: &Path, contents: &impl Serialize) -> Res
     };
     let written = if ranks.is_root() {
         replace_own_file(path, |out| {
-            out.write_all(MARK)?;
+            out.write_all(MARK.as_bytes())?;
             out.write_all(&VERSION.to_le_bytes())?;
             out.write_all(&(entries.len() as u32).to_le_bytes())?;
             for (length, sum) in &entries {
@@ -99,7 +102,7 @@ impl SavedFile {
         let mut head = Vec::new();
         let mut more = |head: &mut Vec<u8>, count: u64| Read::by_ref(&mut file).take(count).read_to_end(head);
         more(&mut head, HEAD as u64).map_err(|error| unreadable(path, &error))?;
-        if head.get(..MARK.len()).is_none_or(|mark| mark != MARK) {
+        if head.get(..MARK.len()).is_none_or(|mark| mark != MARK.as_bytes()) {
             let remedy = "name a file that zelus has saved a run in";
             return Err(problem(path, "this is no saved run".to_owned(), remedy));
         }

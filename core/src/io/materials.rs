@@ -104,10 +104,11 @@ fn read_item(item: &Node, properties: &mut Properties, domain_size: usize, repor
     }
 }
 
-/// Warns of keys of `object` that nothing reads; those that begin with an underscore or "comment" are words to readers.
+/// Warns of keys of `object` that nothing reads; those that begin with an underscore, "$" or "comment" are words to readers
+/// and editors.
 fn warn_of_keys(object: &Node, name: &str, known: &[&str], report: &mut Report) {
     let own = object.as_object().into_iter().flat_map(|object| object.in_source_order());
-    let is_remark = |key: &str| key.starts_with('_') || key.to_ascii_lowercase().starts_with("comment");
+    let is_remark = |key: &str| key.starts_with(['_', '$']) || key.to_ascii_lowercase().starts_with("comment");
     for member in own.filter(|member| !known.contains(&member.key.as_str()) && !is_remark(&member.key)) {
         let remedy = did_you_mean(&member.key, known.iter().copied());
         let remedy = remedy.unwrap_or_else(|| format!("read are: {}", known.join(", ")));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::diagnostics::{Diagnostic, Error, Result};
@@ -14,8 +14,41 @@ const LABEL: usize = 40;
 /// What a disk must have left to begin with, in bytes.
 const LEAST_SPACE: usize = 1 << 16;
 
-/// Folders, and why nothing can be written to them.
-type Tried = BTreeMap<PathBuf, std::result::Result<(), String>>;
+/// Folders with the bytes that were tried, and why they cannot be written there.
+type Tried = BTreeMap<(PathBuf, usize), std::result::Result<(), String>>;
+
+/// How a file that an earlier run has written is known: any other is not replaced. An empty file is nobody's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// It cannot be known: whatever is there is replaced.
+    None,
+    /// It begins with one of these.
+    Begins(&'static [&'static str]),
+    /// It holds this.
+    Holds(&'static str),
+}
+
+impl Mark {
+    /// Whether there is a file at this path without the mark.
+    pub fn is_missing(self, path: &Path) -> bool {
+        let Ok(mut file) = File::open(path) else { return false };
+        let mut text = Vec::new();
+        let read = match self {
+            Self::None => return false,
+            Self::Begins(words) => {
+                let longest = words.iter().map(|word| word.len() as u64).max().unwrap_or(0);
+                file.take(longest).read_to_end(&mut text)
+            }
+            Self::Holds(_) => file.read_to_end(&mut text),
+        };
+        let has = match self {
+            Self::None => true,
+            Self::Begins(words) => words.iter().any(|word| text.starts_with(word.as_bytes())),
+            Self::Holds(word) => text.windows(word.len()).any(|part| part == word.as_bytes()),
+        };
+        read.is_ok() && !text.is_empty() && !has
+    }
+}
 
 /// A file that a run reads or writes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,9 +56,9 @@ pub enum FileUse {
     /// It is read.
     Reads(PathBuf),
     /// It is replaced.
-    Writes(PathBuf),
+    Writes(PathBuf, Mark),
     /// Files are replaced, one a step: of `Block.vtu` those of [`of_series`], and `Block.vtu` itself.
-    WritesSeries(PathBuf),
+    WritesSeries(PathBuf, Mark),
 }
 
 /// Whether a file with this name is of one step of a series: `Block_7.vtu`, `Block_7_1.vtu` and `Block_0_0.5.vtu` are of `Block.vtu`.
@@ -39,7 +72,24 @@ pub fn of_series(name: &str, series: &str) -> bool {
 impl FileUse {
     fn path(&self) -> &Path {
         match self {
-            Self::Reads(path) | Self::Writes(path) | Self::WritesSeries(path) => path,
+            Self::Reads(path) | Self::Writes(path, _) | Self::WritesSeries(path, _) => path,
+        }
+    }
+
+    /// A file that would be replaced, and that no run has written; `whole` is the path without links.
+    fn stranger(&self, whole: &Path) -> Option<PathBuf> {
+        match self {
+            Self::Reads(_) => None,
+            Self::Writes(path, mark) => mark.is_missing(whole).then(|| path.clone()),
+            Self::WritesSeries(path, mark) => {
+                let series = path.file_name()?.to_string_lossy();
+                let entries = fs::read_dir(whole.parent()?).ok()?.flatten();
+                let strange = entries.filter(|entry| {
+                    let is_own = of_series(&entry.file_name().to_string_lossy(), &series);
+                    is_own && entry.path().is_file() && mark.is_missing(&entry.path())
+                });
+                strange.map(|entry| path.with_file_name(entry.file_name())).min()
+            }
         }
     }
 
@@ -54,8 +104,9 @@ impl FileUse {
     }
 }
 
-/// Why files cannot be used so: outputs that are inputs, other outputs or no files, and places where nothing can be written.
-pub fn check_files(files: &[FileUse]) -> Vec<Diagnostic> {
+/// Why files cannot be used so: outputs that are inputs, other outputs or no files, and places where they cannot be written. A file of a
+/// series takes at least `picture` bytes.
+pub fn check_files(files: &[FileUse], picture: usize) -> Vec<Diagnostic> {
     let mut problems = Vec::new();
     let whole: Vec<PathBuf> = files.iter().map(|file| resolved(file.path())).collect();
     let mut folders = BTreeMap::new();
@@ -72,11 +123,15 @@ pub fn check_files(files: &[FileUse]) -> Vec<Diagnostic> {
         if (0..at).filter(same).any(|other| files[other].output().is_some()) {
             problem(format!("{shown} is written twice by the run"), "give each output a name of its own");
         }
-        let label = if matches!(file, FileUse::WritesSeries(_)) { LABEL } else { 0 };
+        let label = if matches!(file, FileUse::WritesSeries(..)) { LABEL } else { 0 };
         if path.file_name().is_some_and(|name| name.len() + label > LONGEST) {
             problem(format!("{shown}: the name is too long"), "names of files have at most 255 bytes");
-        } else if let Err(fact) = can_be_written(file, &whole[at], &mut folders) {
+        } else if let Err(fact) = can_be_written(file, &whole[at], picture, &mut folders) {
             problem(format!("{shown}: {fact}"), "name a file in a folder that can be written to");
+        } else if let Some(strange) = file.stranger(&whole[at]) {
+            let fact =
+                format!("{} is nothing that an earlier run has written, and would be replaced", strange.display());
+            problem(fact, "give the output another name, or remove the file");
         }
     }
     problems
@@ -93,8 +148,13 @@ fn resolved(path: &Path) -> PathBuf {
 }
 
 /// Whether a file can be written; `folders` are those that were tried before.
-fn can_be_written(file: &FileUse, whole: &Path, folders: &mut Tried) -> std::result::Result<(), String> {
-    if let (FileUse::Writes(_), Ok(found)) = (file, fs::metadata(whole))
+fn can_be_written(
+    file: &FileUse,
+    whole: &Path,
+    picture: usize,
+    folders: &mut Tried,
+) -> std::result::Result<(), String> {
+    if let (FileUse::Writes(..), Ok(found)) = (file, fs::metadata(whole))
         && !found.is_file()
     {
         return Err("there is something that is no file".to_owned());
@@ -103,18 +163,19 @@ fn can_be_written(file: &FileUse, whole: &Path, folders: &mut Tried) -> std::res
         return Err("it is a link to nothing".to_owned());
     }
     let Some(folder) = whole.ancestors().skip(1).find(|folder| folder.exists()) else { return Ok(()) };
-    folders.entry(folder.to_owned()).or_insert_with(|| takes_files(folder)).clone()
+    let bytes = if matches!(file, FileUse::WritesSeries(..)) { picture.max(LEAST_SPACE) } else { LEAST_SPACE };
+    folders.entry((folder.to_owned(), bytes)).or_insert_with(|| takes_files(folder, bytes)).clone()
 }
 
-/// Writes a file to a folder and removes it.
-fn takes_files(folder: &Path) -> std::result::Result<(), String> {
+/// Writes a file of so many bytes to a folder and removes it.
+fn takes_files(folder: &Path, bytes: usize) -> std::result::Result<(), String> {
     if !folder.is_dir() {
         return Err(format!("{} is no folder", folder.display()));
     }
     let probe = folder.join(format!(".zelus-{}.part", std::process::id()));
-    let written = File::create(&probe).and_then(|mut file| file.write_all(&[0; LEAST_SPACE]));
+    let written = File::create(&probe).and_then(|mut file| file.write_all(&vec![0; bytes]));
     let removed = fs::remove_file(&probe);
-    written.and(removed).map_err(|error| format!("nothing can be written to {}: {error}", folder.display()))
+    written.and(removed).map_err(|error| format!("{bytes} bytes cannot be written to {}: {error}", folder.display()))
 }
 
 /// An output that no other run may write as long as this lives.
@@ -176,7 +237,7 @@ mod tests {
     use super::*;
 
     fn said(files: &[FileUse]) -> String {
-        check_files(files).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+        check_files(files, 0).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     }
 
     #[test]
@@ -196,15 +257,48 @@ mod tests {
             ("broken.json", "a link to nothing"),
             ("mesh.mdpa/results.json", "is no folder"),
         ] {
-            let said = said(&[reads.clone(), FileUse::Writes(at(output))]);
+            let said = said(&[reads.clone(), FileUse::Writes(at(output), Mark::None)]);
             assert!(said.contains(fact), "{output}: {said}");
         }
-        assert!(said(&[FileUse::Writes(PathBuf::from("/dev/null"))]).contains("no file"));
-        assert!(said(&[FileUse::WritesSeries(at(&"x".repeat(230)))]).contains("too long"));
-        let twice = [FileUse::Writes(at("a.json")), FileUse::Writes(at("./a.json"))];
+        assert!(said(&[FileUse::Writes(PathBuf::from("/dev/null"), Mark::None)]).contains("no file"));
+        assert!(said(&[FileUse::WritesSeries(at(&"x".repeat(230)), Mark::None)]).contains("too long"));
+        let twice = [FileUse::Writes(at("a.json"), Mark::None), FileUse::Writes(at("./a.json"), Mark::None)];
         assert!(said(&twice).contains("written twice"));
-        assert_eq!(said(&[reads, FileUse::Writes(at("new/a.json")), FileUse::WritesSeries(at("folder"))]), "");
+        assert_eq!(
+            said(&[
+                reads,
+                FileUse::Writes(at("new/a.json"), Mark::None),
+                FileUse::WritesSeries(at("folder"), Mark::None)
+            ]),
+            ""
+        );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4, "nothing is left behind");
+    }
+
+    #[test]
+    fn files_of_strangers_are_known() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for (name, text) in
+            [("Block_1.vtu", "<VTKFile"), ("Block_2.vtu", "mine"), ("a.json", "{\"TIME\": []}"), ("empty", "")]
+        {
+            fs::write(at(name), text).unwrap();
+        }
+        let vtu = Mark::Begins(&["<?xml", "<VTKFile"]);
+        let told = said(&[FileUse::WritesSeries(at("Block.vtu"), vtu)]);
+        assert!(told.contains("Block_2.vtu is nothing that an earlier run has written"), "{told}");
+        assert_eq!(said(&[FileUse::WritesSeries(at("Other.vtu"), vtu)]), "");
+        for (name, mark, strange) in [
+            ("Block_1.vtu", vtu, false),
+            ("Block_2.vtu", vtu, true),
+            ("Block_2.vtu", Mark::None, false),
+            ("a.json", Mark::Holds("\"TIME\""), false),
+            ("a.json", Mark::Holds("\"time\""), true),
+            ("empty", Mark::Holds("x"), false),
+            ("none", vtu, false),
+        ] {
+            assert_eq!(mark.is_missing(&at(name)), strange, "{name} {mark:?}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::flags::Flags;
 use super::index::Index;
 use super::rates::Rates;
 use super::variable::ScalarVariable;
+use crate::vector3::add;
 
 /// All nodes of a model part; an index counts them by ascending id.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -26,6 +27,9 @@ pub struct Nodes {
     pub flags: Flags,
     /// What is prescribed.
     pub fixities: Fixities,
+    /// How often the bodies have changed their shape since the run began: what was made of initial positions is made anew then.
+    #[serde(default)]
+    pub reshaped: u64,
     #[serde(skip)]
     index: Index,
 }
@@ -46,6 +50,7 @@ impl Nodes {
             values: Fields::new(count, 1),
             flags: Flags::default(),
             fixities: Fixities::default(),
+            reshaped: 0,
             index: Index::default(),
         }
     }
@@ -62,6 +67,7 @@ impl Nodes {
             values: self.values.pick(nodes),
             flags: self.flags.pick(nodes),
             fixities: self.fixities.pick(nodes),
+            reshaped: self.reshaped,
         }
     }
 
@@ -71,6 +77,7 @@ impl Nodes {
         self.index = Index::default();
         self.ids.extend(&other.ids);
         self.initial.extend(&other.initial);
+        self.reshaped = other.reshaped;
         self.current.extend(&other.current);
         self.history.append(&other.history);
         self.values.append(&other.values);
@@ -101,6 +108,17 @@ impl Nodes {
     /// Whether a variable of a node is fixed now.
     pub fn is_fixed(&self, variable: ScalarVariable, node: u32) -> bool {
         self.fixities.holds(variable, node)
+    }
+
+    /// Gives the bodies another shape during the run: moves nodes with their initial positions by ways, which strains nothing of
+    /// itself. Every rank moves the nodes that it has alike.
+    pub fn reshape(&mut self, ways: impl IntoIterator<Item = (u32, [f64; 3])>) {
+        self.reshaped += 1;
+        for (node, way) in ways {
+            let node = node as usize;
+            self.initial[node] = add(self.initial[node], way);
+            self.current[node] = add(self.current[node], way);
+        }
     }
 
     /// Moves one node to its initial position plus the unknown that moves the mesh.

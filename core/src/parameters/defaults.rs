@@ -16,6 +16,7 @@ pub struct Defaults {
     pub(super) deprecated: Vec<Deprecated>,
     description: String,
     entries: Vec<Entry>,
+    example: Option<Node>,
 }
 
 /// One documented key.
@@ -35,6 +36,9 @@ pub struct Entry {
 
 /// The member of a file of defaults that lists keys without effect by the reason.
 const WITHOUT_EFFECT: &str = "$without_effect";
+
+/// The member of a file of defaults that shows how the object is used.
+const EXAMPLE: &str = "$example";
 
 /// An old spelling that decks still use.
 #[derive(Debug, Clone)]
@@ -56,17 +60,18 @@ impl Defaults {
     /// A default of `null` accepts any value, `{}` any content; the items of arrays are not checked. A number written
     /// without fraction stands for an integer. The comment above a key or at the end of its line documents it, the
     /// one above the opening brace the object. `$without_effect` is no key: it lists those that are read and change nothing,
-    /// `{ "reason": ["key", "other.key"] }`.
+    /// `{ "reason": ["key", "other.key"] }`. Nor is `$example`, settings as a deck may give them.
     ///
     /// # Errors
     /// `invalid-json`, `wrong-type` when the text is not an object, `unknown-key` when a key without effect is none.
     pub fn parse(name: &str, text: &str) -> Result<Self> {
         let (document, comments) = document::parse(text, Path::new(name), true)?;
         let mut node = document.root;
-        let idle = match &mut node.value {
-            Value::Object(members) => members.remove(WITHOUT_EFFECT),
-            _ => None,
+        let [idle, example] = match &mut node.value {
+            Value::Object(members) => [WITHOUT_EFFECT, EXAMPLE].map(|key| members.remove(key)),
+            _ => [None, None],
         };
+        let example = example.map(|member| member.node);
         node.object()?;
         let mut entries = Vec::new();
         collect(&node, "", &comments, &mut entries);
@@ -75,14 +80,23 @@ impl Defaults {
         }
         let description = comment_above(&comments, node.line);
         let (lenient, required, deprecated) = (false, Vec::new(), Vec::new());
-        Ok(Self { name: name.to_owned(), node, lenient, required, deprecated, description, entries })
+        Ok(Self { name: name.to_owned(), node, lenient, required, deprecated, description, entries, example })
     }
 
     /// Defaults without any key that accept any content.
     pub fn free_form(name: &str) -> Self {
         let node = Node::new(Value::Object(super::Object::default()), &crate::diagnostics::Place::file(name));
         let (required, deprecated, entries) = (Vec::new(), Vec::new(), Vec::new());
-        Self { name: name.to_owned(), node, lenient: false, required, deprecated, description: String::new(), entries }
+        Self {
+            name: name.to_owned(),
+            node,
+            lenient: false,
+            required,
+            deprecated,
+            description: String::new(),
+            entries,
+            example: None,
+        }
     }
 
     /// The same defaults where unknown keys are a warning, `unknown-key-ignored`.
@@ -133,6 +147,19 @@ impl Defaults {
     /// Every key, nested ones too, in the order written.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
+    }
+
+    /// Old spellings that are accepted with a warning, by dotted path, each with what to do instead.
+    pub fn old_spellings(&self) -> impl Iterator<Item = (&'static str, String)> {
+        self.deprecated.iter().map(|old| match old.what {
+            Replacement::Renamed(new) | Replacement::Translated(new, _) => (old.old, format!("old spelling of {new}")),
+            Replacement::Dropped(why) => (old.old, format!("without effect: {why}")),
+        })
+    }
+
+    /// Settings as a deck may give them, where the file shows some.
+    pub fn example(&self) -> Option<&Node> {
+        self.example.as_ref()
     }
 
     /// The tree of defaults.

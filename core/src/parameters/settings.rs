@@ -117,6 +117,16 @@ impl Settings {
         self.get(path)?.f64()
     }
 
+    /// A number above zero; `invalid-value` for others.
+    pub fn get_positive(&self, path: &str) -> Result<f64> {
+        let value = self.get_f64(path)?;
+        if value > 0.0 && value.is_finite() {
+            return Ok(value);
+        }
+        let fact = format!("\"{path}\" is {value}");
+        Err(self.error(path, "invalid-value", fact).remedy("write a number above 0").into())
+    }
+
     /// An integer.
     pub fn get_i64(&self, path: &str) -> Result<i64> {
         self.get(path)?.i64()

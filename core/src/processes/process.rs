@@ -87,6 +87,12 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// Numbers of the accepted step by name, the same on every rank, for its report; asked once a step, after every
+    /// [`Process::end_step`].
+    fn summary(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
     /// Whether it writes output after this step; asked once a step, after every [`Process::end_step`].
     fn is_output_step(&mut self, _model: &Model) -> bool {
         false
@@ -174,8 +180,10 @@ pub struct ProcessRequest<'a> {
     pub parameters: &'a Node,
     /// The model as read: parts can be looked up, nothing has run.
     pub model: &'a mut Model,
-    /// Folder of the deck; relative file names start there.
+    /// Folder of the deck; relative names of files that are read start there.
     pub folder: &'a Path,
+    /// Where relative names of files that are written start: the folder of the deck unless the caller names another.
+    pub results: &'a Path,
     /// Takes warnings.
     pub report: &'a mut Report,
 }

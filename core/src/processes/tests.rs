@@ -57,7 +57,8 @@ fn make(module: &str, parameters: &str, model: &mut Model) -> Result<Box<dyn Pro
     let parameters = Document::from_str(parameters, "deck.json").unwrap().root;
     let entry = registry::find::<ProcessEntry>(module).unwrap();
     let folder = std::path::Path::new("");
-    (entry.build)(&mut ProcessRequest { entry, parameters: &parameters, model, folder, report: &mut Report::new() })
+    let report = &mut Report::new();
+    (entry.build)(&mut ProcessRequest { entry, parameters: &parameters, model, folder, results: folder, report })
 }
 
 fn refused(module: &str, parameters: &str) -> String {

@@ -13,7 +13,7 @@ const MARGIN: f64 = 1.02;
 ///
 /// ω² is the largest eigenvalue of M⁻¹ K on the present equations, by power iteration; `mass` has a positive number an
 /// equation. Infinite without stiffness. Collective.
-pub(super) fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64], [alpha, beta]: [f64; 2]) -> f64 {
+pub fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64], [alpha, beta]: [f64; 2]) -> f64 {
     let equations = assembler.equations();
     // Any start will do that is the same for every number of ranks.
     let start = |&number: &u32| {

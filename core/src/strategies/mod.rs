@@ -53,6 +53,7 @@ pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Norm, Verdict,
     both, either, is_last_digit, is_round_off,
 };
+pub use critical_step::critical_step;
 pub use explicit::{CRITICAL_STEP, ExplicitSettings, ExplicitStrategy};
 pub use generalized_alpha_scheme::GeneralizedAlphaScheme;
 pub use line_search::LineSearch;
@@ -64,7 +65,8 @@ pub use measure::{Form, Measure, Tolerance};
 pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use phases::Phases;
 pub use pseudo_static_scheme::PseudoStaticScheme;
+pub use reactions::write_reactions;
 pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
-pub use strategy::{SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest};
+pub use strategy::{SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest, accept, recorded};
 pub(crate) use whereabouts::body_of;

@@ -7,7 +7,7 @@ use crate::model::{ColumnOf, ModelPart, Rates};
 ///
 /// With the equations, supports also bear what constraints hand on to them, so that their forces balance the loads. Free nodes
 /// have the force of their constraints.
-pub(super) fn write_reactions(part: &mut ModelPart, dofs: &DofTable, residual: &[f64], handed_on: Option<&Equations>) {
+pub fn write_reactions(part: &mut ModelPart, dofs: &DofTable, residual: &[f64], handed_on: Option<&Equations>) {
     let supported = handed_on.map(|equations| equations.supported(residual));
     let residual = supported.as_deref().unwrap_or(residual);
     const TAKEN_UP: ColumnOf = |rates| rates.reaction;

@@ -76,7 +76,7 @@ pub struct StepRecord {
     /// Why a shorter step would be better, though it converged.
     #[serde(skip)]
     pub coarse: Option<String>,
-    /// Numbers of the interactions by name, e.g. active nodes.
+    /// Numbers of interactions and processes by name, e.g. active nodes.
     pub interactions: Vec<(String, f64)>,
     /// What acts, holds and is left over, where it converged by iteration.
     #[serde(default, skip_serializing_if = "Option::is_none")]

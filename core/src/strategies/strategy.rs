@@ -170,7 +170,7 @@ registered_kind! {
 ///
 /// # Errors
 /// An entity that cannot be computed.
-pub(super) fn accept(part: &mut ModelPart, system: &mut System) -> Result<()> {
+pub fn accept(part: &mut ModelPart, system: &mut System) -> Result<()> {
     let result = system.elements.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
     part.ranks.agree(result.map_err(Error::from))?;
     system.interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part))
@@ -211,7 +211,7 @@ pub(super) fn update_interactions(
 ///
 /// # Errors
 /// As `solve`, but an entity that cannot be computed becomes the reason of a failure.
-pub(super) fn recorded<R>(part: &mut ModelPart, system: &mut System, solve: R) -> Result<StepRecord>
+pub fn recorded<R>(part: &mut ModelPart, system: &mut System, solve: R) -> Result<StepRecord>
 where
     R: FnOnce(&mut ModelPart, &mut System) -> Result<(Vec<IterationRecord>, Option<String>)>,
 {

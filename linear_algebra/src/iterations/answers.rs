@@ -16,12 +16,36 @@ const KEPT: usize = 6;
 /// Share of a product that must be left beside those of later answers for it to count.
 const INDEPENDENT: f64 = 1e-7;
 
+/// An answer of an earlier solve.
+#[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct Answer {
+    /// Of length one.
+    pub x: Vec<f64>,
+    /// Its product with the bulk of a system, with the stamp of the values of that bulk.
+    #[serde(skip)]
+    product: Option<(u64, Vec<f64>)>,
+}
+
+impl Answer {
+    /// The product with the bulk of this stamp: `multiply(x, y)` makes it where it is not known.
+    pub(crate) fn product(&mut self, stamp: u64, multiply: impl FnOnce(&[f64], &mut [f64])) -> &[f64] {
+        let known = self.product.take().filter(|(of, _)| *of == stamp);
+        let (_, product) = self.product.insert(known.unwrap_or_else(|| {
+            let mut product = vec![0.0; self.x.len()];
+            multiply(&self.x, &mut product);
+            (stamp, product)
+        }));
+        product
+    }
+}
+
 /// The latest answers of a solver.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Answers {
     /// What they are answers of.
     graph: u64,
-    latest: VecDeque<Vec<f64>>,
+    latest: VecDeque<Answer>,
 }
 
 impl Answers {
@@ -34,31 +58,32 @@ impl Answers {
         let size = ghosts.norm(x);
         if size > 0.0 && size.is_finite() {
             let mut kept = if self.latest.len() < KEPT { None } else { self.latest.pop_back() }.unwrap_or_default();
-            kept.clear();
-            kept.extend(x.iter().map(|x| x / size));
+            kept.product = None;
+            kept.x.clear();
+            kept.x.extend(x.iter().map(|x| x / size));
             self.latest.push_front(kept);
         }
     }
 
     /// Sets `x` to the combination of answers that leaves the least of `b`, or no more than `enough` times its norm;
-    /// `multiply(x, y)` is `y = A x`.
+    /// `multiply(answer, y)` is `y = A x`.
     pub(crate) fn start(
-        &self,
+        &mut self,
         graph: u64,
         ghosts: &Ghosts,
-        mut multiply: impl FnMut(&[f64], &mut [f64]),
+        mut multiply: impl FnMut(&mut Answer, &mut [f64]),
         b: &[f64],
         enough: f64,
         x: &mut [f64],
     ) {
-        if self.graph != graph || self.latest.iter().any(|kept| kept.len() != x.len()) {
+        if self.graph != graph || self.latest.iter().any(|kept| kept.x.len() != x.len()) {
             return;
         }
         // Orthonormal products, with what each had of those before it and the part of b along it.
         let mut basis: Vec<(&[f64], Vec<f64>, Vec<f64>, f64)> = Vec::new();
         let mut rest = b.to_vec();
         let least = enough * ghosts.norm(b);
-        for kept in &self.latest {
+        for kept in &mut self.latest {
             if ghosts.norm(&rest) <= least {
                 break;
             }
@@ -77,7 +102,7 @@ impl Answers {
                 column.push(left);
                 let along = ghosts.dot(&product, &rest);
                 add_scaled(-along, &product, &mut rest);
-                basis.push((kept, product, column, along));
+                basis.push((&kept.x, product, column, along));
             }
         }
         let mut factors: Vec<f64> = basis.iter().map(|(_, _, _, along)| *along).collect();
@@ -96,7 +121,11 @@ mod tests {
     #[test]
     fn a_combination_of_answers_is_found_and_no_more() {
         let diagonal = [1.0, 2.0, 4.0, 8.0];
-        let multiply = |x: &[f64], y: &mut [f64]| y.iter_mut().zip(x).zip(diagonal).for_each(|((y, x), d)| *y = d * x);
+        let multiply = |answer: &mut Answer, y: &mut [f64]| {
+            let product =
+                |x: &[f64], y: &mut [f64]| y.iter_mut().zip(x).zip(diagonal).for_each(|((y, x), d)| *y = d * x);
+            y.copy_from_slice(answer.product(1, product));
+        };
         let mut answers = Answers::default();
         answers.keep(7, &Ghosts::none(4), &[1.0, 1.0, 0.0, 0.0]);
         answers.keep(7, &Ghosts::none(4), &[0.0, 1.0, 1.0, 0.0]);
@@ -106,6 +135,21 @@ mod tests {
         // 3 (1, 1, 0, 0) and the best multiple of (0, 1, 1, 0) for (0, -4, -8, 0.8).
         let expected = [3.0, 1.0, -2.0, 0.0];
         assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
+        // What is known is not made again, unless the matrix is another.
+        let known = |answer: &mut Answer, y: &mut [f64]| {
+            y.copy_from_slice(answer.product(1, |_, _| unreachable!("the product is known")));
+        };
+        let mut again = [0.0; 4];
+        answers.start(7, &Ghosts::none(4), known, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut again);
+        assert_eq!(again, x);
+        let mut twice = [0.0; 4];
+        let of_another = |answer: &mut Answer, y: &mut [f64]| {
+            let double =
+                |x: &[f64], y: &mut [f64]| y.iter_mut().zip(x).zip(diagonal).for_each(|((y, x), d)| *y = 2.0 * d * x);
+            y.copy_from_slice(answer.product(2, double));
+        };
+        answers.start(7, &Ghosts::none(4), of_another, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut twice);
+        assert!(twice.iter().zip(x).all(|(half, x)| (2.0 * half - x).abs() < 1e-12), "{twice:?}");
         let mut other = [0.0; 4];
         answers.start(8, &Ghosts::none(4), multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut other);
         assert_eq!(other, [0.0; 4], "answers of another system");

@@ -4,7 +4,7 @@ mod answers;
 mod conjugate_gradient;
 mod gmres;
 
-pub(crate) use answers::Answers;
+pub(crate) use answers::{Answer, Answers};
 pub(crate) use conjugate_gradient::conjugate_gradient;
 pub(crate) use gmres::gmres;
 

@@ -21,7 +21,8 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
         list("loads_process_list", loads(mesh, space)),
     ];
     lists.extend(
-        (!contact.is_empty()).then(|| list("contact_process_list", vec![contact_text(&contact, kind, friction)])),
+        (!contact.is_empty())
+            .then(|| list("contact_process_list", vec![contact_text(&contact, kind, friction, mesh.plane)])),
     );
     lists.extend((!tied.is_empty()).then(|| list("tying_process_list", vec![tie_text(&tied)])));
     format!(
@@ -163,11 +164,15 @@ fn slaves(pair: &Pair) -> String {
     if pair.slave == pair.master { "[]".to_owned() } else { format!("[\"{}\"]", pair.slave) }
 }
 
-fn contact_text(pairs: &[&Pair], kind: &str, friction: bool) -> String {
+fn contact_text(pairs: &[&Pair], kind: &str, friction: bool, plane: Option<Plane>) -> String {
     let coefficients = if friction {
         format!(",\n          \"friction_coefficients\": {}", by_pair(pairs, |pair| format!("{:?}", pair.friction)))
     } else {
         String::new()
+    };
+    let about = match plane {
+        Some(Plane::Axial) => ",\n          \"alternative_formulations\": {\"axisymmetric\": true}",
+        _ => "",
     };
     process(
         "alm_contact_process",
@@ -177,7 +182,7 @@ fn contact_text(pairs: &[&Pair], kind: &str, friction: bool) -> String {
           "contact_type": "{kind}",
           "contact_model_part": {},
           // slaves: the finer side, of like meshes the softer
-          "assume_master_slave": {}{coefficients}"#,
+          "assume_master_slave": {}{coefficients}{about}"#,
             by_pair(pairs, surfaces),
             by_pair(pairs, slaves),
         ),

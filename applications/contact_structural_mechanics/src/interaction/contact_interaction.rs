@@ -57,6 +57,8 @@ pub struct ContactInteraction {
     warned_of_friction: bool,
     /// Nodes that contact is near to.
     near_nodes: Vec<u32>,
+    /// Of which shape of the bodies its numbers are.
+    shape: u64,
 }
 
 /// What contact remembers between steps, as it stands in a saved run.
@@ -97,7 +99,21 @@ impl ContactInteraction {
             reach: Reach::default(),
             warned_of_friction: false,
             near_nodes: Vec::new(),
+            shape: 0,
         })
+    }
+
+    /// Finds the bodies behind the facets, where points ask them for tractions.
+    ///
+    /// # Errors
+    /// Bodies that cannot tell.
+    fn find_bodies(&mut self, part: &ModelPart) -> Result<()> {
+        if self.contact.setup.by_points() {
+            let thickness = self.contact.setup.parameters.segmentation.axisymmetric;
+            self.contact.pairing.bodies = Arc::new(Bodies::new(part, &self.contact.pairing.interfaces, thickness)?);
+        }
+        self.shape = part.nodes.reshaped;
+        Ok(())
     }
 
     /// Writes what is looked at of the present state.
@@ -141,16 +157,16 @@ impl Interaction for ContactInteraction {
             || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
         self.contact.setup.calibrate(part, &self.contact.pairing.interfaces, &mut self.contact.messages)?;
         self.growth = explicit.map(|explicit| explicit.growth(part));
-        if self.contact.setup.by_points() {
-            let thickness = self.contact.setup.parameters.segmentation.axisymmetric;
-            self.contact.pairing.bodies = Arc::new(Bodies::new(part, &self.contact.pairing.interfaces, thickness)?);
-        }
+        self.find_bodies(part)?;
         self.contact.make_states(part);
         self.write_results(part)
     }
 
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.acting = self.contact.setup.settings.interval.contains(part.info.time);
+        if self.shape != part.nodes.reshaped {
+            self.find_bodies(part)?;
+        }
         self.contact.states.begin_step();
         self.set.begin_step();
         self.reach = Reach::default();

@@ -159,10 +159,15 @@ impl Rules<'_> {
             Multiplier::None | Multiplier::Body => penalty,
         };
         let whole = family.multiplier.vector(nodes, node, normal);
+        let driven = held.contains(&Held::KeptInStick);
         let multiplier = match family.multiplier {
             // No multiplier holds what supports move: the slip itself says what would.
-            Multiplier::Vector(_) if held.contains(&Held::KeptInStick) => {
-                add(whole, scale(slip, stiffness / parameters.scale_factor))
+            Multiplier::Vector(_) if driven => {
+                let along = |c: usize| held[c] == Held::KeptInStick && norm(slip) > 0.0;
+                let normal_part = scale(normal, dot(whole, normal));
+                let kept = sub(whole, normal_part);
+                let free = std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] });
+                add(add(normal_part, free), scale(slip, stiffness / parameters.scale_factor))
             }
             // What slides, slides along what is free.
             Multiplier::Vector(_) => {
@@ -180,6 +185,7 @@ impl Rules<'_> {
             trial: state.trial,
             tangent: state.tangent,
             stiffness,
+            driven,
             friction: state.friction,
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use zelus_core::analysis::{EXPLICIT, INCOMPLETE};
-use zelus_core::diagnostics::Report;
+use zelus_core::diagnostics::{Diagnostic, Report, Severity};
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
@@ -268,8 +268,10 @@ fn interaction(
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     check_use(part, family, settings)?;
+    let warning = warn_of_revolution(part, settings)?;
     check_variables(part, family, settings)?;
     let interaction = ContactInteraction::new(chosen, part)?;
+    warning.into_iter().for_each(|warning| request.report.push(warning));
     Ok((whole.model_part_name, interaction))
 }
 
@@ -327,6 +329,18 @@ fn check_use(part: &ModelPart, family: &Family, settings: &Settings) -> Result<(
     let Some(Refusal { reason, remedy }) = refusal(family, wanted) else { return Ok(()) };
     let key = if wanted.explicit || wanted.arc_length { "contact_type" } else { key };
     Err(settings.error(key, "contact-use", reason).remedy(remedy).into())
+}
+
+/// Bodies of revolution whose contact is taken for plane have 2πr times their pressure, and the other way round.
+fn warn_of_revolution(part: &ModelPart, settings: &Settings) -> Result<Option<Diagnostic>> {
+    let key = "alternative_formulations.axisymmetric";
+    let around = settings.get_bool(key)?;
+    let plane = part.info.domain_size == 2;
+    let mut kinds = part.elements.kinds.iter().filter(|kind| plane && kind.cell.is_some_and(|cell| cell.dim() == 2));
+    let Some(kind) = kinds.find(|kind| kind.name.starts_with("Axisym") != around) else { return Ok(None) };
+    let fact = format!("\"axisymmetric\" is {around}, and bodies are made of {}: pressures are off by 2πr", kind.name);
+    let warning = Diagnostic { severity: Severity::Warning, ..settings.error(key, "contact-of-revolution", fact) };
+    Ok(Some(warning.remedy(format!("set \"axisymmetric\" of \"alternative_formulations\" to {}", !around))))
 }
 
 /// The solver gives the nodes the variables of its `mortar_type`; another family's would be missing.

@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 use zelus_core::model::ProcessInfo;
 use zelus_core::scalar::Real;
 
+use super::contribution::Pointwise;
 use crate::coefficient::Local;
 
 /// What the whole step shares.
@@ -109,9 +110,10 @@ impl<const NODES: usize> Point<'_, NODES> {
         let mean = (self.capacity(temperature) + self.capacity(self.old)) * 0.5;
         mean * ((temperature - self.old) / self.step.length)
     }
+}
 
-    /// The factors a of the shape functions and b of their gradients at a temperature and gradient.
-    pub fn balance<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, [R; 3]) {
+impl<const NODES: usize> Pointwise for Point<'_, NODES> {
+    fn balance<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, [R; 3]) {
         let Self { step, old, old_gradient, velocity, .. } = *self;
         let (end, begin) = (step.theta, 1.0 - step.theta);
         let (k, k_old) = (self.conductivity.at(self.n, temperature), self.conductivity.at(self.n, old));
@@ -154,6 +156,6 @@ impl<const NODES: usize> Point<'_, NODES> {
 }
 
 /// v·g.
-fn along<R: Real>(velocity: [f64; 3], gradient: [R; 3]) -> R {
+pub(super) fn along<R: Real>(velocity: [f64; 3], gradient: [R; 3]) -> R {
     velocity.iter().zip(gradient).fold(R::zero(), |sum, (v, g)| sum + g * *v)
 }

@@ -8,13 +8,13 @@ use std::marker::PhantomData;
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
-use zelus_core::scalar::{Dual, Real};
 use zelus_structural_mechanics::elements::physical_gradients;
 
 use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step};
+use super::contribution::{add, slope};
 use super::place::{full_order, stream_size};
 use crate::coefficient::{Coefficient, Local};
-use crate::columns::{Columns, nodal};
+use crate::columns::{Columns, nodal, velocities};
 
 /// Which terms of the balance a kind of element has.
 pub trait Terms: Send + Sync + 'static {
@@ -45,26 +45,6 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Equation<T, NODES, DIM> {
         let volume: f64 = points.map(|(g, dn)| self.rule.weight(g) * physical_gradients(x, dn).1).sum();
         let (dn, _) = physical_gradients(x, &self.centre.dn::<NODES, DIM>()[0]);
         (dn, volume / self.rule.n::<NODES>().len() as f64)
-    }
-
-    /// Velocity relative to the mesh, between both ends of the step.
-    fn velocities(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>, theta: f64) -> [[f64; 3]; NODES] {
-        let mut out = [[0.0; 3]; NODES];
-        if !T::TRANSIENT || T::CARRIED {
-            return out;
-        }
-        for (column, sign) in [(self.columns.velocity, 1.0), (self.columns.mesh_velocity, -1.0)] {
-            for (level, share) in [(0, theta), (1, 1.0 - theta)] {
-                let values = column.map_or(&[][..], |column| view.nodes.history.level(column, level));
-                if values.is_empty() {
-                    continue;
-                }
-                for (out, v) in out.iter_mut().zip(entity.vectors(values)) {
-                    (0..3).for_each(|a| out[a] += sign * share * v[a]);
-                }
-            }
-        }
-        out
     }
 }
 
@@ -142,7 +122,10 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             false => nodal(entity, view, Some(unknown), 1),
         };
         let source = nodal(entity, view, self.columns.volume_source, 0);
-        let velocity = self.velocities(entity, view, step.theta);
+        let velocity = match T::TRANSIENT && !T::CARRIED {
+            true => velocities(entity, view, &self.columns, step.theta),
+            false => [[0.0; 3]; NODES],
+        };
         let [conductivity, density, specific_heat] = [&self.conductivity, &self.density, &self.specific_heat]
             .map(|own| own.in_element(entity, view.nodes, &now));
         let is_pure = T::CARRIED && view.info.is(PURE_CONVECTION);
@@ -164,11 +147,6 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             let weight = self.rule.weight(g) * determinant;
             let (dn, weight) = at_centre.unwrap_or((dn, weight));
             let value = |at: &[f64; NODES]| n.iter().zip(at).map(|(n, value)| n * value).sum::<f64>();
-            let slope = |at: &[f64; NODES]| {
-                let mut out = [0.0; 3];
-                (0..NODES).for_each(|i| (0..DIM).for_each(|a| out[a] += dn[i][a] * at[i]));
-                out
-            };
             let part = |a: usize| (0..NODES).map(|i| n[i] * velocity[i][a]).sum();
             let point = Point {
                 step,
@@ -178,51 +156,24 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
                 specific_heat: &specific_heat,
                 stores: T::TRANSIENT,
                 old: value(&old),
-                old_gradient: slope(&old),
+                old_gradient: slope(&dn, &old),
                 velocity: std::array::from_fn(|a| if a < DIM { part(a) } else { 0.0 }),
                 source: value(&source),
                 size,
                 radius: T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][1]).sum()),
             };
             let weight = weight * point.round();
-            let (t, gradient) = (value(&now), slope(&now));
             let apart = match want {
                 Want::External => Some(point.source),
-                Want::Storage => Some(-point.stored(t)),
+                Want::Storage => Some(-point.stored(value(&now))),
                 Want::Residual | Want::Both => None,
             };
             if let Some(apart) = apart {
                 (0..NODES).for_each(|i| rhs[i] += weight * n[i] * apart);
                 continue;
             }
-            if lhs.is_empty() {
-                let (a, b) = point.balance(t, gradient);
-                for i in 0..NODES {
-                    rhs[i] -= weight * (n[i] * a + dot(&dn[i], &b));
-                }
-                continue;
-            }
-            let derivatives = |at: usize, value: f64| Dual::<4>::variable(value, at);
-            let (a, b) = point.balance(derivatives(0, t), std::array::from_fn(|i| derivatives(i + 1, gradient[i])));
-            let flux = b.map(|b| b.value());
-            let by = |d: &Dual<4>, j: usize| {
-                d.gradient[0] * n[j] + (0..DIM).map(|k| d.gradient[k + 1] * dn[j][k]).sum::<f64>()
-            };
-            for i in 0..NODES {
-                rhs[i] -= weight * (n[i] * a.value() + dot(&dn[i], &flux));
-            }
-            for j in 0..NODES {
-                let (da, db) = (by(&a, j), b.each_ref().map(|b| by(b, j)));
-                for i in 0..NODES {
-                    lhs[i * NODES + j] += weight * (n[i] * da + dot(&dn[i], &db));
-                }
-            }
+            add(&point, [n, &now], &dn, weight, lhs, rhs);
         }
         Ok(())
     }
-}
-
-/// The sum of products over the directions of the element.
-fn dot<const DIM: usize>(gradient: &[f64; DIM], flux: &[f64; 3]) -> f64 {
-    gradient.iter().zip(flux).map(|(g, b)| g * b).sum()
 }

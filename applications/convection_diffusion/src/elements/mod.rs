@@ -1,12 +1,15 @@
 //! Elements: the balance of heat over a body.
 
 mod balance;
-mod equation;
+mod contribution;
 mod place;
+mod equation;
+mod explicit;
 mod registered;
 
 pub use balance::{
     AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, PURE_CONVECTION, Point, Step, THETA,
 };
 pub use equation::{Equation, Terms};
+pub use explicit::{Explicit, PROJECTING, STAGE, Subscales};
 pub use place::full_order;

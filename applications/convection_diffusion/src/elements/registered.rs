@@ -5,6 +5,7 @@ use zelus_core::geometry::Shape;
 use zelus_core::register;
 
 use super::equation::{Equation, Terms};
+use super::explicit::{Explicit, Subscales};
 
 /// Storage, convection, conduction and sources.
 pub struct ConvectionDiffusion;
@@ -36,6 +37,20 @@ impl Terms for Revolution {
     const AXISYMMETRIC: bool = true;
 }
 
+/// Subscales at rest in each step.
+pub struct QuasiStatic;
+
+impl Subscales for QuasiStatic {
+    const DYNAMIC: bool = false;
+}
+
+/// Subscales that go on in time.
+pub struct Dynamic;
+
+impl Subscales for Dynamic {
+    const DYNAMIC: bool = true;
+}
+
 /// Names that Kratos has beside those of shape and nodes.
 macro_rules! aliases {
     ("EulerianConvDiff", "2D3N") => {
@@ -59,6 +74,28 @@ macro_rules! balance {
             space: $dim,
             build: Build::Block(KernelBlock::<Equation<$terms, $nodes, $dim>, $nodes, $nodes>::boxed),
         })+
+    };
+}
+
+/// Registers explicit elements on the shapes of first order: the lumped storage of others has rows of zero.
+macro_rules! explicit {
+    ($name:literal, $subscales:ty, $about:literal, $source:literal; $($suffix:literal: $nodes:literal, $dim:literal;)+) => {
+        $(register! { ElementEntry concat!($name, $suffix),
+            about: $about,
+            source: $source,
+            cell: Shape::of($dim, $nodes),
+            space: $dim,
+            build: Build::Block(KernelBlock::<Explicit<$subscales, $nodes, $dim>, $nodes, $nodes>::boxed),
+        })+
+    };
+    ($($kind:tt)+) => {
+        explicit! { $($kind)+;
+            "2D3N": 3, 2;
+            "2D4N": 4, 2;
+            "3D4N": 4, 3;
+            "3D6N": 6, 3;
+            "3D8N": 8, 3;
+        }
     };
 }
 
@@ -113,5 +150,13 @@ on_shapes! { all, balance; "EulerianDiffusion", Diffusion,
 on_shapes! { plane, balance; "AxisymmetricEulerianConvectionDiffusion", Revolution,
 "EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring",
 "ρc (∂T/∂t + v·∇T) = (1/y) ∇·(y k ∇T) + Q, weighted by N + τ v·∇N" }
+
+explicit! { "QSConvectionDiffusionExplicit", QuasiStatic,
+"heat in explicit steps, stored at the nodes; stabilised by subscales that follow at once",
+"R = ∫ N (Q − ρc v·∇T) − k ∇N·∇T + ρc (v·∇N) s, s = τ (r + ρc π)" }
+
+explicit! { "DConvectionDiffusionExplicit", Dynamic,
+"heat in explicit steps, stored at the nodes; stabilised by subscales that go on in time",
+"R = ∫ N (Q − ρc (v·∇T + ∂s/∂t)) − k ∇N·∇T + ρc (v·∇N) s, ρc ∂s/∂t + s/τ = r + ρc π" }
 
 on_shapes! { all, place; "Element" }

@@ -1,5 +1,6 @@
 //! The solvers of heat, by `solver_type`.
 
+mod explicit;
 mod stationary;
 mod thermo_mechanically_coupled;
 mod transient;
@@ -26,7 +27,7 @@ fn take_up(
     part.info.values.extend([(THETA, theta), (DYNAMIC_TAU, tau), (CROSS_WIND, cross_wind), (LEAST_GRADIENT, least)]);
     part.info.marks.insert(LINEAR, settings.get_str("analysis_type")? == "linear");
     part.info.marks.insert(AT_REST, false);
-    part.info.marks.insert(AT_CENTRE, settings.get_str("gradients")? == "at_centre");
+    part.info.marks.insert(AT_CENTRE, settings.node().get("gradients").and_then(Node::as_str) == Some("at_centre"));
     for name in settings.get_strings("auxiliary_variables_list")? {
         match zelus_core::model::named(&name) {
             Some(variable) => part.nodes.history.add_named(variable.column().0, variable.column().2),

@@ -1,8 +1,10 @@
 //! The solver of heat in time.
 
 use zelus_core::analysis::{SolverDefinition, SolverEntry};
+use zelus_core::parameters::Node;
 use zelus_core::register;
 
+use super::explicit::EXPLICIT_TRANSIENT;
 use crate::adoption::warn_of_no_storage;
 use crate::elements::PURE_CONVECTION;
 use crate::scheme::SCHEME;
@@ -14,6 +16,10 @@ register! { SolverEntry "transient",
     defaults: include_str!("../../../../configs/solvers/transient.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/transient.json"))],
     build: SolverDefinition {
+        variant: |user| {
+            let method = user.get("time_integration_method").and_then(Node::as_str);
+            (method == Some("explicit")).then_some(EXPLICIT_TRANSIENT)
+        },
         variables: &super::VARIABLES,
         scheme: |settings| {
             let method = settings.get_str("time_integration_method")?;
@@ -23,7 +29,7 @@ register! { SolverEntry "transient",
                 _ => {}
             }
             let problem = settings.error("time_integration_method", "time-integration", format!("\"time_integration_method\" is \"{method}\""));
-            Err(problem.remedy("use \"implicit\" or \"semi_implicit\"").into())
+            Err(problem.remedy("use \"implicit\", \"semi_implicit\" or \"explicit\"").into())
         },
         adapt: super::adapt,
         adopt: |settings, part, report| {
@@ -37,7 +43,7 @@ register! { SolverEntry "transient",
             let parameters = [theta, read("dynamic_tau")?, read(cross_wind[0])?, read(cross_wind[1])?];
             super::take_up(settings, parameters, part, report)?;
             part.info.marks.insert(PURE_CONVECTION, settings.get_bool("pure_convection")?);
-            warn_of_no_storage(part, report);
+            warn_of_no_storage(part, "unless a process sets it, they store no heat", report);
             Ok(())
         },
         ..SolverDefinition::PLAIN

@@ -38,8 +38,11 @@ register_absent! { LawEntry ["SmallStrainIsotropicPlasticity", "FiniteStrainIsot
 register_absent! { LawEntry ["SmallStrainIsotropicPlasticityPlaneStress", "FiniteStrainIsotropicPlasticityPlaneStress", "SmallStrainJ2PlasticityPlaneStress", "J2PlasticityPlaneStress"] =>
 "plasticity in plane stress is not there: mesh the thickness with solids, e.g. SmallDisplacementElement3D8N with SmallStrainJ2Plasticity3DLaw" }
 
-register_absent! { LawEntry ["SmallStrainIsotropicDamage", "SmallStrainDplusDminus", "DamageDPlusDMinus", "SmallStrainHighCycleFatigue", "AssociativePlasticDamage", "SmallStrainPlasticDamage"] =>
-"damage and fatigue are not there: elastic laws and von Mises plasticity are" }
+register_absent! { LawEntry ["SmallStrainIsotropicDamage", "SmallStrainThermalIsotropicDamage"] =>
+"of equivalent stresses VonMises, Rankine and Tresca are there, in space, plane strain and plane stress" }
+
+register_absent! { LawEntry ["SmallStrainDplusDminus", "DamageDPlusDMinus", "SmallStrainHighCycleFatigue", "AssociativePlasticDamage", "SmallStrainPlasticDamage"] =>
+"of damage the isotropic one is there, SmallStrainIsotropicDamage and SmallStrainThermalIsotropicDamage" }
 
 register_absent! { LawEntry ["SerialParallelRuleOfMixtures", "TractionSeparationLaw"] =>
 "of mixtures those whose layers strain alike are there: ParallelRuleOfMixturesLaw3D or 2D with sub_properties" }

@@ -103,6 +103,19 @@ impl<const S: usize> Material<S> {
         Ok(materials)
     }
 
+    /// # Errors
+    /// A band that would have to snap back as it softens.
+    pub(super) fn accepts_band(&self, width: f64) -> Result<(), String> {
+        let widest = self.law.widest_band();
+        if width <= widest {
+            return Ok(());
+        }
+        Err(format!(
+            "the band in which it softens, {width:.3e} wide, holds more energy than FRACTURE_ENERGY: at most {widest:.3e}, \
+             2 E G/σ_y², can break without snapping back; make elements smaller"
+        ))
+    }
+
     /// What the law remembers of Gauss point `g`, from what it remembers of all points of an element.
     pub(super) fn remembered<'a>(&self, g: usize, state: &'a [f64]) -> &'a [f64] {
         let size = self.law.history();

@@ -103,6 +103,8 @@ fn initial_matrix<const S: usize>(law: &dyn ConstitutiveLaw<S>, small: bool) -> 
         small,
         pressure: 0.0,
         temperature: 0.0,
+        band: 0.0,
+        band_as_kratos: false,
         history: &history,
     };
     law.stress(&state, StressMeasure::Pk2, Some(&mut d));
@@ -163,8 +165,13 @@ where
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let shape = Shape::of(DIM, NODES).expect("registered for known shapes only");
         let mut materials = Material::all(request, shape, DIM == 2, false)?;
-        if materials.iter().any(|material| material.law.expands()) {
-            let fact = format!("{} has no temperature at its Gauss points, which its law asks for", request.entry.name);
+        let asks = |material: &Material<S>| match (material.law.expands(), material.law.softens()) {
+            (true, _) => Some("temperature at its Gauss points"),
+            (_, true) => Some("band in which it softens"),
+            _ => None,
+        };
+        if let Some(what) = materials.iter().find_map(asks) {
+            let fact = format!("{} has no {what}, which its law asks for", request.entry.name);
             let remedy = "take SmallDisplacementElement, SmallDisplacementBbarElement or TotalLagrangianElement";
             return Err(Diagnostic::error("law-does-not-fit", fact).remedy(remedy).into());
         }

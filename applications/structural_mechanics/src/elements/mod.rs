@@ -5,6 +5,7 @@
 
 mod absent;
 mod axisymmetric;
+mod band;
 mod formulation;
 mod gradients;
 mod material;
@@ -30,6 +31,7 @@ mod total_lagrangian_q1p0;
 mod truss;
 mod updated_lagrangian;
 
+pub use band::BANDS_AS_KRATOS;
 pub use formulation::Formulation;
 pub use gradients::physical_gradients;
 pub use mixed_small_displacement::MixedSmallDisplacement;

@@ -31,6 +31,8 @@ pub(super) const VARIABLES: &[&str] = &[
     "ACCUMULATED_PLASTIC_STRAIN",
     "PLASTIC_STRAIN_VECTOR",
     "UNIAXIAL_STRESS",
+    "DAMAGE",
+    "THRESHOLD",
 ];
 
 /// A variable at all Gauss points of one element; `None` when unknown or when the element is turned inside out.

@@ -16,6 +16,7 @@ use zelus_core::entities::{BlockRequest, FacePoint, Gather, Gauss, Kernel, Local
 use zelus_core::geometry::{Shape, ShapeTable};
 
 use self::kinematics::{Motion, radius};
+use super::band::{self, BANDS_AS_KRATOS};
 use super::formulation::Formulation;
 use super::gradients::{nodal_vectors, physical_gradients};
 use super::material::Material;
@@ -107,9 +108,10 @@ where
         own.len() == saved.len()
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
+    fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;
+        material.accepts_band(band::width(table, &entity.initial, view.info.is(BANDS_AS_KRATOS)))?;
         if (0..table.len()).all(|g| Self::initial_weight(table, g, entity) > 0.0) {
             Ok(vec![0.0; table.len() * material.law.history()].into())
         } else if Self::AXISYMMETRIC {
@@ -173,7 +175,7 @@ where
                 }
             }
             if F::FINITE {
-                Self::add_geometric(&point, &stress, &mut upper);
+                Self::add_geometric(&point, &stress, whole, &mut upper);
             }
         }
         if let Some(bulk) = material.law.bulk_of_element().filter(|_| !lhs.is_empty()) {

@@ -26,6 +26,10 @@ pub struct StrainState<'a, const S: usize> {
     pub pressure: f64,
     /// TEMPERATURE, where the law asks for it ([`ConstitutiveLaw::expands`]); 0 otherwise.
     pub temperature: f64,
+    /// Width of the band in which an element softens, where the law asks for it ([`ConstitutiveLaw::softens`]); 0 otherwise.
+    pub band: f64,
+    /// Whether damage counts as in Kratos.
+    pub band_as_kratos: bool,
     /// What the law remembers from the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
@@ -60,6 +64,16 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     /// Whether the stress depends on the temperature.
     fn expands(&self) -> bool {
         false
+    }
+
+    /// Whether strength falls, so that what breaks is a band as wide as an element.
+    fn softens(&self) -> bool {
+        false
+    }
+
+    /// The widest band that can soften without snapping back.
+    fn widest_band(&self) -> f64 {
+        f64::INFINITY
     }
 
     /// Bulk modulus where the law leaves the volume to the element, which adds the pressure.

@@ -5,7 +5,11 @@
 //! accepted.
 
 mod bar_law;
+mod damage;
+#[cfg(test)]
+mod damage_tests;
 mod elastic;
+mod equivalent_stress;
 mod finite_strain_plasticity;
 mod hardening;
 mod hooke;
@@ -16,6 +20,7 @@ mod kirchhoff_saint_venant;
 mod law;
 mod linear_elastic;
 mod parallel_mixture;
+mod quantity;
 #[cfg(test)]
 mod plasticity_tests;
 mod small_strain_plasticity;
@@ -25,7 +30,9 @@ mod tests;
 
 pub(crate) use bar_law::positive;
 pub use bar_law::{BarLaw, MakeBarLaw};
+pub use damage::IsotropicDamage;
 pub use elastic::Elasticity;
+pub use equivalent_stress::EquivalentStress;
 pub use finite_strain_plasticity::FiniteStrainPlasticity;
 pub use hardening::Hardening;
 pub use hooke::Hooke;

@@ -105,6 +105,14 @@ impl<const S: usize> ConstitutiveLaw<S> for ParallelMixture<S> {
         self.layers.iter().any(|(_, law)| law.expands())
     }
 
+    fn softens(&self) -> bool {
+        self.layers.iter().any(|(_, law)| law.softens())
+    }
+
+    fn widest_band(&self) -> f64 {
+        self.layers.iter().map(|(_, law)| law.widest_band()).fold(f64::INFINITY, f64::min)
+    }
+
     fn is_symmetric(&self, small: bool) -> bool {
         self.layers.iter().all(|(_, law)| law.is_symmetric(small))
     }

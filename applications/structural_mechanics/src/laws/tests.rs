@@ -22,7 +22,17 @@ where
 /// A state with deformation gradient `f`.
 fn state<const S: usize>(f: Tensor) -> StrainState<'static, S> {
     let strain = strain_vector(&(0.5 * (f.transpose() * f - IDENTITY)));
-    StrainState { strain, f, det_f: f.determinant(), small: false, pressure: 0.0, temperature: 0.0, history: &[] }
+    StrainState {
+        strain,
+        f,
+        det_f: f.determinant(),
+        small: false,
+        pressure: 0.0,
+        temperature: 0.0,
+        band: 0.0,
+        band_as_kratos: false,
+        history: &[],
+    }
 }
 
 /// A random deformation gradient whose out-of-plane part suits `S` strains.
@@ -61,6 +71,8 @@ where
                 small: false,
                 pressure: 0.0,
                 temperature: 0.0,
+                band: 0.0,
+                band_as_kratos: false,
                 history: &[],
             }
         };
@@ -146,6 +158,8 @@ fn hooke_in_one_direction() {
         small: false,
         pressure: 0.0,
         temperature: 0.0,
+        band: 0.0,
+        band_as_kratos: false,
         history: &[],
     };
     let stress = law::<6>("LinearElastic3DLaw").pk2(&solid, None);
@@ -157,6 +171,8 @@ fn hooke_in_one_direction() {
         small: false,
         pressure: 0.0,
         temperature: 0.0,
+        band: 0.0,
+        band_as_kratos: false,
         history: &[],
     };
     let stress = law::<3>("LinearElasticPlaneStress2DLaw").pk2(&plane, None);
@@ -168,6 +184,8 @@ fn hooke_in_one_direction() {
         small: false,
         pressure: 0.0,
         temperature: 0.0,
+        band: 0.0,
+        band_as_kratos: false,
         history: &[],
     };
     assert!(near(law::<3>("LinearElasticPlaneStrain2DLaw").pk2(&shear, None)[2], E / (2.0 * (1.0 + NU)) * e, 1e-14));

@@ -4,34 +4,14 @@
 //! over TEMPERATURE where the properties have them; α is the secant from T₀. Where plane strain has no component across, that
 //! direction is held: the others expand by 1 + ν as much.
 
-use zelus_core::diagnostics::{Diagnostic, Result};
-use zelus_core::model::{Properties, Table};
+use zelus_core::diagnostics::Result;
+use zelus_core::model::Properties;
 use zelus_core::register;
 
 use super::elastic::{Elasticity, multiply, quadratic_energy};
 use super::law::{ConstitutiveLaw, LawEntry, LawFactory, Matrix, StrainState};
+use super::quantity::Quantity;
 use crate::tensor::pairs;
-
-/// A constant, or a table over the temperature.
-#[derive(Debug, Clone, PartialEq)]
-enum Quantity {
-    Constant(f64),
-    Table(Table),
-}
-
-impl Quantity {
-    fn of(properties: &Properties, name: &str) -> Result<Self> {
-        let table = properties.table_over("TEMPERATURE", name);
-        table.map_or_else(|| properties.require(name).map(Self::Constant), |table| Ok(Self::Table(table.clone())))
-    }
-
-    fn at(&self, temperature: f64) -> f64 {
-        match self {
-            Self::Constant(value) => *value,
-            Self::Table(table) => table.value(temperature),
-        }
-    }
-}
 
 /// The law; `STRESS_FREE` across the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,20 +28,12 @@ impl<const S: usize, const STRESS_FREE: bool> ThermalElastic<S, STRESS_FREE> {
     /// Constants that are missing or out of range.
     fn new(properties: &Properties) -> Result<Self> {
         let Elasticity { poisson, .. } = Elasticity::of(properties)?;
-        let law = Self {
-            young: Quantity::of(properties, "YOUNG_MODULUS")?,
+        Ok(Self {
+            young: Quantity::positive(properties, "YOUNG_MODULUS")?,
             poisson,
             expansion: Quantity::of(properties, "THERMAL_EXPANSION_COEFFICIENT")?,
             reference: properties.require("REFERENCE_TEMPERATURE")?,
-        };
-        if let Quantity::Table(table) = &law.young
-            && table.points.iter().any(|[_, young]| *young <= 0.0)
-        {
-            let fact =
-                format!("the table of YOUNG_MODULUS of properties {} has values that are not positive", properties.id);
-            return Err(Diagnostic::error("material-out-of-range", fact).at(properties.place.clone()).into());
-        }
-        Ok(law)
+        })
     }
 
     /// Elasticity and the strain without its thermal part.

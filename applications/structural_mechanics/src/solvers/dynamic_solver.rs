@@ -35,6 +35,7 @@ register! { SolverEntry "Dynamic",
             settings.get_str("scheme_type").map(str::to_owned)
         },
         adapt: super::adapt,
+        adopt: super::adopt,
         ..SolverDefinition::PLAIN
     },
 }

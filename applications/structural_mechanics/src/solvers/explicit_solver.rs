@@ -11,6 +11,7 @@ register! { SolverEntry "ExplicitDynamic",
         variables: &super::dynamic_solver::VARIABLES,
         explicit: true,
         adapt: super::adapt,
+        adopt: super::adopt,
         ..SolverDefinition::PLAIN
     },
 }

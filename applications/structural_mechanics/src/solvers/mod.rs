@@ -5,7 +5,11 @@ mod explicit_solver;
 mod static_solver;
 
 use zelus_core::analysis::NodalVariable;
-use zelus_core::parameters::{Defaults, Node, Value};
+use zelus_core::diagnostics::{Report, Result};
+use zelus_core::model::ModelPart;
+use zelus_core::parameters::{Defaults, Node, Settings, Value};
+
+use crate::elements::BANDS_AS_KRATOS;
 
 /// Settings of static solvers with their defaults.
 pub const STATIC_DEFAULTS: &str = include_str!("../../../../configs/solvers/static.json");
@@ -21,6 +25,20 @@ pub const VARIABLES: [NodalVariable; 8] = [
     ("SURFACE_LOAD", 3),
     ("VOLUME_ACCELERATION", 3),
 ];
+
+/// Marks what elements read of the settings.
+///
+/// # Errors
+/// A name that is none.
+pub fn adopt(settings: &Settings, part: &mut ModelPart, _report: &mut Report) -> Result<()> {
+    let named = settings.get_str("crack_bands")?;
+    if !matches!(named, "of_volume" | "as_kratos") {
+        let problem = settings.error("crack_bands", "invalid-value", format!("\"crack_bands\" is \"{named}\""));
+        return Err(problem.remedy("use \"of_volume\" or \"as_kratos\"").into());
+    }
+    part.info.marks.insert(BANDS_AS_KRATOS, named == "as_kratos");
+    Ok(())
+}
 
 /// Names the spellings of older decks.
 pub fn adapt(defaults: Defaults) -> Defaults {

@@ -12,6 +12,7 @@ register! { SolverEntry "Static",
         variables: &super::VARIABLES,
         scheme: |_| Ok("static".to_owned()),
         adapt: super::adapt,
+        adopt: super::adopt,
         ..SolverDefinition::PLAIN
     },
 }

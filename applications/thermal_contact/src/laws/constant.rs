@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting, positive};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
 
 struct Constant(f64);
 
@@ -17,5 +17,5 @@ register! { ContactConductanceEntry "constant",
     about: "the same conductance wherever bodies touch",
     source: "q = h (T₁ − T₂)",
     defaults: include_str!("../../../../configs/contact_conductances/constant.json"),
-    build: |settings| Ok(Box::new(Constant(positive(settings, "conductance")?))),
+    build: |settings| Ok(Box::new(Constant(settings.get_positive("conductance")?))),
 }

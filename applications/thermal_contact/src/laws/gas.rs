@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting, positive};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
 
 struct Gas {
     conductivity: f64,
@@ -26,8 +26,8 @@ register! { ContactConductanceEntry "gas",
     defaults: include_str!("../../../../configs/contact_conductances/gas.json"),
     build: |settings| {
         Ok(Box::new(Gas {
-            conductivity: positive(settings, "conductivity")?,
-            jump: positive(settings, "jump_distance")?,
+            conductivity: settings.get_positive("conductivity")?,
+            jump: settings.get_positive("jump_distance")?,
         }))
     },
 }

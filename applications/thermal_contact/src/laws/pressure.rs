@@ -6,7 +6,7 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting, positive};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
 
 struct ByPressure {
     conductance: f64,
@@ -27,9 +27,9 @@ register! { ContactConductanceEntry "pressure",
     defaults: include_str!("../../../../configs/contact_conductances/pressure.json"),
     build: |settings| {
         Ok(Box::new(ByPressure {
-            conductance: positive(settings, "conductance")?,
-            hardness: positive(settings, "hardness")?,
-            exponent: positive(settings, "exponent")?,
+            conductance: settings.get_positive("conductance")?,
+            hardness: settings.get_positive("hardness")?,
+            exponent: settings.get_positive("exponent")?,
         }))
     },
 }

@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting, positive};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
 
 struct Radiation {
     /// ε σ.
@@ -25,8 +25,8 @@ register! { ContactConductanceEntry "radiation",
     source: "q = ε σ (T₁⁴ − T₂⁴) with 1/ε = 1/ε₁ + 1/ε₂ − 1",
     defaults: include_str!("../../../../configs/contact_conductances/radiation.json"),
     build: |settings| {
-        let [a, b] = [positive(settings, "emissivity_of_slave")?, positive(settings, "emissivity_of_master")?];
-        let factor = positive(settings, "stefan_boltzmann_constant")? / (1.0 / a + 1.0 / b - 1.0);
+        let [a, b] = [settings.get_positive("emissivity_of_slave")?, settings.get_positive("emissivity_of_master")?];
+        let factor = settings.get_positive("stefan_boltzmann_constant")? / (1.0 / a + 1.0 / b - 1.0);
         Ok(Box::new(Radiation { factor }))
     },
 }

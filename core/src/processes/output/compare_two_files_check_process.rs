@@ -39,8 +39,7 @@ const WAYS: [&str; 10] = [
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let required = ["reference_file_name", "output_file_name"];
     let settings = &request.settings_with(|defaults: Defaults| defaults.require(&required))?;
-    let [reference, output] = required.map(|key| settings.get_str(key).map(|name| request.folder.join(name)));
-    let reference = reference?;
+    let reference = request.folder.join(settings.get_str(required[0])?);
     if !reference.is_file() {
         let fact = format!("there is no reference {}", reference.display());
         let remedy = "\"reference_file_name\" is relative to the deck";
@@ -48,7 +47,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     }
     Ok(Box::new(CompareTwoFiles {
         reference,
-        output: output?,
+        output: request.results.join(settings.get_str(required[1])?),
         place: settings.key_place("output_file_name"),
         exact: one_of(settings, "comparison_type", &WAYS)? == 0,
         tolerance: settings.get_f64("tolerance")?,

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Carrier, State};
 
 use crate::diagnostics::Result;
+use crate::io::Mark;
 use crate::io::results::{Dataset, VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
 use crate::model::ModelPart;
 use crate::parameters::Settings;
@@ -38,6 +39,11 @@ pub trait OutputFormat: Send {
 
     /// Endings of its files, the first being that of each picture; those of an earlier run are removed before the first is written.
     fn endings(&self) -> &'static [&'static str];
+
+    /// How its pictures are known.
+    fn mark(&self) -> Mark {
+        Mark::None
+    }
 
     /// What it remembers between pictures, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
@@ -83,6 +89,10 @@ impl OutputFormat for Legacy {
 
     fn endings(&self) -> &'static [&'static str] {
         &["vtk"]
+    }
+
+    fn mark(&self) -> Mark {
+        Mark::Begins(&["# vtk DataFile"])
     }
 }
 
@@ -144,6 +154,10 @@ impl OutputFormat for Vtu {
 
     fn endings(&self) -> &'static [&'static str] {
         &["vtu", "pvtu", "pvd"]
+    }
+
+    fn mark(&self) -> Mark {
+        Mark::Begins(&["<?xml", "<VTKFile"])
     }
 
     fn outputs(&self, folder: &Path) -> Vec<PathBuf> {

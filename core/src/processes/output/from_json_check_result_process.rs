@@ -51,7 +51,7 @@ struct Differences {
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let required = ["model_part_name", "input_file_name"];
     let settings = &request.settings_with(|defaults: Defaults| defaults.require(&required))?;
-    let file = file_of(settings, "input_file_name", request, "")?;
+    let file = file_of(settings, "input_file_name", request.folder, "")?;
     let place = settings.key_place("input_file_name");
     let text = std::fs::read_to_string(&file).map_err(|e| {
         Diagnostic::error("missing-file", format!("the reference results {} cannot be read: {e}", file.display()))

@@ -17,7 +17,7 @@ use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
 };
-use crate::io::{FileUse, append_to_file, cut_file, length_of, replace_file};
+use crate::io::{FileUse, Mark, append_to_file, cut_file, length_of, replace_file};
 use crate::model::{Model, ModelPart, Role, SubPart};
 use crate::parameters::{Defaults, Settings};
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -65,8 +65,8 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     Ok(Box::new(GidOutput {
         part: PartPath::new(settings)?,
         control: OutputControl::new(settings, FILES)?,
-        base: request.folder.join(settings.get_str("output_name")?),
-        folder: request.folder.into(),
+        base: request.results.join(settings.get_str("output_name")?),
+        folder: request.results.into(),
         by_time: one_of(settings, &key("file_label"), &["step", "time"])? == 1,
         single: one_of(settings, &flag("MultiFileFlag"), &["SingleFile", "MultipleFiles"])? == 0,
         deformed,
@@ -257,7 +257,7 @@ impl Process for GidOutput {
     }
 
     fn files(&self) -> Vec<FileUse> {
-        vec![FileUse::WritesSeries(append(&self.base, ".post.res"))]
+        vec![FileUse::WritesSeries(append(&self.base, ".post.res"), Mark::Begins(&["GiD Post Results File"]))]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

@@ -15,7 +15,7 @@ use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
 use crate::diagnostics::{Result, unfit};
 use crate::entities::Gauss;
-use crate::io::{FileUse, replace_file};
+use crate::io::{FileUse, Mark, replace_file};
 use crate::model::{Fields, Flags, Model, ModelPart, Role, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -83,7 +83,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = &request.settings_with(|defaults: Defaults| defaults.require(&required))?;
     Ok(Box::new(JsonOutput {
         part: PartPath::new(settings)?,
-        file: file_of(settings, "output_file_name", request, "")?,
+        file: file_of(settings, "output_file_name", request.results, "")?,
         counter: TimeCounter::new(settings)?,
         quantities: Quantity::list(settings, "output_variables", request.report)?,
         gauss: GaussQuantity::list(settings, "gauss_points_output_variables", request.report)?,
@@ -401,7 +401,7 @@ impl Process for JsonOutput {
     }
 
     fn files(&self) -> Vec<FileUse> {
-        vec![FileUse::Writes(self.file.clone())]
+        vec![FileUse::Writes(self.file.clone(), Mark::Holds("\"TIME\""))]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

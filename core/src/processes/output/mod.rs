@@ -29,3 +29,4 @@ mod vtk_output_process;
 
 pub use format::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};
 pub use picture::usual_results;
+pub use usual::largest_results;

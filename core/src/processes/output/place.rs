@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Settings;
-use crate::processes::ProcessRequest;
 
 /// A model part by its path.
 #[derive(Debug, Clone)]
@@ -57,16 +56,16 @@ pub(super) fn one_of(settings: &Settings, key: &str, words: &[&str]) -> Result<u
     })
 }
 
-/// A file name of the deck; relative ones start in the deck's folder. An ending is added where it is missing.
+/// A file name of the deck; relative ones start in `folder`, one of the request's. An ending is added where it is missing.
 ///
 /// # Errors
 /// `missing-key` for an empty name.
-pub(super) fn file_of(settings: &Settings, key: &str, request: &ProcessRequest<'_>, ending: &str) -> Result<PathBuf> {
+pub(super) fn file_of(settings: &Settings, key: &str, folder: &Path, ending: &str) -> Result<PathBuf> {
     let name = settings.get_str(key)?;
     if name.is_empty() {
         return Err(settings.error(key, "missing-key", format!("\"{key}\" must name a file")).into());
     }
-    let path = request.folder.join(name);
+    let path = folder.join(name);
     Ok(if ending.is_empty() || name.ends_with(ending) { path } else { append(&path, ending) })
 }
 

@@ -12,7 +12,7 @@ use super::quantity::Quantity;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::{mapping, shape_functions};
-use crate::io::{FileUse, append_to_file, cut_file, length_of, replace_file};
+use crate::io::{FileUse, Mark, append_to_file, cut_file, length_of, replace_file};
 use crate::model::{Model, ModelPart, Role, SubPart};
 use crate::parameters::{Interval, Node, Settings};
 use crate::processes::{Process, ProcessRequest};
@@ -60,7 +60,7 @@ pub(super) fn points_output(
     positions: &[[f64; 3]],
     several: bool,
 ) -> Result<Box<dyn Process>> {
-    let folder = request.folder.join(settings.get_str("output_file_settings.output_path")?);
+    let folder = request.results.join(settings.get_str("output_file_settings.output_path")?);
     let name = settings.get_str("output_file_settings.file_name")?;
     if name.is_empty() {
         let fact = "\"file_name\" of \"output_file_settings\" must name a file";
@@ -254,7 +254,7 @@ impl Process for PointsOutput {
 
     fn files(&self) -> Vec<FileUse> {
         let read = self.source.iter().cloned().map(FileUse::Reads);
-        read.chain(self.points.iter().map(|point| FileUse::Writes(point.file.clone()))).collect()
+        read.chain(self.points.iter().map(|point| FileUse::Writes(point.file.clone(), Mark::Begins(&["#"])))).collect()
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

@@ -8,6 +8,7 @@ use zelus_linear_algebra::{Carrier, State};
 
 use super::place::{PartPath, one_of};
 use crate::diagnostics::{Result, unfit};
+use crate::io::{FileUse, SAVED};
 use crate::model::Model;
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -62,9 +63,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         return Err(problem.remedy("write how many files are kept, or -1 for all").into());
     }
     let folder = match (settings.get_bool("save_restart_files_in_folder")?, settings.get_str("output_path")?) {
-        (false, _) => request.folder.to_owned(),
-        (true, "") => request.folder.join(format!("{}__restart_files", settings.get_str("model_part_name")?)),
-        (true, path) => request.folder.join(path),
+        (false, _) => request.results.to_owned(),
+        (true, "") => request.results.join(format!("{}__restart_files", settings.get_str("model_part_name")?)),
+        (true, path) => request.results.join(path),
     };
     let frequency = if unit == Unit::Step { frequency.trunc() } else { frequency };
     Ok(Box::new(SaveRestart {
@@ -121,6 +122,10 @@ impl Process for SaveRestart {
         self.saved.files.retain(|known| *known != path);
         self.saved.files.push(path.clone());
         Some(path)
+    }
+
+    fn files(&self) -> Vec<FileUse> {
+        vec![FileUse::WritesSeries(self.folder.join(format!("{}.rest", self.part.path)), SAVED)]
     }
 
     fn state(&self) -> Option<Box<dyn State>> {

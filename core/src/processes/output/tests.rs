@@ -113,7 +113,8 @@ fn make(name: &str, parameters: &str, model: &mut Model, folder: &Path) -> (Resu
     let entry = registry::find::<ProcessEntry>(name).unwrap();
     let document = Document::from_str(parameters, "deck.json").unwrap();
     let mut report = Report::new();
-    let request = &mut ProcessRequest { entry, parameters: &document.root, model, folder, report: &mut report };
+    let (parameters, results) = (&document.root, folder);
+    let request = &mut ProcessRequest { entry, parameters, model, folder, results, report: &mut report };
     let made = (entry.build)(request);
     (made, report)
 }

@@ -1,9 +1,12 @@
 //! What a picture shows where its deck names nothing.
 
+use std::collections::BTreeMap;
+
 use super::gauss::is_known;
 use super::quantity::{GaussQuantity, Quantity};
 use crate::assembly::System;
 use crate::communication::Ranks;
+use crate::io::results::Column;
 use crate::model::{ModelPart, Rates, Role, SubPart, UsualResults};
 
 /// Unknowns and their reactions.
@@ -23,6 +26,21 @@ pub(super) fn values(part: &ModelPart) -> Vec<Quantity> {
 pub(super) fn gauss(part: &ModelPart, system: &System) -> Vec<GaussQuantity> {
     let all = UsualResults::gauss().into_iter().filter_map(|name| GaussQuantity::new(name).ok());
     all.filter(|quantity| part.ranks.any(is_known(system, Role::Element, quantity))).collect()
+}
+
+/// The largest size at a node of each of them, by name, over all ranks; collective.
+pub fn largest_results(part: &ModelPart) -> BTreeMap<String, f64> {
+    let nodes: Vec<u32> = (0..part.nodes.len() as u32).collect();
+    let size = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let largest = |column: Column| {
+        let values: Vec<f64> = (0..column.values.len()).map(|at| column.values.get(at)).collect();
+        let own = values.chunks_exact(column.components.max(1)).map(size).fold(0.0, f64::max);
+        let all = part.ranks.gather_counted(&[own], &vec![1; part.ranks.size()]);
+        (column.name, all.into_iter().fold(0.0, f64::max))
+    };
+    let unknowns = history(part).into_iter().map(|quantity| quantity.gather(&part.nodes.history, &nodes));
+    let found = values(part).into_iter().map(|quantity| quantity.gather(&part.nodes.values, &nodes));
+    unknowns.chain(found).map(largest).collect()
 }
 
 /// For each of these cells the place of the first sub part that has it, from 1 in the order of names, of those that have

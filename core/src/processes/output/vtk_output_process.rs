@@ -63,7 +63,8 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
     let format = if is_vtu { "vtu" } else { settings.get_str("file_format")? };
     let format = require::<OutputFormatEntry>(format).map_err(|d| d.at(settings.key_place("file_format")))?;
     let in_folder = settings.get_bool("save_output_files_in_folder")?;
-    let folder = if in_folder { request.folder.join(settings.get_str("output_path")?) } else { request.folder.into() };
+    let results = request.results;
+    let folder = if in_folder { results.join(settings.get_str("output_path")?) } else { results.into() };
     Ok(Box::new(VtkOutput {
         part: PartPath::new(settings)?,
         control: OutputControl::new(settings, "")?,
@@ -234,7 +235,8 @@ impl Process for VtkOutput {
 
     fn files(&self) -> Vec<FileUse> {
         let ending = self.format.endings()[0];
-        vec![FileUse::WritesSeries(self.folder.join(format!("{}.{ending}", self.series(&self.part.path))))]
+        let series = self.folder.join(format!("{}.{ending}", self.series(&self.part.path)));
+        vec![FileUse::WritesSeries(series, self.format.mark())]
     }
 
     fn outputs(&self) -> Vec<PathBuf> {

@@ -8,6 +8,7 @@ use zelus_core::entities::{Gather, StepView};
 use zelus_core::geometry::ShapeTable;
 
 use super::Solid;
+use crate::elements::band::{self, BANDS_AS_KRATOS};
 use crate::elements::formulation::Formulation;
 use crate::elements::gradients::{gradient, nodal_vectors, padded, physical_gradients};
 use crate::elements::material::Material;
@@ -49,6 +50,8 @@ pub(super) struct Motion<const NODES: usize> {
     ahead: Option<[[[f64; 3]; NODES]; 2]>,
     /// TEMPERATURE of the nodes, where they have it.
     temperatures: Option<[f64; NODES]>,
+    /// Width of the band in which the element softens, and whether that is Kratos'.
+    band: (f64, bool),
 }
 
 impl<const NODES: usize> Motion<NODES> {
@@ -74,11 +77,14 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
 
     /// What the formulation reads of the motion of the nodes.
     pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
+        let (material, as_kratos) = (self.material(entity), view.info.is(BANDS_AS_KRATOS));
+        let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
+        let band = (width, as_kratos);
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
         let column = view.nodes.history.values(&TEMPERATURE, 0);
         let temperatures = (!column.is_empty()).then(|| entity.scalars(column));
         if !F::FINITE {
-            return Motion { u: displacement, ahead: None, temperatures };
+            return Motion { u: displacement, ahead: None, temperatures, band };
         }
         let (x, initial) = (&entity.current, &entity.initial);
         let nodes = |of: &dyn Fn(usize, usize) -> f64| std::array::from_fn(|i| std::array::from_fn(|c| of(i, c)));
@@ -90,7 +96,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             };
             [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
         });
-        Motion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures }
+        Motion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band }
     }
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
@@ -220,6 +226,8 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 small: !F::FINITE,
                 pressure: 0.0,
                 temperature: motion.temperature(material, n)?,
+                band: motion.band.0,
+                band_as_kratos: motion.band.1,
                 history: material.remembered(g, state),
             },
         })
@@ -252,10 +260,11 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         b
     }
 
-    /// ∇N_i · s · ∇N_j on the diagonal of each block of nodes, times the weight; upper triangle.
+    /// ∇N_i · s · ∇N_j on the diagonal of each block of nodes, times the weight; the upper triangle unless the `whole` is asked for.
     pub(super) fn add_geometric<const SIZE: usize>(
         point: &Point<'_, NODES, DIM, S>,
         stress: &[f64; S],
+        whole: bool,
         lhs: &mut [[f64; SIZE]; SIZE],
     ) {
         let s = stress_tensor(stress);
@@ -264,7 +273,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             for (b, t) in traction.iter_mut().enumerate() {
                 *t = point.weight * (0..DIM).map(|a| point.dn[i][a] * s[(a, b)]).sum::<f64>();
             }
-            for j in i..NODES {
+            for j in if whole { 0 } else { i }..NODES {
                 let k: f64 = (0..DIM).map(|b| traction[b] * point.dn[j][b]).sum();
                 for a in 0..DIM {
                     lhs[i * DIM + a][j * DIM + a] += k;

@@ -1,0 +1,274 @@
+//! The kernel of explicit heat: the rate at which heat comes to a node, with subscales.
+//!
+//! R_i = ∫ N_i (Q − ρc v·∇T) − k ∇N_i·∇T + ρc (v·∇N_i) s. The subscale s is what the mesh does not resolve of T:
+//! s = τ (r + ρc π), r = Q − ρc (∂T/∂t + v·∇T), 1/τ = ρc (β/Δt + 2|v|/h) + 4k/h²; π is zero, or minus the projection of r/ρc
+//! onto the mesh (orthogonal subscales). Dynamic subscales go on in time: β is 1, s = τ (r + ρc (π + s₀/Δt)), and ∫ N_i ρc (s − s₀)/Δt is
+//! taken off R. ∂T/∂t is the mean rate since the beginning of the step. Codina, Principe and Avila (2011).
+
+use std::marker::PhantomData;
+
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::geometry::{Shape, ShapeTable};
+use zelus_core::scalar::Real;
+use zelus_structural_mechanics::elements::physical_gradients;
+
+use super::balance::{DYNAMIC_TAU, along};
+use super::contribution::{Pointwise, add, slope};
+use super::place::{full_order, stream_size};
+use crate::coefficient::{Coefficient, Local};
+use crate::columns::{Columns, nodal, velocities};
+
+/// Value of the step data: how far the present stage is from the beginning of the step to its end.
+pub const STAGE: &str = "RUNGE_KUTTA_STAGE";
+/// Mark of the step data: residuals are those of the strong form, to be projected onto the mesh.
+pub const PROJECTING: &str = "PROJECTING_RESIDUALS";
+
+/// Whether subscales go on in time.
+pub trait Subscales: Send + Sync + 'static {
+    /// Whether an element remembers them.
+    const DYNAMIC: bool;
+}
+
+/// The explicit elements of one block.
+pub struct Explicit<T, const NODES: usize, const DIM: usize> {
+    columns: Columns,
+    conductivity: Coefficient,
+    density: Coefficient,
+    specific_heat: Coefficient,
+    rule: &'static ShapeTable,
+    subscales: PhantomData<fn() -> T>,
+}
+
+/// What is known of a point before its temperature.
+struct Point {
+    /// k.
+    conductivity: f64,
+    /// ρc.
+    capacity: f64,
+    velocity: [f64; 3],
+    source: f64,
+    /// τ.
+    tau: f64,
+    /// Temperature at the beginning of the step.
+    old: f64,
+    /// Time since then; 0 in the first stage.
+    since: f64,
+    /// π, with s₀/Δt where subscales are dynamic (temperature by time).
+    known: f64,
+    /// Subscale at the beginning of the step and length of the step, where it is dynamic.
+    before: Option<[f64; 2]>,
+    /// Whether only the strong form is asked for.
+    projecting: bool,
+}
+
+impl Point {
+    /// The mean rate since the beginning of the step, and what the flow carries.
+    fn strong<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, R) {
+        let rate = if self.since > 0.0 { (temperature - self.old) / self.since } else { R::zero() };
+        (rate, along(self.velocity, gradient))
+    }
+
+    /// s.
+    fn subscale<R: Real>(&self, temperature: R, gradient: [R; 3]) -> R {
+        let (rate, carried) = self.strong(temperature, gradient);
+        ((R::constant(self.known) - rate - carried) * self.capacity + self.source) * self.tau
+    }
+}
+
+impl Pointwise for Point {
+    fn balance<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, [R; 3]) {
+        let (rate, carried) = self.strong(temperature, gradient);
+        let galerkin = carried * self.capacity - self.source;
+        let conducted = gradient.map(|g| g * self.conductivity);
+        if self.projecting {
+            let gone = self.before.map_or(0.0, |[before, length]| before / length);
+            return (galerkin + (rate - gone) * self.capacity, conducted);
+        }
+        let s = self.subscale(temperature, gradient);
+        let stored = match self.before {
+            Some([before, length]) => (s - before) * (self.capacity / length),
+            None => R::zero(),
+        };
+        let flux = |i: usize| conducted[i] - s * (self.capacity * self.velocity[i]);
+        (galerkin + stored, [flux(0), flux(1), flux(2)])
+    }
+}
+
+impl<T: Subscales, const NODES: usize, const DIM: usize> Explicit<T, NODES, DIM> {
+    /// Acts on each Gauss point: its number, shape functions, their gradients and weight.
+    fn points(
+        &self,
+        entity: &Gather<'_, NODES>,
+        subscales: &[f64],
+        view: &StepView<'_>,
+        mut act: impl FnMut(usize, &Point, [&[f64; NODES]; 2], &[[f64; DIM]; NODES], f64),
+    ) -> Result<(), String> {
+        let share = view.info.value_or(STAGE, 0.0);
+        let length = view.info.delta_time;
+        let unknown = Some(self.columns.unknown.column);
+        let [now, old] = [0, 1].map(|level| nodal(entity, view, unknown, level));
+        let [source, earlier] = [0, 1].map(|level| nodal(entity, view, self.columns.volume_source, level));
+        let projection = nodal(entity, view, Some("PROJECTED_SCALAR1"), 0);
+        let velocity = velocities(entity, view, &self.columns, share);
+        let [conductivity, density, specific_heat] = [&self.conductivity, &self.density, &self.specific_heat]
+            .map(|own| own.in_element(entity, view.nodes, &now));
+        if let Some(name) = self.conductivity.unknown_in(&conductivity) {
+            let id = entity.properties.id;
+            return Err(format!(
+                "its properties {id} have no {name} (\"Variables\" of the materials), and no process sets it"
+            ));
+        }
+        let size = stream_size(self.rule.shape(), &entity.current);
+        let beta = if T::DYNAMIC { 1.0 } else { view.info.value_or(DYNAMIC_TAU, 1.0) };
+        for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
+            let (dn, determinant) = physical_gradients(&entity.current, &self.rule.dn::<NODES, DIM>()[g]);
+            if determinant <= 0.0 {
+                return Err("it is inverted".to_owned());
+            }
+            let value = |at: &[f64; NODES]| n.iter().zip(at).map(|(n, value)| n * value).sum::<f64>();
+            let temperature = value(&now);
+            let capacity = Self::capacity([&density, &specific_heat], temperature);
+            let conductivity = conductivity.at(n, temperature);
+            let velocity: [f64; 3] =
+                std::array::from_fn(|a| if a < DIM { (0..NODES).map(|i| n[i] * velocity[i][a]).sum() } else { 0.0 });
+            let speed = along(velocity, velocity).sqrt();
+            let inverse = capacity * (beta / length + 2.0 * speed / size) + 4.0 * conductivity / (size * size);
+            let before = T::DYNAMIC.then(|| [subscales[g], length]);
+            let point = Point {
+                conductivity,
+                capacity,
+                velocity,
+                source: (1.0 - share) * value(&earlier) + share * value(&source),
+                tau: if inverse > 0.0 { inverse.recip() } else { 0.0 },
+                old: value(&old),
+                since: share * length,
+                known: value(&projection) + before.map_or(0.0, |[before, length]| before / length),
+                before,
+                projecting: view.info.is(PROJECTING),
+            };
+            act(g, &point, [n, &now], &dn, self.rule.weight(g) * determinant);
+        }
+        Ok(())
+    }
+
+    /// ρc.
+    fn capacity([density, specific_heat]: [&Local<'_, NODES>; 2], temperature: f64) -> f64 {
+        density.mean(temperature) * specific_heat.mean(temperature)
+    }
+}
+
+impl<T: Subscales, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Explicit<T, NODES, DIM> {
+    /// Subscales at the points, where they are dynamic.
+    type State = Box<[f64]>;
+
+    fn unknowns() -> [LocalUnknown; NODES] {
+        LocalUnknown::of_nodes(crate::variables::TEMPERATURE.scalar())
+    }
+
+    fn own_unknowns(&self) -> [LocalUnknown; NODES] {
+        LocalUnknown::of_nodes(self.columns.unknown)
+    }
+
+    fn new(request: &BlockRequest<'_>) -> Result<Self> {
+        let columns = Columns::of(request.part);
+        let first = request.members.first().map(|&member| request.table.properties[member as usize]);
+        let properties = first.and_then(|id| request.part.properties.get(&id));
+        let coefficient = |column, off| Coefficient::new(column, properties, columns.unknown.column, off);
+        let [density, specific_heat] =
+            [columns.density, columns.specific_heat].map(|column| coefficient(column, 1.0).or(1.0));
+        if density.varies() || specific_heat.varies() {
+            let fact = "explicit steps hold density and specific heat, which a table lets depend on the temperature";
+            let place = properties.map(|properties| properties.place.clone()).unwrap_or_default();
+            let remedy = "give them as numbers, or use \"time_integration_method\": \"implicit\"";
+            return Err(Diagnostic::error("unsupported", fact).at(place).remedy(remedy).into());
+        }
+        let shape = Shape::of(DIM, NODES).expect("elements are registered for known shapes only");
+        Ok(Self {
+            conductivity: coefficient(columns.diffusion, 0.0),
+            density,
+            specific_heat,
+            columns,
+            rule: ShapeTable::get(shape, full_order(shape)),
+            subscales: PhantomData,
+        })
+    }
+
+    fn fits(&self, own: &Self::State, saved: &Self::State) -> bool {
+        own.len() == saved.len()
+    }
+
+    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
+        let inverted = |dn| physical_gradients::<NODES, DIM>(&entity.current, dn).1 <= 0.0;
+        match self.rule.dn::<NODES, DIM>().iter().any(inverted) {
+            true => Err("it is inverted".to_owned()),
+            false => Ok(vec![0.0; if T::DYNAMIC { self.rule.len() } else { 0 }].into()),
+        }
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::General
+    }
+
+    fn local_system(
+        &self,
+        entity: &Gather<'_, NODES>,
+        state: &Box<[f64]>,
+        view: &StepView<'_>,
+        want: Want,
+        lhs: &mut [f64],
+        rhs: &mut [f64; NODES],
+    ) -> Result<(), String> {
+        self.points(entity, state, view, |_, point, [n, now], dn, weight| match want {
+            Want::External => (0..NODES).for_each(|i| rhs[i] += weight * n[i] * point.source),
+            Want::Storage => {}
+            Want::Residual | Want::Both => add(point, [n, now], dn, weight, lhs, rhs),
+        })
+    }
+
+    fn mass(
+        &self,
+        entity: &Gather<'_, NODES>,
+        _state: &Box<[f64]>,
+        view: &StepView<'_>,
+        lumped: bool,
+        out: &mut [f64],
+    ) -> bool {
+        let now = nodal(entity, view, Some(self.columns.unknown.column), 0);
+        let [density, specific_heat] =
+            [&self.density, &self.specific_heat].map(|own| own.in_element(entity, view.nodes, &now));
+        for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
+            let (_, determinant) = physical_gradients(&entity.current, &self.rule.dn::<NODES, DIM>()[g]);
+            let capacity = Self::capacity([&density, &specific_heat], 0.0);
+            let weight = capacity * self.rule.weight(g) * determinant;
+            for i in 0..NODES {
+                match lumped {
+                    true => out[i * NODES + i] += weight * n[i],
+                    false => (0..NODES).for_each(|j| out[i * NODES + j] += weight * n[i] * n[j]),
+                }
+            }
+        }
+        true
+    }
+
+    fn remembers(&self, state: &Box<[f64]>) -> bool {
+        !state.is_empty()
+    }
+
+    fn accept(&self, entity: &Gather<'_, NODES>, state: &mut Box<[f64]>, view: &StepView<'_>) -> Result<(), String> {
+        if state.is_empty() {
+            return Ok(());
+        }
+        let before = state.clone();
+        self.points(entity, &before, view, |g, point, [n, now], dn, _| {
+            let value = n.iter().zip(now).map(|(n, value)| n * value).sum::<f64>();
+            state[g] = point.subscale(value, slope(dn, now));
+        })
+    }
+
+    fn inherit(&self, state: &mut Box<[f64]>, earlier: &Box<[f64]>) {
+        if state.len() == earlier.len() {
+            state.copy_from_slice(earlier);
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Archard's law: the worn volume is proportional to force and way.
+//!
+//! J. F. Archard, J. Appl. Phys. 24 (1953): V = K F s / H, hence the depth K/H p s of a point.
+
+use zelus_core::register;
+
+use crate::law::{Rubbing, WearLaw, WearLawEntry};
+
+struct Archard {
+    /// K/H (area per force).
+    factor: f64,
+}
+
+impl WearLaw for Archard {
+    fn depth(&self, rubbing: &Rubbing) -> f64 {
+        self.factor * rubbing.pressure * rubbing.slip
+    }
+}
+
+register! { WearLawEntry "archard",
+    about: "depth by pressure and way of sliding over the hardness",
+    source: "K/H p s; Archard (1953)",
+    defaults: include_str!("../../../../configs/wear_laws/archard.json"),
+    build: |settings| {
+        let factor = settings.get_positive("wear_coefficient")? / settings.get_positive("hardness")?;
+        Ok(Box::new(Archard { factor }))
+    },
+}

@@ -1,0 +1,3 @@
+//! The laws of wear.
+
+mod archard;

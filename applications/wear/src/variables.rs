@@ -1,0 +1,9 @@
+//! The variables of wear.
+
+use zelus_core::{register_usual_results, register_variable};
+
+register_variable! {
+    pub WEAR_DEPTH: f64 = "Depth of what a node has lost to wear since the start, along the normal of the body (length).";
+}
+
+register_usual_results! { values: ["WEAR_DEPTH"], gauss: [] }

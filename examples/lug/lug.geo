@@ -1,0 +1,50 @@
+// Half of a lug with a pin in its hole, cut at x = 0; millimetres. The pin touches the hole at its top.
+h = 4.0;    // far from the contact
+f = 0.5;    // along the contact
+r = 10.0;   // of the pin
+R = 10.05;  // of the hole
+
+// The lug: a ring of radius 25 on a shank that ends at y = -60.
+Point(1) = {0, 0, 0, h};
+Point(2) = {0, R, 0, f};
+Point(3) = {R, 0, 0, f};
+Point(4) = {0, -R, 0, 3*f};
+Point(5) = {0, -60, 0, h};
+Point(6) = {25, -60, 0, h};
+Point(7) = {25, 0, 0, h};
+Point(8) = {0, 25, 0, h};
+Circle(1) = {2, 1, 3};
+Circle(2) = {3, 1, 4};
+Line(3) = {4, 5};
+Line(4) = {5, 6};
+Line(5) = {6, 7};
+Circle(6) = {7, 1, 8};
+Line(7) = {8, 2};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6, 7};
+Plane Surface(1) = {1};
+
+// The pin, hollow, moved up by the clearance.
+d = R - r;
+Point(11) = {0, d, 0, h};
+Point(12) = {0, d + r, 0, 0.7*f};
+Point(13) = {r, d, 0, 0.7*f};
+Point(14) = {0, d - r, 0, 3*f};
+Point(15) = {0, d - 4, 0, 3*f};
+Point(16) = {4, d, 0, 3*f};
+Point(17) = {0, d + 4, 0, 3*f};
+Circle(11) = {12, 11, 13};
+Circle(12) = {13, 11, 14};
+Line(13) = {14, 15};
+Circle(14) = {15, 11, 16};
+Circle(15) = {16, 11, 17};
+Line(16) = {17, 12};
+Curve Loop(2) = {11, 12, 13, 14, 15, 16};
+Plane Surface(2) = {2};
+
+Physical Surface("Lug") = {1};
+Physical Surface("Pin") = {2};
+Physical Curve("Hole") = {1, 2};
+Physical Curve("PinFace") = {11, 12};
+Physical Curve("PinCore") = {14, 15};
+Physical Curve("Symmetry") = {3, 7, 13, 16};
+Physical Curve("Bottom") = {4};

@@ -1,0 +1,78 @@
+//! Examples of use: how a deck, a mesh or a file of materials names an object.
+
+use serde_json::{Value, json};
+use zelus_core::Result;
+use zelus_core::entities::find_kind;
+use zelus_core::model::Role;
+use zelus_core::parameters::Defaults;
+use zelus_core::registry::Entry;
+
+/// Kinds that a deck names by a word, with the path of that word.
+const WORDS: [(&str, &str); 9] = [
+    ("scheme", "solver_settings.scheme_type"),
+    ("convergence_criterion", "solver_settings.convergence_criterion"),
+    ("builder_and_solver", "solver_settings.builder_and_solver_settings.type"),
+    ("linear_solver", "solver_settings.linear_solver_settings.solver_type"),
+    ("preconditioner", "solver_settings.linear_solver_settings.preconditioner_type"),
+    ("contact_family", "solver_settings.contact_settings.mortar_type"),
+    ("tying_family", "solver_settings.contact_settings.mortar_type"),
+    ("friction_law", "Parameters.frictional_law"),
+    ("output_format", "Parameters.file_format"),
+];
+
+/// How the object is named, as text of the file that names it; `None` where nothing names objects of its kind.
+///
+/// # Errors
+/// Defaults that cannot be read.
+pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
+    let settings = match entry.defaults {
+        "" => None,
+        text => Defaults::parse(entry.name, text)?.example().map(zelus_core::parameters::Node::to_json),
+    };
+    let name = entry.name;
+    let role = [Role::Element, Role::Condition].into_iter().find(|role| role.word() == kind);
+    if let Some(role) = role {
+        let Some(nodes) = find_kind(role, name).map(|kind| kind.nodes()) else { return Ok(None) };
+        let numbers: Vec<String> = (1..=nodes).map(|node| node.to_string()).collect();
+        let block = if role == Role::Element { "Elements" } else { "Conditions" };
+        return Ok(Some(format!("Begin {block} {name}\n    1 1 {}\nEnd {block}", numbers.join(" "))));
+    }
+    let settings = settings.unwrap_or_else(|| json!({}));
+    let named = match kind {
+        "process" => json!({ "python_module": name, "Parameters": settings }),
+        "modeler" => json!({ "name": name, "parameters": settings }),
+        "solver" => json!({ "solver_settings": settings }),
+        "solver_extension" => at(&format!("solver_settings.{name}"), settings),
+        "strategy" => {
+            at("solver_settings.solving_strategy_settings", json!({ "type": name, "advanced_settings": settings }))
+        }
+        "contact_conductance" => at("Parameters.conductance", json!([settings])),
+        "wear_law" => at("Parameters.wear_of_slave", json!([settings])),
+        "penalty_adaptation" => {
+            at("Parameters.advance_ALM_parameters", json!({ "adapt_penalty": true, "adaptation_rule": name }))
+        }
+        "mesh_format" => {
+            let mut import = json!({ "input_type": name, "input_filename": "part" });
+            settings.as_object().into_iter().flatten().for_each(|(key, value)| import[key] = value.clone());
+            at("solver_settings.model_import_settings", import)
+        }
+        "constitutive_law" => json!({
+            "model_part_name": "Structure.Body",
+            "properties_id": 1,
+            "Material": {
+                "constitutive_law": { "name": name },
+                "Variables": { "YOUNG_MODULUS": 210_000.0, "POISSON_RATIO": 0.3 }
+            }
+        }),
+        _ => match WORDS.iter().find(|(word, _)| *word == kind) {
+            Some((_, path)) => at(path, json!(name)),
+            None => return Ok(None),
+        },
+    };
+    Ok(Some(format!("{named:#}")))
+}
+
+/// A value within the objects of a dotted path.
+fn at(path: &str, value: Value) -> Value {
+    path.rsplit('.').fold(value, |inner, key| json!({ key: inner }))
+}

@@ -1,0 +1,295 @@
+//! `zelus run DECK --sweep TABLE`: a parametric study, each row of a table a run in a folder of its own.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+use std::sync::Mutex;
+use std::time::SystemTime;
+
+use serde_json::{Value, json};
+use zelus_core::analysis::RunReport;
+use zelus_core::communication::Ranks;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::io::Mark;
+use zelus_core::strategies::StepRecord;
+use zelus_core::{Error, Result};
+
+use super::report::{check_output, made_folder};
+use super::run::Arguments;
+use super::say::say;
+use super::stop::Stop;
+use super::table::{MARK, Table};
+
+/// Names of files in the folder of a row.
+const REPORT: &str = "report.json";
+const LOG: &str = "log.txt";
+const ROW: &str = "row.json";
+
+/// What of the largest results the table on the terminal shows.
+const LOOKED_AT: [&str; 3] = ["DISPLACEMENT", "CONTACT_PRESSURE", "TEMPERATURE"];
+
+/// The study: what is run, where.
+struct Sweep<'a> {
+    arguments: &'a Arguments,
+    table: Table,
+    folder: PathBuf,
+    /// Threads of a row.
+    threads: usize,
+    stop: Stop,
+}
+
+/// How a row ended.
+struct Ended {
+    row: usize,
+    code: u8,
+    report: Option<RunReport>,
+    /// What the run said where it left no report.
+    said: String,
+    /// Whether it was done before.
+    kept: bool,
+}
+
+/// Runs all rows; the exit code is the largest of theirs.
+///
+/// # Errors
+/// A table that cannot be read, or folders that cannot be made; what a row ends with stands in its row of the results.
+pub(super) fn run(arguments: &Arguments, table: &Path, ranks: &Ranks) -> Result<ExitCode> {
+    if ranks.size() > 1 {
+        let problem = Diagnostic::error("sweep", "a sweep shares out whole runs, and was started on several ranks");
+        return Err(problem.remedy("start it without mpirun; -j says how many rows run at a time").into());
+    }
+    let folder = arguments.output.clone().unwrap_or_else(|| table.with_extension(""));
+    let table = Table::read(table)?;
+    check_keys(&table)?;
+    let results = folder.join("results.csv");
+    made_folder(&folder)?;
+    check_output("the table of results", &results, &[], Mark::Holds(MARK))?;
+    let machine = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let cores = arguments.threads.unwrap_or_else(machine);
+    let jobs = arguments.jobs.unwrap_or(cores).clamp(1, table.rows.len());
+    let sweep = Sweep { arguments, folder, threads: (cores / jobs).max(1), stop: Stop::listen()?, table };
+    let rows = sweep.table.rows.len();
+    say(&format!("{rows} rows, {jobs} at a time with {} thread{} each", sweep.threads, plural(sweep.threads)));
+    let (next, done) = (Mutex::new(0..rows), Mutex::new(Vec::<Ended>::new()));
+    let work = || -> Result<()> {
+        loop {
+            let row = next.lock().expect("no thread panics").next();
+            let Some(row) = row.filter(|_| !sweep.stop.is_asked()) else { return Ok(()) };
+            let ended = sweep.row(row)?;
+            let mut done = done.lock().expect("no thread panics");
+            say(&sweep.line(&ended));
+            done.push(ended);
+            done.sort_by_key(|ended| ended.row);
+            sweep.results(&done).write(&results)?;
+        }
+    };
+    std::thread::scope(|scope| {
+        let all: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
+        all.into_iter().try_for_each(|one| one.join().expect("no thread panics"))
+    })?;
+    let done = done.into_inner().expect("no thread panics");
+    say(sweep.summary(&done).aligned().trim_end());
+    let failed = done.iter().filter(|ended| ended.code != 0).count();
+    let left = rows - done.len();
+    say(&format!("{} of {rows} rows done, {failed} failed, {left} not begun", done.len() - failed));
+    say(&format!("results: {}", results.display()));
+    let worst = done.iter().map(|ended| ended.code).max().unwrap_or(0);
+    Ok(ExitCode::from(if left > 0 { worst.max(5) } else { worst }))
+}
+
+/// Refuses heads that are no keys.
+fn check_keys(table: &Table) -> Result<()> {
+    let mut seen = BTreeSet::new();
+    for head in &table.heads {
+        let wrong = if head.is_empty() || head.contains('=') {
+            "is no key of a deck"
+        } else if !seen.insert(head) {
+            "stands twice"
+        } else {
+            continue;
+        };
+        let problem = Diagnostic::error("table", format!("the head {head:?} {wrong}"));
+        return Err(problem.remedy("write each key once, as --set takes it, e.g. problem_data.end_time").into());
+    }
+    Ok(())
+}
+
+impl Sweep<'_> {
+    fn folder_of(&self, row: usize) -> PathBuf {
+        self.folder.join(format!("row_{}", row + 1))
+    }
+
+    /// What `--set` is given of a row; an empty cell leaves what the deck says.
+    fn changes(&self, row: usize) -> Vec<String> {
+        let cells = self.table.heads.iter().zip(&self.table.rows[row]).filter(|(_, cell)| !cell.is_empty());
+        let own = cells.map(|(head, cell)| format!("{head}={cell}"));
+        self.arguments.set.iter().cloned().chain(own).collect()
+    }
+
+    /// What the results of a row depend on, beside its files.
+    fn identity(&self, row: usize) -> Value {
+        let Arguments { file, like, .. } = self.arguments;
+        json!({ "version": env!("CARGO_PKG_VERSION"), "deck": file, "like": like, "set": self.changes(row) })
+    }
+
+    /// The report of a row that is done, where neither its values nor a file that it read have changed since.
+    fn done_before(&self, row: usize) -> Option<RunReport> {
+        let folder = self.folder_of(row);
+        let own: Value = serde_json::from_slice(&std::fs::read(folder.join(ROW)).ok()?).ok()?;
+        let report = read_report(&folder)?;
+        let age = |path: &Path| -> Option<SystemTime> { path.metadata().ok()?.modified().ok() };
+        let written = age(&folder.join(REPORT))?;
+        let as_it_was = report.inputs.iter().all(|input| age(input).is_some_and(|age| age < written));
+        (own == self.identity(row) && report.exit_code == 0 && as_it_was).then_some(report)
+    }
+
+    /// Runs a row in a process of its own: what ends one does not end the others.
+    fn row(&self, row: usize) -> Result<Ended> {
+        let Arguments { file, like, resume, .. } = self.arguments;
+        if *resume && let Some(report) = self.done_before(row) {
+            return Ok(Ended { row, code: 0, report: Some(report), said: String::new(), kept: true });
+        }
+        let folder = self.folder_of(row);
+        made_folder(&folder)?;
+        let failed = |error: std::io::Error| Error::System(format!("{}: {error}", folder.display()));
+        let identity = format!("{:#}\n", self.identity(row));
+        let same = std::fs::read_to_string(folder.join(ROW)).is_ok_and(|earlier| earlier == identity);
+        std::fs::write(folder.join(ROW), identity).map_err(failed)?;
+        let _ = std::fs::remove_file(folder.join(REPORT));
+        let mut command = Command::new(std::env::current_exe().map_err(failed)?);
+        command.arg("run").arg(file).arg("--quiet").args(["--threads", &self.threads.to_string()]);
+        command
+            .arg("--output")
+            .arg(&folder)
+            .arg("--report")
+            .arg(folder.join(REPORT))
+            .arg("--log")
+            .arg(folder.join(LOG));
+        command.args(like.iter().flat_map(|like| ["--like", like]));
+        command.args(self.changes(row).iter().flat_map(|change| ["--set", change]));
+        if *resume && same {
+            command.arg("--resume");
+        }
+        let output = command.stdin(Stdio::null()).output().map_err(failed)?;
+        let code = output.status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(4);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        Ok(Ended { row, code, report: read_report(&folder), said, kept: false })
+    }
+
+    /// The line of a row that has ended.
+    fn line(&self, ended: &Ended) -> String {
+        let head = format!("row {} of {}", ended.row + 1, self.table.rows.len());
+        match (&ended.report, ended.kept) {
+            (Some(report), true) => format!("{head}: done before, {} steps", report.converged_steps),
+            (Some(report), _) if ended.code == 0 => format!(
+                "{head}: {} steps converged in {} iterations, {:.2} s",
+                report.converged_steps,
+                report.iterations,
+                seconds(report)
+            ),
+            _ => format!("{head}: exit code {}: {}", ended.code, ended.why()),
+        }
+    }
+
+    /// All that is known of each row.
+    fn results(&self, done: &[Ended]) -> Table {
+        let names: BTreeSet<&String> =
+            done.iter().filter_map(|row| row.report.as_ref()).flat_map(|r| r.largest.keys()).collect();
+        let pairs: BTreeSet<String> = done.iter().flat_map(|row| row.forces()).map(|(pair, _)| pair).collect();
+        let mut heads: Vec<String> = MARK.trim_end_matches(',').split(',').map(str::to_owned).collect();
+        heads.extend(self.table.heads.iter().cloned());
+        heads.extend(["steps", "iterations", "unknowns", "warnings", "seconds"].map(str::to_owned));
+        heads.extend(names.iter().map(|name| format!("largest {name}")));
+        heads.extend(pairs.iter().flat_map(|pair| ["x", "y", "z"].map(|axis| format!("force {axis} on {pair}"))));
+        heads.extend(["folder", "error"].map(str::to_owned));
+        let row = |ended: &Ended| {
+            let of = |tell: &dyn Fn(&RunReport) -> String| ended.report.as_ref().map(tell).unwrap_or_default();
+            let mut cells = vec![(ended.row + 1).to_string(), ended.code.to_string()];
+            cells.extend(self.table.rows[ended.row].iter().cloned());
+            cells.push(of(&|report| report.converged_steps.to_string()));
+            cells.push(of(&|report| report.iterations.to_string()));
+            cells.push(of(&|report| report.sizes.unknowns.to_string()));
+            cells.push(of(&|report| report.warnings.len().to_string()));
+            cells.push(of(&|report| format!("{:.3}", seconds(report))));
+            cells.extend(names.iter().map(|name| of(&|report| number(report.largest.get(*name).copied()))));
+            let forces = ended.forces();
+            for pair in &pairs {
+                let force = forces.iter().find(|(own, _)| own == pair).map(|(_, force)| force);
+                cells.extend((0..3).map(|axis| number(force.map(|force| force[axis]))));
+            }
+            cells.push(self.folder_of(ended.row).display().to_string());
+            cells.push(if ended.code == 0 { String::new() } else { ended.why() });
+            cells
+        };
+        Table { rows: done.iter().map(row).collect(), heads }
+    }
+
+    /// What of the results fits on a terminal: keys by their last word, sizes of what is looked at first.
+    fn summary(&self, done: &[Ended]) -> Table {
+        let has =
+            |name: &&str| done.iter().filter_map(|row| row.report.as_ref()).any(|r| r.largest.contains_key(*name));
+        let names: Vec<&str> = LOOKED_AT.into_iter().filter(has).collect();
+        let pairs: BTreeSet<String> = done.iter().flat_map(Ended::forces).map(|(pair, _)| pair).collect();
+        let short = |head: &String| {
+            let words: Vec<&str> = head.split('.').collect();
+            let from = words.iter().rposition(|word| word.parse::<usize>().is_err()).unwrap_or(0);
+            words[from..].join(".")
+        };
+        let mut heads: Vec<String> = ["row", "exit"].map(str::to_owned).to_vec();
+        heads.extend(self.table.heads.iter().map(short));
+        heads.extend(["steps", "iterations", "seconds"].into_iter().chain(names.iter().copied()).map(str::to_owned));
+        heads.extend(pairs.iter().map(|pair| format!("force {}", pair.split(':').next().unwrap_or(pair))));
+        let row = |ended: &Ended| {
+            let of = |tell: &dyn Fn(&RunReport) -> String| ended.report.as_ref().map(tell).unwrap_or_default();
+            let size = |value: Option<f64>| value.map(|value| format!("{value:.3e}")).unwrap_or_default();
+            let mut cells = vec![(ended.row + 1).to_string(), ended.code.to_string()];
+            cells.extend(self.table.rows[ended.row].iter().cloned());
+            cells.push(of(&|report| report.converged_steps.to_string()));
+            cells.push(of(&|report| report.iterations.to_string()));
+            cells.push(of(&|report| format!("{:.2}", seconds(report))));
+            cells.extend(names.iter().map(|name| of(&|report| size(report.largest.get(*name).copied()))));
+            let forces = ended.forces();
+            let force = |pair: &String| forces.iter().find(|(own, _)| own == pair).map(|(_, force)| norm(force));
+            cells.extend(pairs.iter().map(|pair| size(force(pair))));
+            cells
+        };
+        Table { rows: done.iter().map(row).collect(), heads }
+    }
+}
+
+impl Ended {
+    /// Forces on the slave side of each pair, at the end of the last step that converged.
+    fn forces(&self) -> Vec<(String, [f64; 3])> {
+        let steps = self.report.iter().flat_map(|report| report.steps.iter().rev());
+        let balance = steps.filter(|step: &&StepRecord| step.converged).find_map(|step| step.balance.as_ref());
+        balance.iter().flat_map(|balance| &balance.pairs).map(|pair| (pair.name.clone(), pair.force)).collect()
+    }
+
+    /// Why it ended early: the first line of its error.
+    fn why(&self) -> String {
+        let told = self.report.as_ref().and_then(|report| report.errors.first().cloned());
+        let text = told.unwrap_or_else(|| self.said.clone());
+        let stopped = if self.code == 5 { "stopped by a signal, and saved" } else { "it has left no report" };
+        text.lines().find(|line| !line.trim().is_empty()).unwrap_or(stopped).trim().to_owned()
+    }
+}
+
+fn read_report(folder: &Path) -> Option<RunReport> {
+    serde_json::from_slice(&std::fs::read(folder.join(REPORT)).ok()?).ok()
+}
+
+fn seconds(report: &RunReport) -> f64 {
+    report.seconds.get("total").copied().unwrap_or_default()
+}
+
+fn norm(force: &[f64; 3]) -> f64 {
+    force.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map(|value| format!("{value:e}")).unwrap_or_default()
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
