@@ -2,6 +2,7 @@
 
 mod damage;
 mod explicit;
+mod plastic;
 mod slab;
 #[path = "../support/mod.rs"]
 mod support;

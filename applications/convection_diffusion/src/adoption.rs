@@ -3,11 +3,21 @@
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::find_kind;
 use zelus_core::geometry::{Shape, mapping};
-use zelus_core::model::{EntityTable, ModelPart, Role};
+use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
 use zelus_core::parameters::{Node, Settings};
 
 use crate::columns::Columns;
 use crate::semi_implicit::DIFFUSION;
+
+/// Data of elements and conditions: id of the properties that heat has there, 0 for none.
+pub(crate) const PROPERTIES: &str = "THERMAL_PROPERTIES";
+
+/// The properties that heat has in an element, be it alone or beside a structure.
+pub fn properties_of_heat(part: &ModelPart, element: u32) -> Option<&Properties> {
+    let beside = part.elements.data.level(PROPERTIES, 0).get(element as usize).copied().unwrap_or(0.0);
+    let own = part.elements.properties.get(element as usize).copied();
+    part.properties.get(&if beside > 0.0 { beside as usize } else { own? })
+}
 
 /// Takes up a part as the settings say.
 ///

@@ -1,16 +1,17 @@
 //! Heat beside a structure: `thermal_solver_settings` of a structural solver.
 //!
 //! Both share the nodes. Each step solves for heat first, on the mesh as the last step left it, then for the structure, whose laws expand
-//! with the temperatures just found; no iteration goes to and fro, as in Kratos. Elements and faces of heat are made on those of the
-//! structure, with materials of their own.
+//! with the temperatures just found; then both again until the temperatures stay ([`sweeps`](crate::sweeps)). Elements and faces of heat
+//! are made on those of the structure, with materials of their own.
 
 use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
 use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry, SolverSettings};
 use zelus_core::assembly::{Assembler, System};
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
-use zelus_core::entities::{EntityBlock, Interaction};
+use zelus_core::entities::{EntityBlock, Interaction, Outer};
 use zelus_core::io::read_materials_of;
 use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
 use zelus_core::parameters::Settings;
@@ -18,21 +19,14 @@ use zelus_core::register;
 use zelus_core::strategies::{Monitor, Phases, SolutionStrategy, StepRecord};
 use zelus_linear_algebra::{Carrier, State, Unknowns};
 
-use crate::adoption::replace;
+use crate::adoption::{PROPERTIES, replace};
 use crate::columns::Columns;
+use crate::heat::Heat;
+use crate::plastic_heat::PlasticHeat;
+use crate::sweeps::{Goal, Sweeps};
 
 /// Name of the extension.
 pub const EXTENSION: &str = "thermal_solver_settings";
-
-/// Data of elements and conditions: id of the properties that heat has there, 0 for none.
-const PROPERTIES: &str = "THERMAL_PROPERTIES";
-
-/// The properties that heat has in an element, be it alone or beside a structure.
-pub fn properties_of_heat(part: &ModelPart, element: u32) -> Option<&Properties> {
-    let beside = part.elements.data.level(PROPERTIES, 0).get(element as usize).copied().unwrap_or(0.0);
-    let own = part.elements.properties.get(element as usize).copied();
-    part.properties.get(&if beside > 0.0 { beside as usize } else { own? })
-}
 
 /// Reads the materials of heat beside those of the structure.
 fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
@@ -113,16 +107,69 @@ fn around(
     let is_thermal = |block: &dyn EntityBlock| block.unknowns().first().is_some_and(|row| row.variable == unknown);
     system.elements.retain(|block| is_thermal(block.as_ref()));
     system.conditions.retain(|block| is_thermal(block.as_ref()));
-    let (heat, _) = solver.strategy(part, &mut system, report)?;
-    Ok(Box::new(Coupled { heat, system, structure }))
+    let (strategy, _) = solver.strategy(part, &mut system, report)?;
+    // Steps that are explicit are too short to be worth a second look.
+    let plastic = PlasticHeat::of(part);
+    let goal = Goal::of(part).filter(|_| structure.can_retry() && strategy.can_retry());
+    Ok(Box::new(Coupled {
+        heat: Arc::new(Mutex::new(Heat { strategy, system, plastic, last: None })),
+        structure,
+        goal,
+    }))
 }
 
 /// Heat first, then the structure.
 struct Coupled {
-    heat: Box<dyn SolutionStrategy>,
-    /// Unknowns and blocks of heat.
-    system: System,
+    /// Shared with what looks again while the structure iterates.
+    heat: Arc<Mutex<Heat>>,
     structure: Box<dyn SolutionStrategy>,
+    /// When to look no more; once only where there is none.
+    goal: Option<Goal>,
+}
+
+impl Coupled {
+    fn heat(&self) -> MutexGuard<'_, Heat> {
+        self.heat.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The structure's step, with heat solved for again whenever it has converged.
+    fn solve_structure(
+        &mut self,
+        goal: Goal,
+        part: &mut ModelPart,
+        system: &mut System,
+        monitor: &mut dyn Monitor,
+        start: Vec<f64>,
+    ) -> Result<StepRecord> {
+        let sweeps = Sweeps::new(self.heat.clone(), goal, part, start);
+        if system.interactions.iter_mut().any(|interaction| interaction.active_set().is_some()) {
+            // What contact keeps of the step must not begin anew: its iteration goes on.
+            system.interactions.push(Box::new(sweeps));
+            let record = self.structure.solve_step(part, system, monitor);
+            system.interactions.pop();
+            return record;
+        }
+        let mut sweeps = sweeps;
+        loop {
+            let mut record = self.structure.solve_step(part, system, monitor)?;
+            let outer = if record.converged {
+                self.heat().plastic.take(part, &system.elements);
+                sweeps.look_again(part)?
+            } else {
+                Outer::Done
+            };
+            match outer {
+                Outer::Again => continue,
+                Outer::Failed(why) => {
+                    record.converged = false;
+                    record.failure = Some(why);
+                }
+                _ => {}
+            }
+            record.interactions.extend(sweeps.numbers());
+            return Ok(record);
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -165,11 +212,21 @@ impl SolutionStrategy for Coupled {
         system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<StepRecord> {
-        let heat = self.heat.solve_step(part, &mut self.system, monitor)?;
+        let unknown = Columns::of(part).unknown;
+        let start = part.nodes.history.level(unknown.column, 0).to_vec();
+        let heat = self.heat().solve_step(part, monitor)?;
         if !heat.converged {
             return Ok(StepRecord { failure: heat.failure.map(|why| format!("heat: {why}")), ..heat });
         }
-        let mut record = self.structure.solve_step(part, system, monitor)?;
+        let mut record = match self.goal {
+            Some(goal) => self.solve_structure(goal, part, system, monitor, start)?,
+            None => {
+                let record = self.structure.solve_step(part, system, monitor)?;
+                self.heat().plastic.take(part, &system.elements);
+                record
+            }
+        };
+        let heat = self.heat().last.take().unwrap_or(heat);
         record.interactions.push(("heat_iterations".to_owned(), heat.iterations.len() as f64));
         record.interactions.extend(heat.interactions);
         if let (Some(all), Some(of_heat)) = (&mut record.balance, heat.balance) {
@@ -180,7 +237,7 @@ impl SolutionStrategy for Coupled {
 
     /// The mesh has moved with the structure, which carries no heat through itself.
     fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
-        self.heat.accept_step(part, &mut self.system)?;
+        self.heat().accept_step(part)?;
         self.structure.accept_step(part, system)?;
         if let Some(mesh) = Columns::of(part).mesh_velocity.filter(|_| part.nodes.history.has("ACCELERATION")) {
             let velocity = part.nodes.history.level("VELOCITY", 0).to_vec();
@@ -190,18 +247,15 @@ impl SolutionStrategy for Coupled {
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {
-        let mut all = self.heat.messages();
-        all.extend(self.system.interactions.iter_mut().flat_map(|interaction| interaction.messages()));
+        let mut all = self.heat().messages();
         all.extend(self.structure.messages());
         all
     }
 
     fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
-        let interactions = self.system.interactions.iter();
-        interactions
-            .flat_map(|interaction| interaction.last_messages(part))
-            .chain(self.structure.last_messages(part))
-            .collect()
+        let mut all = self.heat().last_messages(part);
+        all.extend(self.structure.last_messages(part));
+        all
     }
 
     fn assembler(&self) -> &Assembler {
@@ -209,16 +263,17 @@ impl SolutionStrategy for Coupled {
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
+        let heat = self.heat();
         Some(Box::new(CoupledState {
-            unknowns_of_heat: self.system.dofs.layout(),
-            heat: self.heat.state(),
+            unknowns_of_heat: heat.system.dofs.layout(),
+            heat: heat.strategy.state(),
             structure: self.structure.state(),
         }))
     }
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
         let CoupledState { heat, structure, .. } = state.take()?;
-        heat.map_or(Ok(()), |state| self.heat.resume(part, &self.system, state))?;
+        heat.map_or(Ok(()), |state| self.heat().resume(part, state))?;
         structure.map_or(Ok(()), |state| self.structure.resume(part, system, state))
     }
 

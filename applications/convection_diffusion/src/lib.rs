@@ -14,5 +14,8 @@ pub mod transport;
 pub mod semi_implicit;
 mod runge_kutta;
 pub mod adoption;
+mod plastic_heat;
+mod heat;
+pub mod sweeps;
 pub mod coupling;
 pub mod solvers;

@@ -11,8 +11,9 @@ use zelus_contact_structural_mechanics::pairs::{FacingPoint, PairKey, facing_poi
 use zelus_contact_structural_mechanics::register_pair_conditions;
 use zelus_contact_structural_mechanics::search::{SearchSettings, candidates};
 use zelus_contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION};
+use zelus_convection_diffusion::adoption::properties_of_heat;
 use zelus_convection_diffusion::columns::Columns;
-use zelus_convection_diffusion::coupling::{EXTENSION, properties_of_heat};
+use zelus_convection_diffusion::coupling::EXTENSION;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};

@@ -240,6 +240,9 @@ pub trait ActiveSet {
     /// A geometry that cannot be computed with.
     fn after_update(&mut self, part: &mut ModelPart, iteration: usize) -> Result<SetChange>;
 
+    /// The iteration has converged: the blocks of elements in that state, before [`ActiveSet::after_convergence`].
+    fn look_at(&mut self, _part: &mut ModelPart, _elements: &[Box<dyn EntityBlock>]) {}
+
     /// The iteration has converged: an outer loop, as Uzawa's, changes what the iteration held constant.
     ///
     /// # Errors

@@ -401,6 +401,8 @@ impl ActiveSet for ContactInteraction {
         }
         let outer = self.loops.judge(part, &mut self.contact, &mut self.set)?;
         self.contact.publish(part);
+        // Others that look at the converged state, as heat does, read pressures and slips.
+        write_states(&mut part.nodes, &self.contact.states, self.contact.setup.settings.family.frictional());
         Ok(outer)
     }
 

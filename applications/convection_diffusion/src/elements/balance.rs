@@ -91,10 +91,15 @@ pub struct Point<'a, const NODES: usize> {
     pub radius: Option<f64>,
 }
 
+/// What volumes are multiplied by: the way round the axis, where there is one.
+pub(super) fn round(radius: Option<f64>) -> f64 {
+    radius.map_or(1.0, |radius| 2.0 * PI * radius)
+}
+
 impl<const NODES: usize> Point<'_, NODES> {
     /// What volumes are multiplied by: the way round the axis.
     pub fn round(&self) -> f64 {
-        self.radius.map_or(1.0, |radius| 2.0 * PI * radius)
+        round(self.radius)
     }
 
     /// Heat capacity per volume.

@@ -10,9 +10,10 @@ use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView,
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_structural_mechanics::elements::physical_gradients;
 
-use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step};
+use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step, round};
 use super::contribution::{add, slope};
 use super::place::{full_order, stream_size};
+use super::plastic_heat::{PLASTIC_HEAT_POWER, plastic_heat, volume};
 use crate::coefficient::{Coefficient, Local};
 use crate::columns::{Columns, nodal, velocities};
 
@@ -41,8 +42,7 @@ pub struct Equation<T, const NODES: usize, const DIM: usize> {
 impl<T: Terms, const NODES: usize, const DIM: usize> Equation<T, NODES, DIM> {
     /// The gradients at the centre, and a share of the volume that is the same for all points.
     fn at_centre(&self, x: &[[f64; 3]; NODES]) -> ([[f64; DIM]; NODES], f64) {
-        let points = self.rule.dn::<NODES, DIM>().iter().enumerate();
-        let volume: f64 = points.map(|(g, dn)| self.rule.weight(g) * physical_gradients(x, dn).1).sum();
+        let volume = volume::<NODES, DIM>(self.rule, x, |_| 1.0);
         let (dn, _) = physical_gradients(x, &self.centre.dn::<NODES, DIM>()[0]);
         (dn, volume / self.rule.n::<NODES>().len() as f64)
     }
@@ -92,8 +92,8 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         if varies || T::TRANSIENT && !T::CARRIED { Tangent::General } else { Tangent::Symmetric }
     }
 
-    fn has_external(&self, _view: &StepView<'_>) -> bool {
-        self.columns.volume_source.is_some()
+    fn has_external(&self, view: &StepView<'_>) -> bool {
+        self.columns.volume_source.is_some() || view.elements.data.has(PLASTIC_HEAT_POWER)
     }
 
     fn has_storage(&self) -> bool {
@@ -139,6 +139,9 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         let size = stream_size(self.rule.shape(), &entity.current);
         let is_centred = view.info.is(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;
         let at_centre = is_centred.then(|| self.at_centre(&entity.current));
+        let radius = |n: &[f64; NODES]| T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][1]).sum());
+        let of_shape = (self.rule, &entity.current);
+        let plastic = plastic_heat::<NODES, DIM>(view, entity.index, of_shape, |n| round(radius(n)));
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
             let (dn, determinant) = physical_gradients(&entity.current, &self.rule.dn::<NODES, DIM>()[g]);
             if determinant <= 0.0 {
@@ -158,9 +161,9 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
                 old: value(&old),
                 old_gradient: slope(&dn, &old),
                 velocity: std::array::from_fn(|a| if a < DIM { part(a) } else { 0.0 }),
-                source: value(&source),
+                source: value(&source) + plastic,
                 size,
-                radius: T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][1]).sum()),
+                radius: radius(n),
             };
             let weight = weight * point.round();
             let apart = match want {

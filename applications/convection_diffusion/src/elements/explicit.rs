@@ -16,6 +16,7 @@ use zelus_structural_mechanics::elements::physical_gradients;
 use super::balance::{DYNAMIC_TAU, along};
 use super::contribution::{Pointwise, add, slope};
 use super::place::{full_order, stream_size};
+use super::plastic_heat::plastic_heat;
 use crate::coefficient::{Coefficient, Local};
 use crate::columns::{Columns, nodal, velocities};
 
@@ -119,6 +120,7 @@ impl<T: Subscales, const NODES: usize, const DIM: usize> Explicit<T, NODES, DIM>
                 "its properties {id} have no {name} (\"Variables\" of the materials), and no process sets it"
             ));
         }
+        let plastic = plastic_heat::<NODES, DIM>(view, entity.index, (self.rule, &entity.current), |_| 1.0);
         let size = stream_size(self.rule.shape(), &entity.current);
         let beta = if T::DYNAMIC { 1.0 } else { view.info.value_or(DYNAMIC_TAU, 1.0) };
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
@@ -139,7 +141,7 @@ impl<T: Subscales, const NODES: usize, const DIM: usize> Explicit<T, NODES, DIM>
                 conductivity,
                 capacity,
                 velocity,
-                source: (1.0 - share) * value(&earlier) + share * value(&source),
+                source: (1.0 - share) * value(&earlier) + share * value(&source) + plastic,
                 tau: if inverse > 0.0 { inverse.recip() } else { 0.0 },
                 old: value(&old),
                 since: share * length,

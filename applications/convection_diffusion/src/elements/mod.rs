@@ -3,6 +3,7 @@
 mod balance;
 mod contribution;
 mod place;
+mod plastic_heat;
 mod equation;
 mod explicit;
 mod registered;
@@ -13,3 +14,4 @@ pub use balance::{
 pub use equation::{Equation, Terms};
 pub use explicit::{Explicit, PROJECTING, STAGE, Subscales};
 pub use place::full_order;
+pub use plastic_heat::PLASTIC_HEAT_POWER;

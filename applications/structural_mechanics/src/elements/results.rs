@@ -7,7 +7,7 @@
 use zelus_core::entities::Gauss;
 
 use super::material::Material;
-use crate::laws::{ConstitutiveLaw, StrainState, StressMeasure};
+use crate::laws::{ConstitutiveLaw, PLASTIC_WORK, StrainState, StressMeasure};
 use crate::tensor::{Tensor, strain_tensor, stress_tensor};
 
 /// Names that the elements answer.
@@ -31,6 +31,7 @@ pub(super) const VARIABLES: &[&str] = &[
     "ACCUMULATED_PLASTIC_STRAIN",
     "PLASTIC_STRAIN_VECTOR",
     "UNIAXIAL_STRESS",
+    PLASTIC_WORK,
     "DAMAGE",
     "THRESHOLD",
 ];

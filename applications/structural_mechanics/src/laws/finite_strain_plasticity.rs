@@ -19,7 +19,7 @@ use zelus_core::register;
 use super::hyper_elastic::right_cauchy_green;
 use super::j2::{J2, Return};
 use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
-use super::small_strain_plasticity::{answer, remember, remembered};
+use super::small_strain_plasticity::{PLASTIC_WORK, answer, remember, remembered};
 use crate::tensor::{IDENTITY, Tensor, cholesky, congruent, eigen, pairs};
 
 /// Relative distance of eigenvalues below which their difference quotient is the derivative.
@@ -127,10 +127,11 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainPlasticity {
 
     /// The plastic strain is ½ ln C_p.
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
-        if variable == "UNIAXIAL_STRESS" {
+        if let "UNIAXIAL_STRESS" | PLASTIC_WORK = variable {
             let trial = self.trial(state);
             let dev: f64 = trial.dev.iter().map(|e| e * e).sum();
-            out.push(2.0 * self.0.mu * trial.turn.kept * (1.5 * dev).sqrt());
+            let q = 2.0 * self.0.mu * trial.turn.kept * (1.5 * dev).sqrt();
+            out.push(if variable == PLASTIC_WORK { q * trial.turn.delta } else { q });
             return true;
         }
         let (g, alpha) = remembered(state.history);

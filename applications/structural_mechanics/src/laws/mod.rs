@@ -10,6 +10,9 @@ mod damage;
 mod damage_tests;
 mod elastic;
 mod equivalent_stress;
+mod expanding;
+#[cfg(test)]
+mod expanding_tests;
 mod finite_strain_plasticity;
 mod hardening;
 mod hooke;
@@ -43,5 +46,5 @@ pub use kirchhoff_saint_venant::KirchhoffSaintVenant;
 pub use law::{ConstitutiveLaw, LawEntry, LawFactory, MakeLaw, MakesLaw, Matrix, StrainState, StressMeasure, law_of};
 pub use linear_elastic::LinearElastic;
 pub use parallel_mixture::ParallelMixture;
-pub use small_strain_plasticity::SmallStrainPlasticity;
+pub use small_strain_plasticity::{PLASTIC_WORK, SmallStrainPlasticity};
 pub use thermal_elastic::ThermalElastic;

@@ -42,6 +42,9 @@ pub(super) fn remember(tensor: &Tensor, alpha: f64, history: &mut [f64]) {
     history[6] = alpha;
 }
 
+/// The work of the stress on the plastic strain of the step that is not yet accepted, by initial volume.
+pub const PLASTIC_WORK: &str = "PLASTIC_WORK_INCREMENT";
+
 /// What plastic laws answer of their history: equivalent plastic strain under its names, the plastic strain as a vector.
 pub(super) fn answer<const S: usize>(plastic: &Tensor, alpha: f64, variable: &str, out: &mut Vec<f64>) -> bool {
     match variable {
@@ -108,9 +111,10 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
     }
 
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
-        if variable == "UNIAXIAL_STRESS" {
+        if let "UNIAXIAL_STRESS" | PLASTIC_WORK = variable {
             let Trial { size, turn, .. } = self.trial(state);
-            out.push(1.5_f64.sqrt() * turn.kept * size);
+            let q = 1.5_f64.sqrt() * turn.kept * size;
+            out.push(if variable == PLASTIC_WORK { q * turn.delta } else { q });
             return true;
         }
         let (plastic, alpha) = remembered(state.history);

@@ -395,6 +395,7 @@ impl NewtonRaphson {
         let mut accepted = true;
         let start = Instant::now();
         for set in system.interactions.iter_mut().filter_map(|i| i.active_set()) {
+            set.look_at(part, &system.elements);
             match set.after_convergence(part)? {
                 Outer::Done => {}
                 Outer::Again => accepted = false,

@@ -1,0 +1,44 @@
+//! Heat beside a structure: its strategy, and the system that this solves.
+
+use zelus_core::assembly::System;
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::model::ModelPart;
+use zelus_core::strategies::{Monitor, SolutionStrategy, StepRecord};
+use zelus_linear_algebra::State;
+
+use crate::plastic_heat::PlasticHeat;
+
+/// Heat beside a structure.
+pub(crate) struct Heat {
+    pub(crate) strategy: Box<dyn SolutionStrategy>,
+    /// Unknowns and blocks of heat.
+    pub(crate) system: System,
+    /// The part of it that plastic flow makes.
+    pub(crate) plastic: PlasticHeat,
+    /// The last solve of the step, where it was solved again.
+    pub(crate) last: Option<StepRecord>,
+}
+
+impl Heat {
+    pub(crate) fn solve_step(&mut self, part: &mut ModelPart, monitor: &mut dyn Monitor) -> Result<StepRecord> {
+        self.strategy.solve_step(part, &mut self.system, monitor)
+    }
+
+    pub(crate) fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.strategy.accept_step(part, &mut self.system)
+    }
+
+    pub(crate) fn resume(&mut self, part: &ModelPart, state: Box<dyn State>) -> Result<()> {
+        self.strategy.resume(part, &self.system, state)
+    }
+
+    pub(crate) fn messages(&mut self) -> Vec<Diagnostic> {
+        let mut all = self.strategy.messages();
+        all.extend(self.system.interactions.iter_mut().flat_map(|interaction| interaction.messages()));
+        all
+    }
+
+    pub(crate) fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
+        self.system.interactions.iter().flat_map(|interaction| interaction.last_messages(part)).collect()
+    }
+}

@@ -1,0 +1,246 @@
+//! Laws that expand: any other law, of the deformation that is not thermal.
+//!
+//! Under small strain ε_m = ε − α(T) (T − T₀) 1 and σ = σ(ε_m). Where the strain is Green–Lagrange's, F = θ F_m with
+//! θ = 1 + α (T − T₀) (Lu and Pister, 1975), so that E_m = (E − ½ (θ² − 1) 1)/θ²; the energy is stored by the volume that has
+//! expanded, θ³ times the initial one, hence S = θ S_m(E_m) and dS/dE = dS_m/dE_m / θ. Under plane stress the thickness expands, too;
+//! under plane strain it is held, so that the mechanical strain across the plane is what keeps it. The energy is by initial volume.
+//!
+//! α is the secant from T₀ and follows a table over TEMPERATURE where there is one; other constants do not.
+
+use zelus_core::diagnostics::Result;
+use zelus_core::model::Properties;
+use zelus_core::register;
+use zelus_core::registry::require;
+
+use super::law::{ConstitutiveLaw, LawEntry, LawFactory, MakesLaw, Matrix, StrainState};
+use super::quantity::Quantity;
+use super::small_strain_plasticity::PLASTIC_WORK;
+use crate::tensor::{Tensor, pairs};
+
+/// Components of plane strain among those with the strain across the plane.
+const IN_PLANE: [usize; 3] = [0, 1, 3];
+
+/// α and T₀.
+#[derive(Debug, Clone, PartialEq)]
+struct Expansion {
+    coefficient: Quantity,
+    reference: f64,
+}
+
+impl Expansion {
+    /// # Errors
+    /// Constants that are missing.
+    fn of(properties: &Properties) -> Result<Self> {
+        Ok(Self {
+            coefficient: Quantity::of(properties, "THERMAL_EXPANSION_COEFFICIENT")?,
+            reference: properties.require("REFERENCE_TEMPERATURE")?,
+        })
+    }
+
+    /// θ.
+    fn stretch(&self, temperature: f64) -> f64 {
+        1.0 + self.coefficient.at(temperature) * (temperature - self.reference)
+    }
+}
+
+/// The state without its thermal part, and what stress and tangent of it are multiplied by.
+fn mechanical<'a, const S: usize>(state: &StrainState<'a, S>, stretch: f64) -> (StrainState<'a, S>, [f64; 2]) {
+    let mut inner = *state;
+    let is_normal = pairs::<S>().map(|(p, q)| p == q);
+    if state.small {
+        let thermal = stretch - 1.0;
+        for (strain, is_normal) in inner.strain.iter_mut().zip(is_normal) {
+            *strain -= if is_normal { thermal } else { 0.0 };
+        }
+        inner.f = state.f - thermal * Tensor::identity();
+        inner.det_f = inner.f.determinant();
+        return (inner, [1.0; 2]);
+    }
+    let (square, thermal) = (stretch * stretch, 0.5 * (stretch * stretch - 1.0));
+    for (strain, is_normal) in inner.strain.iter_mut().zip(is_normal) {
+        *strain = (*strain - if is_normal { thermal } else { 0.0 }) / square;
+    }
+    inner.f = state.f / stretch;
+    inner.det_f = state.det_f / (square * stretch);
+    (inner, [stretch, 1.0 / stretch])
+}
+
+/// A law of the deformation that is not thermal.
+struct Expanding<const S: usize> {
+    law: Box<dyn ConstitutiveLaw<S>>,
+    expansion: Expansion,
+}
+
+impl<const S: usize> Expanding<S> {
+    fn inner<'a>(&self, state: &StrainState<'a, S>) -> (StrainState<'a, S>, [f64; 2], f64) {
+        let stretch = self.expansion.stretch(state.temperature);
+        let (inner, factors) = mechanical(state, stretch);
+        (inner, factors, if state.small { 1.0 } else { stretch.powi(3) })
+    }
+}
+
+impl<const S: usize> ConstitutiveLaw<S> for Expanding<S> {
+    fn pk2(&self, state: &StrainState<'_, S>, mut tangent: Option<&mut Matrix<S>>) -> [f64; S] {
+        let (inner, [of_stress, of_tangent], _) = self.inner(state);
+        let stress = self.law.pk2(&inner, tangent.as_deref_mut());
+        tangent.into_iter().flatten().flatten().for_each(|entry| *entry *= of_tangent);
+        stress.map(|stress| of_stress * stress)
+    }
+
+    fn energy(&self, state: &StrainState<'_, S>) -> f64 {
+        let (inner, _, volume) = self.inner(state);
+        volume * self.law.energy(&inner)
+    }
+
+    fn is_symmetric(&self, small: bool) -> bool {
+        self.law.is_symmetric(small)
+    }
+
+    fn expands(&self) -> bool {
+        true
+    }
+
+    fn history(&self) -> usize {
+        self.law.history()
+    }
+
+    fn advance(&self, state: &StrainState<'_, S>, history: &mut [f64]) {
+        self.law.advance(&self.inner(state).0, history);
+    }
+
+    fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
+        let (inner, _, volume) = self.inner(state);
+        let begin = out.len();
+        let knows = self.law.internal(&inner, variable, out);
+        if variable == PLASTIC_WORK {
+            out[begin..].iter_mut().for_each(|work| *work *= volume);
+        }
+        knows
+    }
+
+    fn ignores_measure(&self, small: bool) -> bool {
+        small && self.law.ignores_measure(small)
+    }
+
+    fn almansi(&self, state: &StrainState<'_, S>) -> [f64; S] {
+        self.law.almansi(state)
+    }
+}
+
+/// A law of plane strain of the deformation that is not thermal, which has a part across the plane.
+struct ExpandingPlane(Expanding<4>);
+
+impl ExpandingPlane {
+    fn whole<'a>(state: &StrainState<'a, 3>) -> StrainState<'a, 4> {
+        let [xx, yy, xy] = state.strain;
+        let StrainState { f, det_f, small, pressure, temperature, band, band_as_kratos, history, .. } = *state;
+        StrainState { strain: [xx, yy, 0.0, xy], f, det_f, small, pressure, temperature, band, band_as_kratos, history }
+    }
+}
+
+impl ConstitutiveLaw<3> for ExpandingPlane {
+    fn pk2(&self, state: &StrainState<'_, 3>, tangent: Option<&mut Matrix<3>>) -> [f64; 3] {
+        let whole = Self::whole(state);
+        let stress = match tangent {
+            None => self.0.pk2(&whole, None),
+            Some(tangent) => {
+                let mut all = [[0.0; 4]; 4];
+                let stress = self.0.pk2(&whole, Some(&mut all));
+                *tangent = IN_PLANE.map(|row| IN_PLANE.map(|column| all[row][column]));
+                stress
+            }
+        };
+        IN_PLANE.map(|at| stress[at])
+    }
+
+    fn energy(&self, state: &StrainState<'_, 3>) -> f64 {
+        self.0.energy(&Self::whole(state))
+    }
+
+    fn is_symmetric(&self, small: bool) -> bool {
+        self.0.is_symmetric(small)
+    }
+
+    fn expands(&self) -> bool {
+        true
+    }
+
+    fn history(&self) -> usize {
+        self.0.history()
+    }
+
+    fn advance(&self, state: &StrainState<'_, 3>, history: &mut [f64]) {
+        self.0.advance(&Self::whole(state), history);
+    }
+
+    fn internal(&self, state: &StrainState<'_, 3>, variable: &str, out: &mut Vec<f64>) -> bool {
+        let begin = out.len();
+        let knows = self.0.internal(&Self::whole(state), variable, out);
+        if out.len() == begin + 4 {
+            out.remove(begin + 2);
+        }
+        knows
+    }
+
+    fn ignores_measure(&self, small: bool) -> bool {
+        self.0.ignores_measure(small)
+    }
+
+    fn almansi(&self, state: &StrainState<'_, 3>) -> [f64; 3] {
+        let whole = self.0.almansi(&Self::whole(state));
+        IN_PLANE.map(|at| whole[at])
+    }
+}
+
+/// The law `name` that expands.
+///
+/// # Errors
+/// Constants that are missing or out of range.
+fn expanding<const S: usize>(name: &str, plane: bool, properties: &Properties) -> Result<Expanding<S>>
+where
+    LawFactory: MakesLaw<S>,
+{
+    let make = MakesLaw::<S>::make(require::<LawEntry>(name)?.build, plane).expect("a law of as many components");
+    Ok(Expanding { law: make(properties)?, expansion: Expansion::of(properties)? })
+}
+
+/// Registers a law that expands under the name of another with "Thermal" before it.
+macro_rules! register_expanding {
+    ($($kind:ident $name:literal)*) => { $( register_expanding! { @ $kind $name } )* };
+    (@ space $name:literal) => { register_expanding! { $name,
+        LawFactory::Space(|properties| Ok(Box::new(expanding::<6>($name, false, properties)?))) } };
+    (@ plane_stress $name:literal) => { register_expanding! { $name,
+        LawFactory::PlaneStress(|properties| Ok(Box::new(expanding::<3>($name, true, properties)?))) } };
+    (@ plane_strain $name:literal) => { register_expanding! { $name,
+        LawFactory::PlaneStrain {
+            plane: |properties| Ok(Box::new(ExpandingPlane(expanding::<4>($name, true, properties)?))),
+            whole: |properties| Ok(Box::new(expanding::<4>($name, true, properties)?)),
+        } } };
+    (@ revolution $name:literal) => { register_expanding! { $name,
+        LawFactory::Axisymmetric(|properties| Ok(Box::new(expanding::<4>($name, false, properties)?))) } };
+    ($name:literal, $build:expr) => {
+        register! { LawEntry concat!("Thermal", $name),
+            about: concat!($name, " that expands; needs THERMAL_EXPANSION_COEFFICIENT and REFERENCE_TEMPERATURE beside its properties"),
+            source: "ε_m = ε − α (T − T₀) 1 under small strain, F = (1 + α (T − T₀)) F_m else; Lu and Pister, Int. J. Solids Structures 11 (1975)",
+            build: $build,
+        }
+    };
+}
+
+register_expanding! {
+    space "SmallStrainJ2Plasticity3DLaw"
+    plane_strain "SmallStrainJ2PlasticityPlaneStrain2DLaw"
+    revolution "SmallStrainJ2PlasticityAxisym2DLaw"
+    space "SmallStrainIsotropicPlasticity3DVonMisesVonMises"
+    plane_strain "SmallStrainIsotropicPlasticityPlaneStrainVonMisesVonMises"
+    space "FiniteStrainIsotropicPlasticity3DVonMisesVonMises"
+    plane_strain "FiniteStrainIsotropicPlasticityPlaneStrainVonMisesVonMises"
+    revolution "FiniteStrainIsotropicPlasticityAxisymVonMisesVonMises"
+    space "KirchhoffSaintVenant3DLaw"
+    plane_strain "KirchhoffSaintVenantPlaneStrain2DLaw"
+    plane_stress "KirchhoffSaintVenantPlaneStress2DLaw"
+    revolution "KirchhoffSaintVenantAxisym2DLaw"
+    space "HyperElastic3DLaw"
+    plane_strain "HyperElasticPlaneStrain2DLaw"
+    revolution "HyperElasticAxisym2DLaw"
+}
