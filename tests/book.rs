@@ -7,6 +7,9 @@ use std::process::{Command, Output};
 
 use support::{read_json, root, said, scratch_copy, zelus};
 
+/// Examples that pages of the book run.
+const TUTORIALS: [&str; 2] = ["examples/disc_on_block", "examples/lug"];
+
 /// A block of commands of a page.
 struct Block {
     /// What stands after `console`: `example=FOLDER` begins with a copy of that example, `optional=PROGRAM` needs that program.
@@ -97,6 +100,26 @@ fn the_lug_behaves_as_its_page_says() {
         }
         assert_eq!(pair["slipping"].as_f64(), Some(row[4]));
     }
+}
+
+/// What the gallery runs is what tests run: the examples, each with what is expected of it, and the atlas.
+#[test]
+fn commands_of_the_gallery_are_those_of_tests() {
+    let text = std::fs::read_to_string(root().join("docs/gallery.md")).expect("the page");
+    let mut count = 0;
+    for line in text.lines().filter_map(|line| line.strip_prefix("    ")) {
+        count += 1;
+        let folder = line.strip_prefix("zelus run ").and_then(|deck| deck.strip_suffix("/ProjectParameters.json"));
+        match (folder, line.strip_prefix("python3 verification/run.py --only ")) {
+            (Some(folder), _) => {
+                let is_tested = root().join(folder).join("expected.json").is_file() || TUTORIALS.contains(&folder);
+                assert!(is_tested, "{line}");
+            }
+            (_, Some(name)) => assert!(root().join("verification").join(name).is_dir(), "{line}"),
+            _ => panic!("the gallery has another command: {line}"),
+        }
+    }
+    assert!(count >= 12, "{count} problems");
 }
 
 /// Options that pages name are those of the program.

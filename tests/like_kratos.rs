@@ -198,6 +198,7 @@ fn every_setting_of_kratos_is_named_with_its_source() {
             "explicit_dynamic",
             "explicit_transient",
             "stationary",
+            "coupling_settings",
             "transient",
             "vtk_output_process",
             "vtu_output_process",

@@ -25,7 +25,9 @@ use specimen::{Loads, Random, Specimen, Vec3, cell, difference, is_axisymmetric,
 const TANGENT_AT_REST: &[(&str, &str, &str)] = &[
     ("SmallDisplacement", "HyperElastic", "the law's matrix is the derivative by its own strain measure"),
     ("UpdatedLagrangian", "LinearElastic", "the law gives the same numbers as every stress measure"),
-    ("UpdatedLagrangian", "Thermal", "the law gives the same numbers as every stress measure"),
+    ("SmallDisplacement", "ThermalHyperElastic", "the law's matrix is the derivative by its own strain measure"),
+    ("UpdatedLagrangian", "ThermalElastic", "the law gives the same numbers as every stress measure"),
+    ("UpdatedLagrangian", "ThermalLinear", "the law gives the same numbers as every stress measure"),
 ];
 
 /// Every registered kind of body or boundary with a block, and a law that fits it; conditions have none, nor elements that do

@@ -16,8 +16,10 @@ use zelus::core::model::{EntityTable, Fields, ModelPart};
 use zelus::{Error, RunOptions, Silent, Simulation};
 
 const DECK: &str = "ProjectParameters.json";
+/// Settings of the structure beside heat.
+const STRUCTURE: &str = "structural_solver_settings";
 
-/// A folder below `tests`, what is changed in its deck, and how many steps it makes.
+/// A folder beside or below `tests`, what is changed in its deck, and how many steps it makes.
 struct Case {
     folder: &'static str,
     change: fn(&mut Value),
@@ -88,7 +90,9 @@ fn prepared(case: &Case) -> tempfile::TempDir {
     if deck.get("stages").is_none() {
         let end = deck["problem_data"]["end_time"].as_f64().expect("a time");
         let start = deck["problem_data"]["start_time"].as_f64().expect("a time");
-        deck["solver_settings"]["time_stepping"] = json!({"time_step": (end - start) / case.steps as f64});
+        let solver = &mut deck["solver_settings"];
+        let solver = if solver.get(STRUCTURE).is_some() { &mut solver[STRUCTURE] } else { solver };
+        solver["time_stepping"] = json!({"time_step": (end - start) / case.steps as f64});
     }
     std::fs::write(&path, deck.to_string()).expect("the deck");
     scratch
@@ -212,6 +216,29 @@ fn materials_that_remember_and_paths_through_limits() {
         case("cases/structural/stages_of_plastic_flow", 0),
         case("cases/structural/two_stages", 0),
     ]);
+}
+
+/// Heat alone, through contact, of friction, by turns with the structure, and what wears.
+const HEAT_AND_WEAR: [Case; 5] = [
+    Case { folder: "../examples/transient_slab", change: |deck| ends(deck, 0.1), steps: 6 },
+    case("../examples/bars_in_thermal_contact", 2),
+    Case { folder: "../examples/rubbing_blocks", change: |deck| ends(deck, 6e-4), steps: 6 },
+    Case { folder: "../examples/barber_rod", change: |deck| ends(deck, 0.03), steps: 6 },
+    Case { folder: "../examples/worn_pin", change: |deck| ends(deck, 0.06), steps: 6 },
+];
+
+fn ends(deck: &mut Value, time: f64) {
+    deck["problem_data"]["end_time"] = json!(time);
+}
+
+#[test]
+fn heat_and_wear() {
+    all(&HEAT_AND_WEAR);
+}
+
+#[test]
+fn heat_and_wear_go_on_over_other_ranks() {
+    elsewhere(&HEAT_AND_WEAR);
 }
 
 /// The deck of a slide, its folder and a run of it saved after a step.

@@ -12,7 +12,9 @@ pub mod proximity;
 mod source;
 mod abaqus;
 mod gmsh;
+mod med;
 mod vtu;
+mod vtkhdf;
 
 use std::path::Path;
 
@@ -22,6 +24,7 @@ use zelus_core::parameters::{Node, Object, Value};
 use zelus_core::registry;
 
 pub use mesh::Mesh;
+pub use vtkhdf::write_vtkhdf;
 
 /// The format of a file: the one named, or that of its ending.
 ///
@@ -49,6 +52,7 @@ pub fn read(path: &Path, format: &MeshFormatEntry) -> Result<(Mesh, Vec<Diagnost
     let (mut mesh, mut said) = match format.name {
         "abaqus" => abaqus::read_mesh(path)?,
         "gmsh" => (gmsh::read_mesh(path)?, Vec::new()),
+        "med" => (med::read_mesh(path)?, Vec::new()),
         "vtu" => (vtu::read_mesh(path)?, Vec::new()),
         _ => {
             let nothing = Node::new(Value::Object(Object::default()), &Place::file(path));

@@ -71,6 +71,33 @@ fn every_form_of_gmsh_gives_the_same_mesh() {
 }
 
 #[test]
+fn med_files_give_the_same_mesh() {
+    for order in ["1", "2"] {
+        let mesh = mesh(&data(&format!("solids_{order}.med")));
+        has_three_cubes(&mesh);
+        assert_eq!(mesh.group("Corner").unwrap().nodes.len(), 1, "{order}");
+    }
+}
+
+#[test]
+fn damaged_med_files_are_refused() {
+    let whole = std::fs::read(data("solids_1.med")).unwrap();
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("part.med");
+    for length in (0..whole.len()).step_by(1999) {
+        std::fs::write(&path, &whole[..length]).unwrap();
+        assert!(read(&path).is_err(), "{length} bytes");
+    }
+    // A changed byte may be one of a coordinate; what matters is that nothing panics.
+    for at in (0..whole.len()).step_by(97) {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 0xff;
+        std::fs::write(&path, bytes).unwrap();
+        let _ = read(&path);
+    }
+}
+
+#[test]
 fn gmsh_s_abaqus_files_give_the_same_mesh() {
     for order in ["1", "2"] {
         has_three_cubes(&mesh(&data(&format!("solids_{order}.inp"))));

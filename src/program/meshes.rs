@@ -1,4 +1,4 @@
-//! `zelus import` and `zelus convert`: meshes from one format to another.
+//! `zelus import` and `zelus convert`: meshes from one format to another, and results of many files to one.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::Mark;
 use zelus_core::io::mdpa::MdpaDocument;
 use zelus_core::parameters::{Node, Object, Value};
-use zelus_meshes::format;
+use zelus_meshes::{format, write_vtkhdf};
 
 use super::report::check_output;
 use super::say::say;
@@ -27,9 +27,9 @@ pub(super) struct Import {
 /// The command line of `zelus convert`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Convert {
-    /// The mesh to read.
+    /// The mesh to read, or the results (.pvd) of a run.
     from: PathBuf,
-    /// The mesh to write; its ending says in which format.
+    /// The mesh to write; its ending says in which format. The results of all steps go into one file that ends in .vtkhdf.
     to: PathBuf,
     #[command(flatten)]
     how: How,
@@ -59,6 +59,12 @@ pub(super) fn import(arguments: Import) -> Result<()> {
 /// Writes a mesh in the format of the ending of its new name.
 pub(super) fn convert(arguments: &Convert) -> Result<()> {
     let (from, to) = (&arguments.from, &arguments.to);
+    if to.extension().is_some_and(|ending| ending == "vtkhdf") {
+        check_output("the results", to, &[from], Mark::None)?;
+        let steps = write_vtkhdf(from, to)?;
+        say(&format!("written: {}, {steps} steps", to.display()));
+        return Ok(());
+    }
     check_output("the mesh", to, &[from], Mark::None)?;
     let target = format(to, None)?;
     let write = target.write.ok_or_else(|| {

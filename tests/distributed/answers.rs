@@ -6,6 +6,14 @@ use crate::boxes::Boxes;
 use crate::runs::*;
 use crate::support::{Results, read_json, root, said, scratch_copy};
 
+/// Makes the channel of slug flow one whose heat is carried along paths, in time.
+const CARRIED: &[(&str, &str)] = &[
+    ("\"stationary\"", "\"transient\", \"time_integration_method\": \"semi_implicit\""),
+    ("\"time_step\": 1.0", "\"time_step\": 0.005"),
+    ("\"end_time\": 1.0", "\"end_time\": 0.015"),
+    (",\n    \"stores_heat\": false", ""),
+];
+
 /// METIS leaves most facets of a sphere's small contact to few ranks: their pairs are shared out, and nothing else changes. The engine is
 /// named: one process alone would hand over to the direct one, whose answers are closer than multigrid's.
 #[test]
@@ -34,6 +42,15 @@ fn bodies_without_contact() {
 fn heat_through_contact() {
     let deck = root().join("examples/bars_in_thermal_contact");
     equals_serial(&deck.to_string_lossy(), &[], EXACT, true);
+}
+
+/// By turns with a structure in contact, and carried along paths through the whole mesh.
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn heat_beside_other_things() {
+    let example = |name: &str| root().join("examples").join(name).to_string_lossy().into_owned();
+    equals_serial(&example("shrink_fit_by_cooling"), &[], EQUAL, true);
+    equals_serial(&example("graetz_slug_flow"), CARRIED, EQUAL, true);
 }
 
 #[test]

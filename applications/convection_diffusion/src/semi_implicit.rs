@@ -1,13 +1,13 @@
 //! Semi-implicit steps of heat: temperatures are carried along first, then conducted.
 
 use zelus_core::assembly::DofTable;
-use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::diagnostics::Result;
 use zelus_core::model::ModelPart;
 use zelus_core::register;
 use zelus_core::strategies::{Scheme, SchemeEntry, SchemeFactory};
 
 use crate::columns::Columns;
-use crate::transport::{Locator, Paths, carried};
+use crate::transport::{Locator, Paths, Whole, carried};
 use crate::variables::PROJECTED_SCALAR1;
 
 /// Name of the scheme.
@@ -34,22 +34,22 @@ impl Scheme for CarriedThenConducted {
     }
 
     fn predict(&mut self, part: &mut ModelPart, _dofs: &DofTable) -> Result<()> {
-        if part.share.is_some() {
-            let fact = "semi-implicit steps follow paths through the whole mesh, which several ranks have in parts";
-            let remedy = "run it on one rank with more threads, or use \"time_integration_method\": \"implicit\"";
-            return Err(Diagnostic::error("unsupported", fact).remedy(remedy).into());
-        }
         let columns = Columns::of(part);
-        let values = part.nodes.history.level(columns.unknown.column, 0).to_vec();
-        let velocities = [0, 1].map(|level| relative(part, &columns, level));
+        let whole = Whole::of(part);
+        let of_own = |all: &[[f64; 3]]| whole.own.iter().map(|&node| all[node as usize]).collect::<Vec<_>>();
+        let values = part.nodes.history.level(columns.unknown.column, 0);
+        let values = whole.field(&whole.own.iter().map(|&node| [values[node as usize]]).collect::<Vec<_>>());
+        let velocities = [0, 1].map(|level| whole.field(&of_own(&relative(part, &columns, level))));
+        let mesh = whole.mesh();
         let paths = Paths {
-            positions: &part.nodes.current,
+            positions: &mesh.positions,
             velocities: velocities.each_ref().map(Vec::as_slice),
             time: part.info.delta_time,
             parts: self.parts,
         };
-        let carried = carried(&Locator::new(part), &paths, &values);
-        part.nodes.history.values_mut(&PROJECTED_SCALAR1, 0).copy_from_slice(&carried);
+        let carried = whole.field(&carried(&whole, &Locator::new(&mesh), &paths, &values));
+        let here: Vec<f64> = (0..part.nodes.len() as u32).map(|node| carried[whole.place(node)][0]).collect();
+        part.nodes.history.values_mut(&PROJECTED_SCALAR1, 0).copy_from_slice(&here);
         Ok(())
     }
 }

@@ -57,6 +57,8 @@ def save(name, make):
         gmsh.write(f"{name}_{tag}.msh")
     gmsh.option.setNumber("Mesh.Binary", 0)
     gmsh.write(f"{name}.inp")
+    if name.startswith("solids"):
+        gmsh.write(f"{name}.med")
     gmsh.finalize()
 
 

@@ -8,8 +8,9 @@ use rayon::prelude::*;
 use zelus_core::vector3::{add, scale};
 
 use super::locator::{Locator, Place};
+use super::whole::Whole;
 
-/// Velocities of the nodes and how paths are followed.
+/// Velocities of all nodes and how paths are followed.
 pub struct Paths<'a> {
     /// Positions of the nodes.
     pub positions: &'a [[f64; 3]],
@@ -47,20 +48,22 @@ impl Paths<'_> {
     }
 }
 
-/// Values of the nodes after a step. A node whose path back leaves the mesh has the value where it left; one that begins outside keeps
-/// its own.
-pub fn carried(locator: &Locator<'_>, paths: &Paths<'_>, values: &[f64]) -> Vec<f64> {
-    let nodes = 0..values.len();
-    let back: Vec<End<'_>> = nodes.clone().into_par_iter().map(|node| paths.follow(locator, node, -1.0)).collect();
-    let there: Vec<f64> =
-        back.iter().zip(values).map(|(end, own)| end.place.map_or(*own, |place| place.value(values))).collect();
-    let corrected = nodes.into_par_iter().map(|node| match paths.follow(locator, node, 1.0) {
-        End { place: Some(place), is_inside: true } => 1.5 * values[node] - 0.5 * place.value(&there),
+/// Values after a step of the nodes that this rank owns, from those of all nodes before it. A node whose path back leaves the mesh has the
+/// value where it left; one that begins outside keeps its own. Collective.
+pub fn carried(whole: &Whole<'_>, locator: &Locator<'_>, paths: &Paths<'_>, values: &[[f64; 1]]) -> Vec<[f64; 1]> {
+    let own = || whole.own.par_iter().map(|&node| whole.place(node));
+    let back: Vec<(usize, End<'_>)> = own().map(|node| (node, paths.follow(locator, node, -1.0))).collect();
+    let there: Vec<[f64; 1]> =
+        back.iter().map(|(node, end)| end.place.map_or(values[*node], |place| [place.value(values)])).collect();
+    let all_there = whole.field(&there);
+    let corrected = own().map(|node| match paths.follow(locator, node, 1.0) {
+        End { place: Some(place), is_inside: true } => [1.5 * values[node][0] - 0.5 * place.value(&all_there)],
         _ => values[node],
     });
-    let corrected: Vec<f64> = corrected.collect();
-    let better = |(end, there): (&End<'_>, &f64)| match end.place {
-        Some(place) if end.is_inside => place.value(&corrected),
+    let corrected: Vec<[f64; 1]> = corrected.collect();
+    let all_corrected = whole.field(&corrected);
+    let better = |((_, end), there): (&(usize, End<'_>), &[f64; 1])| match end.place {
+        Some(place) if end.is_inside => [place.value(&all_corrected)],
         _ => *there,
     };
     back.iter().zip(&there).map(better).collect()

@@ -2,6 +2,10 @@
 
 mod back_and_forth;
 mod locator;
+mod mesh;
+mod whole;
 
 pub use back_and_forth::{Paths, carried};
 pub use locator::Locator;
+pub use mesh::Mesh;
+pub use whole::Whole;
