@@ -32,7 +32,7 @@ import gen_blocks
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PACKAGES = ["KratosMultiphysics", "KratosStructuralMechanicsApplication", "KratosContactStructuralMechanicsApplication",
-            "KratosConstitutiveLawsApplication", "KratosLinearSolversApplication"]
+            "KratosConstitutiveLawsApplication", "KratosLinearSolversApplication", "KratosConvectionDiffusionApplication"]
 # What the reference does not solve with amgcl: it takes the solver that it finds itself.
 SOLVERS = {"friction": "", "components": ""}
 REFERENCE = """
@@ -47,7 +47,11 @@ except ImportError:
 import KratosMultiphysics.ContactStructuralMechanicsApplication
 from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis import StructuralMechanicsAnalysis
 parameters = KM.Parameters(open(sys.argv[1]).read())
-StructuralMechanicsAnalysis(KM.Model(), parameters).Run()
+if parameters.Has("analysis_stage"):
+    from KratosMultiphysics.ConvectionDiffusionApplication.convection_diffusion_analysis import ConvectionDiffusionAnalysis
+    ConvectionDiffusionAnalysis(KM.Model(), parameters).Run()
+else:
+    StructuralMechanicsAnalysis(KM.Model(), parameters).Run()
 sys.stdout.flush()
 os._exit(0)
 """

@@ -6,7 +6,9 @@
 The lower block is the unit cube in --lower³ cells, held at its bottom; the upper one 0.8 × 0.8 × 0.8 in --upper³
 cells, guided on two sides and pressed from above with 1 MPa in equal steps; its lower face carries the multipliers.
 Kinds: what holds the blocks apart or together, `finite` neo-Hookean bodies with finite strain, and `body`, the lower
-block alone under the load, linear, which CalculiX is given too (blocks.inp).
+block alone under the load, linear, which CalculiX is given too (blocks.inp). `heat` is the lower block alone, heated from
+above and cooled from below, at rest; `thermal` the frictionless blocks with heat that passes from one to the other by their
+pressure, which makes them grow, solved by turns in each step.
 """
 import argparse
 import json
@@ -31,7 +33,10 @@ KINDS = {
     "tying": ("ComponentsMeshTying", "mesh_tying_process", None),
     "finite": ("ALMContactFrictionless", "alm_contact_process", "Frictionless"),
     "body": (None, None, None),
+    "thermal": ("ALMContactFrictionless", "alm_contact_process", "Frictionless"),
+    "heat": (None, None, None),
 }
+CONDUCTIVITY = 10.0
 
 
 def calculix(path, mesh, box):
@@ -53,16 +58,16 @@ def calculix(path, mesh, box):
 
 
 def write(out, lower, upper, kind="frictionless", steps=1, solver_type=""):
-    """Writes the deck into the folder `out`; the number of displacements."""
+    """Writes the deck into the folder `out`; the numbers of unknowns without multipliers and of elements."""
     mortar, module, contact_type = KINDS[kind]
-    element = "TotalLagrangianElement" if kind == "finite" else "SmallDisplacementElement"
+    element = {"finite": "TotalLagrangianElement", "heat": "Element"}.get(kind, "SmallDisplacementElement")
     mesh = Mesh()
     below = Box(mesh, "Lower", "3D8N", [lower] * 3, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), element=element)
     mesh.part("Fixed", below.side_nodes["z0"])
     constraints, contact = [fix("Fixed", 0.0, 0.0, 0.0)], []
     materials = [material("Lower", 1, "3d", STIFFNESSES[0], POISSON, DENSITY=1000.0)]
-    if kind == "body":
-        mesh.part("Load", below.side_nodes["z1"], (), below.conditions("z1", "SurfaceLoad"))
+    if kind in ("body", "heat"):
+        mesh.part("Load", below.side_nodes["z1"], (), below.conditions("z1", "SurfaceLoad" if kind == "body" else "Surface"))
     else:
         above = Box(mesh, "Upper", "3D8N", [upper] * 3, (0.1, 0.1, 1.0), (0.9, 0.9, 1.8), element=element)
         master, slave = below.conditions("z1", "Surface"), above.conditions("z0", "Surface")
@@ -109,15 +114,61 @@ def write(out, lower, upper, kind="frictionless", steps=1, solver_type=""):
             "contact_process_list": contact,
         },
     }
+    files = {"ProjectParameters.json": deck, "StructuralMaterials.json": {"properties": materials}}
+    if kind in ("heat", "thermal"):
+        files["ThermalMaterials.json"] = add_heat(deck, kind, ["Lower"] if kind == "heat" else ["Lower", "Upper"], solver_type)
+    if kind == "thermal":
+        for entry in materials:
+            entry["Material"]["constitutive_law"]["name"] = "ThermalElasticIsotropic3D"
+            entry["Material"]["Variables"].update({"THERMAL_EXPANSION_COEFFICIENT": 1e-6, "REFERENCE_TEMPERATURE": 0.0})
     os.makedirs(out, exist_ok=True)
-    for name, content in (("ProjectParameters.json", deck), ("StructuralMaterials.json", {"properties": materials})):
+    for name, content in files.items():
         with open(os.path.join(out, name), "w") as file:
             json.dump(content, file, indent=1)
     with open(os.path.join(out, "blocks.mdpa"), "w") as file:
         file.write(mesh.text())
     if kind == "body":
         calculix(os.path.join(out, "blocks.inp"), mesh, below)
-    return 3 * len(mesh.nodes), len(mesh.elements)
+    return {"heat": 1, "thermal": 4}.get(kind, 3) * len(mesh.nodes), len(mesh.elements)
+
+
+def add_heat(deck, kind, bodies, solver_type):
+    """Heat alone, or beside the structure of the deck; the materials of heat."""
+    heat = {
+        "solver_type": "stationary", "model_part_name": "Structure", "domain_size": 3, "echo_level": 0,
+        "model_import_settings": {"input_type": "mdpa", "input_filename": "blocks"},
+        "material_import_settings": {"materials_filename": "ThermalMaterials.json"},
+        "time_stepping": deck["solver_settings"]["time_stepping"],
+        "element_replace_settings": {"element_name": "LaplacianElement", "condition_name": "ThermalFace"},
+    }
+    if solver_type:
+        heat["linear_solver_settings"] = {"solver_type": solver_type}
+
+    def held(part, value):
+        return process("assign_scalar_variable_process", {
+            "model_part_name": f"Structure.{part}", "variable_name": "TEMPERATURE", "constrained": True, "value": value,
+            "interval": [0.0, "End"]})
+
+    if kind == "heat":
+        deck["analysis_stage"] = "KratosMultiphysics.ConvectionDiffusionApplication.convection_diffusion_analysis"
+        deck["solver_settings"] = heat
+        warm = process("assign_scalar_variable_process", {
+            "model_part_name": "Structure.Load", "variable_name": "FACE_HEAT_FLUX", "constrained": False,
+            "value": "1000.0*(1.0+x*y)", "interval": [0.0, "End"]})
+        deck["processes"] = {"temperatures": [held("Fixed", 0.0), warm]}
+    else:
+        heat["model_import_settings"] = {"input_type": "use_input_model_part"}
+        heat["element_replace_settings"] = {"element_name": "LaplacianElement"}
+        deck["solver_settings"] = {"solver_type": "ThermoMechanicallyCoupled", "domain_size": 3,
+                                   "structural_solver_settings": deck["solver_settings"], "thermal_solver_settings": heat}
+        deck["processes"]["temperatures"] = [held("Fixed", 0.0), held("Load", 100.0), process("thermal_contact_process", {
+            "model_part_name": "Structure", "contact_model_part": {"0": ["Contact_Part"]},
+            "assume_master_slave": {"0": ["ContactUpper"]},
+            "conductance": [{"law": "pressure", "conductance": 100.0, "hardness": 1e6}]})]
+    return {"properties": [
+        {"model_part_name": f"Structure.{body}", "properties_id": number, "Material": {"Tables": {}, "Variables": {
+            "CONDUCTIVITY": CONDUCTIVITY, "DENSITY": 1000.0, "SPECIFIC_HEAT": 1.0}}}
+        for number, body in enumerate(bodies, 1)]}
 
 
 def main():
@@ -130,7 +181,7 @@ def main():
     parser.add_argument("--solver", default="", help="linear solver the deck names; none by default")
     options = parser.parse_args()
     unknowns, elements = write(options.out, options.lower, options.upper, options.kind, options.steps, options.solver)
-    print(f"{options.out}: {unknowns} displacements, {elements} elements")
+    print(f"{options.out}: {unknowns} unknowns without multipliers, {elements} elements")
 
 
 if __name__ == "__main__":
