@@ -160,3 +160,15 @@ fn largest(value: &Value) -> f64 {
         _ => 0.0,
     }
 }
+
+/// Supports that pull against each other alone add up to nothing, and what is left over is no more beside what each of them pulls.
+#[test]
+fn supports_that_pull_alone_are_in_balance() {
+    for case in ["elements/displacement_patch_2D4N", "elements/displacement_patch_3D8N"] {
+        for balance in balances(case, Ranks::default(), |_| {}) {
+            let of = &balance.unknowns[0];
+            let relative = [of.forces.relative, of.moments.expect("moments").relative];
+            assert!(relative.iter().all(|relative| *relative < 1e-9), "{case}: {of:?}");
+        }
+    }
+}

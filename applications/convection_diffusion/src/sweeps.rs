@@ -62,6 +62,8 @@ pub(crate) struct Sweeps {
     taken: Vec<f64>,
     /// T̃ and T̃ - T of the last sweeps, the latest at the end.
     past: Vec<[Vec<f64>; 2]>,
+    /// Sweeps since both last agreed: the structure may go on for reasons of its own.
+    since: usize,
     done: usize,
 }
 
@@ -69,7 +71,7 @@ impl Sweeps {
     /// For a step whose heat has been solved for once; `start` are the temperatures from which it was.
     pub(crate) fn new(heat: Arc<Mutex<Heat>>, goal: Goal, part: &ModelPart, start: Vec<f64>) -> Self {
         let taken = temperatures(part, 0).to_vec();
-        Self { heat, goal, start, taken, past: Vec::new(), done: 0 }
+        Self { heat, goal, start, taken, past: Vec::new(), since: 0, done: 0 }
     }
 
     /// Solves for heat in the present state of the structure, which must go on where temperatures change by it. Collective.
@@ -78,6 +80,7 @@ impl Sweeps {
     /// As [`SolutionStrategy::solve_step`](zelus_core::strategies::SolutionStrategy::solve_step).
     pub(crate) fn look_again(&mut self, part: &mut ModelPart) -> Result<Outer> {
         self.done += 1;
+        self.since += 1;
         let unknown = Columns::of(part).unknown.column;
         part.nodes.history.write_level(unknown, 0, &self.start);
         let mut heat = self.heat.lock().unwrap_or_else(PoisonError::into_inner);
@@ -90,13 +93,16 @@ impl Sweeps {
         let change: Vec<f64> = temperatures(part, 0).iter().zip(&self.taken).map(|(new, old)| new - old).collect();
         let (largest, spread) = sizes(part, &change);
         if largest <= self.goal.tolerance * spread {
+            self.since = 0;
+            self.past.clear();
+            self.taken = temperatures(part, 0).to_vec();
             return Ok(Outer::Done);
         }
-        if self.done >= self.goal.most {
+        if self.since >= self.goal.most {
             return Ok(Outer::Failed(format!(
                 "heat and structure do not agree after {} sweeps: temperatures still change by {largest:.1e} of {spread:.3e}; \
                  perhaps nothing is at rest there; \"coupling_settings\": {{\"strategy\": \"sequential\"}} solves for each once a step",
-                self.done
+                self.since
             )));
         }
         self.past.push([temperatures(part, 0).to_vec(), change]);

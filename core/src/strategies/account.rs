@@ -239,11 +239,12 @@ fn sums(
     columns.dedup();
     // Forces and moments of each kind, and of what is left over.
     let mut all = vec![[[[0.0; 3]; 2]; KINDS + 1]; columns.len()];
-    // What loads and supports feed in, and what they take out.
-    let mut through = vec![[0.0; 2]; columns.len()];
+    // What loads and supports feed in, what they take out, and the moments of both without regard to their sense: supports that
+    // push against each other alone add up to nothing, beside which all is large.
+    let mut through = vec![[0.0; 3]; columns.len()];
     for variable in variables {
         let at = columns.iter().position(|column| *column == variable.column).expect("one of them");
-        let (of_column, [entering, leaving]) = (&mut all[at], &mut through[at]);
+        let (of_column, [entering, leaving, turning]) = (&mut all[at], &mut through[at]);
         let c = variable.offset();
         for (node, &number) in system.dofs.numbers(variable).iter().enumerate() {
             if number == NONE || !part.owns_node(node) {
@@ -254,6 +255,7 @@ fn sums(
             for own in [forces[LOADS][n], forces[REACTIONS][n]] {
                 *entering += own.max(0.0);
                 *leaving += (-own).max(0.0);
+                *turning += norm(arm) * own.abs();
             }
             let values = forces.iter().map(|of_kind| of_kind[n]).chain([left]);
             for ([force, moment], value) in of_column.iter_mut().zip(values) {
@@ -270,7 +272,7 @@ fn sums(
     let size = flat.len() / columns.len().max(1);
     let of_columns = columns.iter().zip(through).zip(flat.chunks_exact(size.max(1)));
     of_columns
-        .map(|((column, [entering, leaving]), flat)| {
+        .map(|((column, [entering, leaving, turning]), flat)| {
             let moves = Rates::of(column).is_some_and(|rates| rates.moves_mesh);
             let pairs = if moves { pairs } else { &[] };
             let between = pairs.iter().map(|pair| pair.out_of_balance).fold([0.0; 3], add);
@@ -278,8 +280,10 @@ fn sums(
                 let vector = |kind: usize| std::array::from_fn(|c| flat[6 * kind + 3 * which + c]);
                 std::array::from_fn(vector)
             };
-            let forces = Sums::of(vectors(0), between, pairs.iter().map(|pair| norm(pair.force)));
-            let moments = Sums::of(vectors(1), [0.0; 3], pairs.iter().map(|pair| norm(pair.moment)));
+            let (pushing, turned) =
+                (pairs.iter().map(|pair| norm(pair.force)), pairs.iter().map(|pair| norm(pair.moment)));
+            let forces = Sums::of(vectors(0), between, pushing.chain([entering.max(leaving)]));
+            let moments = Sums::of(vectors(1), [0.0; 3], turned.chain([turning]));
             let moments = moves.then_some(moments);
             let flows = Flows { entering, leaving, stored: -forces.inertia.iter().sum::<f64>() };
             UnknownBalance { unknown: (*column).to_owned(), forces, moments, centre, flows: (!moves).then_some(flows) }

@@ -56,7 +56,7 @@ pub struct Sums {
     pub inertia: [f64; 3],
     /// What is left over on unknowns that nothing holds, and between the sides of pairs.
     pub out_of_balance: [f64; 3],
-    /// Its size by that of the largest of the others, a pair's among them.
+    /// Its size by that of the largest of the others, a pair's and what loads and supports push one way among them.
     pub relative: f64,
 }
 
