@@ -38,15 +38,15 @@ class Grid:
         """A part of one node."""
         self.parts[name] = ([node], (), ())
 
-    def write(self, path, element, loads=()):
-        """Writes the file; the edges in `loads` are those of loads."""
+    def write(self, path, element, loads=(), load="LineLoadCondition2D2N"):
+        """Writes the file; the edges in `loads` are conditions of the kind `load`."""
         with open(path, "w") as out:
             out.write("Begin Properties 0\nEnd Properties\nBegin Nodes\n")
             out.writelines(f"{at} {x!r} {y!r} 0.0\n" for at, (x, y) in enumerate(self.nodes, 1))
             out.write(f"End Nodes\nBegin Elements {element}\n")
             out.writelines(f"{at} 0 {' '.join(map(str, row))}\n" for at, row in enumerate(self.elements, 1))
             out.write("End Elements\n")
-            for kind, loaded in (("LineCondition2D2N", False), ("LineLoadCondition2D2N", True)):
+            for kind, loaded in (("LineCondition2D2N", False), (load, True)):
                 rows = [(at, *row) for at, row in enumerate(self.conditions, 1) if (at in loads) == loaded]
                 if rows:
                     out.write(f"Begin Conditions {kind}\n")

@@ -433,6 +433,39 @@ fn below_the_critical_speed_pressures_settle() {
     }
 }
 
+/// A disc that spins under a ring takes up 2π f p ω (R₂³ − R₁³)/3 with it, all of which is stored.
+#[test]
+fn a_braked_disc_takes_up_what_rubbing_gives() {
+    let scratch = scratch_copy(&root().join("examples/brake_disc"));
+    let deck = "ProjectParameters.json";
+    change(scratch.path(), deck, "\"end_time\": 1.0", "\"end_time\": 0.05");
+    let output = zelus(scratch.path(), &["run", deck, "--report", "report.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let report = read_json(&scratch.path().join("report.json")).expect("the report");
+    let exact = std::f64::consts::TAU * 0.3 * 10.0 * 7.0 / 3.0;
+    for step in 0..5 {
+        // Two points of Gauss on a cell integrate the square of the radius exactly, its nodes carry a pressure of 1 to 1e-6.
+        let heat = number(&report, step, "heat_of_friction");
+        assert!((heat - exact).abs() < 1e-5 * exact, "step {step}: {heat} {exact}");
+        let balance = &report["steps"][step]["balance"]["unknowns"];
+        let of_heat = balance.as_array().and_then(|all| all.iter().find(|own| own["unknown"] == "TEMPERATURE"));
+        let stored = of_heat.expect("a balance of heat")["flows"]["stored"].as_f64().expect("a number");
+        assert!((stored - heat).abs() < 1e-8 * exact, "step {step}: {stored} {heat}");
+    }
+}
+
+/// Bodies of revolution for one physics alone are none.
+#[test]
+fn plane_heat_beside_a_structure_of_revolution_is_refused() {
+    let scratch = scratch_copy(&root().join("examples/brake_disc"));
+    let deck = "ProjectParameters.json";
+    change(scratch.path(), deck, "AxisymmetricEulerianConvectionDiffusion", "EulerianConvDiff");
+    change(scratch.path(), deck, "AxisymmetricThermalFace", "ThermalFace");
+    let output = zelus(scratch.path(), &["run", deck]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("error[revolution]"), "{}", said(&output));
+}
+
 #[test]
 fn what_is_wrong_is_said() {
     let says = |bars: &Bars, laws: Value, code: i32, word: &str| {

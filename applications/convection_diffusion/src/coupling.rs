@@ -21,6 +21,7 @@ use zelus_linear_algebra::{Carrier, State, Unknowns};
 
 use crate::adoption::{PROPERTIES, replace};
 use crate::columns::Columns;
+use crate::elements::ABOUT_Y;
 use crate::heat::Heat;
 use crate::plastic_heat::PlasticHeat;
 use crate::sweeps::{Goal, Sweeps};
@@ -30,6 +31,8 @@ pub const EXTENSION: &str = "thermal_solver_settings";
 
 /// Reads the materials of heat beside those of the structure.
 fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
+    let is_round = part.elements.kinds.iter().any(|kind| is_of_revolution(kind.name, false));
+    part.info.marks.insert(ABOUT_Y, is_round);
     let solver = SolverSettings::new(settings.node(), report)?;
     let mut heat = part.clone();
     heat.name = solver.settings.get_str("model_part_name")?.to_owned();
@@ -86,6 +89,37 @@ fn table_of_heat(role: Role, table: &EntityTable, settings: &Settings, space: us
     Ok(out)
 }
 
+/// Whether a kind of element of a structure is of revolution, and of heat.
+fn is_of_revolution(name: &str, heat: bool) -> bool {
+    name.strip_prefix("Axisym").is_some_and(|rest| rest.starts_with("metric") == heat)
+}
+
+/// Bodies are of revolution for both or for none.
+///
+/// # Errors
+/// Else their elements do not fit.
+fn check_revolution(part: &ModelPart, system: &System, settings: &Settings) -> Result<()> {
+    let of_structure = part.elements.kinds.iter().find(|kind| is_of_revolution(kind.name, false));
+    let of_heat = |block: &&Box<dyn EntityBlock>| is_of_revolution(block.entry().name, true);
+    let (round, heat) = (of_structure.is_some(), system.elements.iter().any(|block| of_heat(&block)));
+    let any_heat = !system.elements.is_empty();
+    if round == heat || !any_heat {
+        return Ok(());
+    }
+    let (fact, remedy) = match of_structure {
+        Some(kind) => (
+            format!("the structure is of revolution ({}), and its elements of heat are plane", kind.name),
+            "write \"element_replace_settings\": {\"element_name\": \"AxisymmetricEulerianConvectionDiffusion\", \
+             \"condition_name\": \"AxisymmetricThermalFace\"}",
+        ),
+        None => (
+            "its elements of heat are of revolution, and the structure is plane".to_owned(),
+            "take elements of the structure whose names begin with Axisym, or plane ones of heat",
+        ),
+    };
+    Err(Diagnostic::error("revolution", fact).at(settings.place()).remedy(remedy).into())
+}
+
 /// Puts heat before the strategy of the structure.
 fn around(
     settings: &Settings,
@@ -103,6 +137,7 @@ fn around(
     let made = system.make_blocks(part);
     (part.elements, part.conditions) = own;
     made?;
+    check_revolution(part, &system, settings)?;
     let unknown = Columns::of(part).unknown;
     let is_thermal = |block: &dyn EntityBlock| block.unknowns().first().is_some_and(|row| row.variable == unknown);
     system.elements.retain(|block| is_thermal(block.as_ref()));

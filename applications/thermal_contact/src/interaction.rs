@@ -1,6 +1,7 @@
 //! Heat between the bodies of a part: facets that face each other are looked for when a step begins.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -14,11 +15,13 @@ use zelus_contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_SL
 use zelus_convection_diffusion::adoption::properties_of_heat;
 use zelus_convection_diffusion::columns::Columns;
 use zelus_convection_diffusion::coupling::EXTENSION;
+use zelus_convection_diffusion::elements::radial;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};
 use zelus_core::model::{ModelPart, Role};
-use zelus_core::parameters::Interval;
+use zelus_core::parameters::{Interval, SpaceTime};
+use zelus_core::processes::ScalarValue;
 use zelus_core::vector3::{dot, norm, sub};
 
 use crate::block::{ConductanceBlock, Point};
@@ -47,10 +50,12 @@ pub struct Chosen {
     pub segmentation: SegmentationSettings,
     /// Share of a slave facet's size up to which a gap is none where no contact is computed.
     pub touching: f64,
-    /// Whether bodies are of revolution about the x axis.
+    /// Whether bodies are of revolution, about the axis that heat has.
     pub axisymmetric: bool,
     /// Heat by the work of friction: its share, and what brings it to the units of heat.
     pub friction: f64,
+    /// Sliding across the motion of the model: the coefficient of friction, and the speed (length per time).
+    pub across: Option<(f64, ScalarValue)>,
 }
 
 /// Heat between the bodies of a part.
@@ -99,7 +104,7 @@ impl ThermalContact {
                 all => slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * all[node as usize]).sum::<f64>(),
             };
             let touches = if pressures.is_empty() { found.gap <= self.chosen.touching * size } else { pressure > 0.0 };
-            let round = if self.chosen.axisymmetric { std::f64::consts::TAU * found.position[1] } else { 1.0 };
+            let round = if self.chosen.axisymmetric { TAU * found.position[radial(&part.info)] } else { 1.0 };
             let [masters, slaves] =
                 [(&found.master, master), (&found.slave, slave)].map(|(n, of)| &n[..of.nodes.len()]);
             let meeting =
@@ -108,7 +113,11 @@ impl ThermalContact {
                 true => slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * work(node)).sum(),
                 false => 0.0,
             };
-            let power = self.chosen.friction * work / part.info.delta_time;
+            let across = self.chosen.across.as_ref().map_or(0.0, |(coefficient, speed)| {
+                let here = SpaceTime { current: found.position, initial: found.position, time: part.info.time };
+                coefficient * meeting.pressure * speed.value(&here).abs()
+            });
+            let power = self.chosen.friction * (work / part.info.delta_time + across);
             (touches || acts_apart).then(|| Point {
                 n: [masters, slaves].concat(),
                 weight: found.weight * round,

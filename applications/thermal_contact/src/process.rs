@@ -10,7 +10,7 @@ use zelus_core::Result;
 use zelus_core::entities::Interaction;
 use zelus_core::model::Model;
 use zelus_core::parameters::{Defaults, Interval, Node, Settings};
-use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, ScalarValue};
 use zelus_core::register;
 use zelus_core::registry::require;
 
@@ -60,6 +60,13 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         let fact = format!("\"integration_order\" is {}, it must be 1 to 5", whole.integration_order);
         settings.error("integration_order", "integration-order", fact)
     })?;
+    let coefficient = settings.get_f64("friction_coefficient")?;
+    let speed = Some(settings.get("sliding_speed")?).filter(|speed| speed.is_given());
+    if coefficient < 0.0 || (coefficient > 0.0) != speed.is_some() {
+        let fact = format!("\"friction_coefficient\" is {coefficient}, \"sliding_speed\" {}", if speed.is_some() { "is given" } else { "is not" });
+        let problem = settings.error("friction_coefficient", "invalid-value", fact);
+        return Err(problem.remedy("give both, for sliding across the model, or neither").into());
+    }
     let chosen = Chosen {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,
@@ -77,6 +84,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         touching: settings.get_positive("touching_gap")?,
         axisymmetric: whole.axisymmetric,
         friction: whole.friction_heat,
+        across: speed.map(ScalarValue::from_node).transpose()?.map(|speed| (coefficient, speed)),
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = ThermalContact::new(chosen, part)?;

@@ -15,7 +15,7 @@ use zelus_core::model::Properties;
 use zelus_core::register;
 
 use crate::columns::{Columns, nodal};
-use crate::elements::full_order;
+use crate::elements::{full_order, radial};
 
 /// Names of h, ε, Tₐ among properties and data of conditions.
 pub const DATA: [&str; 3] = ["CONVECTION_COEFFICIENT", "EMISSIVITY", "AMBIENT_TEMPERATURE"];
@@ -45,7 +45,7 @@ impl Surroundings {
     }
 }
 
-/// The faces of one block; `EXCHANGES` with the surroundings, `RING` about the x axis.
+/// The faces of one block; `EXCHANGES` with the surroundings, `RING` about the x axis, beside a structure about the y axis.
 pub struct Face<const EXCHANGES: bool, const RING: bool, const DIM: usize> {
     columns: Columns,
     rule: &'static ShapeTable,
@@ -116,11 +116,12 @@ impl<const EXCHANGES: bool, const RING: bool, const DIM: usize, const NODES: usi
         let own = self.columns.surface_source.map_or(&[][..], |name| view.conditions.data.level(name, 0));
         let own = own.get(entity.index as usize).copied().unwrap_or(0.0);
         let surroundings = Self::surroundings(entity.properties, view, entity.index);
+        let radial = radial(view.info);
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
             let at = |values: &[f64; NODES]| n.iter().zip(values).map(|(n, value)| n * value).sum::<f64>();
             let area = mapping::det_jacobian(self.rule.shape(), &entity.current, self.rule.points()[g].xi);
             let round =
-                if RING { 2.0 * PI * (0..NODES).map(|i| n[i] * entity.current[i][1]).sum::<f64>() } else { 1.0 };
+                if RING { 2.0 * PI * (0..NODES).map(|i| n[i] * entity.current[i][radial]).sum::<f64>() } else { 1.0 };
             let weight = self.rule.weight(g) * area * round;
             let temperature = at(&t);
             let [mut flux, mut slope] = [at(&q) + own, 0.0];
@@ -181,5 +182,5 @@ faces! { all; "FluxCondition", false, false,
 "f = ∫ N q" }
 
 faces! { plane; "AxisymmetricThermalFace", true, true,
-"ThermalFace of a body of revolution about the x axis: y is the radius",
+"ThermalFace of a body of revolution about the x axis: y is the radius; beside a structure about the y axis, as that",
 "f = ∫ N (q + h (Tₐ − T) + ε σ (Tₐ⁴ − T⁴)) 2πy" }

@@ -39,6 +39,8 @@ pub const DYNAMIC_TAU: &str = "DYNAMIC_TAU";
 pub const CROSS_WIND: &str = "CROSS_WIND_STABILIZATION_FACTOR";
 /// Value of the step data: gradients below it have no cross-wind diffusion.
 pub const LEAST_GRADIENT: &str = "CROSS_WIND_LEAST_GRADIENT";
+/// Mark of the step data: bodies of revolution are about the y axis, x is the radius.
+pub const ABOUT_Y: &str = "HEAT_ABOUT_Y";
 /// Mark of the step data: nothing is conducted after the temperature has been carried along.
 pub const PURE_CONVECTION: &str = "PURE_CONVECTION";
 /// Mark of the step data: elements that are carried through take gradients at their centre for all points.
@@ -89,6 +91,13 @@ pub struct Point<'a, const NODES: usize> {
     pub size: f64,
     /// Distance from the axis, in a body of revolution.
     pub radius: Option<f64>,
+    /// The coordinate that is the distance from the axis.
+    pub radial: usize,
+}
+
+/// The coordinate that is the distance from the axis: y, but x beside a structure, whose axis is y.
+pub fn radial(info: &ProcessInfo) -> usize {
+    if info.is(ABOUT_Y) { 0 } else { 1 }
 }
 
 /// What volumes are multiplied by: the way round the axis, where there is one.
@@ -138,7 +147,7 @@ impl<const NODES: usize> Pointwise for Point<'_, NODES> {
         }
         let tau = c / inverse;
         // What conduction towards the axis adds to the strong form.
-        let strong = self.radius.map_or(a, |radius| a - b[1] / radius);
+        let strong = self.radius.map_or(a, |radius| a - b[self.radial] / radius);
         (0..3).for_each(|i| b[i] += tau * strong * velocity[i]);
         if step.cross_wind > 0.0 {
             let present = (temperature, gradient);

@@ -10,7 +10,7 @@ use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView,
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_structural_mechanics::elements::physical_gradients;
 
-use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step, round};
+use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step, radial, round};
 use super::contribution::{add, slope};
 use super::place::{full_order, stream_size};
 use super::plastic_heat::{PLASTIC_HEAT_POWER, plastic_heat, volume};
@@ -23,7 +23,7 @@ pub trait Terms: Send + Sync + 'static {
     const TRANSIENT: bool;
     /// The value at the beginning of the step is that which was carried along, ends weigh alike.
     const CARRIED: bool = false;
-    /// A body of revolution about the x axis: y is the radius.
+    /// A body of revolution about the x axis, beside a structure about the y axis.
     const AXISYMMETRIC: bool = false;
 }
 
@@ -76,13 +76,15 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         })
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<(), String> {
         let inverted = |dn| physical_gradients::<NODES, DIM>(&entity.current, dn).1 <= 0.0;
         if self.rule.dn::<NODES, DIM>().iter().any(inverted) {
             return Err("it is inverted".to_owned());
         }
-        if T::AXISYMMETRIC && entity.current.iter().any(|x| x[1] < 0.0) {
-            return Err("it reaches across the axis of revolution, which is x: y is the radius".to_owned());
+        let radial = radial(view.info);
+        if T::AXISYMMETRIC && entity.current.iter().any(|x| x[radial] < 0.0) {
+            let [axis, radius] = if radial == 0 { ["y", "x"] } else { ["x", "y"] };
+            return Err(format!("it reaches across the axis of revolution, which is {axis}: {radius} is the radius"));
         }
         Ok(())
     }
@@ -139,7 +141,8 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         let size = stream_size(self.rule.shape(), &entity.current);
         let is_centred = view.info.is(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;
         let at_centre = is_centred.then(|| self.at_centre(&entity.current));
-        let radius = |n: &[f64; NODES]| T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][1]).sum());
+        let radial = radial(view.info);
+        let radius = |n: &[f64; NODES]| T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][radial]).sum());
         let of_shape = (self.rule, &entity.current);
         let plastic = plastic_heat::<NODES, DIM>(view, entity.index, of_shape, |n| round(radius(n)));
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
@@ -164,6 +167,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
                 source: value(&source) + plastic,
                 size,
                 radius: radius(n),
+                radial,
             };
             let weight = weight * point.round();
             let apart = match want {

@@ -148,7 +148,7 @@ on_shapes! { all, balance; "EulerianDiffusion", Diffusion,
 "ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2) + Q" }
 
 on_shapes! { plane, balance; "AxisymmetricEulerianConvectionDiffusion", Revolution,
-"EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring",
+"EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring; beside a structure about the y axis, as that",
 "ρc (∂T/∂t + v·∇T) = (1/y) ∇·(y k ∇T) + Q, weighted by N + τ v·∇N" }
 
 explicit! { "QSConvectionDiffusionExplicit", QuasiStatic,
