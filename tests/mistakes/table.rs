@@ -375,6 +375,28 @@ pub const MISTAKES: &[Mistake] = &[
         names: "two multipliers would hold one gap",
     },
     Mistake {
+        what: "bodies that are one at a node",
+        case: PRESSED,
+        make: |Files { mesh, .. }| {
+            // Node 13 becomes 9: in an element, a condition, and the lists of Upper, Slave, Interface and SidesX.
+            for (find, with) in [
+                ("\n13 0 1 0\n", "\n"),
+                ("7 0 13 14", "7 0 9 14"),
+                ("4 0 13 14", "4 0 9 14"),
+                ("    13 14 15 16 17", "    9 14 15 16 17"),
+                ("    13 14 15 16\n", "    9 14 15 16\n"),
+                (" 12 13 14", " 12 14"),
+                (" 12 13 16", " 12 16"),
+            ] {
+                swap(mesh, find, with);
+            }
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "shared-nodes",
+        names: "on both sides of pair \"0\": 9;",
+    },
+    Mistake {
         what: "a coefficient that the material overrides",
         case: SLIDING,
         make: |Files { deck, materials, .. }| {

@@ -63,7 +63,10 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let coefficient = settings.get_f64("friction_coefficient")?;
     let speed = Some(settings.get("sliding_speed")?).filter(|speed| speed.is_given());
     if coefficient < 0.0 || (coefficient > 0.0) != speed.is_some() {
-        let fact = format!("\"friction_coefficient\" is {coefficient}, \"sliding_speed\" {}", if speed.is_some() { "is given" } else { "is not" });
+        let fact = format!(
+            "\"friction_coefficient\" is {coefficient}, \"sliding_speed\" {}",
+            if speed.is_some() { "is given" } else { "is not" }
+        );
         let problem = settings.error("friction_coefficient", "invalid-value", fact);
         return Err(problem.remedy("give both, for sliding across the model, or neither").into());
     }

@@ -129,6 +129,11 @@ impl Model {
             "ELASTIC" | "DENSITY" => self.of_material(card),
             "STEP" => {
                 self.step += 1;
+                if card.get("NLGEOM").is_some_and(|given| !given.eq_ignore_ascii_case("no")) {
+                    let fact = "NLGEOM is not taken over: elements are those of small displacements";
+                    let remedy = "write TotalLagrangianElement as \"element_name\" (--element-name)";
+                    self.report.push(Diagnostic::warning("not-taken-over", fact).at(card.place()).remedy(remedy));
+                }
                 Ok(())
             }
             _ => {
@@ -255,6 +260,12 @@ impl Model {
     fn section(&mut self, card: &Card, scope: &str) -> Result<()> {
         let group = group_name(scope, card.require("ELSET")?);
         self.mesh.sections.push(Section { group, material: word(card.require("MATERIAL")?) });
+        let thickness = card.fields().next().map_or(Ok(1.0), |field| card.number(field))?;
+        if thickness != 1.0 && thickness > 0.0 {
+            let fact = format!("the thickness {thickness} of a section is not taken over: plane elements have 1");
+            let remedy = "write THICKNESS among the \"Variables\" of its material";
+            self.report.push(Diagnostic::warning("not-taken-over", fact).at(card.place()).remedy(remedy));
+        }
         Ok(())
     }
 

@@ -66,7 +66,7 @@ impl ContactState {
     pub(super) fn new(settings: ContactSettings, part: &mut ModelPart) -> Result<Self> {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
-        let mut messages = warnings_of_pairs(&settings.slaves, &interfaces);
+        let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
         messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
         Ok(Self {
             messages,

@@ -100,7 +100,7 @@ impl MpcInteraction {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         require_slaves_of_first_order(part, &interfaces)?;
         add_contact_part(part, &interfaces);
-        let mut messages = warnings_of_pairs(&settings.slaves, &interfaces);
+        let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
         if !settings.ties() {
             messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
         }

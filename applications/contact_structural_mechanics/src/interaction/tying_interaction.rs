@@ -103,7 +103,7 @@ impl TyingInteraction {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
         Ok(Self {
-            messages: warnings_of_pairs(&settings.slaves, &interfaces),
+            messages: warnings_of_pairs(part, &settings.slaves, &interfaces),
             settings,
             slaves: slave_nodes(&interfaces),
             interfaces,

@@ -274,8 +274,39 @@ pub fn notes_of_bodies(part: &ModelPart, parts: &BTreeMap<String, Vec<String>>) 
     out
 }
 
-/// Warnings of slaves that no pair has, and of surfaces that are slaves in two.
-pub fn warnings_of_pairs(slaves: &BTreeMap<String, Vec<String>>, interfaces: &[Interface]) -> Vec<Diagnostic> {
+/// Nodes that a message names.
+const NAMED: usize = 5;
+
+/// Warnings of nodes that are on both sides of a pair: there the bodies are one.
+fn shared(part: &ModelPart, interfaces: &[Interface]) -> Vec<Diagnostic> {
+    let nodes = |interface: &Interface, role: Roles| -> BTreeSet<u32> {
+        let own = interface.facets.iter().filter(|facet| facet.role == role);
+        own.flat_map(|facet| facet.nodes.iter().copied()).collect()
+    };
+    let warning = |interface: &Interface| {
+        let [slaves, masters] = [Roles::Slave, Roles::Master].map(|role| nodes(interface, role));
+        let both: Vec<u32> = slaves.intersection(&masters).copied().collect();
+        let ids: Vec<String> = both.iter().take(NAMED).map(|&node| part.nodes.ids[node as usize].to_string()).collect();
+        let more = if both.len() > NAMED { ", …" } else { "" };
+        let fact = format!(
+            "{} nodes are on both sides of pair \"{}\": {}{more}; there the bodies are one and cannot part",
+            both.len(),
+            interface.key,
+            ids.join(", ")
+        );
+        let remedy =
+            "give each body nodes of its own, unless it is one that a crack ends in: meshers merge points in one place";
+        (!both.is_empty()).then(|| Diagnostic::warning("shared-nodes", fact).remedy(remedy))
+    };
+    interfaces.iter().filter_map(warning).collect()
+}
+
+/// Warnings of slaves that no pair has, of nodes on both sides, and of surfaces that are slaves in two pairs.
+pub fn warnings_of_pairs(
+    part: &ModelPart,
+    slaves: &BTreeMap<String, Vec<String>>,
+    interfaces: &[Interface],
+) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     let is_pair = |key: &String| interfaces.iter().any(|interface| interface.key == *key);
     for (key, list) in slaves.iter().filter(|(key, list)| !list.is_empty() && !is_pair(key)) {
@@ -284,6 +315,7 @@ pub fn warnings_of_pairs(slaves: &BTreeMap<String, Vec<String>>, interfaces: &[I
         let remedy = "use the keys of the pairs of contact parts";
         out.push(Diagnostic::warning("slaves-without-pair", fact).remedy(remedy));
     }
+    out.extend(shared(part, interfaces));
     out.extend(mutual(interfaces));
     let mut first: BTreeMap<Vec<u32>, &str> = BTreeMap::new();
     let mut twice: BTreeMap<[&str; 2], usize> = BTreeMap::new();

@@ -142,7 +142,8 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         let is_centred = view.info.is(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;
         let at_centre = is_centred.then(|| self.at_centre(&entity.current));
         let radial = radial(view.info);
-        let radius = |n: &[f64; NODES]| T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][radial]).sum());
+        let radius =
+            |n: &[f64; NODES]| T::AXISYMMETRIC.then(|| (0..NODES).map(|i| n[i] * entity.current[i][radial]).sum());
         let of_shape = (self.rule, &entity.current);
         let plastic = plastic_heat::<NODES, DIM>(view, entity.index, of_shape, |n| round(radius(n)));
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {

@@ -9,7 +9,8 @@ mod explicit;
 mod registered;
 
 pub use balance::{
-    ABOUT_Y, AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, PURE_CONVECTION, Point, Step, THETA, radial,
+    ABOUT_Y, AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, PURE_CONVECTION, Point, Step, THETA,
+    radial,
 };
 pub use equation::{Equation, Terms};
 pub use explicit::{Explicit, PROJECTING, STAGE, Subscales};
