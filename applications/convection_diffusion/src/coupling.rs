@@ -100,8 +100,8 @@ fn is_of_revolution(name: &str, heat: bool) -> bool {
 /// Else their elements do not fit.
 fn check_revolution(part: &ModelPart, system: &System, settings: &Settings) -> Result<()> {
     let of_structure = part.elements.kinds.iter().find(|kind| is_of_revolution(kind.name, false));
-    let of_heat = |block: &&Box<dyn EntityBlock>| is_of_revolution(block.entry().name, true);
-    let (round, heat) = (of_structure.is_some(), system.elements.iter().any(|block| of_heat(&block)));
+    let heat = system.elements.iter().any(|block| is_of_revolution(block.entry().name, true));
+    let round = of_structure.is_some();
     let any_heat = !system.elements.is_empty();
     if round == heat || !any_heat {
         return Ok(());
