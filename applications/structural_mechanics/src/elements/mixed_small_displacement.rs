@@ -67,17 +67,7 @@ impl VolumetricForm for MixedSmallDisplacement {
         if !law.is_linear() && (det_f <= 0.0 || det_f.is_nan()) {
             return Err(format!("turned inside out at Gauss point {} (det F = {det_f:.3e})", at.g + 1));
         }
-        Ok(StrainState {
-            strain: strain_vector(&h),
-            f,
-            det_f,
-            small: true,
-            pressure: 0.0,
-            temperature: 0.0,
-            band: 0.0,
-            band_as_kratos: false,
-            history,
-        })
+        Ok(StrainState { strain: strain_vector(&h), f, det_f, small: true, history, ..StrainState::REST })
     }
 
     fn add<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize>(

@@ -72,17 +72,7 @@ impl VolumetricForm for MixedTotalLagrangian {
         let stretch = motion.stretch(DIM);
         (0..DIM).for_each(|a| (0..DIM).for_each(|b| f[(a, b)] *= stretch));
         let strain = strain_vector::<S>(&(f.transpose() * f - IDENTITY)).map(|e| 0.5 * e);
-        Ok(StrainState {
-            strain,
-            f,
-            det_f: 1.0 + motion.theta,
-            small: false,
-            pressure: 0.0,
-            temperature: 0.0,
-            band: 0.0,
-            band_as_kratos: false,
-            history,
-        })
+        Ok(StrainState { strain, f, det_f: 1.0 + motion.theta, small: false, history, ..StrainState::REST })
     }
 
     fn add<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize>(

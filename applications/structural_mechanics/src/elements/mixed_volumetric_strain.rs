@@ -96,17 +96,8 @@ pub struct MixedVolumetricStrain<F, const NODES: usize, const DIM: usize, const 
 fn initial_matrix<const S: usize>(law: &dyn ConstitutiveLaw<S>, small: bool) -> Matrix<S> {
     let mut d = [[0.0; S]; S];
     let history = vec![0.0; law.history()];
-    let state = StrainState {
-        strain: [0.0; S],
-        f: IDENTITY,
-        det_f: 1.0,
-        small,
-        pressure: 0.0,
-        temperature: 0.0,
-        band: 0.0,
-        band_as_kratos: false,
-        history: &history,
-    };
+    let state =
+        StrainState { strain: [0.0; S], f: IDENTITY, det_f: 1.0, small, history: &history, ..StrainState::REST };
     law.stress(&state, StressMeasure::Pk2, Some(&mut d));
     d
 }

@@ -15,6 +15,7 @@ use zelus_core::register;
 
 use super::elastic::{Elasticity, multiply, quadratic_energy};
 use super::equivalent_stress::EquivalentStress;
+use super::expansion::{Expansion, in_form, without};
 use super::law::{ConstitutiveLaw, LawEntry, LawFactory, Matrix, StrainState};
 use super::quantity::Quantity;
 use crate::tensor::{Tensor, pairs, stress_tensor};
@@ -33,14 +34,6 @@ enum Softening {
     Exponential,
 }
 
-/// Thermal expansion and the temperature without it.
-#[derive(Debug, Clone, PartialEq)]
-struct Expansion {
-    coefficient: Quantity,
-    /// T₀.
-    reference: f64,
-}
-
 /// The law; `STRESS_FREE` across the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IsotropicDamage<const S: usize, const STRESS_FREE: bool> {
@@ -55,7 +48,6 @@ pub struct IsotropicDamage<const S: usize, const STRESS_FREE: bool> {
 
 /// A state as if nothing grew.
 struct Trial<const S: usize> {
-    elasticity: Elasticity,
     d: Matrix<S>,
     /// The strain without its thermal part.
     strain: [f64; S],
@@ -85,12 +77,6 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
                 return Err(problem.remedy("use 0 (linear) or 1 (exponential)").into());
             }
         };
-        let expansion = || -> Result<Expansion> {
-            Ok(Expansion {
-                coefficient: Quantity::of(properties, "THERMAL_EXPANSION_COEFFICIENT")?,
-                reference: properties.require("REFERENCE_TEMPERATURE")?,
-            })
-        };
         Ok(Self {
             measure,
             young: Quantity::positive(properties, "YOUNG_MODULUS")?,
@@ -98,7 +84,7 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
             strength: Quantity::positive(properties, strength)?,
             fracture_energy: Quantity::positive(properties, "FRACTURE_ENERGY")?,
             softening,
-            expansion: if expands { Some(expansion()?) } else { None },
+            expansion: if expands { Some(Expansion::of(properties)?) } else { None },
         })
     }
 
@@ -111,9 +97,7 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
     fn damage(&self, state: &StrainState<'_, S>, ratio: f64) -> (f64, f64) {
         let t = state.temperature;
         let stretch = match &self.expansion {
-            Some(Expansion { reference, .. }) if state.band_as_kratos => {
-                self.strength.at(*reference) / self.strength.at(t)
-            }
+            Some(own) if state.band_as_kratos => self.strength.at(own.reference()) / self.strength.at(t),
             _ => 1.0,
         };
         let most = if state.band_as_kratos { MOST_OF_KRATOS } else { MOST };
@@ -146,23 +130,13 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
         let (now, slope) = self.damage(state, ratio);
         if now > d { (now, slope, ratio) } else { (d, 0.0, ratio) }
     }
-}
 
-impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE>
-where
-    Self: Form<S>,
-{
     fn trial(&self, state: &StrainState<'_, S>) -> Trial<S> {
         let t = state.temperature;
         let elasticity = Elasticity { young: self.young.at(t), poisson: self.poisson };
-        let free = self.expansion.as_ref().map_or(0.0, |own| own.coefficient.at(t) * (t - own.reference));
-        let held = if S == 3 && !STRESS_FREE { 1.0 + self.poisson } else { 1.0 };
-        let pairs = pairs::<S>();
-        let mut strain = state.strain;
-        for (strain, (p, q)) in strain.iter_mut().zip(pairs) {
-            *strain -= if p == q { held * free } else { 0.0 };
-        }
-        let d = Self::matrix(&elasticity);
+        let free = self.expansion.as_ref().map_or(0.0, |own| own.strain(t));
+        let strain = without(state.strain, in_form::<S>(free, self.poisson, STRESS_FREE));
+        let d = elasticity.in_form(STRESS_FREE);
         let stress = multiply(&d, &strain);
         // What plane strain has across the plane.
         let across = S == 3 && !STRESS_FREE && !state.band_as_kratos;
@@ -171,38 +145,17 @@ where
             whole[(2, 2)] = self.poisson * (stress[0] + stress[1]) - elasticity.young * free;
         }
         let (q, normal) = self.measure.of(&whole);
-        let mut by_stress = pairs.map(|(i, j)| if i == j { normal[(i, j)] } else { 2.0 * normal[(i, j)] });
+        let mut by_stress = pairs::<S>().map(|(i, j)| if i == j { normal[(i, j)] } else { 2.0 * normal[(i, j)] });
         if across {
             by_stress[..2].iter_mut().for_each(|by| *by += self.poisson * normal[(2, 2)]);
         }
         let strength = self.strength.at(t);
         let by_strain = multiply(&d, &by_stress).map(|by| by / strength);
-        Trial { elasticity, d, strain, stress, ratio: q / strength, by_strain }
+        Trial { d, strain, stress, ratio: q / strength, by_strain }
     }
 }
 
-/// Hooke's matrix of a form.
-pub trait Form<const S: usize> {
-    /// For these constants.
-    fn matrix(elasticity: &Elasticity) -> Matrix<S>;
-}
-
-impl<const S: usize> Form<S> for IsotropicDamage<S, false> {
-    fn matrix(elasticity: &Elasticity) -> Matrix<S> {
-        elasticity.hooke()
-    }
-}
-
-impl Form<3> for IsotropicDamage<3, true> {
-    fn matrix(elasticity: &Elasticity) -> Matrix<3> {
-        elasticity.plane_stress()
-    }
-}
-
-impl<const S: usize, const STRESS_FREE: bool> ConstitutiveLaw<S> for IsotropicDamage<S, STRESS_FREE>
-where
-    Self: Form<S>,
-{
+impl<const S: usize, const STRESS_FREE: bool> ConstitutiveLaw<S> for IsotropicDamage<S, STRESS_FREE> {
     fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
         let trial = self.trial(state);
         let (damage, slope, _) = self.grown(state, trial.ratio);
@@ -220,7 +173,7 @@ where
     fn energy(&self, state: &StrainState<'_, S>) -> f64 {
         let trial = self.trial(state);
         let (damage, ..) = self.grown(state, trial.ratio);
-        (1.0 - damage) * quadratic_energy(&Self::matrix(&trial.elasticity), &trial.strain)
+        (1.0 - damage) * quadratic_energy(&trial.d, &trial.strain)
     }
 
     fn is_symmetric(&self, _small: bool) -> bool {
@@ -236,7 +189,7 @@ where
     }
 
     fn widest_band(&self) -> f64 {
-        let t = self.expansion.as_ref().map_or(0.0, |own| own.reference);
+        let t = self.expansion.as_ref().map_or(0.0, |own| own.reference());
         2.0 / self.brittleness(1.0, t)
     }
 

@@ -1,7 +1,6 @@
 use zelus_core::model::{Properties, PropertyValue, Table};
 
 use super::*;
-use crate::tensor::*;
 use crate::test_model::{Random, near};
 
 const E: f64 = 200.0;
@@ -27,8 +26,7 @@ fn properties(name: &str, softening: f64) -> Properties {
 }
 
 fn state<const S: usize>(strain: [f64; S], temperature: f64, band: f64, history: &[f64]) -> StrainState<'_, S> {
-    let f = IDENTITY;
-    StrainState { strain, f, det_f: 1.0, small: true, pressure: 0.0, temperature, band, band_as_kratos: false, history }
+    StrainState { strain, temperature, band, history, ..StrainState::REST }
 }
 
 fn check_tangent<const S: usize>(name: &str)

@@ -54,7 +54,16 @@ impl Elasticity {
 
     /// Hooke's matrix for plane stress: the same with λ* = Eν/(1 − ν²).
     pub fn plane_stress(&self) -> Matrix<3> {
-        self.matrix(self.young * self.poisson / (1.0 - self.poisson * self.poisson))
+        self.matrix(self.lambda_of_plane_stress())
+    }
+
+    /// Hooke's matrix, that of plane stress where stress across the plane is free.
+    pub fn in_form<const S: usize>(&self, stress_free: bool) -> Matrix<S> {
+        self.matrix(if stress_free { self.lambda_of_plane_stress() } else { self.lambda() })
+    }
+
+    fn lambda_of_plane_stress(&self) -> f64 {
+        self.young * self.poisson / (1.0 - self.poisson * self.poisson)
     }
 
     fn matrix<const S: usize>(&self, lambda: f64) -> Matrix<S> {

@@ -5,61 +5,33 @@
 //! expanded, θ³ times the initial one, hence S = θ S_m(E_m) and dS/dE = dS_m/dE_m / θ. Under plane stress the thickness expands, too;
 //! under plane strain it is held, so that the mechanical strain across the plane is what keeps it. The energy is by initial volume.
 //!
-//! α is the secant from T₀ and follows a table over TEMPERATURE where there is one; other constants do not.
+//! α may follow a table over TEMPERATURE; other constants do not.
 
 use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
 use zelus_core::register;
 use zelus_core::registry::require;
 
+use super::expansion::{Expansion, without};
 use super::law::{ConstitutiveLaw, LawEntry, LawFactory, MakesLaw, Matrix, StrainState};
-use super::quantity::Quantity;
 use super::small_strain_plasticity::PLASTIC_WORK;
-use crate::tensor::{Tensor, pairs};
+use crate::tensor::Tensor;
 
 /// Components of plane strain among those with the strain across the plane.
 const IN_PLANE: [usize; 3] = [0, 1, 3];
 
-/// α and T₀.
-#[derive(Debug, Clone, PartialEq)]
-struct Expansion {
-    coefficient: Quantity,
-    reference: f64,
-}
-
-impl Expansion {
-    /// # Errors
-    /// Constants that are missing.
-    fn of(properties: &Properties) -> Result<Self> {
-        Ok(Self {
-            coefficient: Quantity::of(properties, "THERMAL_EXPANSION_COEFFICIENT")?,
-            reference: properties.require("REFERENCE_TEMPERATURE")?,
-        })
-    }
-
-    /// θ.
-    fn stretch(&self, temperature: f64) -> f64 {
-        1.0 + self.coefficient.at(temperature) * (temperature - self.reference)
-    }
-}
-
 /// The state without its thermal part, and what stress and tangent of it are multiplied by.
-fn mechanical<'a, const S: usize>(state: &StrainState<'a, S>, stretch: f64) -> (StrainState<'a, S>, [f64; 2]) {
+fn mechanical<'a, const S: usize>(state: &StrainState<'a, S>, thermal: f64) -> (StrainState<'a, S>, [f64; 2]) {
     let mut inner = *state;
-    let is_normal = pairs::<S>().map(|(p, q)| p == q);
     if state.small {
-        let thermal = stretch - 1.0;
-        for (strain, is_normal) in inner.strain.iter_mut().zip(is_normal) {
-            *strain -= if is_normal { thermal } else { 0.0 };
-        }
+        inner.strain = without(state.strain, thermal);
         inner.f = state.f - thermal * Tensor::identity();
         inner.det_f = inner.f.determinant();
         return (inner, [1.0; 2]);
     }
-    let (square, thermal) = (stretch * stretch, 0.5 * (stretch * stretch - 1.0));
-    for (strain, is_normal) in inner.strain.iter_mut().zip(is_normal) {
-        *strain = (*strain - if is_normal { thermal } else { 0.0 }) / square;
-    }
+    let stretch = 1.0 + thermal;
+    let square = stretch * stretch;
+    inner.strain = without(state.strain, 0.5 * (square - 1.0)).map(|strain| strain / square);
     inner.f = state.f / stretch;
     inner.det_f = state.det_f / (square * stretch);
     (inner, [stretch, 1.0 / stretch])
@@ -73,9 +45,9 @@ struct Expanding<const S: usize> {
 
 impl<const S: usize> Expanding<S> {
     fn inner<'a>(&self, state: &StrainState<'a, S>) -> (StrainState<'a, S>, [f64; 2], f64) {
-        let stretch = self.expansion.stretch(state.temperature);
-        let (inner, factors) = mechanical(state, stretch);
-        (inner, factors, if state.small { 1.0 } else { stretch.powi(3) })
+        let thermal = self.expansion.strain(state.temperature);
+        let (inner, factors) = mechanical(state, thermal);
+        (inner, factors, if state.small { 1.0 } else { (1.0 + thermal).powi(3) })
     }
 }
 
@@ -133,8 +105,7 @@ struct ExpandingPlane(Expanding<4>);
 impl ExpandingPlane {
     fn whole<'a>(state: &StrainState<'a, 3>) -> StrainState<'a, 4> {
         let [xx, yy, xy] = state.strain;
-        let StrainState { f, det_f, small, pressure, temperature, band, band_as_kratos, history, .. } = *state;
-        StrainState { strain: [xx, yy, 0.0, xy], f, det_f, small, pressure, temperature, band, band_as_kratos, history }
+        state.with_strain([xx, yy, 0.0, xy])
     }
 }
 

@@ -66,11 +66,9 @@ fn state<const S: usize>(f: Tensor, small: bool, temperature: f64, history: &[f6
         f,
         det_f: f.determinant(),
         small,
-        pressure: 0.0,
         temperature,
-        band: 0.0,
-        band_as_kratos: false,
         history,
+        ..StrainState::REST
     }
 }
 

@@ -6,7 +6,7 @@ use zelus_core::registered_kind;
 use zelus_core::registry::require;
 
 use super::bar_law::MakeBarLaw;
-use crate::tensor::{Tensor, congruent, push_forward, stress_tensor, stress_vector};
+use crate::tensor::{IDENTITY, Tensor, congruent, push_forward, stress_tensor, stress_vector};
 
 /// A Voigt matrix `m[row][column]`.
 pub type Matrix<const S: usize> = [[f64; S]; S];
@@ -32,6 +32,27 @@ pub struct StrainState<'a, const S: usize> {
     pub band_as_kratos: bool,
     /// What the law remembers from the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
+}
+
+impl<'a, const S: usize> StrainState<'a, S> {
+    /// A point that is not strained, remembers nothing and has the temperature 0.
+    pub const REST: Self = Self {
+        strain: [0.0; S],
+        f: IDENTITY,
+        det_f: 1.0,
+        small: true,
+        pressure: 0.0,
+        temperature: 0.0,
+        band: 0.0,
+        band_as_kratos: false,
+        history: &[],
+    };
+
+    /// The same with other components of strain.
+    pub fn with_strain<const T: usize>(self, strain: [f64; T]) -> StrainState<'a, T> {
+        let Self { f, det_f, small, pressure, temperature, band, band_as_kratos, history, .. } = self;
+        StrainState { strain, f, det_f, small, pressure, temperature, band, band_as_kratos, history }
+    }
 }
 
 /// Which stress an element integrates.

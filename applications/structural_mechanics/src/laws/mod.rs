@@ -11,6 +11,7 @@ mod damage_tests;
 mod elastic;
 mod equivalent_stress;
 mod expanding;
+mod expansion;
 #[cfg(test)]
 mod expanding_tests;
 mod finite_strain_plasticity;

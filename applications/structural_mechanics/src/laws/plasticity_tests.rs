@@ -38,17 +38,7 @@ where
 
 /// A state of Green–Lagrange strain with this history; `f` is only there for measures other than PK2.
 fn state<const S: usize>(strain: [f64; S], f: Tensor, history: &[f64]) -> StrainState<'_, S> {
-    StrainState {
-        strain,
-        f,
-        det_f: f.determinant(),
-        small: false,
-        pressure: 0.0,
-        temperature: 0.0,
-        band: 0.0,
-        band_as_kratos: false,
-        history,
-    }
+    StrainState { strain, f, det_f: f.determinant(), small: false, history, ..StrainState::REST }
 }
 
 fn green<const S: usize>(f: &Tensor) -> [f64; S] {

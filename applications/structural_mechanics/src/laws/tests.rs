@@ -22,17 +22,7 @@ where
 /// A state with deformation gradient `f`.
 fn state<const S: usize>(f: Tensor) -> StrainState<'static, S> {
     let strain = strain_vector(&(0.5 * (f.transpose() * f - IDENTITY)));
-    StrainState {
-        strain,
-        f,
-        det_f: f.determinant(),
-        small: false,
-        pressure: 0.0,
-        temperature: 0.0,
-        band: 0.0,
-        band_as_kratos: false,
-        history: &[],
-    }
+    StrainState { strain, f, det_f: f.determinant(), small: false, ..StrainState::REST }
 }
 
 /// A random deformation gradient whose out-of-plane part suits `S` strains.
@@ -64,17 +54,7 @@ where
             let mut strain = base.strain;
             strain[t] += step;
             let c = IDENTITY + 2.0 * strain_tensor(&strain);
-            StrainState {
-                strain,
-                f: base.f,
-                det_f: c.determinant().sqrt(),
-                small: false,
-                pressure: 0.0,
-                temperature: 0.0,
-                band: 0.0,
-                band_as_kratos: false,
-                history: &[],
-            }
+            StrainState { strain, f: base.f, det_f: c.determinant().sqrt(), small: false, ..StrainState::REST }
         };
         let mut d = [[0.0; S]; S];
         let stress = law.pk2(&base, Some(&mut d));
@@ -151,43 +131,14 @@ fn small_strains_agree_with_hooke() {
 fn hooke_in_one_direction() {
     // free lateral strain −ν ε gives σ = E ε
     let (f, e) = (IDENTITY, 1e-3);
-    let solid = StrainState {
-        strain: [e, -NU * e, -NU * e, 0.0, 0.0, 0.0],
-        f,
-        det_f: 1.0,
-        small: false,
-        pressure: 0.0,
-        temperature: 0.0,
-        band: 0.0,
-        band_as_kratos: false,
-        history: &[],
-    };
+    let solid =
+        StrainState { strain: [e, -NU * e, -NU * e, 0.0, 0.0, 0.0], f, det_f: 1.0, small: false, ..StrainState::REST };
     let stress = law::<6>("LinearElastic3DLaw").pk2(&solid, None);
     assert!(near(stress[0], E * e, 1e-13) && size(&stress[1..]) < 1e-13);
-    let plane = StrainState {
-        strain: [e, -NU * e, 0.0],
-        f,
-        det_f: 1.0,
-        small: false,
-        pressure: 0.0,
-        temperature: 0.0,
-        band: 0.0,
-        band_as_kratos: false,
-        history: &[],
-    };
+    let plane = StrainState { strain: [e, -NU * e, 0.0], f, det_f: 1.0, small: false, ..StrainState::REST };
     let stress = law::<3>("LinearElasticPlaneStress2DLaw").pk2(&plane, None);
     assert!(near(stress[0], E * e, 1e-13) && stress[1].abs() < 1e-13);
-    let shear = StrainState {
-        strain: [0.0, 0.0, e],
-        f,
-        det_f: 1.0,
-        small: false,
-        pressure: 0.0,
-        temperature: 0.0,
-        band: 0.0,
-        band_as_kratos: false,
-        history: &[],
-    };
+    let shear = StrainState { strain: [0.0, 0.0, e], f, det_f: 1.0, small: false, ..StrainState::REST };
     assert!(near(law::<3>("LinearElasticPlaneStrain2DLaw").pk2(&shear, None)[2], E / (2.0 * (1.0 + NU)) * e, 1e-14));
 }
 

@@ -9,18 +9,16 @@ use zelus_core::model::Properties;
 use zelus_core::register;
 
 use super::elastic::{Elasticity, multiply, quadratic_energy};
+use super::expansion::{Expansion, in_form, without};
 use super::law::{ConstitutiveLaw, LawEntry, LawFactory, Matrix, StrainState};
 use super::quantity::Quantity;
-use crate::tensor::pairs;
 
 /// The law; `STRESS_FREE` across the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThermalElastic<const S: usize, const STRESS_FREE: bool> {
     young: Quantity,
     poisson: f64,
-    expansion: Quantity,
-    /// T₀.
-    reference: f64,
+    expansion: Expansion,
 }
 
 impl<const S: usize, const STRESS_FREE: bool> ThermalElastic<S, STRESS_FREE> {
@@ -31,49 +29,22 @@ impl<const S: usize, const STRESS_FREE: bool> ThermalElastic<S, STRESS_FREE> {
         Ok(Self {
             young: Quantity::positive(properties, "YOUNG_MODULUS")?,
             poisson,
-            expansion: Quantity::of(properties, "THERMAL_EXPANSION_COEFFICIENT")?,
-            reference: properties.require("REFERENCE_TEMPERATURE")?,
+            expansion: Expansion::of(properties)?,
         })
     }
 
-    /// Elasticity and the strain without its thermal part.
-    fn mechanical(&self, state: &StrainState<'_, S>) -> (Elasticity, [f64; S]) {
+    /// Hooke's matrix, and the strain without its thermal part.
+    fn mechanical(&self, state: &StrainState<'_, S>) -> (Matrix<S>, [f64; S]) {
         let t = state.temperature;
         let elasticity = Elasticity { young: self.young.at(t), poisson: self.poisson };
-        let held = if S == 3 && !STRESS_FREE { 1.0 + self.poisson } else { 1.0 };
-        let thermal = held * self.expansion.at(t) * (t - self.reference);
-        let mut strain = state.strain;
-        for (strain, (p, q)) in strain.iter_mut().zip(pairs::<S>()) {
-            *strain -= if p == q { thermal } else { 0.0 };
-        }
-        (elasticity, strain)
+        let thermal = in_form::<S>(self.expansion.strain(t), self.poisson, STRESS_FREE);
+        (elasticity.in_form(STRESS_FREE), without(state.strain, thermal))
     }
 }
 
-/// Hooke's matrix of a form.
-trait Form<const S: usize> {
-    fn matrix(elasticity: &Elasticity) -> Matrix<S>;
-}
-
-impl<const S: usize> Form<S> for ThermalElastic<S, false> {
-    fn matrix(elasticity: &Elasticity) -> Matrix<S> {
-        elasticity.hooke()
-    }
-}
-
-impl Form<3> for ThermalElastic<3, true> {
-    fn matrix(elasticity: &Elasticity) -> Matrix<3> {
-        elasticity.plane_stress()
-    }
-}
-
-impl<const S: usize, const STRESS_FREE: bool> ConstitutiveLaw<S> for ThermalElastic<S, STRESS_FREE>
-where
-    Self: Form<S>,
-{
+impl<const S: usize, const STRESS_FREE: bool> ConstitutiveLaw<S> for ThermalElastic<S, STRESS_FREE> {
     fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
-        let (elasticity, strain) = self.mechanical(state);
-        let d = Self::matrix(&elasticity);
+        let (d, strain) = self.mechanical(state);
         if let Some(tangent) = tangent {
             *tangent = d;
         }
@@ -81,8 +52,8 @@ where
     }
 
     fn energy(&self, state: &StrainState<'_, S>) -> f64 {
-        let (elasticity, strain) = self.mechanical(state);
-        quadratic_energy(&Self::matrix(&elasticity), &strain)
+        let (d, strain) = self.mechanical(state);
+        quadratic_energy(&d, &strain)
     }
 
     fn expands(&self) -> bool {

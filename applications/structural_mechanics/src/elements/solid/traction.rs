@@ -58,17 +58,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         if (F::FINITE || !material.law.is_linear()) && (det_f <= 0.0 || det_f.is_nan()) {
             return Err(format!("turned inside out at a face (det F = {det_f:.3e})"));
         }
-        let state = StrainState {
-            strain,
-            f,
-            det_f,
-            small: !F::FINITE,
-            pressure: 0.0,
-            temperature: 0.0,
-            band: 0.0,
-            band_as_kratos: false,
-            history: &[],
-        };
+        let state = StrainState { strain, f, det_f, small: !F::FINITE, ..StrainState::REST };
         let mut d = [[0.0; S]; S];
         let stress = material.law.stress(&state, StressMeasure::Pk2, if by.is_some() { Some(&mut d) } else { None });
         let stress = along(&stress_tensor(&stress), point.normal).map(|t| t * material.thickness);
