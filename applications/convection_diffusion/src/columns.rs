@@ -2,8 +2,9 @@
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{Gather, StepView};
-use zelus_core::model::{ModelPart, Named, PropertyValue, ScalarVariable, VariableKind, named};
+use zelus_core::model::{Fields, ModelPart, Named, PropertyValue, ScalarVariable, VariableKind, named};
 use zelus_core::parameters::Settings;
+use zelus_core::vector3::{add, scale, sub};
 
 /// The object of the solver settings that names them.
 const SETTINGS: &str = "convection_diffusion_variables";
@@ -65,6 +66,14 @@ impl Columns {
         }
     }
 
+    /// Velocities of nodes less those of the mesh there, at a time level; zero where there are no such columns.
+    pub fn relative_velocity<'a>(&self, history: &'a Fields, level: usize) -> impl Fn(u32) -> [f64; 3] + use<'a> {
+        let [flow, mesh] = [self.velocity, self.mesh_velocity]
+            .map(|column| column.map_or(&[][..], |column| history.level(column, level).as_chunks().0));
+        let at = |of: &[[f64; 3]], node: u32| of.get(node as usize).copied().unwrap_or_default();
+        move |node| sub(at(flow, node), at(mesh, node))
+    }
+
     /// Takes the names that the settings of a solver give, and adds their columns to the nodes.
     ///
     /// # Errors
@@ -114,16 +123,12 @@ pub fn velocities<const NODES: usize>(
     columns: &Columns,
     share: f64,
 ) -> [[f64; 3]; NODES] {
+    let history = &view.nodes.history;
     let mut out = [[0.0; 3]; NODES];
-    for (column, sign) in [(columns.velocity, 1.0), (columns.mesh_velocity, -1.0)] {
-        for (level, share) in [(0, share), (1, 1.0 - share)] {
-            let values = column.map_or(&[][..], |column| view.nodes.history.level(column, level));
-            if values.is_empty() {
-                continue;
-            }
-            for (out, v) in out.iter_mut().zip(entity.vectors(values)) {
-                (0..3).for_each(|a| out[a] += sign * share * v[a]);
-            }
+    for (level, share) in [(0, share), (1, 1.0 - share)] {
+        let velocity = columns.relative_velocity(history, level);
+        for (out, &node) in out.iter_mut().zip(entity.nodes) {
+            *out = add(*out, scale(velocity(node), share));
         }
     }
     out

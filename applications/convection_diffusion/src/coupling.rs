@@ -31,7 +31,7 @@ pub const EXTENSION: &str = "thermal_solver_settings";
 
 /// Reads the materials of heat beside those of the structure.
 fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
-    let is_round = part.elements.kinds.iter().any(|kind| is_of_revolution(kind.name, false));
+    let is_round = part.elements.kinds.iter().any(|kind| kind.of_revolution);
     part.info.marks.insert(ABOUT_Y, is_round);
     let solver = SolverSettings::new(settings.node(), report)?;
     let mut heat = part.clone();
@@ -89,18 +89,13 @@ fn table_of_heat(role: Role, table: &EntityTable, settings: &Settings, space: us
     Ok(out)
 }
 
-/// Whether a kind of element of a structure is of revolution, and of heat.
-fn is_of_revolution(name: &str, heat: bool) -> bool {
-    name.strip_prefix("Axisym").is_some_and(|rest| rest.starts_with("metric") == heat)
-}
-
 /// Bodies are of revolution for both or for none.
 ///
 /// # Errors
 /// Else their elements do not fit.
 fn check_revolution(part: &ModelPart, system: &System, settings: &Settings) -> Result<()> {
-    let of_structure = part.elements.kinds.iter().find(|kind| is_of_revolution(kind.name, false));
-    let heat = system.elements.iter().any(|block| is_of_revolution(block.entry().name, true));
+    let of_structure = part.elements.kinds.iter().find(|kind| kind.of_revolution);
+    let heat = system.elements.iter().any(|block| block.entry().of_revolution);
     let round = of_structure.is_some();
     let any_heat = !system.elements.is_empty();
     if round == heat || !any_heat {
@@ -143,11 +138,11 @@ fn around(
     system.elements.retain(|block| is_thermal(block.as_ref()));
     system.conditions.retain(|block| is_thermal(block.as_ref()));
     let (strategy, _) = solver.strategy(part, &mut system, report)?;
-    // Steps that are explicit are too short to be worth a second look.
     let plastic = PlasticHeat::of(part);
+    // Steps that are explicit are too short to be worth a second look.
     let goal = Goal::of(part).filter(|_| structure.can_retry() && strategy.can_retry());
     Ok(Box::new(Coupled {
-        heat: Arc::new(Mutex::new(Heat { strategy, system, plastic, last: None })),
+        heat: Arc::new(Mutex::new(Heat { strategy, system, plastic, last: None, sweeps: 0 })),
         structure,
         goal,
     }))
@@ -201,7 +196,6 @@ impl Coupled {
                 }
                 _ => {}
             }
-            record.interactions.extend(sweeps.numbers());
             return Ok(record);
         }
     }
@@ -247,14 +241,19 @@ impl SolutionStrategy for Coupled {
         system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<StepRecord> {
-        let unknown = Columns::of(part).unknown;
-        let start = part.nodes.history.level(unknown.column, 0).to_vec();
+        let unknown = Columns::of(part).unknown.column;
+        let goal = self.goal.map(|goal| (goal, part.nodes.history.level(unknown, 0).to_vec()));
         let heat = self.heat().solve_step(part, monitor)?;
         if !heat.converged {
             return Ok(StepRecord { failure: heat.failure.map(|why| format!("heat: {why}")), ..heat });
         }
-        let mut record = match self.goal {
-            Some(goal) => self.solve_structure(goal, part, system, monitor, start)?,
+        let mut record = match goal {
+            Some((goal, start)) => {
+                self.heat().sweeps = 0;
+                let mut record = self.solve_structure(goal, part, system, monitor, start)?;
+                record.interactions.push(("heat_sweeps".to_owned(), self.heat().sweeps as f64));
+                record
+            }
             None => {
                 let record = self.structure.solve_step(part, system, monitor)?;
                 self.heat().plastic.take(part, &system.elements);

@@ -17,6 +17,8 @@ pub(crate) struct Heat {
     pub(crate) plastic: PlasticHeat,
     /// The last solve of the step, where it was solved again.
     pub(crate) last: Option<StepRecord>,
+    /// How often it was, in this step.
+    pub(crate) sweeps: usize,
 }
 
 impl Heat {

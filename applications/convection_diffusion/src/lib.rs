@@ -6,6 +6,7 @@
 pub mod variables;
 pub mod columns;
 pub mod coefficient;
+pub mod material;
 pub mod elements;
 pub mod conditions;
 mod processes;

@@ -64,14 +64,6 @@ impl State for RungeKuttaState {
 }
 
 impl RungeKutta {
-    /// Storage of each equation; what slaves store is lumped on their masters.
-    fn reduced_capacity(&self) -> Vec<f64> {
-        let equations = self.assembler.equations();
-        let mut carried = equations.expand(&vec![1.0; equations.len()]);
-        carried.iter_mut().zip(&self.capacity).for_each(|(share, m)| *share *= m);
-        equations.reduce(&carried)
-    }
-
     /// Lumps the storage, once.
     ///
     /// # Errors
@@ -109,7 +101,8 @@ impl RungeKutta {
         part.info.values.insert(STAGE, 1.0);
         self.assembler.tangents(part, system, None)?;
         // Central differences are stable up to 2/ω, where the eigenvalue is ω².
-        let critical = critical_step(&self.assembler, &system.dofs, &self.reduced_capacity(), [0.0; 2]);
+        let capacity = self.assembler.equations().lump(&self.capacity);
+        let critical = critical_step(&self.assembler, &system.dofs, &capacity, [0.0; 2]);
         Ok(RADIUS * critical * critical / 4.0)
     }
 
@@ -161,7 +154,7 @@ impl RungeKutta {
     fn rates(&self, residual: &[f64]) -> Vec<f64> {
         let equations = self.assembler.equations();
         let force = equations.reduce(residual);
-        equations.expand(&force.iter().zip(self.reduced_capacity()).map(|(f, m)| f / m).collect::<Vec<f64>>())
+        equations.expand(&force.iter().zip(equations.lump(&self.capacity)).map(|(f, m)| f / m).collect::<Vec<f64>>())
     }
 
     /// Sets the unknowns a time after the start: prescribed ones on the line to their end, others by their rate.

@@ -18,6 +18,8 @@ pub const DIFFUSION: &str = "EulerianDiffusion";
 struct CarriedThenConducted {
     /// Parts of a path in a step.
     parts: usize,
+    /// The mesh, once it has been brought together.
+    whole: Option<Whole>,
 }
 
 impl Scheme for CarriedThenConducted {
@@ -35,35 +37,26 @@ impl Scheme for CarriedThenConducted {
 
     fn predict(&mut self, part: &mut ModelPart, _dofs: &DofTable) -> Result<()> {
         let columns = Columns::of(part);
-        let whole = Whole::of(part);
-        let of_own = |all: &[[f64; 3]]| whole.own.iter().map(|&node| all[node as usize]).collect::<Vec<_>>();
+        let whole = self.whole.get_or_insert_with(|| Whole::of(part));
         let values = part.nodes.history.level(columns.unknown.column, 0);
-        let values = whole.field(&whole.own.iter().map(|&node| [values[node as usize]]).collect::<Vec<_>>());
-        let velocities = [0, 1].map(|level| whole.field(&of_own(&relative(part, &columns, level))));
-        let mesh = whole.mesh();
+        let own: Vec<[f64; 1]> = whole.own.iter().map(|&node| [values[node as usize]]).collect();
+        let values = whole.field(part, &own);
+        let velocities = [0, 1].map(|level| {
+            let velocity = columns.relative_velocity(&part.nodes.history, level);
+            whole.field(part, &whole.own.iter().map(|&node| velocity(node)).collect::<Vec<_>>())
+        });
+        let mesh = whole.mesh(part);
         let paths = Paths {
             positions: &mesh.positions,
             velocities: velocities.each_ref().map(Vec::as_slice),
             time: part.info.delta_time,
             parts: self.parts,
         };
-        let carried = whole.field(&carried(&whole, &Locator::new(&mesh), &paths, &values));
-        let here: Vec<f64> = (0..part.nodes.len() as u32).map(|node| carried[whole.place(node)][0]).collect();
+        let carried = whole.field(part, &carried(part, whole, &Locator::new(&mesh), &paths, &values));
+        let here: Vec<f64> = (0..part.nodes.len() as u32).map(|node| carried[Whole::place(part, node)][0]).collect();
         part.nodes.history.values_mut(&PROJECTED_SCALAR1, 0).copy_from_slice(&here);
         Ok(())
     }
-}
-
-/// Velocities of the nodes less those of the mesh.
-fn relative(part: &ModelPart, columns: &Columns, level: usize) -> Vec<[f64; 3]> {
-    let mut out = vec![[0.0; 3]; part.nodes.len()];
-    for (column, sign) in [(columns.velocity, 1.0), (columns.mesh_velocity, -1.0)] {
-        let values = column.map_or(&[][..], |column| part.nodes.history.level(column, level));
-        for (out, v) in out.iter_mut().zip(values.chunks_exact(3)) {
-            (0..3).for_each(|a| out[a] += sign * v[a]);
-        }
-    }
-    out
 }
 
 register! { SchemeEntry SEMI_IMPLICIT,
@@ -76,6 +69,6 @@ register! { SchemeEntry SEMI_IMPLICIT,
             let problem = settings.error("bfecc_substepping", "invalid-value", "\"bfecc_substepping\" is 0");
             return Err(problem.remedy("write the number of parts of a path, from 1").into());
         }
-        Ok(Box::new(CarriedThenConducted { parts }))
+        Ok(Box::new(CarriedThenConducted { parts, whole: None }))
     }),
 }

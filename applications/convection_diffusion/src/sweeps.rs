@@ -64,14 +64,13 @@ pub(crate) struct Sweeps {
     past: Vec<[Vec<f64>; 2]>,
     /// Sweeps since both last agreed: the structure may go on for reasons of its own.
     since: usize,
-    done: usize,
 }
 
 impl Sweeps {
     /// For a step whose heat has been solved for once; `start` are the temperatures from which it was.
     pub(crate) fn new(heat: Arc<Mutex<Heat>>, goal: Goal, part: &ModelPart, start: Vec<f64>) -> Self {
         let taken = temperatures(part, 0).to_vec();
-        Self { heat, goal, start, taken, past: Vec::new(), since: 0, done: 0 }
+        Self { heat, goal, start, taken, past: Vec::new(), since: 0 }
     }
 
     /// Solves for heat in the present state of the structure, which must go on where temperatures change by it. Collective.
@@ -79,11 +78,11 @@ impl Sweeps {
     /// # Errors
     /// As [`SolutionStrategy::solve_step`](zelus_core::strategies::SolutionStrategy::solve_step).
     pub(crate) fn look_again(&mut self, part: &mut ModelPart) -> Result<Outer> {
-        self.done += 1;
         self.since += 1;
         let unknown = Columns::of(part).unknown.column;
         part.nodes.history.write_level(unknown, 0, &self.start);
         let mut heat = self.heat.lock().unwrap_or_else(PoisonError::into_inner);
+        heat.sweeps += 1;
         let record = heat.solve_step(part, &mut Silent)?;
         if !record.converged {
             return Ok(Outer::Failed(record.failure.map_or("heat".to_owned(), |why| format!("heat: {why}"))));
@@ -112,11 +111,6 @@ impl Sweeps {
         self.taken = accelerated(part, &self.past);
         part.nodes.history.write_level(unknown, 0, &self.taken);
         Ok(Outer::Again)
-    }
-
-    /// Numbers for the report of a step, by name.
-    pub(crate) fn numbers(&self) -> Vec<(String, f64)> {
-        vec![("heat_sweeps".to_owned(), self.done as f64)]
     }
 }
 
@@ -161,10 +155,6 @@ fn accelerated(part: &ModelPart, past: &[[Vec<f64>; 2]]) -> Vec<f64> {
 impl Interaction for Sweeps {
     fn name(&self) -> &str {
         "heat and structure by turns"
-    }
-
-    fn summary(&self, _part: &ModelPart) -> Vec<(&'static str, f64)> {
-        vec![("heat_sweeps", self.done as f64)]
     }
 
     fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {

@@ -204,6 +204,13 @@ impl Equations {
             .collect()
     }
 
+    /// Lumped masses of unknowns gathered on equations: what slaves carry is lumped on their masters.
+    pub fn lump(&self, mass: &[f64]) -> Vec<f64> {
+        let mut carried = self.expand(&vec![1.0; self.len()]);
+        carried.iter_mut().zip(mass).for_each(|(share, m)| *share *= m);
+        self.reduce(&carried)
+    }
+
     /// TᵀA T of the matrix A with the pattern of `full` and these values.
     pub fn reduce_matrix(&self, full: &Csr, values: &[f64], into: &mut Csr, same_pattern: bool) {
         assert_eq!(values.len(), full.entries(), "length of values");

@@ -51,6 +51,12 @@ macro_rules! entity_entry {
                 self
             }
 
+            /// Whether it is a ring of a body of revolution.
+            pub const fn of_revolution(mut self, of_revolution: bool) -> Self {
+                self.kind.of_revolution = of_revolution;
+                self
+            }
+
             /// Variables of its data by which it loads the model.
             pub const fn loads(mut self, loads: &'static [&'static str]) -> Self {
                 self.kind.loads = Some(loads);

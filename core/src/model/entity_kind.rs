@@ -37,6 +37,8 @@ pub struct EntityKind {
     pub cell: Option<Shape>,
     /// Dimensions of the space it lives in: 2 or 3; 0 where that does not matter.
     pub space: usize,
+    /// Whether it is a ring: a piece of a body of revolution, of which the mesh is half a section.
+    pub of_revolution: bool,
     /// Variables with history that its nodes have: name and number of components.
     pub nodal: &'static [(&'static str, usize)],
     /// Variables of its data by which it loads the model; `None` where that is not stated.
@@ -46,7 +48,7 @@ pub struct EntityKind {
 impl EntityKind {
     /// A kind on no cell.
     pub const fn new(role: Role, entry: Entry) -> Self {
-        Self { entry, role, cell: None, space: 0, nodal: &[], loads: None }
+        Self { entry, role, cell: None, space: 0, of_revolution: false, nodal: &[], loads: None }
     }
 
     /// Number of its nodes; 0 without a cell.

@@ -149,15 +149,8 @@ impl ExplicitStrategy {
         self.assembler.begin_step(part, system)?;
         self.assembler.tangents(part, system, None)?;
         let rayleigh = strongest_damping(part, self.settings.rayleigh);
-        Ok(critical_step(&self.assembler, &system.dofs, &self.reduced_mass(), rayleigh))
-    }
-
-    /// Mass of each equation; what slaves carry is lumped on their masters.
-    fn reduced_mass(&self) -> Vec<f64> {
-        let equations = self.assembler.equations();
-        let mut carried = equations.expand(&vec![1.0; equations.len()]);
-        carried.iter_mut().zip(&self.mass).for_each(|(share, m)| *share *= m);
-        equations.reduce(&carried)
+        let mass = self.assembler.equations().lump(&self.mass);
+        Ok(critical_step(&self.assembler, &system.dofs, &mass, rayleigh))
     }
 
     fn advance(&mut self, part: &mut ModelPart, system: &mut System) -> Result<(Vec<IterationRecord>, Option<String>)> {
@@ -179,7 +172,7 @@ impl ExplicitStrategy {
         let residual = self.assembler.residual(part, system, damping.as_ref())?;
         let equations = self.assembler.equations();
         let force = equations.reduce(&residual);
-        let mass = self.reduced_mass();
+        let mass = equations.lump(&self.mass);
         let acceleration = equations.expand(&force.iter().zip(&mass).map(|(f, m)| f / m).collect::<Vec<f64>>());
         let start = self.assembler.values(part, system);
         let moved = (0..targets.len()).find(|&n| equations.is_fixed(n) && targets[n] != start[n]);

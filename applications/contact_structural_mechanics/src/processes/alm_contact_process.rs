@@ -337,7 +337,7 @@ fn warn_of_revolution(part: &ModelPart, settings: &Settings) -> Result<Option<Di
     let around = settings.get_bool(key)?;
     let plane = part.info.domain_size == 2;
     let mut kinds = part.elements.kinds.iter().filter(|kind| plane && kind.cell.is_some_and(|cell| cell.dim() == 2));
-    let Some(kind) = kinds.find(|kind| kind.name.starts_with("Axisym") != around) else { return Ok(None) };
+    let Some(kind) = kinds.find(|kind| kind.of_revolution != around) else { return Ok(None) };
     let fact = format!("\"axisymmetric\" is {around}, and bodies are made of {}: pressures are off by 2πr", kind.name);
     let warning = Diagnostic { severity: Severity::Warning, ..settings.error(key, "contact-of-revolution", fact) };
     Ok(Some(warning.remedy(format!("set \"axisymmetric\" of \"alternative_formulations\" to {}", !around))))

@@ -12,10 +12,11 @@ use zelus_structural_mechanics::elements::physical_gradients;
 
 use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step, radial, round};
 use super::contribution::{add, slope};
-use super::place::{full_order, stream_size};
+use super::place::{check_volume, full_order, stream_size};
 use super::plastic_heat::{PLASTIC_HEAT_POWER, plastic_heat, volume};
-use crate::coefficient::{Coefficient, Local};
+use crate::coefficient::Local;
 use crate::columns::{Columns, nodal, velocities};
+use crate::material::Material;
 
 /// Which terms of the balance a kind of element has.
 pub trait Terms: Send + Sync + 'static {
@@ -30,9 +31,7 @@ pub trait Terms: Send + Sync + 'static {
 /// The elements of one block.
 pub struct Equation<T, const NODES: usize, const DIM: usize> {
     columns: Columns,
-    conductivity: Coefficient,
-    density: Coefficient,
-    specific_heat: Coefficient,
+    material: Material,
     rule: &'static ShapeTable,
     /// One point at the centre.
     centre: &'static ShapeTable,
@@ -61,14 +60,9 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let columns = Columns::of(request.part);
-        let first = request.members.first().map(|&member| request.table.properties[member as usize]);
-        let properties = first.and_then(|id| request.part.properties.get(&id));
-        let coefficient = |column, off| Coefficient::new(column, properties, columns.unknown.column, off);
         let shape = Shape::of(DIM, NODES).expect("elements are registered for known shapes only");
         Ok(Self {
-            conductivity: coefficient(columns.diffusion, 0.0),
-            density: coefficient(columns.density, 1.0),
-            specific_heat: coefficient(columns.specific_heat, 1.0),
+            material: Material::of(request, &columns),
             columns,
             rule: ShapeTable::get(shape, full_order(shape)),
             centre: ShapeTable::get(shape, 1),
@@ -77,10 +71,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
     }
 
     fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<(), String> {
-        let inverted = |dn| physical_gradients::<NODES, DIM>(&entity.current, dn).1 <= 0.0;
-        if self.rule.dn::<NODES, DIM>().iter().any(inverted) {
-            return Err("it is inverted".to_owned());
-        }
+        check_volume::<NODES, DIM>(self.rule, &entity.current)?;
         let radial = radial(view.info);
         if T::AXISYMMETRIC && entity.current.iter().any(|x| x[radial] < 0.0) {
             let [axis, radius] = if radial == 0 { ["y", "x"] } else { ["x", "y"] };
@@ -90,8 +81,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
     }
 
     fn tangent(&self) -> Tangent {
-        let varies = [&self.conductivity, &self.density, &self.specific_heat].iter().any(|own| own.varies());
-        if varies || T::TRANSIENT && !T::CARRIED { Tangent::General } else { Tangent::Symmetric }
+        if self.material.varies() || T::TRANSIENT && !T::CARRIED { Tangent::General } else { Tangent::Symmetric }
     }
 
     fn has_external(&self, view: &StepView<'_>) -> bool {
@@ -128,15 +118,11 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             true => velocities(entity, view, &self.columns, step.theta),
             false => [[0.0; 3]; NODES],
         };
-        let [conductivity, density, specific_heat] = [&self.conductivity, &self.density, &self.specific_heat]
-            .map(|own| own.in_element(entity, view.nodes, &now));
-        let is_pure = T::CARRIED && view.info.is(PURE_CONVECTION);
-        let conductivity = if is_pure { Local::Nodal([0.0; NODES]) } else { conductivity };
-        if let Some(name) = self.conductivity.unknown_in(&conductivity).filter(|_| !is_pure) {
-            let id = entity.properties.id;
-            return Err(format!(
-                "its properties {id} have no {name} (\"Variables\" of the materials), and no process sets it"
-            ));
+        let [mut conductivity, density, specific_heat] = self.material.in_element(entity, view, &now);
+        if T::CARRIED && view.info.is(PURE_CONVECTION) {
+            conductivity = Local::Nodal([0.0; NODES]);
+        } else {
+            self.material.check_conductivity(entity, &conductivity)?;
         }
         let size = stream_size(self.rule.shape(), &entity.current);
         let is_centred = view.info.is(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;

@@ -15,10 +15,11 @@ use zelus_structural_mechanics::elements::physical_gradients;
 
 use super::balance::{DYNAMIC_TAU, along};
 use super::contribution::{Pointwise, add, slope};
-use super::place::{full_order, stream_size};
+use super::place::{check_volume, full_order, stream_size};
 use super::plastic_heat::plastic_heat;
-use crate::coefficient::{Coefficient, Local};
+use crate::coefficient::Local;
 use crate::columns::{Columns, nodal, velocities};
+use crate::material::{Material, properties_of};
 
 /// Value of the step data: how far the present stage is from the beginning of the step to its end.
 pub const STAGE: &str = "RUNGE_KUTTA_STAGE";
@@ -34,9 +35,7 @@ pub trait Subscales: Send + Sync + 'static {
 /// The explicit elements of one block.
 pub struct Explicit<T, const NODES: usize, const DIM: usize> {
     columns: Columns,
-    conductivity: Coefficient,
-    density: Coefficient,
-    specific_heat: Coefficient,
+    material: Material,
     rule: &'static ShapeTable,
     subscales: PhantomData<fn() -> T>,
 }
@@ -112,14 +111,8 @@ impl<T: Subscales, const NODES: usize, const DIM: usize> Explicit<T, NODES, DIM>
         let [source, earlier] = [0, 1].map(|level| nodal(entity, view, self.columns.volume_source, level));
         let projection = nodal(entity, view, Some("PROJECTED_SCALAR1"), 0);
         let velocity = velocities(entity, view, &self.columns, share);
-        let [conductivity, density, specific_heat] = [&self.conductivity, &self.density, &self.specific_heat]
-            .map(|own| own.in_element(entity, view.nodes, &now));
-        if let Some(name) = self.conductivity.unknown_in(&conductivity) {
-            let id = entity.properties.id;
-            return Err(format!(
-                "its properties {id} have no {name} (\"Variables\" of the materials), and no process sets it"
-            ));
-        }
+        let [conductivity, density, specific_heat] = self.material.in_element(entity, view, &now);
+        self.material.check_conductivity(entity, &conductivity)?;
         let plastic = plastic_heat::<NODES, DIM>(view, entity.index, (self.rule, &entity.current), |_| 1.0);
         let size = stream_size(self.rule.shape(), &entity.current);
         let beta = if T::DYNAMIC { 1.0 } else { view.info.value_or(DYNAMIC_TAU, 1.0) };
@@ -174,22 +167,16 @@ impl<T: Subscales, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> fo
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let columns = Columns::of(request.part);
-        let first = request.members.first().map(|&member| request.table.properties[member as usize]);
-        let properties = first.and_then(|id| request.part.properties.get(&id));
-        let coefficient = |column, off| Coefficient::new(column, properties, columns.unknown.column, off);
-        let [density, specific_heat] =
-            [columns.density, columns.specific_heat].map(|column| coefficient(column, 1.0).or(1.0));
+        let Material { conductivity, density, specific_heat } = Material::of(request, &columns);
         if density.varies() || specific_heat.varies() {
             let fact = "explicit steps hold density and specific heat, which a table lets depend on the temperature";
-            let place = properties.map(|properties| properties.place.clone()).unwrap_or_default();
+            let place = properties_of(request).map(|properties| properties.place.clone()).unwrap_or_default();
             let remedy = "give them as numbers, or use \"time_integration_method\": \"implicit\"";
             return Err(Diagnostic::error("unsupported", fact).at(place).remedy(remedy).into());
         }
         let shape = Shape::of(DIM, NODES).expect("elements are registered for known shapes only");
         Ok(Self {
-            conductivity: coefficient(columns.diffusion, 0.0),
-            density,
-            specific_heat,
+            material: Material { conductivity, density: density.or(1.0), specific_heat: specific_heat.or(1.0) },
             columns,
             rule: ShapeTable::get(shape, full_order(shape)),
             subscales: PhantomData,
@@ -201,11 +188,8 @@ impl<T: Subscales, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> fo
     }
 
     fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
-        let inverted = |dn| physical_gradients::<NODES, DIM>(&entity.current, dn).1 <= 0.0;
-        match self.rule.dn::<NODES, DIM>().iter().any(inverted) {
-            true => Err("it is inverted".to_owned()),
-            false => Ok(vec![0.0; if T::DYNAMIC { self.rule.len() } else { 0 }].into()),
-        }
+        check_volume::<NODES, DIM>(self.rule, &entity.current)?;
+        Ok(vec![0.0; if T::DYNAMIC { self.rule.len() } else { 0 }].into())
     }
 
     fn tangent(&self) -> Tangent {
@@ -237,8 +221,7 @@ impl<T: Subscales, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> fo
         out: &mut [f64],
     ) -> bool {
         let now = nodal(entity, view, Some(self.columns.unknown.column), 0);
-        let [density, specific_heat] =
-            [&self.density, &self.specific_heat].map(|own| own.in_element(entity, view.nodes, &now));
+        let [_, density, specific_heat] = self.material.in_element(entity, view, &now);
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
             let (_, determinant) = physical_gradients(&entity.current, &self.rule.dn::<NODES, DIM>()[g]);
             let capacity = Self::capacity([&density, &specific_heat], 0.0);

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use zelus_core::geometry::mapping::tangents;
-use zelus_core::geometry::{Shape, local_gradients};
+use zelus_core::geometry::{Shape, ShapeTable, local_gradients};
+use zelus_structural_mechanics::elements::physical_gradients;
 
 /// √(Σ 1/|∇N_i|²)/n of the corners, at the centre; half of it where edges have nodes in the middle (length).
 pub(super) fn stream_size(shape: Shape, x: &[[f64; 3]]) -> f64 {
@@ -20,6 +21,16 @@ pub(super) fn stream_size(shape: Shape, x: &[[f64; 3]]) -> f64 {
     });
     let size = lengths.sum::<f64>().sqrt() / corners as f64;
     if shape == linear { size } else { 0.5 * size }
+}
+
+/// # Errors
+/// An element that is inverted at a point of its rule.
+pub(super) fn check_volume<const NODES: usize, const DIM: usize>(
+    rule: &ShapeTable,
+    x: &[[f64; 3]; NODES],
+) -> Result<(), String> {
+    let is_inverted = |dn| physical_gradients::<NODES, DIM>(x, dn).1 <= 0.0;
+    if rule.dn::<NODES, DIM>().iter().any(is_inverted) { Err("it is inverted".to_owned()) } else { Ok(()) }
 }
 
 /// Order of the rule that integrates products of two shape functions.

@@ -72,6 +72,7 @@ macro_rules! balance {
             source: $source,
             cell: Shape::of($dim, $nodes),
             space: $dim,
+            of_revolution: <$terms as Terms>::AXISYMMETRIC,
             build: Build::Block(KernelBlock::<Equation<$terms, $nodes, $dim>, $nodes, $nodes>::boxed),
         })+
     };

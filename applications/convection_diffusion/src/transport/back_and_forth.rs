@@ -5,6 +5,7 @@
 //! with that of its node, and each further part of it takes the velocity of the place it has come to, at the time it has come to.
 
 use rayon::prelude::*;
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, scale};
 
 use super::locator::{Locator, Place};
@@ -50,18 +51,24 @@ impl Paths<'_> {
 
 /// Values after a step of the nodes that this rank owns, from those of all nodes before it. A node whose path back leaves the mesh has the
 /// value where it left; one that begins outside keeps its own. Collective.
-pub fn carried(whole: &Whole<'_>, locator: &Locator<'_>, paths: &Paths<'_>, values: &[[f64; 1]]) -> Vec<[f64; 1]> {
-    let own = || whole.own.par_iter().map(|&node| whole.place(node));
+pub fn carried(
+    part: &ModelPart,
+    whole: &Whole,
+    locator: &Locator<'_>,
+    paths: &Paths<'_>,
+    values: &[[f64; 1]],
+) -> Vec<[f64; 1]> {
+    let own = || whole.own.par_iter().map(|&node| Whole::place(part, node));
     let back: Vec<(usize, End<'_>)> = own().map(|node| (node, paths.follow(locator, node, -1.0))).collect();
     let there: Vec<[f64; 1]> =
         back.iter().map(|(node, end)| end.place.map_or(values[*node], |place| [place.value(values)])).collect();
-    let all_there = whole.field(&there);
+    let all_there = whole.field(part, &there);
     let corrected = own().map(|node| match paths.follow(locator, node, 1.0) {
         End { place: Some(place), is_inside: true } => [1.5 * values[node][0] - 0.5 * place.value(&all_there)],
         _ => values[node],
     });
     let corrected: Vec<[f64; 1]> = corrected.collect();
-    let all_corrected = whole.field(&corrected);
+    let all_corrected = whole.field(part, &corrected);
     let better = |((_, end), there): (&(usize, End<'_>), &[f64; 1])| match end.place {
         Some(place) if end.is_inside => [place.value(&all_corrected)],
         _ => *there,

@@ -13,7 +13,7 @@ const MOST: usize = 27;
 
 /// The elements of a mesh in cells of the size of a mean element.
 pub struct Locator<'a> {
-    mesh: &'a Mesh,
+    mesh: &'a Mesh<'a>,
     size: f64,
     of_cell: FxHashMap<[i32; 3], Vec<u32>>,
 }
@@ -27,7 +27,7 @@ pub struct Place<'a> {
 
 impl<'a> Locator<'a> {
     /// Finds places in a mesh.
-    pub fn new(mesh: &'a Mesh) -> Self {
+    pub fn new(mesh: &'a Mesh<'a>) -> Self {
         let mut locator = Self { mesh, size: 1.0, of_cell: FxHashMap::default() };
         let elements = 0..mesh.elements.len() as u32;
         let boxes: Vec<_> = elements.clone().map(|at| bounds(&mesh.corners(at))).collect();

@@ -6,35 +6,32 @@ use zelus_core::model::ModelPart;
 use super::mesh::Mesh;
 
 /// Brings together what ranks have of a part. Nodes count by their place in the whole mesh.
-pub struct Whole<'a> {
-    part: &'a ModelPart,
+pub struct Whole {
     /// Nodes that this rank owns.
     pub own: Vec<u32>,
     /// Places of the nodes that each rank owns.
     places: Vec<Vec<f64>>,
+    /// Elements that fill space, in the order of their ids.
+    elements: Vec<(Shape, Vec<u32>)>,
 }
 
-impl<'a> Whole<'a> {
-    /// Collective.
-    pub fn of(part: &'a ModelPart) -> Self {
+impl Whole {
+    /// Of a part, whose nodes may move afterwards. Collective.
+    pub fn of(part: &ModelPart) -> Self {
         let own: Vec<u32> =
             (0..part.nodes.len()).filter(|&node| part.owns_node(node)).map(|node| node as u32).collect();
-        let mine: Vec<f64> = own.iter().map(|&node| f64::from(Self::place_in(part, node))).collect();
-        Self { part, own, places: part.ranks.gather_numbers(&mine) }
-    }
-
-    fn place_in(part: &ModelPart, node: u32) -> u32 {
-        part.share.as_ref().map_or(node, |share| share.places[node as usize])
+        let mine: Vec<f64> = own.iter().map(|&node| Self::place(part, node) as f64).collect();
+        Self { own, places: part.ranks.gather_numbers(&mine), elements: elements(part) }
     }
 
     /// The place of a node of this rank.
-    pub fn place(&self, node: u32) -> usize {
-        Self::place_in(self.part, node) as usize
+    pub fn place(part: &ModelPart, node: u32) -> usize {
+        part.share.as_ref().map_or(node, |share| share.places[node as usize]) as usize
     }
 
     /// A field on the whole mesh, from what it is at the nodes of each rank's own, in their order. Collective.
-    pub fn field<const C: usize>(&self, own: &[[f64; C]]) -> Vec<[f64; C]> {
-        let all = self.part.ranks.gather_numbers(own.as_flattened());
+    pub fn field<const C: usize>(&self, part: &ModelPart, own: &[[f64; C]]) -> Vec<[f64; C]> {
+        let all = part.ranks.gather_numbers(own.as_flattened());
         let mut field = vec![[0.0; C]; self.places.iter().map(Vec::len).sum()];
         for (places, values) in self.places.iter().zip(&all) {
             for (place, value) in places.iter().zip(values.as_chunks().0) {
@@ -44,34 +41,36 @@ impl<'a> Whole<'a> {
         field
     }
 
-    /// The elements that fill space, where their nodes are now. Collective.
-    pub fn mesh(&self) -> Mesh {
-        let (part, rank) = (self.part, self.part.ranks.rank() as u32);
-        let is_own = |at: usize| part.share.as_ref().is_none_or(|share| share.elements[at] == rank);
-        let mut own = Vec::new();
-        for at in (0..part.elements.len()).filter(|&at| is_own(at)) {
-            if part.elements.kinds[at].cell.is_none_or(|cell| cell.dim() != part.info.domain_size) {
-                continue;
-            }
-            let nodes = part.elements.nodes(at as u32);
-            own.extend([part.elements.ids[at] as f64, nodes.len() as f64]);
-            own.extend(nodes.iter().map(|&node| self.place(node) as f64));
-        }
-        let mut elements = Vec::new();
-        for all in part.ranks.gather_numbers(&own) {
-            let mut rest = all.as_slice();
-            while let [id, count, more @ ..] = rest {
-                let (nodes, after) = more.split_at(*count as usize);
-                let shape = Shape::of(part.info.domain_size, nodes.len()).expect("the shape of an element");
-                elements.push((*id as usize, shape, nodes.iter().map(|&place| place as u32).collect()));
-                rest = after;
-            }
-        }
-        elements.sort_by_key(|(id, ..)| *id);
+    /// The elements, where their nodes are now. Collective.
+    pub fn mesh(&self, part: &ModelPart) -> Mesh<'_> {
         let current: Vec<[f64; 3]> = self.own.iter().map(|&node| part.nodes.current[node as usize]).collect();
-        Mesh {
-            positions: self.field(&current),
-            elements: elements.into_iter().map(|(_, shape, nodes)| (shape, nodes)).collect(),
+        Mesh { positions: self.field(part, &current), elements: &self.elements }
+    }
+}
+
+/// The elements of all ranks that fill space. Collective.
+fn elements(part: &ModelPart) -> Vec<(Shape, Vec<u32>)> {
+    let rank = part.ranks.rank() as u32;
+    let is_own = |at: usize| part.share.as_ref().is_none_or(|share| share.elements[at] == rank);
+    let mut own = Vec::new();
+    for at in (0..part.elements.len()).filter(|&at| is_own(at)) {
+        if part.elements.kinds[at].cell.is_none_or(|cell| cell.dim() != part.info.domain_size) {
+            continue;
+        }
+        let nodes = part.elements.nodes(at as u32);
+        own.extend([part.elements.ids[at] as f64, nodes.len() as f64]);
+        own.extend(nodes.iter().map(|&node| Whole::place(part, node) as f64));
+    }
+    let mut elements = Vec::new();
+    for all in part.ranks.gather_numbers(&own) {
+        let mut rest = all.as_slice();
+        while let [id, count, more @ ..] = rest {
+            let (nodes, after) = more.split_at(*count as usize);
+            let shape = Shape::of(part.info.domain_size, nodes.len()).expect("the shape of an element");
+            elements.push((*id as usize, shape, nodes.iter().map(|&place| place as u32).collect()));
+            rest = after;
         }
     }
+    elements.sort_by_key(|(id, ..)| *id);
+    elements.into_iter().map(|(_, shape, nodes)| (shape, nodes)).collect()
 }

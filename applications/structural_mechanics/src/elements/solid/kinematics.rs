@@ -73,7 +73,7 @@ pub(super) fn radius<const NODES: usize>(n: &[f64; NODES], x: &[[f64; 3]; NODES]
 }
 
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
-    pub(super) const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
+    pub(in crate::elements) const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
 
     /// What the formulation reads of the motion of the nodes.
     pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
