@@ -28,4 +28,4 @@ mod solver;
 pub mod interaction;
 mod processes;
 
-pub use processes::{check_slaves, surfaces_by_pair};
+pub use processes::{FacingPair, FacingSurfaces};

@@ -155,15 +155,14 @@ mod tests {
     use zelus_convection_diffusion::variables::TEMPERATURE;
     use zelus_core::entities::require_kind;
     use zelus_core::model::{ModelPart, Role};
-    use zelus_core::parameters::{Defaults, Document, Settings};
-    use zelus_core::registry::require;
+    use zelus_core::parameters::Document;
+    use zelus_core::registry::named;
 
     use crate::law::ContactConductanceEntry;
 
     fn law(text: &str) -> Box<dyn ConductanceLaw> {
         let node = Document::from_str(text, "deck.json").unwrap().root;
-        let entry = require::<ContactConductanceEntry>(node.get("law").unwrap().str().unwrap()).unwrap();
-        let (settings, _) = Settings::check(&node, &Defaults::parse(entry.name, entry.defaults).unwrap()).unwrap();
+        let (entry, settings) = named::<ContactConductanceEntry>(&node, "law").unwrap();
         (entry.build)(&settings).unwrap()
     }
 

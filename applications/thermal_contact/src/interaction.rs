@@ -1,17 +1,13 @@
 //! Heat between the bodies of a part: facets that face each other are looked for when a step begins.
 
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-use rustc_hash::FxHashMap;
-use zelus_contact_structural_mechanics::interface::{Facet, Interface, Roles, interfaces};
-use zelus_contact_structural_mechanics::mortar::{SegmentationSettings, condition_name};
-use zelus_contact_structural_mechanics::pairs::{FacingPoint, PairKey, facing_points, group_by_shapes};
-use zelus_contact_structural_mechanics::register_pair_conditions;
-use zelus_contact_structural_mechanics::search::{SearchSettings, candidates};
+use zelus_contact_structural_mechanics::interface::Facet;
+use zelus_contact_structural_mechanics::mortar::condition_name;
+use zelus_contact_structural_mechanics::pairs::{FacingPoint, PairKey, group_by_shapes};
 use zelus_contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION};
+use zelus_contact_structural_mechanics::{FacingPair, FacingSurfaces, register_pair_conditions};
 use zelus_convection_diffusion::adoption::properties_of_heat;
 use zelus_convection_diffusion::columns::Columns;
 use zelus_convection_diffusion::coupling::EXTENSION;
@@ -22,7 +18,7 @@ use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};
 use zelus_core::model::{ModelPart, Role};
 use zelus_core::parameters::{Interval, SpaceTime};
 use zelus_core::processes::ScalarValue;
-use zelus_core::vector3::{dot, norm, sub};
+use zelus_core::vector3::dot;
 
 use crate::block::{ConductanceBlock, Point};
 use crate::law::{ConductanceLaw, Meeting};
@@ -36,18 +32,12 @@ register_pair_conditions! { "ContactConductanceCondition", "heat between two fac
 
 /// What a deck chooses.
 pub struct Chosen {
-    /// Parts of the interfaces by key.
-    pub parts: BTreeMap<String, Vec<String>>,
-    /// Parts on the slave side by key.
-    pub slaves: BTreeMap<String, Vec<String>>,
+    /// Between which surfaces.
+    pub surfaces: FacingSurfaces,
     /// Times in which heat passes.
     pub interval: Interval,
     /// The laws whose sum is the conductance.
     pub laws: Arc<[Box<dyn ConductanceLaw>]>,
-    /// Which facets are looked at.
-    pub search: SearchSettings,
-    /// How overlaps are cut and integrated.
-    pub segmentation: SegmentationSettings,
     /// Share of a slave facet's size up to which a gap is none where no contact is computed.
     pub touching: f64,
     /// Whether bodies are of revolution, about the axis that heat has.
@@ -61,7 +51,6 @@ pub struct Chosen {
 /// Heat between the bodies of a part.
 pub struct ThermalContact {
     chosen: Chosen,
-    interfaces: Vec<Interface>,
     blocks: Vec<ConductanceBlock>,
     keys: Vec<PairKey>,
     graph: u64,
@@ -69,35 +58,22 @@ pub struct ThermalContact {
 }
 
 impl ThermalContact {
-    /// Between the surfaces of a part.
-    ///
-    /// # Errors
-    /// Parts that do not exist or hold no facets.
-    pub fn new(chosen: Chosen, part: &mut ModelPart) -> Result<Self> {
-        // Contact of the structure marks the same nodes.
-        let flags = part.nodes.flags.clone();
-        let found = interfaces(part, &chosen.parts, &chosen.slaves);
-        part.nodes.flags = flags;
-        let interfaces = found?;
-        Ok(Self { chosen, interfaces, blocks: Vec::new(), keys: Vec::new(), graph: 1, has_acted: false })
+    /// As chosen, of which nothing has been looked for yet.
+    pub fn new(chosen: Chosen) -> Self {
+        Self { chosen, blocks: Vec::new(), keys: Vec::new(), graph: 1, has_acted: false }
     }
 
     /// The points of two facets at which heat passes.
-    fn points(
-        &self,
-        part: &ModelPart,
-        (slave, master): (&Facet, &Facet),
-        normals: &FxHashMap<u32, [f64; 3]>,
-    ) -> Vec<Point> {
+    fn points(&self, part: &ModelPart, pair: &FacingPair<'_, '_>) -> Vec<Point> {
+        let [slave, master] = pair.facets;
         let status = part.nodes.values.values(&CONTACT_STATUS, 0);
         let is_computed =
             slave.nodes.iter().all(|&node| status.get(node as usize).is_some_and(|status| *status >= 0.0));
         let pressures = if is_computed { part.nodes.values.values(&CONTACT_PRESSURE, 0) } else { &[] };
         let acts_apart = self.chosen.laws.iter().any(|law| law.acts_apart());
-        let size = size(part, slave);
+        let size = slave.extent(part);
         let work = work_of_friction(part);
-        let share = share_of_slave(part, [slave, master]);
-        let found = facing_points(part, slave, master, &|node| normals[&node], &self.chosen.segmentation);
+        let share = share_of_slave(part, pair.facets);
         let point = |found: FacingPoint| {
             let pressure = match pressures {
                 [] => 0.0,
@@ -125,25 +101,17 @@ impl ThermalContact {
                 friction: [share * power, (1.0 - share) * power],
             })
         };
-        found.into_iter().filter_map(point).collect()
+        pair.points().into_iter().filter_map(point).collect()
     }
 
     /// All pairs between which heat passes now.
     fn pairs(&self, part: &ModelPart) -> Vec<(PairKey, Vec<Point>)> {
-        let mut all = Vec::new();
-        for (at, interface) in self.interfaces.iter().enumerate() {
-            let normals: FxHashMap<u32, [f64; 3]> = interface.normals_of(part, Roles::Slave).into_iter().collect();
-            let near = candidates(part, interface, &self.chosen.search);
-            let pair = |candidate: &zelus_contact_structural_mechanics::search::Candidate| {
-                let key = PairKey { interface: at as u32, slave: candidate.slave, master: candidate.master };
-                let facet = |at: u32| &interface.facets[at as usize];
-                let points = self.points(part, (facet(key.slave), facet(key.master)), &normals);
-                (!points.is_empty()).then_some((key, points))
-            };
-            let found: Vec<_> = near.par_iter().with_min_len(32).filter_map(pair).collect();
-            all.extend(found);
-        }
-        all
+        let of_pair = |pair: FacingPair<'_, '_>| {
+            let points = self.points(part, &pair);
+            (!points.is_empty()).then_some((pair.key, points))
+        };
+        let surfaces = &self.chosen.surfaces;
+        (0..surfaces.interfaces().len()).flat_map(|at| surfaces.of_pairs(part, at, of_pair)).collect()
     }
 }
 
@@ -173,12 +141,6 @@ fn share_of_slave(part: &ModelPart, facets: [&Facet; 2]) -> f64 {
     }
 }
 
-/// The longest way from the first node of a facet to another (length).
-fn size(part: &ModelPart, facet: &Facet) -> f64 {
-    let x = facet.positions(part);
-    x.iter().map(|y| norm(sub(*y, x[0]))).fold(0.0, f64::max)
-}
-
 impl Interaction for ThermalContact {
     fn name(&self) -> &str {
         NAME
@@ -197,7 +159,9 @@ impl Interaction for ThermalContact {
         self.keys = keys;
         self.blocks.clear();
         let unknown = Columns::of(part).unknown;
-        for ((slave, master), (pairs, nodes)) in group_by_shapes(&self.interfaces, pairs, |(key, _)| *key) {
+        for ((slave, master), (pairs, nodes)) in
+            group_by_shapes(self.chosen.surfaces.interfaces(), pairs, |(key, _)| *key)
+        {
             let entry = require_kind(Role::Condition, &condition_name(STEM, slave, master))?;
             let points = pairs.into_iter().map(|(_, points)| points).collect();
             let laws = self.chosen.laws.clone();

@@ -1,19 +1,14 @@
 //! `wear_process`: after each accepted step takes off what has worn.
 
-use std::collections::BTreeMap;
-
-use serde::Deserialize;
-use zelus_contact_structural_mechanics::interface::{Interface, Roles, interfaces};
-use zelus_contact_structural_mechanics::mortar::{IntegrationOrder, SegmentationSettings};
-use zelus_contact_structural_mechanics::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use zelus_contact_structural_mechanics::FacingSurfaces;
+use zelus_contact_structural_mechanics::interface::Roles;
 use zelus_contact_structural_mechanics::variables::CONTACT_STATUS;
-use zelus_contact_structural_mechanics::{check_slaves, surfaces_by_pair};
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Report};
 use zelus_core::model::{Model, ModelPart};
-use zelus_core::parameters::{Defaults, Interval, Node, Settings};
+use zelus_core::parameters::{Interval, Node};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, ScalarValue};
-use zelus_core::registry::require;
+use zelus_core::registry::named;
 use zelus_core::{Result, register};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
@@ -23,22 +18,11 @@ use crate::removal::{Side, Worn};
 use crate::rubbing::{Reading, Rubbed};
 use crate::variables::WEAR_DEPTH;
 
-#[derive(Debug, Deserialize)]
-struct Whole {
-    model_part_name: String,
-    contact_model_part: BTreeMap<String, Vec<String>>,
-    assume_master_slave: BTreeMap<String, Vec<String>>,
-    integration_order: usize,
-    normal_orientation_threshold: f64,
-    axisymmetric: bool,
-}
-
 /// The sides of an interface, in the order of what is kept of them.
 const SIDES: [Roles; 2] = [Roles::Slave, Roles::Master];
 
 struct WearProcess {
     root: String,
-    interfaces: Vec<Interface>,
     interval: Interval,
     /// Laws of slave and master.
     laws: [Vec<Box<dyn WearLaw>>; 2],
@@ -58,9 +42,9 @@ impl WearProcess {
     }
 
     /// What the sides of an interface lose, and the warning of a step that is too long.
-    fn wear(&self, part: &ModelPart, interface: &Interface) -> ([Side; 2], Option<Diagnostic>) {
+    fn wear(&self, part: &ModelPart, interface: usize) -> ([Side; 2], Option<Diagnostic>) {
         let points = self.reading.points(part, interface);
-        let mut sides = SIDES.map(|role| Side::new(interface, role));
+        let mut sides = SIDES.map(|role| Side::new(&self.reading.surfaces.interfaces()[interface], role));
         let depths = |own: &Rubbed<'_>| [0, 1].map(|side| self.depth(side, &own.rubbing));
         for own in &points {
             let shapes = [&own.point.slave, &own.point.master];
@@ -78,7 +62,7 @@ impl Process for WearProcess {
     fn check(&self, model: &Model, _system: &System, _warnings: &mut Report) -> Result<()> {
         let part = model.root(&self.root)?;
         let status = part.nodes.values.values(&CONTACT_STATUS, 0);
-        let slaves = self.interfaces.iter().flat_map(|own| own.nodes_of(Roles::Slave));
+        let slaves = self.reading.surfaces.interfaces().iter().flat_map(|own| own.nodes_of(Roles::Slave));
         let alone = |node: &u32| status.get(*node as usize).is_none_or(|status| *status < 0.0);
         if let Some(node) = slaves.into_iter().find(alone) {
             let fact = format!("node {} of wear_process is a slave of no contact", part.nodes.ids[node as usize]);
@@ -99,8 +83,9 @@ impl Process for WearProcess {
             return Ok(());
         }
         let mut all: Vec<Worn> = Vec::new();
-        for interface in &self.interfaces {
-            let (sides, warning) = self.wear(part, interface);
+        let interfaces = self.reading.surfaces.interfaces();
+        for (at, interface) in interfaces.iter().enumerate() {
+            let (sides, warning) = self.wear(part, at);
             for ((side, role), lost) in sides.iter().zip(SIDES).zip(&mut self.lost) {
                 all.extend(side.worn(&interface.facets, role, &part.nodes, self.reading.around));
                 *lost += side.total();
@@ -116,8 +101,7 @@ impl Process for WearProcess {
         part.ranks.agree(self.limits.check(part, &all))?;
         let depths = part.nodes.values.values_mut(&WEAR_DEPTH, 0);
         all.iter().for_each(|own| depths[own.node as usize] += own.depth);
-        self.deepest =
-            self.interfaces.iter().flat_map(|own| &own.nodes).map(|&n| depths[n as usize]).fold(0.0, f64::max);
+        self.deepest = interfaces.iter().flat_map(|own| &own.nodes).map(|&n| depths[n as usize]).fold(0.0, f64::max);
         part.nodes.reshape(all.iter().map(|own| (own.node, own.way)));
         Ok(())
     }
@@ -134,57 +118,36 @@ impl Process for WearProcess {
 
 /// The law that an object of the settings names.
 fn law(node: &Node) -> Result<Box<dyn WearLaw>> {
-    let named = node.require("law")?;
-    let entry = require::<WearLawEntry>(named.str()?).map_err(|problem| problem.at(named.place()))?;
-    let (settings, _) = Settings::check(node, &Defaults::parse(entry.name, entry.defaults)?)?;
+    let (entry, settings) = named::<WearLawEntry>(node, "law")?;
     (entry.build)(&settings)
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(|defaults| defaults.require(&["model_part_name"]))?;
-    let whole: Whole = settings.parse()?;
-    check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
     let laws_of = |key: &str| settings.items(key)?.iter().map(law).collect::<Result<Vec<_>>>();
     let laws = [laws_of("wear_of_slave")?, laws_of("wear_of_master")?];
     if laws.iter().all(Vec::is_empty) {
         let problem = settings.error("wear_of_slave", "missing-key", "neither side has a law of wear");
         return Err(problem.remedy("write e.g. [{\"law\": \"archard\", \"wear_coefficient\": 1.0e-8}]").into());
     }
-    let integration_order = IntegrationOrder::new(whole.integration_order).ok_or_else(|| {
-        let fact = format!("\"integration_order\" is {}, it must be 1 to 5", whole.integration_order);
-        settings.error("integration_order", "integration-order", fact)
-    })?;
     let share = settings.get_positive("largest_share")?;
     if share >= 1.0 {
         let fact = format!("\"largest_share\" is {share}");
         return Err(settings.error("largest_share", "invalid-value", fact).remedy("write a number below 1").into());
     }
     let speed = Some(settings.get("sliding_speed")?).filter(|speed| speed.is_given());
-    let reading = Reading {
-        search: SearchSettings {
-            factor: settings.get_positive("search_factor")?,
-            distance: SearchDistance::BetweenFacets,
-            within_step: WithinStep::Lost,
-            normal_orientation_threshold: whole.normal_orientation_threshold,
-            check: GapCheck::CheckMapping,
-            dynamic: false,
-        },
-        segmentation: SegmentationSettings { integration_order, ..SegmentationSettings::default() },
-        speed: speed.map(ScalarValue::from_node).transpose()?,
-        around: whole.axisymmetric,
-    };
     let interval = Interval::from_node(settings.get("interval")?)?;
-    let part = request.model.root_mut(&whole.model_part_name)?;
-    // Contact marks the same nodes.
-    let flags = part.nodes.flags.clone();
-    let found = interfaces(part, &whole.contact_model_part, &whole.assume_master_slave);
-    part.nodes.flags = flags;
-    let interfaces = found?;
+    let root = settings.get_str("model_part_name")?.to_owned();
+    let part = request.model.root_mut(&root)?;
+    let reading = Reading {
+        surfaces: FacingSurfaces::new(&settings, part, false)?,
+        speed: speed.map(ScalarValue::from_node).transpose()?,
+        around: settings.get_bool("axisymmetric")?,
+    };
     part.nodes.values.add(&WEAR_DEPTH);
     Ok(Box::new(WearProcess {
-        limits: Limits::new(part, &interfaces, share),
-        root: whole.model_part_name,
-        interfaces,
+        limits: Limits::new(part, reading.surfaces.interfaces(), share),
+        root,
         interval,
         laws,
         reading,
@@ -200,5 +163,5 @@ register! { ProcessEntry "wear_process",
     source: "∫ w(p, s) da over mortar pairs",
     defaults: include_str!("../../../configs/processes/wear_process.json"),
     build: build,
-    surfaces: |parameters| surfaces_by_pair(parameters, "contact_model_part"),
+    surfaces: FacingSurfaces::named,
 }

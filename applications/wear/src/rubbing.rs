@@ -2,13 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use rayon::prelude::*;
-use rustc_hash::FxHashMap;
-use zelus_contact_structural_mechanics::interface::{Facet, Interface, Roles};
-use zelus_contact_structural_mechanics::mortar::SegmentationSettings;
-use zelus_contact_structural_mechanics::pairs::{FacingPoint, facing_points};
-use zelus_contact_structural_mechanics::search::{Candidate, SearchSettings, candidates};
+use zelus_contact_structural_mechanics::interface::Facet;
+use zelus_contact_structural_mechanics::pairs::FacingPoint;
 use zelus_contact_structural_mechanics::variables::CONTACT_PRESSURE;
+use zelus_contact_structural_mechanics::{FacingPair, FacingSurfaces};
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::SpaceTime;
 use zelus_core::processes::ScalarValue;
@@ -22,10 +19,8 @@ const NEAR: f64 = 1.0;
 
 /// How pairs are found, and how they slide.
 pub struct Reading {
-    /// Which facets are looked at.
-    pub search: SearchSettings,
-    /// How overlaps are cut and integrated.
-    pub segmentation: SegmentationSettings,
+    /// Between which surfaces.
+    pub surfaces: FacingSurfaces,
     /// Speed of sliding across the motion of the model (length per time).
     pub speed: Option<ScalarValue>,
     /// Whether bodies are of revolution about the y axis.
@@ -46,29 +41,19 @@ pub struct Rubbed<'a> {
 
 impl Reading {
     /// All points of an interface that press on each other, in an order that depends on nothing but the mesh.
-    pub fn points<'a>(&self, part: &ModelPart, interface: &'a Interface) -> Vec<Rubbed<'a>> {
-        let normals: FxHashMap<u32, [f64; 3]> = interface.normals_of(part, Roles::Slave).into_iter().collect();
-        let near = candidates(part, interface, &self.search);
-        let found = near.par_iter().with_min_len(32).flat_map_iter(|&Candidate { slave, master, .. }| {
-            let facets = [slave, master].map(|at| &interface.facets[at as usize]);
-            self.of_pair(part, facets, &normals)
-        });
-        found.collect()
+    pub fn points(&self, part: &ModelPart, interface: usize) -> Vec<Rubbed<'_>> {
+        self.surfaces.of_pairs(part, interface, |pair| self.of_pair(part, &pair))
     }
 
-    fn of_pair<'a>(
-        &self,
-        part: &ModelPart,
-        facets: [&'a Facet; 2],
-        normals: &FxHashMap<u32, [f64; 3]>,
-    ) -> Vec<Rubbed<'a>> {
+    fn of_pair<'a>(&self, part: &ModelPart, pair: &FacingPair<'a, '_>) -> Vec<Rubbed<'a>> {
+        let facets = pair.facets;
         let [slave, master] = facets;
         let pressures = part.nodes.values.values(&CONTACT_PRESSURE, 0);
         let presses = |node: &u32| pressures.get(*node as usize).is_some_and(|pressure| *pressure > 0.0);
         if !slave.nodes.iter().any(presses) {
             return Vec::new();
         }
-        let (normal, reach) = (slave.normal(part), NEAR * extent(part, slave));
+        let (normal, reach) = (slave.normal(part), NEAR * slave.extent(part));
         let rubbed = |point: FacingPoint| {
             let pressure: f64 =
                 slave.nodes.iter().zip(&point.slave).map(|(&node, n)| n * pressures[node as usize]).sum();
@@ -80,8 +65,7 @@ impl Reading {
             let rubbing = Rubbing { pressure, slip: own.hypot(across) };
             (pressure > 0.0 && point.gap.abs() <= reach).then_some(Rubbed { facets, point, area, rubbing })
         };
-        let points = facing_points(part, slave, master, &|node| normals[&node], &self.segmentation);
-        points.into_iter().filter_map(rubbed).collect()
+        pair.points().into_iter().filter_map(rubbed).collect()
     }
 }
 
@@ -90,10 +74,4 @@ fn motion(part: &ModelPart, facet: &Facet, n: &[f64]) -> [f64; 3] {
     let field = part.nodes.history.get(DISPLACEMENT.name()).expect("checked before the run");
     let of_node = |&node: &u32| sub(field.vector(0, node as usize), field.vector(1, node as usize));
     facet.nodes.iter().map(of_node).zip(n).fold([0.0; 3], |sum, (way, n)| add(sum, scale(way, *n)))
-}
-
-/// The longest way from the first node of a facet to another (length).
-fn extent(part: &ModelPart, facet: &Facet) -> f64 {
-    let x = facet.positions(part);
-    x.iter().map(|y| norm(sub(*y, x[0]))).fold(0.0, f64::max)
 }

@@ -8,11 +8,13 @@
 mod absent;
 mod entry;
 mod macros;
+mod named;
 
 use std::collections::BTreeMap;
 
 pub use absent::{Absent, instead_of};
 pub use entry::Entry;
+pub use named::named;
 
 use crate::diagnostics::{Diagnostic, did_you_mean};
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::{domain_size, unit_normal};
 use zelus_core::model::ModelPart;
+use zelus_core::vector3::{norm, sub};
 
 use crate::mortar::MOST_NODES;
 
@@ -76,6 +77,12 @@ impl Facet {
     /// The same where its nodes are at `places`.
     pub fn normal_at(&self, places: &[[f64; 3]]) -> [f64; 3] {
         unit_normal(self.shape, places, self.shape.cell().centre).unwrap_or([0.0; 3])
+    }
+
+    /// The longest way from its first node to another (length).
+    pub fn extent(&self, part: &ModelPart) -> f64 {
+        let x = self.positions(part);
+        x.iter().map(|y| norm(sub(*y, x[0]))).fold(0.0, f64::max)
     }
 
     /// Its length or area.

@@ -64,7 +64,7 @@ pub(super) fn without_computing_part(defaults: Defaults) -> Defaults {
 ///
 /// # Errors
 /// No pair at all, or the first one without slaves.
-pub fn check_slaves(
+pub(super) fn check_slaves(
     settings: &Settings,
     key: &str,
     parts: &BTreeMap<String, Vec<String>>,
@@ -87,16 +87,24 @@ pub fn check_slaves(
     }
 }
 
+/// The Gauss rule `integration_order` on the cells of overlaps.
+///
+/// # Errors
+/// One that does not exist.
+pub(super) fn integration_order(settings: &Settings) -> Result<IntegrationOrder> {
+    let order = settings.get_usize("integration_order")?;
+    IntegrationOrder::new(order).ok_or_else(|| {
+        let fact = format!("\"integration_order\" is {order}, it must be 1 to 5");
+        settings.error("integration_order", "integration-order", fact).into()
+    })
+}
+
 /// How `integration_order`, `zero_tolerance_factor` and `count_slivers` cut and integrate overlaps.
 ///
 /// # Errors
-/// A Gauss rule that does not exist.
+/// As [`integration_order`].
 pub(super) fn segmentation(settings: &Settings) -> Result<SegmentationSettings> {
-    let order = settings.get_usize("integration_order")?;
-    let integration_order = IntegrationOrder::new(order).ok_or_else(|| {
-        let fact = format!("\"integration_order\" is {order}, it must be 1 to 5");
-        settings.error("integration_order", "integration-order", fact)
-    })?;
+    let integration_order = integration_order(settings)?;
     let zero_tolerance_factor = settings.get_f64("zero_tolerance_factor")?;
     let slivers = settings.get_bool("count_slivers")?;
     let defaults = SegmentationSettings::default();

@@ -2,6 +2,7 @@
 
 mod alm_contact_process;
 mod explicit_penalty_contact_process;
+mod facing_surfaces;
 mod friction_settings;
 mod interaction_process;
 mod interface_settings;
@@ -14,5 +15,4 @@ mod perturbed_lagrangian_contact_process;
 mod touching;
 mod uzawa_contact_process;
 
-pub use interface_settings::check_slaves;
-pub use touching::by_pair as surfaces_by_pair;
+pub use facing_surfaces::{FacingPair, FacingSurfaces};

@@ -23,7 +23,7 @@ pub(super) fn mapping(parameters: Option<&Node>) -> Vec<NamedSurface> {
 }
 
 /// The parts of each pair under a key of the settings; the whole skin where none is named.
-pub fn by_pair(parameters: Option<&Node>, key: &str) -> Vec<NamedSurface> {
+fn by_pair(parameters: Option<&Node>, key: &str) -> Vec<NamedSurface> {
     let pairs = parameters.and_then(|parameters| parameters.get(key)).and_then(Node::as_object);
     let slaves_of = |pair: &str| parameters?.get("assume_master_slave")?.get(pair).map(names);
     let filled = pairs.into_iter().flat_map(|pairs| pairs.iter()).map(|pair| (names(&pair.node), &pair.key));
