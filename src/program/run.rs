@@ -48,7 +48,7 @@ pub(super) struct Arguments {
     pub resume: bool,
     /// Say nothing but warnings and errors.
     #[arg(short, long, conflicts_with = "verbose")]
-    quiet: bool,
+    pub quiet: bool,
     /// Also say who solved how, which nodes changed their state, and where the time went.
     #[arg(short, long, conflicts_with = "sweep")]
     verbose: bool,

@@ -69,7 +69,12 @@ pub(super) fn run(arguments: &Arguments, table: &Path, ranks: &Ranks) -> Result<
     let jobs = arguments.jobs.unwrap_or(cores).clamp(1, table.rows.len());
     let sweep = Sweep { arguments, folder, threads: (cores / jobs).max(1), stop: Stop::listen()?, table };
     let rows = sweep.table.rows.len();
-    say(&format!("{rows} rows, {jobs} at a time with {} thread{} each", sweep.threads, plural(sweep.threads)));
+    let tell = |text: &str| {
+        if !arguments.quiet {
+            say(text);
+        }
+    };
+    tell(&format!("{rows} rows, {jobs} at a time with {} thread{} each", sweep.threads, plural(sweep.threads)));
     let (next, done) = (Mutex::new(0..rows), Mutex::new(Vec::<Ended>::new()));
     let work = || -> Result<()> {
         loop {
@@ -77,7 +82,9 @@ pub(super) fn run(arguments: &Arguments, table: &Path, ranks: &Ranks) -> Result<
             let Some(row) = row.filter(|_| !sweep.stop.is_asked()) else { return Ok(()) };
             let ended = sweep.row(row)?;
             let mut done = done.lock().expect("no thread panics");
-            say(&sweep.line(&ended));
+            if !arguments.quiet || ended.code != 0 {
+                say(&sweep.line(&ended));
+            }
             done.push(ended);
             done.sort_by_key(|ended| ended.row);
             sweep.results(&done).write(&results)?;
@@ -88,11 +95,11 @@ pub(super) fn run(arguments: &Arguments, table: &Path, ranks: &Ranks) -> Result<
         all.into_iter().try_for_each(|one| one.join().expect("no thread panics"))
     })?;
     let done = done.into_inner().expect("no thread panics");
-    say(sweep.summary(&done).aligned().trim_end());
+    tell(sweep.summary(&done).aligned().trim_end());
     let failed = done.iter().filter(|ended| ended.code != 0).count();
     let left = rows - done.len();
-    say(&format!("{} of {rows} rows done, {failed} failed, {left} not begun", done.len() - failed));
-    say(&format!("results: {}", results.display()));
+    tell(&format!("{} of {rows} rows done, {failed} failed, {left} not begun", done.len() - failed));
+    tell(&format!("results: {}", results.display()));
     let worst = done.iter().map(|ended| ended.code).max().unwrap_or(0);
     Ok(ExitCode::from(if left > 0 { worst.max(5) } else { worst }))
 }
@@ -193,68 +200,97 @@ impl Sweep<'_> {
 
     /// All that is known of each row.
     fn results(&self, done: &[Ended]) -> Table {
-        let names: BTreeSet<&String> =
-            done.iter().filter_map(|row| row.report.as_ref()).flat_map(|r| r.largest.keys()).collect();
-        let pairs: BTreeSet<String> = done.iter().flat_map(|row| row.forces()).map(|(pair, _)| pair).collect();
-        let mut heads: Vec<String> = MARK.trim_end_matches(',').split(',').map(str::to_owned).collect();
-        heads.extend(self.table.heads.iter().cloned());
-        heads.extend(["steps", "iterations", "unknowns", "warnings", "seconds"].map(str::to_owned));
-        heads.extend(names.iter().map(|name| format!("largest {name}")));
-        heads.extend(pairs.iter().flat_map(|pair| ["x", "y", "z"].map(|axis| format!("force {axis} on {pair}"))));
-        heads.extend(["folder", "error"].map(str::to_owned));
-        let row = |ended: &Ended| {
-            let of = |tell: &dyn Fn(&RunReport) -> String| ended.report.as_ref().map(tell).unwrap_or_default();
-            let mut cells = vec![(ended.row + 1).to_string(), ended.code.to_string()];
-            cells.extend(self.table.rows[ended.row].iter().cloned());
-            cells.push(of(&|report| report.converged_steps.to_string()));
-            cells.push(of(&|report| report.iterations.to_string()));
-            cells.push(of(&|report| report.sizes.unknowns.to_string()));
-            cells.push(of(&|report| report.warnings.len().to_string()));
-            cells.push(of(&|report| format!("{:.3}", seconds(report))));
-            cells.extend(names.iter().map(|name| of(&|report| number(report.largest.get(*name).copied()))));
-            let forces = ended.forces();
-            for pair in &pairs {
-                let force = forces.iter().find(|(own, _)| own == pair).map(|(_, force)| force);
-                cells.extend((0..3).map(|axis| number(force.map(|force| force[axis]))));
-            }
-            cells.push(self.folder_of(ended.row).display().to_string());
-            cells.push(if ended.code == 0 { String::new() } else { ended.why() });
-            cells
-        };
-        Table { rows: done.iter().map(row).collect(), heads }
+        let mut columns = vec![
+            Column::new("row", |ended| (ended.row + 1).to_string()),
+            Column::new("exit_code", |ended| ended.code.to_string()),
+        ];
+        columns.extend(self.table.heads.iter().enumerate().map(|(at, head)| self.given(head, at)));
+        columns.extend([
+            Column::of_report("steps", |report| report.converged_steps.to_string()),
+            Column::of_report("iterations", |report| report.iterations.to_string()),
+            Column::of_report("unknowns", |report| report.sizes.unknowns.to_string()),
+            Column::of_report("warnings", |report| report.warnings.len().to_string()),
+            Column::of_report("seconds", |report| format!("{:.3}", seconds(report))),
+        ]);
+        columns.extend(largest(done).into_iter().map(|name| {
+            Column::of_report(format!("largest {name}"), move |report| number(report.largest.get(&name).copied()))
+        }));
+        for (pair, axis) in pairs(done).iter().flat_map(|pair| (0..3).map(move |axis| (pair.clone(), axis))) {
+            let head = format!("force {} on {pair}", ["x", "y", "z"][axis]);
+            columns.push(Column::new(head, move |ended| number(ended.force(&pair).map(|force| force[axis]))));
+        }
+        columns.push(Column::new("folder", |ended| self.folder_of(ended.row).display().to_string()));
+        columns.push(Column::new("error", |ended| if ended.code == 0 { String::new() } else { ended.why() }));
+        table(&columns, done)
     }
 
     /// What of the results fits on a terminal: keys by their last word, sizes of what is looked at first.
     fn summary(&self, done: &[Ended]) -> Table {
-        let has =
-            |name: &&str| done.iter().filter_map(|row| row.report.as_ref()).any(|r| r.largest.contains_key(*name));
-        let names: Vec<&str> = LOOKED_AT.into_iter().filter(has).collect();
-        let pairs: BTreeSet<String> = done.iter().flat_map(Ended::forces).map(|(pair, _)| pair).collect();
         let short = |head: &String| {
             let words: Vec<&str> = head.split('.').collect();
             let from = words.iter().rposition(|word| word.parse::<usize>().is_err()).unwrap_or(0);
             words[from..].join(".")
         };
-        let mut heads: Vec<String> = ["row", "exit"].map(str::to_owned).to_vec();
-        heads.extend(self.table.heads.iter().map(short));
-        heads.extend(["steps", "iterations", "seconds"].into_iter().chain(names.iter().copied()).map(str::to_owned));
-        heads.extend(pairs.iter().map(|pair| format!("force {}", pair.split(':').next().unwrap_or(pair))));
-        let row = |ended: &Ended| {
-            let of = |tell: &dyn Fn(&RunReport) -> String| ended.report.as_ref().map(tell).unwrap_or_default();
-            let size = |value: Option<f64>| value.map(|value| format!("{value:.3e}")).unwrap_or_default();
-            let mut cells = vec![(ended.row + 1).to_string(), ended.code.to_string()];
-            cells.extend(self.table.rows[ended.row].iter().cloned());
-            cells.push(of(&|report| report.converged_steps.to_string()));
-            cells.push(of(&|report| report.iterations.to_string()));
-            cells.push(of(&|report| format!("{:.2}", seconds(report))));
-            cells.extend(names.iter().map(|name| of(&|report| size(report.largest.get(*name).copied()))));
-            let forces = ended.forces();
-            let force = |pair: &String| forces.iter().find(|(own, _)| own == pair).map(|(_, force)| norm(force));
-            cells.extend(pairs.iter().map(|pair| size(force(pair))));
-            cells
-        };
-        Table { rows: done.iter().map(row).collect(), heads }
+        let size = |value: Option<f64>| value.map(|value| format!("{value:.3e}")).unwrap_or_default();
+        let mut columns = vec![
+            Column::new("row", |ended| (ended.row + 1).to_string()),
+            Column::new("exit", |ended| ended.code.to_string()),
+        ];
+        columns.extend(self.table.heads.iter().enumerate().map(|(at, head)| self.given(&short(head), at)));
+        columns.extend([
+            Column::of_report("steps", |report| report.converged_steps.to_string()),
+            Column::of_report("iterations", |report| report.iterations.to_string()),
+            Column::of_report("seconds", |report| format!("{:.2}", seconds(report))),
+        ]);
+        let known = largest(done);
+        for name in LOOKED_AT.into_iter().filter(|name| known.contains(*name)) {
+            columns.push(Column::of_report(name, move |report| size(report.largest.get(name).copied())));
+        }
+        for pair in pairs(done) {
+            let head = format!("force {}", pair.split(':').next().unwrap_or(&pair));
+            columns.push(Column::new(head, move |ended| size(ended.force(&pair).as_ref().map(norm))));
+        }
+        table(&columns, done)
     }
+
+    /// The column of a key of the deck.
+    fn given(&self, head: &str, at: usize) -> Column<'_> {
+        Column::new(head, move |ended| self.table.rows[ended.row][at].clone())
+    }
+}
+
+/// A column of a table of runs.
+struct Column<'a> {
+    head: String,
+    cell: Box<dyn Fn(&Ended) -> String + 'a>,
+}
+
+impl<'a> Column<'a> {
+    fn new(head: impl Into<String>, cell: impl Fn(&Ended) -> String + 'a) -> Self {
+        Self { head: head.into(), cell: Box::new(cell) }
+    }
+
+    /// Of what the report says; empty where a run has left none.
+    fn of_report(head: impl Into<String>, cell: impl Fn(&RunReport) -> String + 'a) -> Self {
+        Self::new(head, move |ended| ended.report.as_ref().map(&cell).unwrap_or_default())
+    }
+}
+
+fn table(columns: &[Column<'_>], done: &[Ended]) -> Table {
+    Table {
+        heads: columns.iter().map(|column| column.head.clone()).collect(),
+        rows: done.iter().map(|ended| columns.iter().map(|column| (column.cell)(ended)).collect()).collect(),
+    }
+}
+
+/// Names of the largest results of all runs.
+fn largest(done: &[Ended]) -> BTreeSet<String> {
+    done.iter().filter_map(|row| row.report.as_ref()).flat_map(|report| report.largest.keys().cloned()).collect()
+}
+
+/// Names of the pairs of all runs.
+fn pairs(done: &[Ended]) -> BTreeSet<String> {
+    done.iter().flat_map(Ended::forces).map(|(pair, _)| pair).collect()
 }
 
 impl Ended {
@@ -263,6 +299,11 @@ impl Ended {
         let steps = self.report.iter().flat_map(|report| report.steps.iter().rev());
         let balance = steps.filter(|step: &&StepRecord| step.converged).find_map(|step| step.balance.as_ref());
         balance.iter().flat_map(|balance| &balance.pairs).map(|pair| (pair.name.clone(), pair.force)).collect()
+    }
+
+    /// That on the slave side of one pair.
+    fn force(&self, pair: &str) -> Option<[f64; 3]> {
+        self.forces().into_iter().find(|(own, _)| own == pair).map(|(_, force)| force)
     }
 
     /// Why it ended early: the first line of its error.
