@@ -9,6 +9,8 @@ use super::mesh::{Mesh, Pair};
 
 /// How near faces of two bodies must be to be a pair, in sizes of the larger face.
 const REACH: f64 = 1.0;
+/// How far behind a face another may lie, in sizes of the larger: bodies that are pressed into each other.
+const BEHIND: f64 = 0.25;
 /// Faces turned to each other: the largest product of their unit normals.
 const OPPOSITE: f64 = -0.5;
 
@@ -79,10 +81,11 @@ fn close(all: &[Side]) -> Vec<[Vec<usize>; 2]> {
             let two = &all[other];
             let apart = sub(two.centre, side.centre);
             // the gap along the normal, and how far centres lie beside each other
-            let gap = dot(apart, side.normal).abs();
+            let gap = dot(apart, side.normal);
             let beside = norm(sub(apart, scale(side.normal, dot(apart, side.normal))));
             let size = side.size.max(two.size);
-            if gap <= REACH * size && beside <= size && dot(side.normal, two.normal) < OPPOSITE {
+            let is_before = (-BEHIND * size..=REACH * size).contains(&gap);
+            if is_before && beside <= size && dot(side.normal, two.normal) < OPPOSITE {
                 let pair = found.entry((side.body, two.body)).or_default();
                 pair[0].insert(at);
                 pair[1].insert(other);
@@ -102,29 +105,71 @@ fn close(all: &[Side]) -> Vec<[Vec<usize>; 2]> {
     found.into_values().map(by_size).collect()
 }
 
+/// Two surfaces by their boundary faces.
+struct Found {
+    slave: Vec<usize>,
+    masters: Vec<usize>,
+}
+
+/// Adds what is not there yet.
+fn join(list: &mut Vec<usize>, more: &[usize]) {
+    list.extend(more);
+    list.sort_unstable();
+    list.dedup();
+}
+
 /// Finds pairs: groups of faces that hold most of what is close, else new groups `Contact_N_Slave` and `Contact_N_Master`. The side
-/// with the smaller faces is the slave. What the file pairs itself is left alone.
+/// with the smaller faces is the slave. A face is the slave of one pair, which then has the masters of all that it is close to: a node has
+/// one multiplier. What the file pairs itself is left alone.
 pub fn find_pairs(mesh: &mut Mesh) -> Vec<Pair> {
     let all = sides(mesh);
     let mut made = FaceCells::new(mesh);
-    let mut out = Vec::new();
-    for (at, lists) in close(&all).into_iter().enumerate() {
-        let mut names = Vec::new();
-        for (list, role) in lists.iter().zip(["Slave", "Master"]) {
-            let cells: Vec<u32> =
-                list.iter().map(|&side| made.cell(mesh, all[side].element, all[side].number)).collect();
-            let body = all[list[0]].body;
-            names.push(named(mesh, &cells, &all, body).unwrap_or_else(|| {
-                let name = format!("Contact_{}_{role}", at + 1);
-                mesh.group_mut(&name).cells.extend(cells);
-                name
-            }));
+    let mut found: Vec<Found> = Vec::new();
+    for [slave, masters] in close(&all) {
+        let has = |own: &&mut Found| slave.iter().any(|face| own.slave.binary_search(face).is_ok());
+        match found.iter_mut().find(has) {
+            None => found.push(Found { slave, masters }),
+            Some(own) => {
+                join(&mut own.slave, &slave);
+                join(&mut own.masters, &masters);
+            }
         }
-        let master = names.pop().expect("two sides");
-        let slave = names.pop().expect("two sides");
-        out.push(Pair { tied: false, slave, master, friction: 0.0 });
     }
-    out
+    let mut cells_of = |mesh: &mut Mesh, list: &[usize]| -> Vec<u32> {
+        list.iter().map(|&side| made.cell(mesh, all[side].element, all[side].number)).collect()
+    };
+    let mut named_slaves: Vec<(String, Vec<usize>)> = Vec::new();
+    for own in found {
+        let name =
+            group_of(mesh, &own.slave, &all, &mut cells_of, || format!("Contact_{}_Slave", named_slaves.len() + 1));
+        match named_slaves.iter_mut().find(|(other, _)| *other == name) {
+            None => named_slaves.push((name, own.masters)),
+            Some((_, masters)) => join(masters, &own.masters),
+        }
+    }
+    let pair = |(at, (slave, masters)): (usize, (String, Vec<usize>))| {
+        let master = group_of(mesh, &masters, &all, &mut cells_of, || format!("Contact_{}_Master", at + 1));
+        Pair { tied: false, slave, master, friction: 0.0 }
+    };
+    named_slaves.into_iter().enumerate().map(pair).collect()
+}
+
+/// The name of the group that holds these faces, which is made under a new name where there is none.
+fn group_of(
+    mesh: &mut Mesh,
+    faces: &[usize],
+    all: &[Side],
+    cells_of: &mut impl FnMut(&mut Mesh, &[usize]) -> Vec<u32>,
+    new: impl FnOnce() -> String,
+) -> String {
+    let cells = cells_of(mesh, faces);
+    let body = all[faces[0]].body;
+    let is_one = faces.iter().all(|&face| all[face].body == body);
+    named(mesh, &cells, all, body).filter(|_| is_one).unwrap_or_else(|| {
+        let name = new();
+        mesh.group_mut(&name).cells.extend(cells);
+        name
+    })
 }
 
 /// The smallest group of faces of that body alone which holds all of these cells.
@@ -144,4 +189,56 @@ fn named(mesh: &Mesh, cells: &[u32], all: &[Side], body: u32) -> Option<String> 
         is_surface && cells.iter().all(|cell| own.contains(cell))
     };
     mesh.groups.iter().filter(fits).min_by_key(|group| group.cells.len()).map(|group| group.name.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use zelus_core::geometry::Shape;
+
+    use super::*;
+
+    /// Squares of size `size` in a row from `corner` on.
+    fn add_row(mesh: &mut Mesh, corner: [f64; 2], size: f64, count: usize) {
+        let first = mesh.points.len() as u32;
+        for i in 0..=count {
+            for j in [0.0, size] {
+                mesh.points.push([corner[0] + size * i as f64, corner[1] + j, 0.0]);
+                mesh.node_ids.push(mesh.points.len() as u32);
+            }
+        }
+        for i in 0..count as u32 {
+            let [a, b] = [first + 2 * i, first + 2 * i + 2];
+            mesh.cells.push(mesh.cells.len() as u32 + 1, Shape::Quad4, vec![a, b, b + 1, a + 1]);
+        }
+    }
+
+    #[test]
+    fn a_face_is_the_slave_of_one_pair() {
+        // A row of small squares below two larger blocks, which do not touch each other.
+        let mut mesh = Mesh::default();
+        add_row(&mut mesh, [0.0, 0.0], 0.5, 8);
+        add_row(&mut mesh, [0.0, 0.5], 1.0, 2);
+        add_row(&mut mesh, [2.4, 0.5], 1.0, 2);
+        let pairs = find_pairs(&mut mesh);
+        assert_eq!(pairs.len(), 1, "{pairs:?}");
+        let cells = |name: &str| mesh.groups.iter().find(|group| group.name == name).unwrap().cells.len();
+        assert_eq!([cells(&pairs[0].slave), cells(&pairs[0].master)], [8, 4]);
+    }
+
+    #[test]
+    fn faces_behind_others_are_no_pair() {
+        // A thin plate on a block: its upper face looks away, and the lower face of the block is turned to it from behind.
+        let mut mesh = Mesh::default();
+        add_row(&mut mesh, [0.0, 0.0], 1.0, 2);
+        add_row(&mut mesh, [0.0, 1.0], 0.5, 4);
+        let pairs = find_pairs(&mut mesh);
+        assert_eq!(pairs.len(), 1, "{pairs:?}");
+        let group = mesh.groups.iter().find(|group| group.name == pairs[0].slave).unwrap();
+        let heights = group
+            .cells
+            .iter()
+            .flat_map(|&cell| mesh.cells.nodes(cell as usize))
+            .map(|&node| mesh.points[node as usize][1]);
+        assert!(heights.clone().count() == 8 && heights.into_iter().all(|y| y == 1.0));
+    }
 }

@@ -70,6 +70,17 @@ fn what_is_not_read_is_said() {
 }
 
 #[test]
+fn elements_that_come_in_as_simpler_ones_are_named() {
+    let square = "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n";
+    for (kind, what) in [("CPS4I", "incompatible modes"), ("CPE4R", "one integration point"), ("CPE4H", "a pressure")] {
+        let (_, said) = of_text(&format!("{square}*ELEMENT,TYPE={kind}\n7,1,2,3,4\n")).unwrap();
+        assert!(said.contains(&format!("elements {kind} have {what}")), "{said}");
+    }
+    let (_, said) = of_text(&format!("{square}*ELEMENT,TYPE=CPS4\n7,1,2,3,4\n")).unwrap();
+    assert!(!said.contains("elements CPS4"), "{said}");
+}
+
+#[test]
 fn what_does_not_fit_is_refused_with_its_line() {
     for (text, fact, line) in [
         ("*ELEMENT,TYPE=CPS3\n8,1,2,9\n", "element 8 has node 9, which is not there", 7),

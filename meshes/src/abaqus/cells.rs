@@ -59,6 +59,29 @@ pub(super) fn is_structural(name: &str) -> bool {
     ["S", "STRI", "M3D", "B"].iter().any(|start| name.strip_prefix(start).is_some_and(digit))
 }
 
+/// What elements of that type have and those that come in have not, with what to do.
+pub(super) fn left_out(name: &str, shape: Shape) -> Option<(&'static str, &'static str)> {
+    let name = name.to_ascii_uppercase();
+    let letters = &name[name.rfind(|c: char| c.is_ascii_digit()).map_or(0, |last| last + 1)..];
+    let is_block = matches!(shape, Shape::Quad4 | Shape::Hex8);
+    if letters.contains('H') {
+        return Some((
+            "a pressure of their own",
+            "take SmallDisplacementMixedVolumetricStrainElement as \"element_name\" for what is nearly incompressible",
+        ));
+    }
+    if is_block && letters.contains('I') {
+        return Some((
+            "incompatible modes: bent, they are stiffer here",
+            "mesh what bends with elements of second order, or finer",
+        ));
+    }
+    (is_block && letters.contains('R')).then_some((
+        "one integration point: integrated in full, they are stiffer here",
+        "mesh what bends with elements of second order, or finer",
+    ))
+}
+
 /// The name under which a shape is written.
 pub(super) fn name(shape: Shape, plane: Option<Plane>) -> Option<String> {
     let nodes = shape.nodes();

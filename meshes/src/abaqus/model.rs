@@ -70,6 +70,8 @@ pub(super) struct Model {
     /// Keywords that are not read, with their number.
     unread: BTreeMap<String, usize>,
     structural: BTreeMap<String, usize>,
+    /// Types whose elements come in as simpler ones: what is left out, and what to do.
+    simpler: BTreeMap<String, (&'static str, &'static str)>,
     pub report: Report,
 }
 
@@ -179,6 +181,9 @@ impl Model {
         };
         if cells::is_structural(kind) {
             *self.structural.entry(kind.to_ascii_uppercase()).or_default() += 1;
+        }
+        if let Some(left_out) = cells::left_out(kind, shape) {
+            self.simpler.insert(kind.to_ascii_uppercase(), left_out);
         }
         self.mesh.plane = self.mesh.plane.or(plane);
         let fields: Vec<&str> = card.fields().collect();
@@ -306,6 +311,10 @@ impl Model {
                 let problem = Diagnostic::warning("not-taken-over", format!("{fact}: {}", names.join(", ")));
                 self.report.push(problem.at(place.clone()).remedy(remedy));
             }
+        }
+        for (name, (what, remedy)) in &self.simpler {
+            let problem = Diagnostic::warning("not-taken-over", format!("elements {name} have {what}"));
+            self.report.push(problem.at(place.clone()).remedy(*remedy));
         }
         if self.mesh.dimension() == 3 {
             self.mesh.plane = None;
