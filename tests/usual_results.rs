@@ -138,3 +138,46 @@ fn a_name_in_the_wrong_list_is_refused_with_the_right_one() {
         assert!(output.status.success(), "{}", said(&output));
     }
 }
+
+/// What a run leaves that writes one file: the bytes that `zelus convert` makes of its pictures, be the run stopped between or not.
+#[test]
+fn one_file_holds_all_steps() {
+    let deck = |one_file: bool| {
+        let scratch = example();
+        if one_file {
+            change(
+                scratch.path(),
+                "ProjectParameters.json",
+                "\"vtu_output_process\",\n        \"kratos_module\": \"KratosMultiphysics\",\n        \"Parameters\": {",
+                "\"vtk_output_process\",\n        \"Parameters\": {\n          \"file_format\": \"vtkhdf\",",
+            );
+        }
+        scratch
+    };
+    let files = |folder: &Path| {
+        let all = std::fs::read_dir(folder.join("vtu_output")).unwrap().flatten();
+        all.map(|entry| entry.file_name().into_string().unwrap()).collect::<Vec<_>>()
+    };
+    let many = deck(false);
+    run(many.path(), &[]);
+    let output = zelus(many.path(), &["convert", "vtu_output/Structure.pvd", "all.vtkhdf"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let wanted = std::fs::read(many.path().join("all.vtkhdf")).unwrap();
+
+    let one = deck(true);
+    let path = one.path().join("ProjectParameters.json");
+    let mut simulation = Simulation::open(&path, &RunOptions::default()).unwrap();
+    (0..2).for_each(|_| assert!(simulation.step(&mut Silent).unwrap()));
+    simulation.suspend().unwrap();
+    drop(simulation);
+    assert!(files(one.path()).contains(&"Structure_2.vtu".to_owned()), "a run that goes on writes pictures");
+    let saved = one.path().join("ProjectParameters.resume");
+    let pointer = std::fs::read(&saved).unwrap();
+    run(one.path(), &["--resume"]);
+    assert_eq!(files(one.path()), ["Structure.vtkhdf"]);
+    assert!(std::fs::read(one.path().join("vtu_output/Structure.vtkhdf")).unwrap() == wanted);
+
+    std::fs::write(saved, pointer).unwrap();
+    let output = zelus(one.path(), &["run", "ProjectParameters.json", "--resume"]);
+    assert!(!output.status.success() && said(&output).contains("into one file"), "{}", said(&output));
+}

@@ -15,6 +15,7 @@ mod gmsh;
 mod med;
 mod vtu;
 mod vtkhdf;
+mod one_file;
 
 use std::path::Path;
 

@@ -177,7 +177,11 @@ impl Simulation {
     /// # Errors
     /// A process or file that fails.
     pub fn finish(&mut self) -> Result<()> {
-        let ended = self.timed(|simulation| simulation.end_stage(Ok(())));
+        self.end_early(false)
+    }
+
+    fn end_early(&mut self, goes_on: bool) -> Result<()> {
+        let ended = self.timed(|simulation| simulation.end_stage(Ok(()), goes_on));
         self.over = self.stages.len();
         self.report.converged = false;
         ended
@@ -226,7 +230,7 @@ impl Simulation {
         let pointer = self.pointer.as_ref();
         let path = pointer.map(Pointer::beside).ok_or_else(|| Error::System("the deck is no file".to_owned()))?;
         self.save_named(&path)?;
-        self.finish()?;
+        self.end_early(true)?;
         Ok(path)
     }
 
@@ -419,10 +423,10 @@ impl Simulation {
                 let wanted = stage.saves(&self.model);
                 return match wanted.iter().try_for_each(|path| self.save_named(path)) {
                     Ok(()) => Ok(true),
-                    Err(error) => self.end_stage(Err(error)).map(|()| false),
+                    Err(error) => self.end_stage(Err(error), false).map(|()| false),
                 };
             }
-            self.end_stage(stepped.map(|_| ()))?;
+            self.end_stage(stepped.map(|_| ()), false)?;
             if let Some(path) = self.checkpoints.after(&self.stages[self.over - 1].name) {
                 self.save_named(&path)?;
             }
@@ -430,12 +434,13 @@ impl Simulation {
         Ok(false)
     }
 
-    /// Brings the processes of the stage under way to their end, `result` being that of its last step.
-    fn end_stage(&mut self, result: Result<()>) -> Result<()> {
+    /// Brings the processes of the stage under way to their end, `result` being that of its last step; `goes_on` says that it is saved and
+    /// goes on later.
+    fn end_stage(&mut self, result: Result<()>, goes_on: bool) -> Result<()> {
         let Some(stage) = self.stage.take() else { return result };
         self.before = None;
         let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
-        let ended = stage.finish(result, model, systems, report, self.driver.as_mut());
+        let ended = stage.finish((result, goes_on), model, systems, report, self.driver.as_mut());
         self.over = if ended.is_ok() { self.over + 1 } else { self.stages.len() };
         self.report.converged = ended.is_ok() && self.over == self.stages.len();
         ended

@@ -383,13 +383,14 @@ impl Stage {
         self.reach(target, model, report, monitor, driver).map(|()| true)
     }
 
-    /// Finalises the processes, also after a step that has failed; what elements remember goes to `systems`.
+    /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; what elements remember
+    /// goes to `systems`.
     ///
     /// # Errors
     /// `result`, the end of the last step, or else what a process has met.
     pub(super) fn finish(
         mut self,
-        result: Result<()>,
+        (result, goes_on): (Result<()>, bool),
         model: &mut Model,
         systems: &mut Systems,
         report: &mut RunReport,
@@ -402,7 +403,7 @@ impl Stage {
         let processes = &mut self.processes;
         let finalized = driver.at(Point::Finalize, &self.root, model, &self.system, &mut |model| {
             for process in processes.iter_mut() {
-                let finalized = process.finalize(model);
+                let finalized = if goes_on { process.suspend(model) } else { process.finalize(model) };
                 finals.absorb(if result.is_ok() { model.ranks.agree(finalized) } else { finalized });
                 report.outputs.extend(process.outputs());
             }

@@ -17,5 +17,5 @@ pub use container::{SavedFile, write_saved};
 pub use import::{import, names_of_parts, read_mesh, shape_of_geometry};
 pub use materials::{apply_materials, read_materials, read_materials_of};
 pub use mesh_format::{MeshFormatEntry, MeshReader, MeshWriter, format_of, read_mesh_as};
-pub use outputs::{Claim, FileUse, Mark, check_files, of_series};
+pub use outputs::{Claim, FileUse, Mark, check_files, of_series, remove_series};
 pub use replace::{append_to_file, cut_file, length_of, replace_file, replace_own_file};

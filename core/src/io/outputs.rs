@@ -69,6 +69,24 @@ pub fn of_series(name: &str, series: &str) -> bool {
     label.is_some_and(|label| !label.is_empty() && label.chars().all(|c| c.is_ascii_digit() || "._+-e".contains(c)))
 }
 
+/// Removes the files of a series of pictures with these endings from a folder.
+///
+/// # Errors
+/// A file that cannot be removed.
+pub fn remove_series(folder: &Path, series: &str, endings: &[&str]) -> Result<()> {
+    let series: Vec<String> = endings.iter().map(|ending| format!("{series}.{ending}")).collect();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_own = series.iter().any(|series| *name == *series || of_series(&name, series));
+        if is_own && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            let path = entry.path();
+            fs::remove_file(&path).map_err(|e| Error::System(format!("{}: cannot be removed: {e}", path.display())))?;
+        }
+    }
+    Ok(())
+}
+
 impl FileUse {
     fn path(&self) -> &Path {
         match self {

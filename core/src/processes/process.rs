@@ -156,6 +156,14 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// The run ends here and goes on later from its saved state, which this must not change.
+    ///
+    /// # Errors
+    /// As [`Process::finalize`].
+    fn suspend(&mut self, model: &mut Model) -> Result<()> {
+        self.finalize(model)
+    }
+
     /// Notes and warnings since they were last asked for; the stage passes them on.
     fn messages(&mut self) -> Vec<Diagnostic> {
         Vec::new()

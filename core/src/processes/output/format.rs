@@ -45,16 +45,24 @@ pub trait OutputFormat: Send {
         Mark::None
     }
 
+    /// After the last picture, also of a run that has failed; asked of the root alone.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    fn finish(&mut self, _folder: &Path) -> Result<()> {
+        Ok(())
+    }
+
     /// What it remembers between pictures, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
 
-    /// Takes up a saved state.
+    /// Takes up a saved state of pictures in this folder.
     ///
     /// # Errors
-    /// The state of another format.
-    fn resume(&mut self, _state: Box<dyn State>) -> Result<()> {
+    /// The state of another format; pictures that are gone.
+    fn resume(&mut self, _state: Box<dyn State>, _folder: &Path) -> Result<()> {
         Ok(())
     }
 
@@ -140,7 +148,7 @@ impl OutputFormat for Vtu {
         Some(Box::new(self.clone()))
     }
 
-    fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
+    fn resume(&mut self, state: Box<dyn State>, _folder: &Path) -> Result<()> {
         *self = state.take()?;
         Ok(())
     }

@@ -10,9 +10,9 @@ use super::format::{OutputFormat, OutputFormatEntry, Shown};
 use super::picture::Picture;
 use super::place::PartPath;
 use crate::assembly::System;
-use crate::diagnostics::{Error, Report, Result};
+use crate::diagnostics::{Report, Result};
 use crate::io::results::Dataset;
-use crate::io::{FileUse, of_series};
+use crate::io::{FileUse, remove_series};
 use crate::model::{Model, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -146,19 +146,7 @@ impl VtkOutput {
 
     /// Removes the pictures that an earlier run has made of a part, so that none is taken for one of this run.
     fn clear(&self, folder: &Path, path: &str) -> Result<()> {
-        let endings = self.format.endings();
-        let series: Vec<String> = endings.iter().map(|ending| format!("{}.{ending}", self.series(path))).collect();
-        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            let is_old = series.iter().any(|series| *name == *series || of_series(&name, series));
-            if is_old && entry.file_type().is_ok_and(|kind| kind.is_file()) {
-                let path = entry.path();
-                std::fs::remove_file(&path)
-                    .map_err(|e| Error::System(format!("{}: cannot be removed: {e}", path.display())))?;
-            }
-        }
-        Ok(())
+        remove_series(folder, &self.series(path), self.format.endings())
     }
 }
 
@@ -223,6 +211,16 @@ impl Process for VtkOutput {
         written.map(|()| Some(failed))
     }
 
+    fn finalize(&mut self, model: &mut Model) -> Result<()> {
+        let (part, _) = self.part.find(model)?;
+        if part.ranks.is_root() { self.format.finish(&self.folder) } else { Ok(()) }
+    }
+
+    /// Formats have pictures to add yet.
+    fn suspend(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
     fn state(&self) -> Option<Box<dyn State>> {
         Some(Box::new(VtkOutputState { next: self.control.next, clears: self.clears, format: self.format.state() }))
     }
@@ -230,7 +228,7 @@ impl Process for VtkOutput {
     fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
         let VtkOutputState { next, clears, format } = state.take()?;
         (self.control.next, self.clears) = (next, clears);
-        format.map_or(Ok(()), |state| self.format.resume(state))
+        format.map_or(Ok(()), |state| self.format.resume(state, &self.folder))
     }
 
     fn files(&self) -> Vec<FileUse> {
