@@ -28,7 +28,8 @@ use zelus_core::vector3::{add, dot, normalised, scale, sub};
 use super::specimen::{Random, Vec3, difference, size};
 
 /// The shapes of facets.
-pub const FACETS: [Shape; 5] = [Shape::Line2, Shape::Line3, Shape::Tri3, Shape::Tri6, Shape::Quad4];
+pub const FACETS: [Shape; 7] =
+    [Shape::Line2, Shape::Line3, Shape::Tri3, Shape::Tri6, Shape::Quad4, Shape::Quad8, Shape::Quad9];
 
 /// One pair and everything its residual depends on.
 #[derive(Clone)]
@@ -271,6 +272,9 @@ fn families() -> Vec<(&'static str, &'static Family)> {
     found.into_iter().chain(by_node).collect()
 }
 
+/// Unknowns of pairs of which not all derivatives are looked at in each state.
+const LARGE: usize = 50;
+
 const INACTIVE: (bool, bool) = (false, false);
 const STICK: (bool, bool) = (true, false);
 const SLIDING: (bool, bool) = (true, true);
@@ -297,6 +301,7 @@ fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
 
 #[test]
 fn tangents_of_pairs_are_derivatives() {
+    let mut met = 0;
     walk(0.05, |name, family, setting| {
         for operator_threshold in if family.frictional() { vec![0.0, 1e9] } else { vec![0.0] } {
             let setting = Setting { operator_threshold, ..setting.clone() };
@@ -311,7 +316,10 @@ fn tangents_of_pairs_are_derivatives() {
             }
             let n = rhs.len();
             let largest = size(lhs.iter().copied()).max(1e-3);
-            for column in 0..n {
+            // Of large systems each takes some of the columns, all of them together all.
+            let stride = if n > LARGE { 4 } else { 1 };
+            met += 1;
+            for column in (met % stride..n).step_by(stride) {
                 let value = get(&part, block, column);
                 let mut at = |h: f64| {
                     set(&mut part, block, column, value + h);

@@ -48,7 +48,7 @@ pub use inner::{inner_point, inner_values};
 pub use operators::{Operators, Overlap, choices_of, operators, operators_by};
 pub use points::MasterMotion;
 pub use settings::{IntegrationOrder, SegmentationSettings};
-pub use shapes::{MOST_NODES, carries_contact, condition_name, lanes};
+pub use shapes::{MOST_NODES, carries_contact, condition_name, lanes, makes_pairs};
 pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential, turned_slip};
 pub use turn::Turn;
 

@@ -22,6 +22,16 @@ macro_rules! with_pairs_of_shapes {
             (Triangle6, Triangle3, "3D6N3N")
             (Triangle6, Quadrilateral4, "3D6N4N")
             (Triangle6, Triangle6, "3D6N")
+            (Quadrilateral4, Quadrilateral8, "3D4N8N")
+            (Quadrilateral8, Quadrilateral4, "3D8N4N")
+            (Quadrilateral8, Quadrilateral8, "3D8N")
+            (Triangle3, Quadrilateral8, "3D3N8N")
+            (Quadrilateral8, Triangle3, "3D8N3N")
+            (Triangle6, Quadrilateral8, "3D6N8N")
+            (Quadrilateral8, Triangle6, "3D8N6N")
+            (Quadrilateral4, Quadrilateral9, "3D4N9N")
+            (Quadrilateral9, Quadrilateral4, "3D9N4N")
+            (Quadrilateral9, Quadrilateral9, "3D9N")
         }
     };
 }
@@ -74,6 +84,11 @@ pub const fn lanes<S: FacetShape, M: FacetShape>(variables: usize) -> usize {
 /// Whether facets of a shape carry contact.
 pub fn carries_contact(shape: Shape) -> bool {
     PAIRS.as_flattened().contains(&shape)
+}
+
+/// Whether facets of two shapes, slave and master, make pairs.
+pub fn makes_pairs(slave: Shape, master: Shape) -> bool {
+    PAIRS.contains(&[slave, master])
 }
 
 /// Kratos' name of the condition of a pair of shapes; `stem` is the name up to the shape.
