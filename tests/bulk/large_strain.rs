@@ -157,3 +157,31 @@ fn pressure_that_follows_squeezes_a_cube() {
     let iterations = ran.report.steps[0].iterations.len();
     assert!(iterations <= 8, "{iterations} iterations: the tangent is not that of the load");
 }
+
+/// A load of one and a half times Young's modulus in one step: the first increments would turn the block inside out, and less is taken of
+/// them. It acts on the face as it is, so that it is the Cauchy stress of the closed form; 1e-8 is the tolerance of the iteration.
+#[test]
+fn increments_that_turn_elements_inside_out_are_shortened() {
+    let (lambda, mu) = lame();
+    let load = 1.5 * YOUNG;
+    let cauchy = |stretch: f64| {
+        let volume = stretch * across(|l| stretch * l * l).powi(2);
+        (mu * (stretch * stretch - 1.0) + lambda * volume.ln()) / volume
+    };
+    let (mut low, mut high) = (0.05, 1.0);
+    for _ in 0..200 {
+        let middle: f64 = 0.5 * (low + high);
+        if cauchy(middle) < -load { low = middle } else { high = middle }
+    }
+    let grid = Grid::new(Shape::Hex8, &[2, 2, 2], |p| p);
+    let mut deck = Deck::new(&grid, "TotalLagrangianElement", "HyperElastic3DLaw", law());
+    for axis in 0..3 {
+        deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
+    }
+    let force = [json!(0.0), json!(0.0), json!(-load)];
+    deck.set("max_iteration", json!(60)).vector_load(|p| p[2] == 1.0, "SurfaceLoadCondition", "SURFACE_LOAD", force);
+    let ran = deck.run();
+    assert_eq!(ran.report.steps.len(), 1, "no attempt has failed");
+    let top = grid.nodes_where(|p| p[2] == 1.0)[0];
+    assert_close(1.0 + ran.last("DISPLACEMENT", top)[2], low, 1e-8, "stretch");
+}

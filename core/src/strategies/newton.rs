@@ -26,11 +26,11 @@ use super::meaning::Meaning;
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
-use super::strategy::{SolutionStrategy, StrategyEntry, accept, recorded};
+use super::strategy::{SolutionStrategy, StrategyEntry, accept, is_of_entities, recorded};
 use super::whereabouts::whereabouts;
 use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use crate::diagnostics::unfit;
-use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::model::ModelPart;
 use crate::register;
 
@@ -361,7 +361,7 @@ impl NewtonRaphson {
             let inertia = self.scheme.inertia(part, &system.dofs);
             match self.assembler.residual(part, system, inertia.as_ref()) {
                 Ok(residual) => Ok(Some(self.assembler.dot(increment, &residual)).filter(|w| w.is_finite())),
-                Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => Ok(None),
+                Err(error) if is_of_entities(&error) => Ok(None),
                 Err(error) => Err(error),
             }
         })?;

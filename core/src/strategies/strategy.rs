@@ -207,6 +207,11 @@ pub(super) fn update_interactions(
     Ok(change)
 }
 
+/// Whether it says that entities cannot be computed in their present state, as where they are turned inside out.
+pub(super) fn is_of_entities(error: &Error) -> bool {
+    matches!(error, Error::Input(problems) if problems.iter().all(|problem| problem.code == "entity"))
+}
+
 /// Runs `solve` and puts down what came of it: iterations and the reason of a failure.
 ///
 /// # Errors
@@ -230,10 +235,10 @@ where
             record.converged = failure.is_none();
             record.failure = failure;
         }
-        Err(Error::Input(problems)) if problems.iter().all(|p| p.code == "entity") => {
+        Err(error) if is_of_entities(&error) => {
             let iteration = part.info.nl_iteration;
             let inverted = inside_out(part).map_or(String::new(), |which| format!("; {which}"));
-            record.failure = Some(format!("in iteration {iteration}, {}{inverted}", Error::Input(problems)));
+            record.failure = Some(format!("in iteration {iteration}, {error}{inverted}"));
         }
         Err(error) => return Err(error),
     }

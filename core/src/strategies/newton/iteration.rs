@@ -13,10 +13,12 @@ use crate::strategies::criterion::Check;
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::reactions::write_reactions;
 use crate::strategies::records::{IterationRecord, Monitor};
-use crate::strategies::strategy::{after_prediction, relaxation, update_interactions};
+use crate::strategies::strategy::{after_prediction, is_of_entities, relaxation, update_interactions};
 
 /// Share of the increment that ends a swing between two states.
 const HALF: f64 = 0.5;
+/// How often an increment that turns elements inside out is halved.
+const HALVINGS: usize = 4;
 
 /// Phases of the interactions: finding what may meet, and deciding what acts, with what is found late.
 const SEARCH: &str = "interactions: search";
@@ -171,7 +173,9 @@ impl NewtonRaphson {
         let condition =
             if part.info.is(super::CONDITION_NUMBER) { self.condition_number(part, system, monitor) } else { None };
         monitor.phase("states and residual");
-        let increment = self.take(&solved, step, part, system)?;
+        // What is prescribed must be taken whole.
+        let is_still = !has_motion(&part.ranks, &step.prescribed);
+        let mut increment = self.take(&solved, step, part, system)?;
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
             return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
@@ -179,7 +183,7 @@ impl NewtonRaphson {
         // serves for what the interactions take from it and nothing else.
         let restart =
             step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
-        let change = self.decide(iteration, restart, step, part, system)?;
+        let change = self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
         let balanced = self.assembler.equations().balanced(&step.residual);
         if iteration == 1 {
             self.refer_to_first(system, &balanced, &mut step.references);
@@ -342,7 +346,7 @@ impl NewtonRaphson {
     }
 
     /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `restart` where they only
-    /// keep what the answer takes from the first iterate.
+    /// keep what the answer takes from the first iterate. Where elements cannot be computed there, less is taken of `increment`, if it is given.
     fn decide(
         &mut self,
         iteration: usize,
@@ -350,6 +354,7 @@ impl NewtonRaphson {
         step: &mut Step,
         part: &mut ModelPart,
         system: &mut System,
+        increment: Option<&mut Vec<f64>>,
     ) -> Result<SetChange> {
         if system.interactions.iter_mut().filter_map(|i| i.active_set()).any(|set| set.needs_reactions()) {
             let residual = self.residual(part, system)?;
@@ -370,8 +375,34 @@ impl NewtonRaphson {
         } else if graph != graph_version(&system.interactions) {
             self.lay_out(part, system)?;
         }
-        step.residual = self.residual(part, system)?;
+        step.residual = self.residual(part, system).or_else(|why| match increment {
+            Some(increment) if is_of_entities(&why) => self.step_back(part, system, increment, why),
+            _ => Err(why),
+        })?;
         Ok(change)
+    }
+
+    /// Goes back by half of the increment, and by half of what is left, until elements can be computed; gives the residual there.
+    ///
+    /// # Errors
+    /// `why` they could not be computed, where the least share does not help.
+    fn step_back(
+        &mut self,
+        part: &mut ModelPart,
+        system: &System,
+        increment: &mut [f64],
+        mut why: Error,
+    ) -> Result<Vec<f64>> {
+        for _ in 0..HALVINGS {
+            let back: Vec<f64> = increment.iter().map(|d| (HALF - 1.0) * d).collect();
+            self.move_by(part, system, &back);
+            increment.iter_mut().for_each(|d| *d *= HALF);
+            match self.residual(part, system) {
+                Err(error) if is_of_entities(&error) => why = error,
+                found => return found,
+            }
+        }
+        Err(why)
     }
 
     /// The residual as the equations see it, with the force of motions that changed constraints still ask for. Collective.
