@@ -23,6 +23,8 @@ pub fn mpirun(folder: &Path) -> Command {
     command.current_dir(folder).env("NO_COLOR", "1");
     if said(&version).contains("Open MPI") {
         command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1").arg("--oversubscribe");
+        // Tests run beside each other: ranks that wait leave the cores to others.
+        command.env("OMPI_MCA_mpi_yield_when_idle", "1").args(["--bind-to", "none"]);
     }
     command
 }
