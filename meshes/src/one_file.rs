@@ -13,8 +13,9 @@ use zelus_core::registry::require;
 
 use super::vtkhdf::write_vtkhdf;
 
-/// Endings of the pictures of a run that goes on.
-const STEPS: [&str; 3] = ["vtu", "pvtu", "pvd"];
+/// Endings of what it writes: last that of the one file, before it those of the pictures of a run that goes on.
+const ENDINGS: [&str; 4] = ["vtu", "pvtu", "pvd", "vtkhdf"];
+const STEPS: &[&str] = ENDINGS.split_at(3).0;
 
 struct OneFile {
     steps: Box<dyn OutputFormat>,
@@ -28,7 +29,7 @@ impl OutputFormat for OneFile {
     }
 
     fn endings(&self) -> &'static [&'static str] {
-        &["vtu", "pvtu", "pvd", "vtkhdf"]
+        &ENDINGS
     }
 
     fn mark(&self) -> Mark {
@@ -40,7 +41,7 @@ impl OutputFormat for OneFile {
             let file = series.with_extension("vtkhdf");
             write_vtkhdf(&series, &file)?;
             let name = series.file_stem().unwrap_or_default().to_string_lossy();
-            remove_series(folder, &name, &STEPS)?;
+            remove_series(folder, &name, STEPS)?;
             self.files.push(file);
         }
         Ok(())

@@ -201,9 +201,8 @@ fn check_shapes(interface: &Interface) -> Result<()> {
         shapes.dedup();
         shapes
     };
-    for (slave, master) in
-        of_role(Roles::Slave).iter().flat_map(|s| of_role(Roles::Master).into_iter().map(move |m| (*s, m)))
-    {
+    let [slaves, masters] = [Roles::Slave, Roles::Master].map(of_role);
+    for (slave, master) in slaves.iter().flat_map(|&s| masters.iter().map(move |&m| (s, m))) {
         if !makes_pairs(slave, master) {
             let fact = format!(
                 "contact pair \"{}\" has slaves of shape {slave:?} and masters of shape {master:?}",

@@ -1,5 +1,7 @@
 //! One stage: a solver, its processes, and the loop over the steps.
 
+mod attempts;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -7,7 +9,7 @@ use std::time::Instant;
 use zelus_linear_algebra::memory;
 
 use super::bodies::tell_what_holds;
-use super::cutting::{Cutting, Lengths};
+use super::cutting::Cutting;
 use super::deck::{
     Folders, StageDeck, add_names_only, check_top_level, import, import_materials, make_processes, mesh_file, root_name,
 };
@@ -15,7 +17,6 @@ use super::driver::{Driver, Point};
 use super::like::{lay_defaults, program};
 use super::older_decks::{complete_part_names, modernise};
 use super::report::{RunReport, Sizes};
-use super::saved::Saved;
 use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
 use super::sharing::{distribute, read_the_same_deck, read_the_same_files};
 use super::solver::{SolverSettings, TimeScheme, check_dimensions};
@@ -32,7 +33,7 @@ use crate::modelers::run_modelers;
 use crate::parameters::Node;
 use crate::processes::{Process, largest_results, tables_of};
 use crate::registry;
-use crate::strategies::{Monitor, Plan, SolutionStrategy, StepRecord, unknowns_of_all};
+use crate::strategies::{Monitor, Plan, SolutionStrategy, unknowns_of_all};
 
 /// Bytes that a node takes in a picture at least: its displacement, compressed.
 const LEAST_OF_NODE: usize = 16;
@@ -422,160 +423,12 @@ impl Stage {
         result.and(finalized).and(finals.finish().map(|_| ()))
     }
 
-    /// Solves up to `target`, in one step or, where that does not converge, in shorter ones.
-    fn reach(
-        &mut self,
-        target: f64,
-        model: &mut Model,
-        report: &mut RunReport,
-        monitor: &mut dyn Monitor,
-        driver: &mut dyn Driver,
-    ) -> Result<()> {
-        let whole = target - model.root(&self.root)?.info.time;
-        let mut lengths = Lengths::new(self.cutting, whole, self.first_length.take());
-        let mut failed: Option<StepRecord> = None;
-        loop {
-            let from = model.root(&self.root)?.info.time;
-            let (to, last) = lengths.next(from, target);
-            let part = model.root_mut(&self.root)?;
-            let saved = self.strategy.can_retry().then(|| Saved::of(part, &mut self.system));
-            let record = self.attempt(to, model, report, monitor, driver)?;
-            if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
-                let factor = self.cutting.factor;
-                monitor
-                    .note(&format!("step {} to time {to}: {why}; made anew with 1/{factor} of the step", record.step));
-                saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);
-                continue;
-            }
-            if record.converged {
-                self.accept(model, report, monitor, driver)?;
-                lengths.grow();
-                failed = None;
-                if last {
-                    self.first_length = lengths.carry();
-                    return Ok(());
-                }
-                continue;
-            }
-            let failure = record.failure.clone().unwrap_or_default();
-            let can_cut = saved.is_some() && self.cutting.times > 0;
-            let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
-                && !self.system.interactions.iter_mut().filter_map(|i| i.retry()).any(|own| own.has_alternative());
-            let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
-                let tried = match self.cutting {
-                    _ if !can_cut => "the solver does not cut steps".to_owned(),
-                    _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
-                    Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
-                };
-                let kept = self.keep_last_iterate(model);
-                if record.singular {
-                    return Err(Error::System(format!(
-                        "step {} to time {to}: {failure}\n    {tried}{kept}",
-                        record.step
-                    )));
-                }
-                let written = match from > self.start_time {
-                    true => format!("results up to time {from} are written"),
-                    false => "no step has converged".to_owned(),
-                };
-                return Err(Error::NotConverged(format!(
-                    "step {} to time {to}: {failure}\n    {tried}; {written}{kept}. Try {}, or look at the nodes named",
-                    record.step,
-                    self.strategy.remedy()
-                )));
-            };
-            let factor = self.cutting.factor;
-            monitor.note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
-            saved.restore(model.root_mut(&self.root)?, &mut self.system);
-            failed = Some(record);
-        }
-    }
-
-    /// Writes the state of a step that has failed, apart from results, and says where; collective.
-    fn keep_last_iterate(&mut self, model: &mut Model) -> String {
-        let mut said = String::new();
-        for process in &mut self.processes {
-            match model.ranks.clone().agree(process.print_last_iterate(model, &self.system)) {
-                Ok(Some(folder)) => said += &format!("; its last iterate, no result, is in {}", folder.display()),
-                Ok(None) => {}
-                Err(error) => said += &format!("; its last iterate cannot be written: {error}"),
-            }
-        }
-        said
-    }
-
-    fn attempt(
-        &mut self,
-        to: f64,
-        model: &mut Model,
-        report: &mut RunReport,
-        monitor: &mut dyn Monitor,
-        driver: &mut dyn Driver,
-    ) -> Result<StepRecord> {
-        let part = model.root_mut(&self.root)?;
-        part.info.step += 1;
-        part.clone_time_step(to);
-        let announced = (part.info.step - 1) % self.strategy.announce_every() == 0;
-        if announced {
-            monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
-        }
-        let ranks = model.ranks.clone();
-        let processes = &mut self.processes;
-        driver.at(Point::BeginStep, &self.root, model, &self.system, &mut |model| {
-            processes.iter_mut().try_for_each(|process| ranks.agree(process.begin_step(model)))
-        })?;
-        let start = Instant::now();
-        let record = self.strategy.solve_step(model.root_mut(&self.root)?, &mut self.system, monitor)?;
-        report.add_seconds("solve steps", start.elapsed().as_secs_f64());
-        self.pass_on_messages(&ranks, report, monitor);
-        if announced || !record.converged {
-            monitor.end_step(&record);
-        }
-        report.record(record.clone());
-        Ok(record)
-    }
-
-    fn accept(
-        &mut self,
-        model: &mut Model,
-        report: &mut RunReport,
-        monitor: &mut dyn Monitor,
-        driver: &mut dyn Driver,
-    ) -> Result<()> {
-        self.strategy.accept_step(model.root_mut(&self.root)?, &mut self.system)?;
-        monitor.phase("output");
-        let start = Instant::now();
-        let ranks = model.ranks.clone();
-        let Self { processes, system, root, .. } = self;
-        driver.at(Point::EndStep, root, model, system, &mut |model| {
-            processes.iter_mut().try_for_each(|process| ranks.agree(process.end_step(model, system)))
-        })?;
-        report.add_numbers(processes.iter().flat_map(|process| process.summary()));
-        driver.at(Point::Output, root, model, system, &mut |model| write_output(processes, model, system))?;
-        report.add_seconds("output", start.elapsed().as_secs_f64());
-        self.pass_on_messages(&ranks, report, monitor);
-        Ok(())
-    }
-
     /// Hands on what processes, interactions and the strategy have to tell; collective.
     fn pass_on_messages(&mut self, ranks: &Ranks, report: &mut RunReport, monitor: &mut dyn Monitor) {
         let mut own = self.strategy.messages();
         own.extend(messages_of(&mut self.processes, &mut self.system));
         tell(ranks.problems_of_all(own), report, monitor);
     }
-}
-
-/// Lets those processes write that have output to write now.
-fn write_output(processes: &mut [Box<dyn Process>], model: &mut Model, system: &System) -> Result<()> {
-    let ranks = model.ranks.clone();
-    let writes: Vec<bool> = processes.iter_mut().map(|process| process.is_output_step(model)).collect();
-    if !writes.contains(&true) {
-        return Ok(());
-    }
-    processes.iter_mut().try_for_each(|process| ranks.agree(process.before_output(model, system)))?;
-    let mut writers = processes.iter_mut().zip(writes).filter(|(_, writes)| *writes);
-    writers.try_for_each(|(process, _)| ranks.agree(process.print_output(model, system)))?;
-    processes.iter_mut().try_for_each(|process| ranks.agree(process.after_output(model, system)))
 }
 
 /// Notes and warnings of processes and interactions.

@@ -1,0 +1,164 @@
+//! How a stage reaches the end of one of the deck's steps: attempts, cut where they do not converge, and what follows those that do.
+
+use std::time::Instant;
+
+use super::super::cutting::{Cutting, Lengths};
+use super::super::driver::{Driver, Point};
+use super::super::report::RunReport;
+use super::super::saved::Saved;
+use super::Stage;
+use crate::assembly::System;
+use crate::diagnostics::{Error, Result};
+use crate::model::Model;
+use crate::processes::Process;
+use crate::strategies::{Monitor, StepRecord};
+
+impl Stage {
+    /// Solves up to `target`, in one step or, where that does not converge, in shorter ones.
+    pub(super) fn reach(
+        &mut self,
+        target: f64,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
+    ) -> Result<()> {
+        let whole = target - model.root(&self.root)?.info.time;
+        let mut lengths = Lengths::new(self.cutting, whole, self.first_length.take());
+        let mut failed: Option<StepRecord> = None;
+        loop {
+            let from = model.root(&self.root)?.info.time;
+            let (to, last) = lengths.next(from, target);
+            let part = model.root_mut(&self.root)?;
+            let saved = self.strategy.can_retry().then(|| Saved::of(part, &mut self.system));
+            let record = self.attempt(to, model, report, monitor, driver)?;
+            if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
+                let factor = self.cutting.factor;
+                monitor
+                    .note(&format!("step {} to time {to}: {why}; made anew with 1/{factor} of the step", record.step));
+                saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);
+                continue;
+            }
+            if record.converged {
+                self.accept(model, report, monitor, driver)?;
+                lengths.grow();
+                failed = None;
+                if last {
+                    self.first_length = lengths.carry();
+                    return Ok(());
+                }
+                continue;
+            }
+            let failure = record.failure.clone().unwrap_or_default();
+            let can_cut = saved.is_some() && self.cutting.times > 0;
+            let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
+                && !self.system.interactions.iter_mut().filter_map(|i| i.retry()).any(|own| own.has_alternative());
+            let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
+                let tried = match self.cutting {
+                    _ if !can_cut => "the solver does not cut steps".to_owned(),
+                    _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
+                    Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
+                };
+                let kept = self.keep_last_iterate(model);
+                if record.singular {
+                    return Err(Error::System(format!(
+                        "step {} to time {to}: {failure}\n    {tried}{kept}",
+                        record.step
+                    )));
+                }
+                let written = match from > self.start_time {
+                    true => format!("results up to time {from} are written"),
+                    false => "no step has converged".to_owned(),
+                };
+                return Err(Error::NotConverged(format!(
+                    "step {} to time {to}: {failure}\n    {tried}; {written}{kept}. Try {}, or look at the nodes named",
+                    record.step,
+                    self.strategy.remedy()
+                )));
+            };
+            let factor = self.cutting.factor;
+            monitor.note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
+            saved.restore(model.root_mut(&self.root)?, &mut self.system);
+            failed = Some(record);
+        }
+    }
+
+    /// Writes the state of a step that has failed, apart from results, and says where; collective.
+    fn keep_last_iterate(&mut self, model: &mut Model) -> String {
+        let mut said = String::new();
+        for process in &mut self.processes {
+            match model.ranks.clone().agree(process.print_last_iterate(model, &self.system)) {
+                Ok(Some(folder)) => said += &format!("; its last iterate, no result, is in {}", folder.display()),
+                Ok(None) => {}
+                Err(error) => said += &format!("; its last iterate cannot be written: {error}"),
+            }
+        }
+        said
+    }
+
+    fn attempt(
+        &mut self,
+        to: f64,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
+    ) -> Result<StepRecord> {
+        let part = model.root_mut(&self.root)?;
+        part.info.step += 1;
+        part.clone_time_step(to);
+        let announced = (part.info.step - 1) % self.strategy.announce_every() == 0;
+        if announced {
+            monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
+        }
+        let ranks = model.ranks.clone();
+        let processes = &mut self.processes;
+        driver.at(Point::BeginStep, &self.root, model, &self.system, &mut |model| {
+            processes.iter_mut().try_for_each(|process| ranks.agree(process.begin_step(model)))
+        })?;
+        let start = Instant::now();
+        let record = self.strategy.solve_step(model.root_mut(&self.root)?, &mut self.system, monitor)?;
+        report.add_seconds("solve steps", start.elapsed().as_secs_f64());
+        self.pass_on_messages(&ranks, report, monitor);
+        if announced || !record.converged {
+            monitor.end_step(&record);
+        }
+        report.record(record.clone());
+        Ok(record)
+    }
+
+    fn accept(
+        &mut self,
+        model: &mut Model,
+        report: &mut RunReport,
+        monitor: &mut dyn Monitor,
+        driver: &mut dyn Driver,
+    ) -> Result<()> {
+        self.strategy.accept_step(model.root_mut(&self.root)?, &mut self.system)?;
+        monitor.phase("output");
+        let start = Instant::now();
+        let ranks = model.ranks.clone();
+        let Self { processes, system, root, .. } = self;
+        driver.at(Point::EndStep, root, model, system, &mut |model| {
+            processes.iter_mut().try_for_each(|process| ranks.agree(process.end_step(model, system)))
+        })?;
+        report.add_numbers(processes.iter().flat_map(|process| process.summary()));
+        driver.at(Point::Output, root, model, system, &mut |model| write_output(processes, model, system))?;
+        report.add_seconds("output", start.elapsed().as_secs_f64());
+        self.pass_on_messages(&ranks, report, monitor);
+        Ok(())
+    }
+}
+
+/// Lets those processes write that have output to write now.
+fn write_output(processes: &mut [Box<dyn Process>], model: &mut Model, system: &System) -> Result<()> {
+    let ranks = model.ranks.clone();
+    let writes: Vec<bool> = processes.iter_mut().map(|process| process.is_output_step(model)).collect();
+    if !writes.contains(&true) {
+        return Ok(());
+    }
+    processes.iter_mut().try_for_each(|process| ranks.agree(process.before_output(model, system)))?;
+    let mut writers = processes.iter_mut().zip(writes).filter(|(_, writes)| *writes);
+    writers.try_for_each(|(process, _)| ranks.agree(process.print_output(model, system)))?;
+    processes.iter_mut().try_for_each(|process| ranks.agree(process.after_output(model, system)))
+}
