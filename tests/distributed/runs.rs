@@ -114,7 +114,7 @@ pub fn equals_serial(case: &str, changes: &[(&str, &str)], tolerance: f64, same_
 /// A tolerance for what has a closed form, which `tests/cases.rs` holds the serial run to.
 pub const EXACT: f64 = 1e-10;
 
-/// A tolerance where round-off of the slip grows over steps of one iteration each, as `tests/renumbering.rs` says.
+/// A tolerance where round-off of the slip grows over steps of one iteration each, as `tests/contact/renumbering.rs` says.
 pub const GROWN: f64 = 1e-7;
 
 /// A tolerance for what has none.

@@ -1,6 +1,10 @@
 //! Heat against closed forms: conduction, storage, convection, radiation; and that nothing but physics changes an answer.
 
+#[path = "../support/blocks.rs"]
+mod blocks;
+mod contact;
 mod damage;
+mod decks;
 mod explicit;
 mod plastic;
 mod slab;

@@ -263,7 +263,7 @@ pub fn system(part: &ModelPart, block: &dyn EntityBlock, want: Want) -> LocalSys
 }
 
 fn families() -> Vec<(&'static str, &'static Family)> {
-    // Those that take tractions from elements are walked with elements, in tests/nitsche.rs.
+    // Those that take tractions from elements are walked with elements, in tests/contact/nitsche.rs.
     let found = all::<FamilyEntry>().into_iter().map(|entry| (entry.name, &entry.build));
     let found: Vec<_> = found.filter(|(_, family)| !matches!(family.multiplier, Multiplier::Body)).collect();
     assert!(!found.is_empty(), "no contact family is registered");

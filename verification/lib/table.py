@@ -114,7 +114,7 @@ Problems with published answers, run with the default settings of zelus except f
 
 and every number on it comes from that command, which ends with an error where a row misses its tolerance; `--only TEXT` runs the
 cases with that text in their name. A quick part (the coarsest meshes of some variants) is in the test command
-(`tests/verification.rs`). Each case is a folder of `verification` with a script that makes the mesh and the deck; how to add one is in
+(`tests/pages/atlas.rs`). Each case is a folder of `verification` with a script that makes the mesh and the deck; how to add one is in
 [verification/README.md](../verification/README.md).
 
 *Published* is the reference; its tag says of which kind it is: ANALYTIC a closed form, EXTERNAL another program or a published table,

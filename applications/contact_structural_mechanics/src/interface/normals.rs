@@ -222,8 +222,8 @@ impl NormalPatches {
         &self,
         node: u32,
         places: &[[f64; 3]],
-        knows: impl Fn(&Corner) -> bool,
-        mut visit: impl FnMut(u32, [[f64; 3]; 3]),
+        knows: &dyn Fn(&Corner) -> bool,
+        visit: &mut dyn FnMut(u32, [[f64; 3]; 3]),
     ) {
         let sum = self.sum(node, places);
         let length = norm(sum);
@@ -346,14 +346,9 @@ mod tests {
             let patches = NormalPatches::new(places.len(), &[interface(facets)], weights);
             for node in 0..places.len() as u32 {
                 let mut exact = vec![[[0.0; 3]; 3]; places.len()];
-                patches.variation(
-                    node,
-                    places,
-                    |_| true,
-                    |by, matrix| {
-                        (0..3).for_each(|r| (0..3).for_each(|c| exact[by as usize][r][c] += matrix[r][c]));
-                    },
-                );
+                patches.variation(node, places, &|_| true, &mut |by, matrix| {
+                    (0..3).for_each(|r| (0..3).for_each(|c| exact[by as usize][r][c] += matrix[r][c]));
+                });
                 for by in 0..places.len() {
                     for c in 0..space {
                         let at = |step: f64| {

@@ -1,6 +1,6 @@
 //! What contact does only because Kratos does it, behind the settings that `--like kratos` lays under a deck.
 //!
-//! [`DEVIATIONS`] names each with its source; `tests/like_kratos.rs` switches each off and says what changes. Where one is a
+//! [`DEVIATIONS`] names each with its source; `tests/contact/like_kratos.rs` switches each off and says what changes. Where one is a
 //! formula of its own it stands here ([`flat_master`](operators_on_flat_master), [`FirstIterateTangent`], [`PenaltyUnit`]);
 //! the others are values of settings whose other value is the default.
 

@@ -5,6 +5,7 @@ mod facet_operators;
 mod facing_points;
 mod family;
 mod grouping;
+mod in_parallel;
 mod nitsche_block;
 mod pair;
 mod pair_block;

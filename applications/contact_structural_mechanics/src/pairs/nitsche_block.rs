@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::sync::Arc;
 use zelus_core::model::EntityKind;
 
-use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{FacetShape, NodeArray, Shape};
 use zelus_core::scalar::{Dual, Real};
@@ -12,6 +11,7 @@ use zelus_core::vector3::{constant, dot};
 
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
+use super::in_parallel::in_parallel;
 use super::pair::{Integral, Pair};
 use super::pair_block::PairBlock;
 use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
@@ -255,18 +255,20 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheB
     /// meets the same element, says so.
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
         let Present { view, states, .. } = present;
-        let mut integrals = self.pairs.integrate(present);
-        integrals.par_iter_mut().enumerate().with_min_len(32).filter(|(_, found)| found.overlapping).for_each(
-            |(at, found)| {
-                let Ok(tractions) = self.bodies.tractions::<S>(self.key(at), view, false) else { return };
-                let geometry = self.pairs.geometry(at, view, states);
-                if let Some(forces) = self.forces(at, (view, states), &geometry, &tractions.values) {
-                    found.trial[..S::NODES].copy_from_slice(forces.traction.as_slice());
-                    found.carried[..S::NODES].copy_from_slice(forces.carried.as_slice());
-                }
-            },
-        );
-        integrals
+        let integrals = self.pairs.integrate(present);
+        in_parallel(integrals.len(), &|at| {
+            let mut found = integrals[at];
+            if !found.overlapping {
+                return found;
+            }
+            let Ok(tractions) = self.bodies.tractions::<S>(self.key(at), view, false) else { return found };
+            let geometry = self.pairs.geometry(at, view, states);
+            if let Some(forces) = self.forces(at, (view, states), &geometry, &tractions.values) {
+                found.trial[..S::NODES].copy_from_slice(forces.traction.as_slice());
+                found.carried[..S::NODES].copy_from_slice(forces.carried.as_slice());
+            }
+            found
+        })
     }
 
     fn keep_operators(&mut self, present: Present<'_>) {

@@ -4,7 +4,6 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{FacetShape, NodeArray, Shape};
 use zelus_core::model::{EntityKind, ScalarVariable};
@@ -14,6 +13,7 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
+use super::in_parallel::in_parallel;
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{
     self, Augmentation, Formulation, Kinematics, NormalVariation, PairHistory, SlaveNode, StepParameters,
@@ -21,7 +21,7 @@ use crate::formulations::{
 use crate::interface::{Corner, NormalPatches};
 use crate::kratos::FirstIterateTangent;
 use crate::mortar::shapes::for_shapes;
-use crate::mortar::{Choices, Operators, Overlap, PairGeometry, choices_of, lanes, operators, weighted_gap};
+use crate::mortar::{Operators, Overlap, PairGeometry, choices_of, lanes, operators, weighted_gap};
 use crate::slave_states::SlaveStates;
 
 /// A pair as it is now, with its operators.
@@ -190,7 +190,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
             if self.states[node].normal_of_master {
                 continue;
             }
-            self.patches.variation(node, &view.nodes.current, knows, |by, matrix| {
+            self.patches.variation(node, &view.nodes.current, &knows, &mut |by, matrix| {
                 let column = self.first_row(at, by);
                 for (row, derivatives) in by_normals.chunks_exact(PairGeometry::<f64, S, M>::NORMALS).enumerate() {
                     let entries = &mut lhs[row * width + column..row * width + column + dim];
@@ -362,36 +362,32 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
 
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
         let Present { view, states, .. } = present;
-        (0..self.pairs.len())
-            .into_par_iter()
-            .with_min_len(32)
-            .map(|at| {
-                let mut out = Integral::default();
-                let Some((geometry, found)) = self.operators_now(at, present) else { return out };
-                out.facing = !matches!(found, Overlap::None);
-                if let Overlap::Cells(operators) = found {
-                    out.overlapping = true;
-                    let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
-                    let history = F::History::of(self.pairs[at].previous.operators(), &self.previous(at, view, states));
-                    let pair = Kinematics {
-                        operators,
-                        slave: geometry.slave,
-                        master: geometry.master,
-                        normals: geometry.nodal_normals,
-                        multipliers: S::nodal(|_| [0.0; 3]),
-                    };
-                    let slip = self.formulation.weighted_slip(&pair, &history);
-                    let trial = self.formulation.weighted_trial(&pair, &self.slave_constants(at, states), &history);
-                    for j in 0..S::NODES {
-                        out.area[j] = operators.d[j].iter().sum();
-                        out.gap[j] = gaps[j];
-                        out.slip[j] = slip[j];
-                        out.trial[j] = trial.map_or([0.0; 3], |trial| trial[j]);
-                    }
+        in_parallel(self.pairs.len(), &|at| {
+            let mut out = Integral::default();
+            let Some((geometry, found)) = self.operators_now(at, present) else { return out };
+            out.facing = !matches!(found, Overlap::None);
+            if let Overlap::Cells(operators) = found {
+                out.overlapping = true;
+                let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
+                let history = F::History::of(self.pairs[at].previous.operators(), &self.previous(at, view, states));
+                let pair = Kinematics {
+                    operators,
+                    slave: geometry.slave,
+                    master: geometry.master,
+                    normals: geometry.nodal_normals,
+                    multipliers: S::nodal(|_| [0.0; 3]),
+                };
+                let slip = self.formulation.weighted_slip(&pair, &history);
+                let trial = self.formulation.weighted_trial(&pair, &self.slave_constants(at, states), &history);
+                for j in 0..S::NODES {
+                    out.area[j] = operators.d[j].iter().sum();
+                    out.gap[j] = gaps[j];
+                    out.slip[j] = slip[j];
+                    out.trial[j] = trial.map_or([0.0; 3], |trial| trial[j]);
                 }
-                out
-            })
-            .collect()
+            }
+            out
+        })
     }
 
     fn keep_operators(&mut self, present: Present<'_>) {
@@ -399,7 +395,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
             let found = self.operators_now(at, present).map(|(_, found)| found).and_then(Overlap::cells);
             found.map_or_else(Previous::default, |found| Previous::of(&found))
         };
-        let kept: Vec<Previous> = (0..self.pairs.len()).into_par_iter().with_min_len(32).map(kept).collect();
+        let kept = in_parallel(self.pairs.len(), &kept);
         self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
     }
 
@@ -409,7 +405,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
             Some(choices_of(&geometry, &self.parameters.segmentation, &found.cells()?))
         };
         let choices = |at: usize| choices(at).unwrap_or(self.pairs[at].choices);
-        let choices: Vec<Choices> = (0..self.pairs.len()).into_par_iter().map(choices).collect();
+        let choices = in_parallel(self.pairs.len(), &choices);
         self.pairs.iter_mut().zip(choices).for_each(|(pair, choices)| pair.choices = choices);
     }
 

@@ -1,0 +1,134 @@
+//! Contact and ties of elements of second order, with each other and with those of first order: a uniform pressure is
+//! transmitted exactly (ANALYTIC), whatever the shapes.
+
+use crate::blocks::{Deck, Joint, Mesh, POISSON, Vec3};
+use serde_json::{Value, json};
+use zelus::{RunOptions, Silent, Simulation};
+
+/// What a block is made of: whether of simplices, and whether of second order, with nodes in the middle of faces or not.
+type Kind = (bool, Option<bool>);
+
+const LINEAR: Option<bool> = None;
+const SERENDIPITY: Option<bool> = Some(false);
+const FULL: Option<bool> = Some(true);
+
+/// Two blocks of unlike meshes one on the other, the upper one pressed down.
+fn stack(space: usize, kinds: [Kind; 2], upper_is_slave: bool) -> Mesh {
+    let last = space - 1;
+    let mut mesh = Mesh::new(space);
+    let mut block = |name: &str, (simplices, _): Kind, divisions: [usize; 3], from: f64, skew: f64| {
+        mesh.cut_cells(simplices);
+        mesh.block(name, divisions, |mut x| {
+            // Cells of unlike lengths, which stay parallelograms.
+            x[0] += skew * x[0] * (1.0 - x[0]);
+            x[last] = from + 0.5 * x[last];
+            x
+        })
+    };
+    let lower = block("Lower", kinds[0], [2, 2, 1], 0.0, 0.0);
+    let upper = block("Upper", kinds[1], if space == 2 { [3, 1, 1] } else { [3, 2, 1] }, 0.5, 0.2);
+    let (low, up) = (&lower[&(last, 1)], &upper[&(last, 0)]);
+    let slave = if upper_is_slave { up } else { low };
+    mesh.part("Slave", slave.0.clone(), slave.1.clone());
+    mesh.part("Interface", [low.0.clone(), up.0.clone()].concat(), [low.1.clone(), up.1.clone()].concat());
+    mesh.part("Bottom", lower[&(last, 0)].0.clone(), Vec::new());
+    mesh.part("Top", upper[&(last, 1)].0.clone(), upper[&(last, 1)].1.clone());
+    for (axis, name) in ["PlaneX", "PlaneY"].into_iter().enumerate().take(last) {
+        mesh.part(name, [lower[&(axis, 0)].0.clone(), upper[&(axis, 0)].0.clone()].concat(), Vec::new());
+    }
+    for (name, (_, order)) in ["Lower", "Upper"].into_iter().zip(kinds) {
+        order.into_iter().for_each(|full| mesh.raise(name, full));
+    }
+    mesh
+}
+
+/// Runs the stack under a pressure of 1; gives the largest error of displacements relative to the largest of them, and the
+/// least and the largest pressure of the slave nodes.
+fn patch(space: usize, kinds: [Kind; 2], joint: Joint, change: impl FnOnce(&mut Value)) -> Result<[f64; 3], String> {
+    // So stiff that the load, which acts on the deformed face, is that of the initial one.
+    let young = 1e11;
+    let mesh = stack(space, kinds, true);
+    let holds = |axis: usize| std::array::from_fn(|c| if c == axis { json!(0.0) } else { Value::Null });
+    let mut supports = vec![("Bottom".to_owned(), holds(space - 1))];
+    supports.extend(["PlaneX", "PlaneY"].iter().enumerate().take(space - 1).map(|(c, n)| (n.to_string(), holds(c))));
+    let deck = Deck { mesh, joint, supports, pressure: 1.0, young, steps: 1 };
+    let folder = tempfile::tempdir().expect("a folder");
+    deck.write(folder.path(), change);
+    let options = RunOptions::default();
+    let mut run =
+        Simulation::open(&folder.path().join("ProjectParameters.json"), &options).map_err(|error| error.to_string())?;
+    run.run(&mut Silent).map_err(|error| error.to_string())?;
+    let part = run.part().expect("a part");
+    let strain = 1.0 / young;
+    let exact = |[x, y, z]: Vec3| match space {
+        2 => [POISSON * (1.0 + POISSON) * strain * x, -(1.0 - POISSON * POISSON) * strain * y, 0.0],
+        _ => [POISSON * strain * x, POISSON * strain * y, -strain * z],
+    };
+    let found = run.field("DISPLACEMENT").expect("displacements");
+    let off = |(u, x): (&[f64], &Vec3)| {
+        let exact = exact(*x);
+        (0..3).map(|c| (u[c] - exact[c]).abs()).fold(0.0, f64::max)
+    };
+    let error = found.chunks(3).zip(&part.nodes.initial).map(off).fold(0.0, f64::max) / strain;
+    // Those of ties are told in a scale of their own.
+    let scale = run.report().parameters.get("scale factor k").copied();
+    let multipliers: Vec<f64> = match joint {
+        Joint::Frictionless => run.field("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE").expect("multipliers").to_vec(),
+        _ => {
+            let all = run.field("VECTOR_LAGRANGE_MULTIPLIER").expect("multipliers");
+            all.chunks(3).map(|lambda| lambda[space - 1].abs()).collect()
+        }
+    };
+    let slave = part.part("Slave").expect("the slave").nodes.clone();
+    let scale = scale.unwrap_or(multipliers[slave[0] as usize].recip());
+    let pressures = slave.iter().map(|&node| scale * multipliers[node as usize].abs());
+    let [least, most] = pressures.fold([f64::MAX, 0.0_f64], |[least, most], p| [least.min(p), most.max(p)]);
+    Ok([error, least, most])
+}
+
+/// Faces of nine nodes go with each other and with those of four.
+fn is_refused(space: usize, pair: [Kind; 2]) -> bool {
+    let is_full = |kind: &Kind| *kind == (false, FULL);
+    space == 3 && pair.iter().any(is_full) && !pair.iter().all(|kind| is_full(kind) || *kind == (false, LINEAR))
+}
+
+#[test]
+fn shapes_that_make_no_pairs_are_named() {
+    for other in [(true, LINEAR), (true, SERENDIPITY), (false, SERENDIPITY)] {
+        let said = patch(3, [other, (false, FULL)], Joint::Frictionless, |_| {}).unwrap_err();
+        assert!(said.contains("slaves of shape Quad9") && said.contains("hexahedra of 20 nodes"), "{said}");
+    }
+}
+
+/// Every pair of kinds in a space.
+fn pairs(space: usize) -> Vec<[Kind; 2]> {
+    let kinds: Vec<Kind> = match space {
+        2 => vec![(false, LINEAR), (true, SERENDIPITY), (false, SERENDIPITY), (false, FULL)],
+        _ => vec![(true, LINEAR), (false, LINEAR), (true, SERENDIPITY), (false, SERENDIPITY), (false, FULL)],
+    };
+    let all = kinds.iter().flat_map(|&a| kinds.iter().map(move |&b| [a, b]));
+    let is_curved = |pair: &[Kind; 2]| pair.iter().any(|(_, order)| order.is_some());
+    all.filter(|pair| is_curved(pair) && !is_refused(space, *pair)).collect()
+}
+
+#[test]
+fn a_uniform_pressure_is_transmitted_exactly() {
+    let mut problems = Vec::new();
+    for space in [2, 3] {
+        for kinds in pairs(space) {
+            for joint in [Joint::Frictionless, Joint::Frictional(0.3), Joint::Tied] {
+                match patch(space, kinds, joint, |_| {}) {
+                    Ok([error, least, most]) => {
+                        let pressures = (least - 1.0).abs().max((most - 1.0).abs());
+                        println!("{space}D {kinds:?} {joint:?}: {error:.1e}, pressure {pressures:.1e}");
+                        if !(error < 1e-10 && pressures < 1e-10) {
+                            problems.push(format!("{space}D {kinds:?} {joint:?}: {error:e}, {least} to {most}"));
+                        }
+                    }
+                    Err(said) => problems.push(format!("{space}D {kinds:?} {joint:?}: {said}")),
+                }
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}

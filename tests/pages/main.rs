@@ -1,0 +1,9 @@
+//! What is written is true: the book, documents, examples, the atlas, and the order of the code.
+
+mod atlas;
+mod book;
+mod documents;
+mod examples;
+mod layers;
+#[path = "../support/mod.rs"]
+mod support;

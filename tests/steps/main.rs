@@ -1,0 +1,11 @@
+//! Steps: time integration, stages, cuts, what Newton's iteration is helped by, impacts.
+
+#[path = "../support/boxes.rs"]
+mod boxes;
+mod impact;
+mod stages;
+mod step_cutting;
+mod strategies;
+#[path = "../support/mod.rs"]
+mod support;
+mod time_integration;
