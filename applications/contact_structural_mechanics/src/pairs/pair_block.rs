@@ -228,6 +228,8 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         S::nodal(|j| {
             let node = &states[slaves[j]];
             let area = positive(node.area);
+            // On a part of a facet of second order the share of a corner may be below zero; over all pairs they add up to the area.
+            let share = if node.area > 0.0 { own[j] } else { positive(own[j]) };
             let stiffness = self.parameters.nodal_stiffness(node.penalty, area);
             SlaveNode {
                 state: node.contact(),
@@ -235,7 +237,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
                 compliance: if self.parameters.compliant { node.penalty.recip() } else { 0.0 },
                 kept: node.kept_pressure,
                 stiffness,
-                area: if by_pair { area } else { positive(own[j]) },
+                area: if by_pair { area } else { share },
                 dynamic_factor: node.dynamic_factor,
                 friction: node.friction,
                 tangent: node.tangent,
