@@ -41,12 +41,13 @@ const fn case(folder: &'static str, changes: Change) -> Witness {
     Case { folder, like: true, changes }
 }
 
-const WEIGHTS: Witness = Test { file: "mpc_contact.rs", name: "weights_by_facets_are_had_by_name" };
-const SIDES: Witness = Test { file: "mpc_contact.rs", name: "sides_are_exchanged_where_supports_hold_the_slaves" };
-const BESIDE: Witness = Test { file: "like_kratos.rs", name: "nodes_beside_the_master_bear_nothing" };
-const ENERGY: Witness = Test { file: "impact.rs", name: "energy_that_a_coarse_slave_makes_is_accepted_by_name" };
-const DEPTH: Witness = Test { file: "soundness.rs", name: "soft_penalties_are_refused_beyond_a_share_of_the_mesh" };
-const IMPACTS: Witness = Test { file: "impact.rs", name: "without_redistribution_energy_grows" };
+const WEIGHTS: Witness = Test { file: "contact/mpc.rs", name: "weights_by_facets_are_had_by_name" };
+const SIDES: Witness = Test { file: "contact/mpc.rs", name: "sides_are_exchanged_where_supports_hold_the_slaves" };
+const BESIDE: Witness = Test { file: "contact/like_kratos.rs", name: "nodes_beside_the_master_bear_nothing" };
+const ENERGY: Witness = Test { file: "steps/impact.rs", name: "energy_that_a_coarse_slave_makes_is_accepted_by_name" };
+const DEPTH: Witness =
+    Test { file: "program/soundness.rs", name: "soft_penalties_are_refused_beyond_a_share_of_the_mesh" };
+const IMPACTS: Witness = Test { file: "steps/impact.rs", name: "without_redistribution_energy_grows" };
 
 const WITNESSES: &[(&str, &str, Witness)] = &[
     (ALM, "normal_variation", case("contact_2d/hertz_spheres_light_coarse", Results(1e-6))),
