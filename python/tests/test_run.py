@@ -169,7 +169,10 @@ def test_a_callback_sees_steps_and_may_end_the_run(deck):
     assert np.allclose(stopped.value.result.times, [0.25, 0.5])
 
 
-def test_ctrl_c_ends_after_the_step(deck):
+def test_ctrl_c_ends_after_the_step(deck, request):
+    # Shells let what they run in the background ignore the signal.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
     signals = []
 
     def interrupt(step):
