@@ -40,9 +40,7 @@ fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut 
     for table in [&mut heat.elements, &mut heat.conditions] {
         table.properties.fill(0);
     }
-    for &(name, components) in solver.variables() {
-        heat.nodes.history.add_named(name, components);
-    }
+    solver.add_variables(&mut heat)?;
     let materials = solver.settings.get("material_import_settings.materials_filename")?;
     let warnings = read_materials_of(&folder.join(materials.str()?), &materials.place(), &mut heat)?;
     warnings.into_iter().for_each(|warning| report.push(warning));

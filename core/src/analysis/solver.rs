@@ -8,7 +8,7 @@ use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::{Interaction, find_kind};
-use crate::model::{EntityKind, ModelPart, Rates, Role};
+use crate::model::{EntityKind, ModelPart, Named, Rates, Role, named};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
 use crate::registry::{self, Registered};
@@ -22,6 +22,8 @@ use crate::strategies::{
 
 /// Steps that nodes may remember.
 const MOST_LEVELS: usize = 100;
+/// Further variables with history.
+const AUXILIARY: &str = "auxiliary_variables_list";
 /// Objects of the settings that name strategy and builder.
 const STRATEGY: &str = "solving_strategy_settings";
 const BUILDER: &str = "builder_and_solver_settings";
@@ -256,9 +258,7 @@ impl SolverSettings {
             let is_it = named.is_some_and(|named| named.name == strategy.name);
             strategy.marks.iter().for_each(|mark| *part.info.marks.entry(mark).or_default() |= is_it);
         }
-        for &(name, components) in &self.variables {
-            part.nodes.history.add_named(name, components);
-        }
+        self.add_variables(part)?;
         for mark in &self.marks {
             part.info.marks.insert(mark, true);
         }
@@ -280,9 +280,27 @@ impl SolverSettings {
         self.extensions.iter().try_for_each(|(extension, own)| (extension.adopt)(own, folder, part, report))
     }
 
-    /// Variables with history that every node gets.
-    pub fn variables(&self) -> &[NodalVariable] {
-        &self.variables
+    /// Gives every node its variables with history, those of `auxiliary_variables_list` among them.
+    ///
+    /// # Errors
+    /// A name of no variable.
+    pub fn add_variables(&self, part: &mut ModelPart) -> Result<()> {
+        for &(name, components) in &self.variables {
+            part.nodes.history.add_named(name, components);
+        }
+        if self.settings.node().get(AUXILIARY).is_none() {
+            return Ok(());
+        }
+        for name in self.settings.get_strings(AUXILIARY)? {
+            let Some(variable @ Named::Whole(..)) = named(&name) else {
+                let problem =
+                    self.settings.error(AUXILIARY, "unknown-variable", format!("there is no variable {name:?}"));
+                return Err(problem.remedy("`zelus list variable` shows what there is").into());
+            };
+            let (column, _, components) = variable.column();
+            part.nodes.history.add_named(column, components);
+        }
+        Ok(())
     }
 
     /// How steps that fail are cut.

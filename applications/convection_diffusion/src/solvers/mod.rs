@@ -28,19 +28,6 @@ fn take_up(
     part.info.marks.insert(LINEAR, settings.get_str("analysis_type")? == "linear");
     part.info.marks.insert(AT_REST, false);
     part.info.marks.insert(AT_CENTRE, settings.node().get("gradients").and_then(Node::as_str) == Some("at_centre"));
-    for name in settings.get_strings("auxiliary_variables_list")? {
-        match zelus_core::model::named(&name) {
-            Some(variable) => part.nodes.history.add_named(variable.column().0, variable.column().2),
-            None => {
-                let problem = settings.error(
-                    "auxiliary_variables_list",
-                    "unknown-variable",
-                    format!("there is no variable {name:?}"),
-                );
-                return Err(problem.remedy("`zelus list variable` shows what there is").into());
-            }
-        }
-    }
     Ok(())
 }
 
