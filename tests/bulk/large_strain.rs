@@ -86,18 +86,27 @@ fn tension_with_one_pressure_an_element() {
         if stress(middle, middle) > 0.0 { high = middle } else { low = middle }
     }
     let law = "HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D";
-    for shape in [Shape::Hex8, Shape::Tet4] {
+    // A bar that has expanded by θ is one of another size.
+    for (shape, thermal) in [(Shape::Hex8, 1.0), (Shape::Tet4, 1.0), (Shape::Hex8, 1.05), (Shape::Tet4, 0.95)] {
         let grid = Grid::new(shape, &[2, 1, 1], |p| p);
-        let variables = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": nu});
-        let mut deck = Deck::new(&grid, "TotalLagrangianQ1P0MixedElement", law, variables);
-        deck.steps(0.1, 1.0).gauss("CAUCHY_STRESS_VECTOR");
+        let variables = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": nu, "THERMAL_EXPANSION_COEFFICIENT": 1e-3,
+            "REFERENCE_TEMPERATURE": 300.0});
+        let law = format!("{}{law}", if thermal == 1.0 { "" } else { "Thermal" });
+        let mut deck = Deck::new(&grid, "TotalLagrangianQ1P0MixedElement", &law, variables);
+        deck.steps(0.1, 1.0).gauss("CAUCHY_STRESS_VECTOR").set("auxiliary_variables_list", json!(["TEMPERATURE"]));
+        deck.process(
+            "assign_scalar_variable_process",
+            json!({"model_part_name": "Structure", "variable_name": "TEMPERATURE",
+            "value": 300.0 + (thermal - 1.0) / 1e-3, "constrained": false}),
+        );
         for axis in 0..3 {
             deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
         }
-        deck.fix(|p| p[0] == 1.0, [json!(format!("{}*t", stretch - 1.0)), FREE, FREE]);
+        deck.fix(|p| p[0] == 1.0, [json!(format!("{}*t", thermal * stretch - 1.0)), FREE, FREE]);
         let ran = deck.run();
         let corner = grid.nodes_where(|p| p == [1.0, 1.0, 1.0])[0];
-        assert_close(1.0 + ran.last("DISPLACEMENT", corner)[2], low, 1e-7, &format!("{shape:?} across"));
+        let across = 1.0 + ran.last("DISPLACEMENT", corner)[2];
+        assert_close(across, thermal * low, 1e-7, &format!("{shape:?} {thermal} across"));
         for (_, found) in ran.gauss("CAUCHY_STRESS_VECTOR", ran.times().len() - 1) {
             assert_close(found[0], stress(low, stretch), 1e-6, &format!("{shape:?} stress"));
         }

@@ -140,3 +140,62 @@ fn a_shallow_roof_of_two_bars() {
         assert!((found - expected).abs() < 1e-10 * area * young, "{t}: {found} {expected}");
     }
 }
+
+/// Two bars in a row between walls, the first hot: their force is −A E α ΔT/2; both hot, they yield. Under finite strain a bar that is free
+/// is longer by θ, and one that is held at its length is under S = θ E (1 − θ²)/2θ².
+#[test]
+fn bars_expand() {
+    let (young, area, expansion, rise) = (1000.0_f64, 0.5_f64, 1e-3, 40.0);
+    let text = |element: &str| {
+        mesh(
+            &[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]],
+            &format!(
+                "Begin Elements {element}\n1 0 1 2\n2 0 2 3\nEnd Elements\n\
+                 Begin SubModelPart Left\nBegin SubModelPartNodes\n1\nEnd SubModelPartNodes\nEnd SubModelPart\n\
+                 Begin SubModelPart Middle\nBegin SubModelPartNodes\n2\nEnd SubModelPartNodes\nEnd SubModelPart\n\
+                 Begin SubModelPart Right\nBegin SubModelPartNodes\n3\nEnd SubModelPartNodes\nEnd SubModelPart\n"
+            ),
+        )
+    };
+    let solver = json!({"solver_type": "Static", "time_stepping": {"time_step": 1.0}, "auxiliary_variables_list": ["TEMPERATURE"]});
+    let warm = |part: &str, temperature: f64| {
+        json!({"python_module": "assign_scalar_variable_process", "Parameters": {"model_part_name": format!("Structure.{part}"),
+            "variable_name": "TEMPERATURE", "value": temperature, "constrained": false}})
+    };
+    let found = |element: &str, law: &str, temperatures: [f64; 3], right: Value| {
+        let materials = json!({"properties": [{"model_part_name": "Structure", "properties_id": 1, "Material": {
+            "constitutive_law": {"name": law}, "Variables": {"YOUNG_MODULUS": young, "CROSS_AREA": area, "YIELD_STRESS": 8.0,
+                "HARDENING_MODULUS_1D": 100.0, "THERMAL_EXPANSION_COEFFICIENT": expansion, "REFERENCE_TEMPERATURE": 20.0},
+            "Tables": {}}}]});
+        let parts = ["Left", "Middle", "Right"];
+        let mut processes: Vec<Value> =
+            parts.into_iter().zip(temperatures).map(|(part, t)| warm(part, 20.0 + t)).collect();
+        processes.push(fix("Left", json!([0.0, 0.0, 0.0])));
+        processes.push(fix("Middle", json!([null, 0.0, 0.0])));
+        processes.push(fix("Right", right));
+        let results = run(&text(element), &materials, solver.clone(), json!(processes), 1.0);
+        let number = |node: usize, what: &str| results[format!("NODE_{node}")][what][0].as_f64().expect("a number");
+        [number(2, "DISPLACEMENT_X"), number(3, "DISPLACEMENT_X"), number(3, "REACTION_X")]
+    };
+    let near = |found: f64, exact: f64, what: &str| {
+        assert!((found - exact).abs() < 1e-9 * exact.abs(), "{what}: {found} {exact}")
+    };
+    let still = || json!([0.0, 0.0, 0.0]);
+    for element in ["TrussLinearElement3D2N", "TrussElement3D2N"] {
+        let theta = 1.0 + expansion * rise;
+        let [middle, end, _] = found(element, "ThermalTrussConstitutiveLaw", [rise; 3], json!([null, 0.0, 0.0]));
+        near(middle, theta - 1.0, element);
+        near(end, 2.0 * (theta - 1.0), element);
+        let [_, _, force] = found(element, "ThermalTrussConstitutiveLaw", [rise; 3], still());
+        let small = element.contains("Linear");
+        let stress = if small { young * (1.0 - theta) } else { young * (1.0 - theta * theta) / (2.0 * theta) };
+        near(force, area * stress, element);
+        let [_, _, yielding] = found(element, "ThermalTrussPlasticityConstitutiveLaw", [rise; 3], still());
+        let held = if small { theta - 1.0 } else { (theta * theta - 1.0) / (2.0 * theta * theta) };
+        let bound = 8.0 + 100.0 * (young * held - 8.0) / (young + 100.0);
+        near(yielding, -area * bound * if small { 1.0 } else { theta }, element);
+    }
+    let [middle, _, force] = found("TrussLinearElement3D2N", "ThermalTrussConstitutiveLaw", [rise, 0.0, 0.0], still());
+    near(middle, 0.25 * expansion * rise, "the mean of both ends");
+    near(force, -0.25 * area * young * expansion * rise, "the mean of both ends");
+}

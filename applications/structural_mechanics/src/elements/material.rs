@@ -8,6 +8,10 @@ use zelus_core::model::Properties;
 use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, law_of};
 use crate::variables::VOLUME_ACCELERATION;
 
+/// Why a law that expands has no answer.
+pub(super) const NO_TEMPERATURE: &str =
+    "its law expands with TEMPERATURE, which nodes do not have: solve for heat, too";
+
 /// Law and constants of one set of properties for one shape.
 pub(super) struct Material<const S: usize> {
     /// Id of the properties.
@@ -59,7 +63,7 @@ impl<const S: usize> Material<S> {
             let fact = format!("the law of properties {} {both} these elements", properties.id);
             let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
             let remedy = "TotalLagrangianQ1P0MixedElement3D8N goes with \
-                          HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D, and neither with others";
+                          HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D, also Thermal, and neither with others";
             return Err(problem.remedy(remedy).into());
         }
         Ok(Self {

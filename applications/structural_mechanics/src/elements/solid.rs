@@ -39,7 +39,8 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         Material::find(&self.materials, entity.properties.id)
     }
 
-    /// Volume and pressure of an element that holds one, p = −κ (J̄ − 1); no pressure in others.
+    /// Volume that is free of pressure, and the pressure of an element that holds one, p = −κ (J̄ − 1) with the volume over that one;
+    /// no pressure in others.
     fn pressure(
         material: &Material<S>,
         entity: &Gather<'_, NODES>,
@@ -50,8 +51,9 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         if let Some(bulk) = material.law.bulk_of_element() {
             for g in 0..material.rule.len() {
                 let point = Self::point(material, g, entity, motion, &[[0.0; DIM]; NODES], state)?;
-                volume += point.weight;
-                change += point.weight * (point.state.det_f - 1.0);
+                let free = material.law.free_volume(point.state.temperature);
+                volume += point.weight * free;
+                change += point.weight * (point.state.det_f - free);
             }
             change *= -bulk / volume;
         }

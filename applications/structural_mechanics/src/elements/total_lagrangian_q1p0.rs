@@ -1,7 +1,8 @@
 //! Total Lagrangian with one pressure an element, against volumetric locking at large strains (Q1P0).
 //!
 //! ∫ δE : S(E, p) dV with p = −κ (J̄ − 1), J̄ = ∫ J dV/V: the pressure that makes ∫ δp (J − 1 + p/κ) dV vanish. Its
-//! change adds κ/V g gᵀ to the stiffness, g = ∫ J Bᵀ C⁻¹ dV. (The reference program keeps p from iteration to
+//! change adds κ/V g gᵀ to the stiffness, g = ∫ J Bᵀ C⁻¹ dV. V is the initial volume, of laws that expand the one at which
+//! they are free, ∫ θ³ dV. (The reference program keeps p from iteration to
 //! iteration; it has the same value once converged.)
 
 use super::formulation::Formulation;

@@ -3,7 +3,8 @@
 //! With l_0, l the initial and present length, A CROSS_AREA, S_0 TRUSS_PRESTRESS_PK2 and x_21 = x_2 − x_1:
 //! E_gl = (l² − l_0²)/2l_0², f = A l_0 S x_21/l_0², S = S(E_gl) on the first node, the opposite on the second.
 //! The linear bar has ε = (u_2 − u_1)·t/l_0 along its initial direction t. Mass: A l_0 DENSITY, half a node when lumped.
-//! S follows from the strain by the law of bars that the properties name.
+//! S follows from the strain by the law of bars that the properties name. Bars that expand by θ = 1 + α (T − T₀), T the mean of
+//! both ends, are of θ³ their volume: S = θ S_m((E_gl − ½ (θ² − 1))/θ²); the linear bar has S = S_m(ε − (θ − 1)).
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{
@@ -15,8 +16,9 @@ use zelus_core::registry::find;
 use zelus_core::vector3::{dot, norm, sub};
 
 use super::gradients::nodal_vectors;
+use super::material::NO_TEMPERATURE;
 use crate::laws::{BarLaw, LawEntry, LawFactory, positive};
-use crate::variables::{DISPLACEMENT, VOLUME_ACCELERATION};
+use crate::variables::{DISPLACEMENT, TEMPERATURE, VOLUME_ACCELERATION};
 
 /// A bar in `DIM` dimensions; `LINEAR` for small displacements.
 pub struct Truss<const DIM: usize, const LINEAR: bool> {
@@ -45,6 +47,35 @@ impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
         }
         let now = sub(entity.current[1], entity.current[0]);
         0.5 * (dot(now, now) / (length * length) - 1.0)
+    }
+}
+
+impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
+    /// Stress at a strain, its derivative, and what is remembered after a step that ends so.
+    fn response(
+        &self,
+        strain: f64,
+        entity: &Gather<'_, 2>,
+        state: &[f64; 2],
+        view: &StepView<'_>,
+    ) -> Result<(f64, f64, [f64; 2]), String> {
+        let Some(expansion) = self.law.expansion() else {
+            return Ok(self.law.response(strain, self.prestress, *state));
+        };
+        let column = view.nodes.history.values(&TEMPERATURE, 0);
+        if column.is_empty() {
+            return Err(NO_TEMPERATURE.into());
+        }
+        let [first, second] = entity.scalars(column);
+        let thermal = expansion.strain(0.5 * (first + second));
+        if LINEAR {
+            return Ok(self.law.response(strain - thermal, self.prestress, *state));
+        }
+        let stretch = 1.0 + thermal;
+        let square = stretch * stretch;
+        let (stress, modulus, after) =
+            self.law.response((strain - 0.5 * (square - 1.0)) / square, self.prestress, *state);
+        Ok((stretch * stress, modulus / stretch, after))
     }
 }
 
@@ -113,7 +144,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
         }
         // a linear elastic bar has its external forces, the prestress among them, apart from those of the strain
         let strain = if want == Want::External { 0.0 } else { Self::strain(entity, view) };
-        let (stress, modulus, _) = self.law.response(strain, self.prestress, *state);
+        let (stress, modulus, _) = self.response(strain, entity, state, view)?;
         // derivative of the strain along x_2
         let along = match LINEAR {
             true => direction.map(|t| t / length),
@@ -146,7 +177,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
     }
 
     fn accept(&self, entity: &Gather<'_, 2>, state: &mut [f64; 2], view: &StepView<'_>) -> Result<(), String> {
-        *state = self.law.response(Self::strain(entity, view), self.prestress, *state).2;
+        *state = self.response(Self::strain(entity, view), entity, state, view)?.2;
         Ok(())
     }
 

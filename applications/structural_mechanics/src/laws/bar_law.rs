@@ -7,6 +7,7 @@ use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::Properties;
 use zelus_core::register;
 
+use super::expansion::Expansion;
 use super::law::{LawEntry, LawFactory};
 
 /// Stress along a bar, positive in tension.
@@ -18,6 +19,11 @@ pub trait BarLaw: Send + Sync {
     /// Whether the stress is a constant times the strain.
     fn is_linear(&self) -> bool {
         false
+    }
+
+    /// How it expands, if it does: [`BarLaw::response`] is then to the strain without the thermal one.
+    fn expansion(&self) -> Option<&Expansion> {
+        None
     }
 }
 

@@ -12,6 +12,7 @@ use zelus_core::model::Properties;
 use zelus_core::register;
 use zelus_core::registry::require;
 
+use super::bar_law::BarLaw;
 use super::expansion::{Expansion, without};
 use super::law::{ConstitutiveLaw, LawEntry, LawFactory, MakesLaw, Matrix, StrainState};
 use super::small_strain_plasticity::PLASTIC_WORK;
@@ -47,7 +48,7 @@ impl<const S: usize> Expanding<S> {
     fn inner<'a>(&self, state: &StrainState<'a, S>) -> (StrainState<'a, S>, [f64; 2], f64) {
         let thermal = self.expansion.strain(state.temperature);
         let (inner, factors) = mechanical(state, thermal);
-        (inner, factors, if state.small { 1.0 } else { (1.0 + thermal).powi(3) })
+        (inner, factors, if state.small { 1.0 } else { self.free_volume(state.temperature) })
     }
 }
 
@@ -66,6 +67,14 @@ impl<const S: usize> ConstitutiveLaw<S> for Expanding<S> {
 
     fn is_symmetric(&self, small: bool) -> bool {
         self.law.is_symmetric(small)
+    }
+
+    fn bulk_of_element(&self) -> Option<f64> {
+        self.law.bulk_of_element()
+    }
+
+    fn free_volume(&self, temperature: f64) -> f64 {
+        (1.0 + self.expansion.strain(temperature)).powi(3)
     }
 
     fn expands(&self) -> bool {
@@ -163,6 +172,33 @@ impl ConstitutiveLaw<3> for ExpandingPlane {
     }
 }
 
+/// A law of bars of the strain that is not thermal.
+struct ExpandingBar {
+    law: Box<dyn BarLaw>,
+    expansion: Expansion,
+}
+
+impl ExpandingBar {
+    /// The law of bars `name` that expands.
+    ///
+    /// # Errors
+    /// Constants that are missing or out of range.
+    fn of(name: &str, properties: &Properties) -> Result<Self> {
+        let LawFactory::Bar(make) = require::<LawEntry>(name)?.build else { unreachable!("{name} is a law of bars") };
+        Ok(Self { law: make(properties)?, expansion: Expansion::of(properties)? })
+    }
+}
+
+impl BarLaw for ExpandingBar {
+    fn response(&self, strain: f64, prestress: f64, remembered: [f64; 2]) -> (f64, f64, [f64; 2]) {
+        self.law.response(strain, prestress, remembered)
+    }
+
+    fn expansion(&self) -> Option<&Expansion> {
+        Some(&self.expansion)
+    }
+}
+
 /// The law `name` that expands.
 ///
 /// # Errors
@@ -180,6 +216,8 @@ macro_rules! register_expanding {
     ($($kind:ident $name:literal)*) => { $( register_expanding! { @ $kind $name } )* };
     (@ space $name:literal) => { register_expanding! { $name,
         LawFactory::Space(|properties| Ok(Box::new(expanding::<6>($name, false, properties)?))) } };
+    (@ bar $name:literal) => { register_expanding! { $name,
+        LawFactory::Bar(|properties| Ok(Box::new(ExpandingBar::of($name, properties)?))) } };
     (@ plane_stress $name:literal) => { register_expanding! { $name,
         LawFactory::PlaneStress(|properties| Ok(Box::new(expanding::<3>($name, true, properties)?))) } };
     (@ plane_strain $name:literal) => { register_expanding! { $name,
@@ -214,4 +252,7 @@ register_expanding! {
     space "HyperElastic3DLaw"
     plane_strain "HyperElasticPlaneStrain2DLaw"
     revolution "HyperElasticAxisym2DLaw"
+    space "HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D"
+    bar "TrussConstitutiveLaw"
+    bar "TrussPlasticityConstitutiveLaw"
 }

@@ -102,6 +102,11 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         None
     }
 
+    /// Volume that what is free has at a temperature, over its initial one.
+    fn free_volume(&self, _temperature: f64) -> f64 {
+        1.0
+    }
+
     /// How many numbers the law remembers of a point; all 0 before the first step.
     fn history(&self) -> usize {
         0

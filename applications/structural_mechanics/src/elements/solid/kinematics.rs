@@ -11,7 +11,7 @@ use super::Solid;
 use crate::elements::band::{self, BANDS_AS_KRATOS};
 use crate::elements::formulation::Formulation;
 use crate::elements::gradients::{gradient, nodal_vectors, padded, physical_gradients};
-use crate::elements::material::Material;
+use crate::elements::material::{Material, NO_TEMPERATURE};
 use crate::laws::StrainState;
 use crate::tensor::{IDENTITY, Tensor, inverse, pairs, strain_vector, stress_tensor};
 
@@ -60,9 +60,7 @@ impl<const NODES: usize> Motion<NODES> {
         if !material.law.expands() {
             return Ok(0.0);
         }
-        let nodal = self
-            .temperatures
-            .ok_or("its law expands with TEMPERATURE, which nodes do not have: solve for heat, too")?;
+        let nodal = self.temperatures.ok_or(NO_TEMPERATURE)?;
         Ok(n.iter().zip(nodal).map(|(n, t)| n * t).sum())
     }
 }
