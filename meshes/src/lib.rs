@@ -14,7 +14,9 @@ mod abaqus;
 mod gmsh;
 mod med;
 mod vtu;
+mod series;
 mod vtkhdf;
+mod xdmf;
 mod one_file;
 
 use std::path::Path;
@@ -26,6 +28,13 @@ use zelus_core::registry;
 
 pub use mesh::Mesh;
 pub use vtkhdf::write_vtkhdf;
+pub use xdmf::write_xdmf;
+
+/// Writes the results of a series of steps as another format; how many steps there were.
+pub type WriteResults = fn(&Path, &Path) -> Result<usize>;
+
+/// Formats that take the results of all steps, by the ending of their files.
+pub const RESULTS: [(&str, WriteResults); 2] = [("vtkhdf", write_vtkhdf), ("xdmf", write_xdmf)];
 
 /// The format of a file: the one named, or that of its ending.
 ///

@@ -10,7 +10,9 @@ use std::path::Path;
 use hdf5_pure::{AttrValue, FileBuilder, GroupBuilder};
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
 use zelus_core::io::replace_own_file;
-use zelus_core::io::results::{Column, Dataset, read_pvd, read_vtu};
+use zelus_core::io::results::{Column, Dataset};
+
+use crate::series::{meshes, read_series};
 
 /// The version of the format.
 const VERSION: [i64; 2] = [2, 0];
@@ -20,14 +22,7 @@ const VERSION: [i64; 2] = [2, 0];
 /// # Errors
 /// A file that is missing, damaged or not of this program; one that cannot be written.
 pub fn write_vtkhdf(from: &Path, to: &Path) -> Result<usize> {
-    let is_series = from.extension().is_some_and(|ending| ending == "pvd");
-    let files = if is_series { read_pvd(from)? } else { vec![(0.0, from.to_owned())] };
-    if files.is_empty() {
-        let problem = Diagnostic::error("no-steps", "the series names no file").at(Place::file(from));
-        return Err(problem.remedy("give a .pvd that a run has written").into());
-    }
-    let times: Vec<f64> = files.iter().map(|(time, _)| *time).collect();
-    let steps = files.iter().map(|(_, file)| read_vtu(file)).collect::<Result<Vec<_>>>()?;
+    let (times, steps) = read_series(from)?;
     let mut file = FileBuilder::new();
     let mut root = file.create_group("VTKHDF");
     root.set_attr("Version", AttrValue::I64Array(VERSION.to_vec()));
@@ -55,17 +50,15 @@ struct Meshes {
 
 impl Meshes {
     fn of(steps: &[Dataset]) -> Self {
-        let mut meshes = Self::default();
-        for (at, step) in steps.iter().enumerate() {
-            let before = at.checked_sub(1).map(|before| (&steps[before], meshes.begins[before]));
-            match before {
-                Some((last, begin)) if last.points == step.points && last.cells == step.cells => {
-                    meshes.begins.push(begin)
-                }
-                _ => meshes.add(step),
+        let mut all = Self::default();
+        for (at, (step, mesh)) in steps.iter().zip(meshes(steps)).enumerate() {
+            if mesh == at {
+                all.add(step);
+            } else {
+                all.begins.push(all.begins[mesh]);
             }
         }
-        meshes
+        all
     }
 
     fn add(&mut self, step: &Dataset) {

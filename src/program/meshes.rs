@@ -7,7 +7,7 @@ use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::Mark;
 use zelus_core::io::mdpa::MdpaDocument;
 use zelus_core::parameters::{Node, Object, Value};
-use zelus_meshes::{format, write_vtkhdf};
+use zelus_meshes::{RESULTS, format};
 
 use super::report::check_output;
 use super::say::say;
@@ -29,7 +29,8 @@ pub(super) struct Import {
 pub(super) struct Convert {
     /// The mesh to read, or the results (.pvd) of a run.
     from: PathBuf,
-    /// The mesh to write; its ending says in which format. The results of all steps go into one file that ends in .vtkhdf.
+    /// The mesh to write; its ending says in which format. The results of all steps go into a file that ends in .vtkhdf, or in .xdmf
+    /// with its numbers in one that ends in .h5.
     to: PathBuf,
     #[command(flatten)]
     how: How,
@@ -59,9 +60,10 @@ pub(super) fn import(arguments: Import) -> Result<()> {
 /// Writes a mesh in the format of the ending of its new name.
 pub(super) fn convert(arguments: &Convert) -> Result<()> {
     let (from, to) = (&arguments.from, &arguments.to);
-    if to.extension().is_some_and(|ending| ending == "vtkhdf") {
+    let ending = to.extension().and_then(|ending| ending.to_str());
+    if let Some((_, write)) = RESULTS.iter().find(|(known, _)| Some(*known) == ending) {
         check_output("the results", to, &[from], Mark::None)?;
-        let steps = write_vtkhdf(from, to)?;
+        let steps = write(from, to)?;
         say(&format!("written: {}, {steps} steps", to.display()));
         return Ok(());
     }

@@ -119,8 +119,8 @@ fn compress(bytes: &[u8]) -> io::Result<Vec<u8>> {
     encoder.finish()
 }
 
-/// Text as an attribute of XML may hold it.
-pub(super) fn escape(text: &str) -> String {
+/// Text as XML may hold it, in an attribute or between tags.
+pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
