@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::boxes::Boxes;
 use crate::runs::*;
-use crate::support::{Results, read_json, root, said, scratch_copy};
+use crate::support::{Results, contents, read_json, root, said, scratch_copy, zelus};
 
 /// Makes the channel of slug flow one whose heat is carried along paths, in time.
 const CARRIED: &[(&str, &str)] = &[
@@ -51,6 +51,27 @@ fn heat_beside_other_things() {
     let example = |name: &str| root().join("examples").join(name).to_string_lossy().into_owned();
     equals_serial(&example("shrink_fit_by_cooling"), &[], EQUAL, true);
     equals_serial(&example("graetz_slug_flow"), CARRIED, EQUAL, true);
+}
+
+/// In one iteration with a structure in contact: a rod that is cut, though its few facets are not.
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn heat_together_with_a_structure() {
+    let original = root().join("examples/barber_rod");
+    let arguments = ["run", "AtRest.json", "--report", "report.json"];
+    let before: Vec<_> = contents(&original).into_keys().collect();
+    let alone = scratch_copy(&original);
+    let output = zelus(alone.path(), &arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    let (expected, iterations) = outcome(alone.path(), &before);
+    for ranks in [2, 3] {
+        let folder = scratch_copy(&original);
+        let output = distributed(folder.path(), ranks, &arguments);
+        assert!(output.status.success(), "{ranks} ranks: {}", said(&output));
+        let (found, of_ranks) = outcome(folder.path(), &before);
+        assert_eq!(of_ranks, iterations, "{ranks} ranks");
+        assert_near(&found, &expected, EQUAL, &format!("{ranks} ranks"));
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::support::{contents, read_json, root, said, scratch_copy, zelus};
 
-pub const RANKS: [usize; 5] = [1, 2, 3, 4, 8];
+pub const RANKS: [usize; 4] = [1, 2, 3, 8];
 
 pub const DECK: &str = "ProjectParameters.json";
 

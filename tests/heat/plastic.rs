@@ -60,7 +60,7 @@ fn plastic_work_heats() {
             "THERMAL_EXPANSION_COEFFICIENT": 0.0, "REFERENCE_TEMPERATURE": 0.0});
         let pulled =
             vec![moved("Left", "X", "0.0"), moved("Foot", "Y", "0.0"), moved("Right", "X", &format!("{strain}*t"))];
-        for (strategy, steps_late) in [("staggered", 0), ("sequential", 1)] {
+        for (strategy, steps_late) in [("staggered", 0), ("monolithic", 0), ("sequential", 1)] {
             let step = 1.0 / f64::from(steps);
             let (results, report) = coupled(&slab, law, properties.clone(), strategy, step, pulled.clone());
             let at = strain * f64::from(steps - steps_late) / f64::from(steps);

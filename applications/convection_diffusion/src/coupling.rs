@@ -1,8 +1,8 @@
 //! Heat beside a structure: `thermal_solver_settings` of a structural solver.
 //!
 //! Both share the nodes. Each step solves for heat first, on the mesh as the last step left it, then for the structure, whose laws expand
-//! with the temperatures just found; then both again until the temperatures stay ([`sweeps`](crate::sweeps)). Elements and faces of heat
-//! are made on those of the structure, with materials of their own.
+//! with the temperatures just found; then both until they agree ([`way`](crate::way)). Elements and faces of heat are made on those of the
+//! structure, with materials of their own.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -25,6 +25,8 @@ use crate::elements::ABOUT_Y;
 use crate::heat::Heat;
 use crate::plastic_heat::PlasticHeat;
 use crate::sweeps::{Goal, Sweeps};
+use crate::together::Together;
+use crate::way::Way;
 
 /// Name of the extension.
 pub const EXTENSION: &str = "thermal_solver_settings";
@@ -137,13 +139,19 @@ fn around(
     system.conditions.retain(|block| is_thermal(block.as_ref()));
     let (strategy, _) = solver.strategy(part, &mut system, report)?;
     let plastic = PlasticHeat::of(part);
-    // Steps that are explicit are too short to be worth a second look.
-    let goal = Goal::of(part).filter(|_| structure.can_retry() && strategy.can_retry());
-    Ok(Box::new(Coupled {
-        heat: Arc::new(Mutex::new(Heat { strategy, system, plastic, last: None, sweeps: 0 })),
-        structure,
-        goal,
-    }))
+    let mut heat = Heat { strategy, system, plastic, last: None, sweeps: 0 };
+    let way = match Way::of(part) {
+        // Steps that are explicit are too short to be worth a second look.
+        Way::Staggered(_) if !(structure.can_retry() && heat.strategy.can_retry()) => Way::Sequential,
+        Way::Monolithic if !structure.takes_followers() || heat.strategy.linearized().is_none() => {
+            let fact = "\"strategy\": \"monolithic\" of \"coupling_settings\" needs implicit steps of heat and of the structure, \
+                        these by Newton's iteration (\"analysis_type\": \"non_linear\", no \"arc_length\")";
+            let problem = Diagnostic::error("invalid-value", fact).at(settings.place());
+            return Err(problem.remedy("choose such steps, or \"strategy\": \"staggered\"").into());
+        }
+        way => way,
+    };
+    Ok(Box::new(Coupled { heat: Arc::new(Mutex::new(heat)), structure, way }))
 }
 
 /// Heat first, then the structure.
@@ -151,8 +159,8 @@ struct Coupled {
     /// Shared with what looks again while the structure iterates.
     heat: Arc<Mutex<Heat>>,
     structure: Box<dyn SolutionStrategy>,
-    /// When to look no more; once only where there is none.
-    goal: Option<Goal>,
+    /// How both are solved.
+    way: Way,
 }
 
 impl Coupled {
@@ -161,7 +169,7 @@ impl Coupled {
     }
 
     /// The structure's step, with heat solved for again whenever it has converged.
-    fn solve_structure(
+    fn solve_by_turns(
         &mut self,
         goal: Goal,
         part: &mut ModelPart,
@@ -226,7 +234,13 @@ impl SolutionStrategy for Coupled {
     }
 
     fn remedy(&self) -> &'static str {
-        self.structure.remedy()
+        match self.way {
+            Way::Staggered(_) => {
+                "\"coupling_settings\": {\"strategy\": \"monolithic\"} where heat and structure drive each other, a shorter \
+                 \"time_step\", more \"max_iteration\", \"line_search\": true"
+            }
+            _ => self.structure.remedy(),
+        }
     }
 
     fn announce_every(&self) -> usize {
@@ -240,24 +254,29 @@ impl SolutionStrategy for Coupled {
         monitor: &mut dyn Monitor,
     ) -> Result<StepRecord> {
         let unknown = Columns::of(part).unknown.column;
-        let goal = self.goal.map(|goal| (goal, part.nodes.history.level(unknown, 0).to_vec()));
+        let start = part.nodes.history.level(unknown, 0).to_vec();
         let heat = self.heat().solve_step(part, monitor)?;
         if !heat.converged {
             return Ok(StepRecord { failure: heat.failure.map(|why| format!("heat: {why}")), ..heat });
         }
-        let mut record = match goal {
-            Some((goal, start)) => {
-                self.heat().sweeps = 0;
-                let mut record = self.solve_structure(goal, part, system, monitor, start)?;
-                record.interactions.push(("heat_sweeps".to_owned(), self.heat().sweeps as f64));
-                record
-            }
-            None => {
+        self.heat().sweeps = 0;
+        let mut record = match self.way {
+            Way::Sequential => {
                 let record = self.structure.solve_step(part, system, monitor)?;
                 self.heat().plastic.take(part, &system.elements);
                 record
             }
+            Way::Staggered(goal) => self.solve_by_turns(goal, part, system, monitor, start)?,
+            Way::Monolithic => {
+                system.interactions.push(Box::new(Together::new(self.heat.clone(), start)));
+                let record = self.structure.solve_step(part, system, monitor);
+                system.interactions.pop();
+                record?
+            }
         };
+        if self.way != Way::Sequential {
+            record.interactions.push(("heat_sweeps".to_owned(), self.heat().sweeps as f64));
+        }
         let heat = self.heat().last.take().unwrap_or(heat);
         record.interactions.push(("heat_iterations".to_owned(), heat.iterations.len() as f64));
         record.interactions.extend(heat.interactions);

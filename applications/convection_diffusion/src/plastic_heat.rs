@@ -31,6 +31,11 @@ impl PlasticHeat {
         Self { acts }
     }
 
+    /// Whether there is any.
+    pub(crate) fn acts(&self) -> bool {
+        self.acts
+    }
+
     /// Takes the work of the step that these elements of the structure have just converged to.
     pub(crate) fn take(&self, part: &mut ModelPart, elements: &[Box<dyn EntityBlock>]) {
         if !self.acts {

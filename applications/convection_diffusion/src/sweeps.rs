@@ -1,4 +1,4 @@
-//! Heat and a structure by turns within a step, until the temperatures stay: `coupling_settings`.
+//! Heat and a structure by turns within a step, until the temperatures stay: `coupling_settings`, "staggered".
 //!
 //! A sweep solves for heat from the start of the step, on the mesh and with the contact that the structure has just found: T̃ = H(S(T)),
 //! where T are the temperatures that the structure was solved with. The step ends where T̃ differs from T by no more than the tolerance
@@ -12,23 +12,14 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
-use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{ActiveSet, EntityBlock, Interaction, Outer, SetChange};
 use zelus_core::model::ModelPart;
-use zelus_core::register;
 use zelus_core::strategies::Silent;
 
 use crate::columns::Columns;
 use crate::heat::Heat;
 
-/// Name of the extension.
-pub const SETTINGS: &str = "coupling_settings";
-/// Values of the step data: what a deck has set.
-const TOLERANCE: &str = "COUPLING_TOLERANCE";
-const MOST: &str = "COUPLING_MAX_ITERATION";
-/// What holds where a deck says nothing.
-const USUAL: Goal = Goal { tolerance: 1e-6, most: 30 };
 /// Sweeps that are looked back on.
 const MEMORY: usize = 5;
 /// Share of the largest eigenvalue below which differences of sweeps count as dependent.
@@ -38,18 +29,9 @@ const DEPENDENT: f64 = 1e-12;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Goal {
     /// Largest change of a temperature, over their spread.
-    tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Sweeps that may take.
-    most: usize,
-}
-
-impl Goal {
-    /// That of a part; `None` where each is to be solved once.
-    pub(crate) fn of(part: &ModelPart) -> Option<Self> {
-        let value = |name, usual| part.info.value_or(name, usual);
-        let goal = Self { tolerance: value(TOLERANCE, USUAL.tolerance), most: value(MOST, USUAL.most as f64) as usize };
-        (goal.most > 0).then_some(goal)
-    }
+    pub(crate) most: usize,
 }
 
 /// Looks again at heat whenever the structure has converged.
@@ -100,7 +82,8 @@ impl Sweeps {
         if self.since >= self.goal.most {
             return Ok(Outer::Failed(format!(
                 "heat and structure do not agree after {} sweeps: temperatures still change by {largest:.1e} of {spread:.3e}; \
-                 perhaps nothing is at rest there; \"coupling_settings\": {{\"strategy\": \"sequential\"}} solves for each once a step",
+                 \"coupling_settings\": {{\"strategy\": \"monolithic\"}} finds both in one iteration, if anything is at rest there; \
+                 \"sequential\" solves for each once a step",
                 self.since
             )));
         }
@@ -119,7 +102,7 @@ fn temperatures(part: &ModelPart, level: usize) -> &[f64] {
 }
 
 /// The largest change, and the spread of temperatures at both ends of the step. Collective.
-fn sizes(part: &ModelPart, change: &[f64]) -> (f64, f64) {
+pub(crate) fn sizes(part: &ModelPart, change: &[f64]) -> (f64, f64) {
     let all = || temperatures(part, 0).iter().chain(temperatures(part, 1)).copied();
     let own = [
         change.iter().fold(0.0, |most: f64, d| most.max(d.abs())),
@@ -174,31 +157,4 @@ impl ActiveSet for Sweeps {
     fn after_convergence(&mut self, part: &mut ModelPart) -> Result<Outer> {
         self.look_again(part)
     }
-}
-
-register! { SolverExtensionEntry "coupling_settings",
-    about: "how heat and a structure are solved together within a step",
-    defaults: include_str!("../../../configs/solvers/coupling_settings.json"),
-    like: &[("kratos", include_str!("../../../configs/like_kratos/coupling_settings.json"))],
-    build: ExtensionDefinition {
-        values: |settings| {
-            let most = match settings.get_str("strategy")? {
-                "staggered" => settings.get_usize("max_iteration")?.max(1),
-                "sequential" => 0,
-                other => {
-                    let fact = format!("\"strategy\" is {other:?}");
-                    let problem = settings.error("strategy", "invalid-value", fact);
-                    return Err(problem.remedy("use \"staggered\" or \"sequential\"").into());
-                }
-            };
-            let tolerance = settings.get_f64("tolerance")?;
-            if !(tolerance > 0.0 && tolerance < 1.0) {
-                let problem = settings.error("tolerance", "invalid-tolerance", format!("\"tolerance\" is {tolerance}"));
-                return Err(problem.remedy("write a number between 0 and 1, e.g. 1e-6").into());
-            }
-            Ok(vec![(TOLERANCE, tolerance), (MOST, most as f64)])
-        },
-        acts_alone: true,
-        ..ExtensionDefinition::NOTHING
-    },
 }

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use zelus_contact_structural_mechanics::interface::Facet;
 use zelus_contact_structural_mechanics::mortar::condition_name;
 use zelus_contact_structural_mechanics::pairs::{FacingPoint, PairKey, group_by_shapes};
-use zelus_contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION};
+use zelus_contact_structural_mechanics::variables::{
+    CONTACT_GAP, CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION,
+};
 use zelus_contact_structural_mechanics::{FacingPair, FacingSurfaces, register_pair_conditions};
 use zelus_convection_diffusion::adoption::properties_of_heat;
 use zelus_convection_diffusion::columns::Columns;
@@ -69,26 +71,28 @@ impl ThermalContact {
         let status = part.nodes.values.values(&CONTACT_STATUS, 0);
         let is_computed =
             slave.nodes.iter().all(|&node| status.get(node as usize).is_some_and(|status| *status >= 0.0));
-        let pressures = if is_computed { part.nodes.values.values(&CONTACT_PRESSURE, 0) } else { &[] };
+        let [pressures, gaps] = [&CONTACT_PRESSURE, &CONTACT_GAP].map(|variable| part.nodes.values.values(variable, 0));
         let acts_apart = self.chosen.laws.iter().any(|law| law.acts_apart());
         let size = slave.extent(part);
         let work = work_of_friction(part);
         let share = share_of_slave(part, pair.facets);
         let point = |found: FacingPoint| {
-            let pressure = match pressures {
-                [] => 0.0,
-                all => slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * all[node as usize]).sum::<f64>(),
+            let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
+                slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * of(node as usize)).sum()
             };
-            let touches = if pressures.is_empty() { found.gap <= self.chosen.touching * size } else { pressure > 0.0 };
+            let (touches, pressure, gap) = if is_computed {
+                // Contact is what contact has decided: nodes in contact may still be apart while it iterates.
+                let touches = sum(&|node| f64::from(u8::from(status[node] > 0.0))) > 0.0;
+                (touches, sum(&|node| pressures[node]), if touches { sum(&|node| gaps[node]) } else { found.gap })
+            } else {
+                let touches = found.gap <= self.chosen.touching * size;
+                (touches, 0.0, if touches { 0.0 } else { found.gap })
+            };
             let round = if self.chosen.axisymmetric { TAU * found.position[radial(&part.info)] } else { 1.0 };
             let [masters, slaves] =
                 [(&found.master, master), (&found.slave, slave)].map(|(n, of)| &n[..of.nodes.len()]);
-            let meeting =
-                Meeting { pressure: pressure.max(0.0), gap: if touches { 0.0 } else { found.gap.max(0.0) }, touches };
-            let work: f64 = match is_computed {
-                true => slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * work(node)).sum(),
-                false => 0.0,
-            };
+            let meeting = Meeting { pressure: pressure.max(0.0), gap: gap.max(0.0), touches };
+            let work = if is_computed { sum(&work) } else { 0.0 };
             let across = self.chosen.across.as_ref().map_or(0.0, |(coefficient, speed)| {
                 let here = SpaceTime { current: found.position, initial: found.position, time: part.info.time };
                 coefficient * meeting.pressure * speed.value(&here).abs()
@@ -116,8 +120,8 @@ impl ThermalContact {
 }
 
 /// The work that friction has done on a slave node in the last step (force times way per area).
-fn work_of_friction(part: &ModelPart) -> impl Fn(u32) -> f64 {
-    let values = |all: &'_ [f64], node: u32| match all.get(3 * node as usize..) {
+fn work_of_friction(part: &ModelPart) -> impl Fn(usize) -> f64 {
+    let values = |all: &'_ [f64], node: usize| match all.get(3 * node..) {
         Some(&[x, y, z, ..]) => [x, y, z],
         _ => [0.0; 3],
     };

@@ -227,7 +227,7 @@ impl Assembler {
         } else {
             self.equations.leaning = equations.leaning;
         }
-        let graph = couplings(system).fold(1_u64, |sum, own| sum.wrapping_mul(31).wrapping_add(own.graph_version()));
+        let graph = graph_of(system);
         if self.coupling_graph != Some(graph) {
             let blocks = blocks_of(system);
             let is_own = |nodes: &[u32]| part.evaluates_pair(nodes);
@@ -256,6 +256,27 @@ impl Assembler {
         self.add_up(&mut rhs);
         self.seconds.residual += start.elapsed().as_secs_f64();
         Ok(rhs)
+    }
+
+    /// As [`Assembler::residual`], where blocks of interactions may be others than those of the matrix, which stays. Collective.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn residual_beside(
+        &mut self,
+        part: &ModelPart,
+        system: &System,
+        inertia: Option<&Inertia>,
+    ) -> Result<Vec<f64>> {
+        if self.coupling_graph == Some(graph_of(system)) {
+            return self.residual(part, system, inertia);
+        }
+        let is_own = |nodes: &[u32]| part.evaluates_pair(nodes);
+        let present = GroupMatrix::new(&system.dofs, &blocks_of(system), &[], is_own);
+        let kept = std::mem::replace(&mut self.coupling, present);
+        let found = self.residual(part, system, inertia);
+        self.coupling = kept;
+        found
     }
 
     /// What the entities of this rank give to the residual.
@@ -471,6 +492,11 @@ fn load_blocks(system: &System) -> Blocks<'_> {
 /// What interactions couple.
 fn couplings(system: &System) -> impl Iterator<Item = &dyn Coupling> {
     system.interactions.iter().filter_map(|interaction| interaction.coupling())
+}
+
+/// Changes whenever what they couple does.
+fn graph_of(system: &System) -> u64 {
+    couplings(system).fold(1, |sum, own| sum.wrapping_mul(31).wrapping_add(own.graph_version()))
 }
 
 fn blocks_of(system: &System) -> Blocks<'_> {

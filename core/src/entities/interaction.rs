@@ -186,6 +186,11 @@ pub trait Interaction: Send + Sync {
     fn observer(&mut self) -> Option<&mut dyn Observer> {
         None
     }
+
+    /// Unknowns of its own beside those of the strategy, where both are to be found in one Newton's iteration.
+    fn follower(&mut self) -> Option<&mut dyn Follower> {
+        None
+    }
 }
 
 /// Blocks of an interaction, and the unknowns it adds.
@@ -243,6 +248,10 @@ pub trait ActiveSet {
     /// The iteration has converged: the blocks of elements in that state, before [`ActiveSet::after_convergence`].
     fn look_at(&mut self, _part: &mut ModelPart, _elements: &[Box<dyn EntityBlock>]) {}
 
+    /// Writes into the fields what others read of it, pressures and slips, as they are in the present state; decides nothing and keeps
+    /// nothing of it, since that state may be one beside the iterates.
+    fn show(&mut self, _part: &mut ModelPart) {}
+
     /// The iteration has converged: an outer loop, as Uzawa's, changes what the iteration held constant.
     ///
     /// # Errors
@@ -298,4 +307,44 @@ pub trait Observer {
     ///
     /// `residual` holds the equations that are solved.
     fn observe(&mut self, part: &ModelPart, iteration: usize, residual: &[f64]);
+}
+
+/// Unknowns of another system, another physics', that follow those of a strategy through its iterations.
+///
+/// After each iteration they are brought into balance with the state found. The next increment then counts with what they would do to
+/// the forces: with unknowns u and forces r(u, T) of the strategy, and T of the follower, it solves
+///
+/// K δu = r + ∂r/∂T δT, δT = (∂T/∂u) δu
+///
+/// by products alone, so that no derivative between both has to be known ([`Follower::respond`] and [`Follower::nudge`] give them by
+/// differences).
+pub trait Follower {
+    /// Brings its unknowns into balance with the present state; why it cannot, if it cannot. Collective.
+    ///
+    /// # Errors
+    /// As [`SolutionStrategy::solve_step`](crate::strategies::SolutionStrategy::solve_step).
+    fn follow(&mut self, part: &mut ModelPart, elements: &[Box<dyn EntityBlock>]) -> Result<Option<String>>;
+
+    /// Whether it reads what elements of the strategy have found in the present state, as plastic work.
+    fn reads_elements(&self) -> bool {
+        false
+    }
+
+    /// Takes the present state as the one that differences refer to, and gives the increment that its unknowns lack there. Collective.
+    ///
+    /// # Errors
+    /// As [`Follower::follow`].
+    fn refer(&mut self, part: &mut ModelPart, elements: &[Box<dyn EntityBlock>]) -> Result<Vec<f64>>;
+
+    /// The increment of its unknowns from the state referred to into balance with the present one, by the tangent it has. Collective.
+    ///
+    /// # Errors
+    /// As [`Follower::follow`].
+    fn respond(&mut self, part: &mut ModelPart, elements: &[Box<dyn EntityBlock>]) -> Result<Vec<f64>>;
+
+    /// Moves its unknowns by a small share of an increment, and gives that share; 0 where the increment is none. Collective.
+    fn nudge(&self, part: &mut ModelPart, increment: &[f64]) -> f64;
+
+    /// Σ a b over its unknowns; collective.
+    fn dot(&self, a: &[f64], b: &[f64]) -> f64;
 }

@@ -19,7 +19,8 @@ pub(crate) use block_state::regroup;
 pub use constraint_entry::{ConstraintEntry, ConstraintFactory, ConstraintRow};
 pub use face_point::FacePoint;
 pub use interaction::{
-    ActiveSet, Coupling, FirstIterate, Interaction, Massless, MasslessNodes, Observer, Outer, Retry, SetChange,
+    ActiveSet, Coupling, FirstIterate, Follower, Interaction, Massless, MasslessNodes, Observer, Outer, Retry,
+    SetChange,
 };
 pub use join::Join;
 pub use kernel::{Gather, Kernel, KernelBlock};

@@ -68,5 +68,5 @@ pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use reactions::write_reactions;
 pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
-pub use strategy::{SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest, accept, recorded};
+pub use strategy::{Linearized, SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest, accept, recorded};
 pub(crate) use whereabouts::body_of;

@@ -1,5 +1,6 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
+mod followers;
 mod iteration;
 mod lost_body;
 mod references;
@@ -26,7 +27,7 @@ use super::meaning::Meaning;
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
-use super::strategy::{SolutionStrategy, StrategyEntry, accept, is_of_entities, recorded};
+use super::strategy::{Linearized, SolutionStrategy, StrategyEntry, accept, is_of_entities, recorded};
 use super::whereabouts::whereabouts;
 use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use crate::diagnostics::unfit;
@@ -177,6 +178,28 @@ impl SolutionStrategy for NewtonRaphson {
         let accepted = accept(part, system);
         self.phases.since("accept", start);
         accepted
+    }
+
+    fn linearized(&mut self) -> Option<&mut dyn Linearized> {
+        Some(self)
+    }
+
+    fn takes_followers(&self) -> bool {
+        !self.settings.linear
+    }
+}
+
+impl Linearized for NewtonRaphson {
+    fn out_of_balance(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+        let inertia = self.scheme.inertia(part, &system.dofs);
+        self.assembler.residual_beside(part, system, inertia.as_ref())
+    }
+
+    fn answer(&mut self, part: &ModelPart, system: &System, out_of_balance: &[f64]) -> Result<Vec<f64>> {
+        self.solver.aim(0.0);
+        let rhs = self.assembler.equations().reduce(out_of_balance);
+        let solved = self.solve(part, system, &rhs)?;
+        Ok(self.assembler.equations().expand(&solved.increment))
     }
 }
 

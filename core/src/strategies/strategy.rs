@@ -89,6 +89,32 @@ pub trait SolutionStrategy: Send {
     fn phases(&self) -> Phases {
         Phases::default()
     }
+
+    /// Its balance near the state it has solved, where it has a tangent there.
+    fn linearized(&mut self) -> Option<&mut dyn Linearized> {
+        None
+    }
+
+    /// Whether its iterations take a [`Follower`](crate::entities::Follower) with them.
+    fn takes_followers(&self) -> bool {
+        false
+    }
+}
+
+/// A balance with its tangent.
+pub trait Linearized {
+    /// What is out of balance in the present state, a number an unknown of `system`; blocks of interactions may be others than those of
+    /// the tangent. Collective.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    fn out_of_balance(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>>;
+
+    /// The increment of the unknowns that the last tangent answers this with. Collective.
+    ///
+    /// # Errors
+    /// A singular tangent, a solver that fails.
+    fn answer(&mut self, part: &ModelPart, system: &System, out_of_balance: &[f64]) -> Result<Vec<f64>>;
 }
 
 /// What a strategy is made from: what the deck names beside it, ready.

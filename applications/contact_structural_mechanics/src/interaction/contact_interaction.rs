@@ -395,6 +395,12 @@ impl ActiveSet for ContactInteraction {
         Ok(change)
     }
 
+    fn show(&mut self, part: &mut ModelPart) {
+        if self.acting {
+            self.contact.show(part, &self.set);
+        }
+    }
+
     fn after_convergence(&mut self, part: &mut ModelPart) -> Result<Outer> {
         if !self.acting {
             return Ok(Outer::Done);

@@ -14,6 +14,8 @@ use super::integration::integrate;
 use super::pair_states::settle_all;
 use super::pairing::{Pairing, PairingState};
 use super::points;
+use super::results::write_states;
+use super::set_stage::SetStage;
 use super::setup::Setup;
 use crate::flags::{MASTER, SLAVE};
 use crate::interface::{Roles, add_contact_part, interfaces, warnings_of_pairs};
@@ -180,6 +182,16 @@ impl ContactState {
     /// Recomputes overlaps, weighted gaps and areas in the present configuration.
     pub(super) fn integrate(&mut self, part: &ModelPart) {
         integrate(part, &mut self.pairing, &mut self.states, &mut self.setup);
+    }
+
+    /// Writes pressures, slips and gaps as they are in the present configuration, with the set as it stands, and forgets them.
+    pub(super) fn show(&mut self, part: &mut ModelPart, set: &SetStage) {
+        let (states, resolution, overlaps) = (self.states.clone(), self.setup.resolution, self.pairing.overlaps());
+        self.integrate(part);
+        set.find_tractions(part, &mut self.states, &self.setup);
+        write_states(&mut part.nodes, &self.states, self.setup.settings.family.frictional());
+        (self.states, self.setup.resolution) = (states, resolution);
+        self.pairing.set_overlaps(&overlaps);
     }
 
     /// Takes in pairs that were found within the step.

@@ -131,6 +131,18 @@ impl Rules<'_> {
         change
     }
 
+    /// Takes pressures and tractions from decisions, and nothing else.
+    pub(super) fn press(self, nodes: &Nodes, states: &mut SlaveStates, decisions: &[(u32, Decision)]) {
+        for (node, decision) in decisions {
+            let pressure = self.acting_pressure(nodes, *node, &states[*node], decision);
+            let state = &mut states[*node];
+            state.pressure = pressure;
+            if self.family.frictional() {
+                state.traction = decision.traction;
+            }
+        }
+    }
+
     /// The pressure that acts at a slave node: k λ·n + ε g̃ where pairs augment, else that of the decision.
     fn acting_pressure(self, nodes: &Nodes, node: u32, state: &SlaveState, decision: &Decision) -> f64 {
         match (self.family.multiplier, self.parameters.augmentation) {

@@ -18,7 +18,7 @@ use super::nodal_sums::NodalSums;
 use super::setup::Setup;
 use super::step_parameters::{NormalVariation, StepParameters};
 use crate::interface::{Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, set_sides, sides, slave_nodes};
-use crate::mortar::{Choices, SegmentationSettings};
+use crate::mortar::{Choices, MOST_NODES, SegmentationSettings};
 use crate::pairs::{
     ContactBlock, Integral, Pair, PairKey, PairRequest, Present, check_pairs, condition_name, group_by_shapes,
     group_by_surroundings,
@@ -302,6 +302,17 @@ impl Pairing {
         }
         let meetings = flags.chunks_exact(2).map(|pair| Meeting { overlapping: pair[0], facing: pair[1] }).collect();
         (integrals, meetings)
+    }
+
+    /// What the last integration has found of each pair: whether it overlaps, and the areas at its nodes.
+    pub(super) fn overlaps(&self) -> Vec<(bool, [f64; MOST_NODES])> {
+        self.blocks.iter().flat_map(|block| block.pairs()).map(|pair| (pair.overlapping, pair.area)).collect()
+    }
+
+    /// Goes back to what an integration had found.
+    pub(super) fn set_overlaps(&mut self, overlaps: &[(bool, [f64; MOST_NODES])]) {
+        let pairs = self.blocks.iter_mut().flat_map(|block| block.pairs_mut());
+        pairs.zip(overlaps).for_each(|(pair, of_pair)| (pair.overlapping, pair.area) = *of_pair);
     }
 
     /// Takes the normals of masters, and of `slaves` too, from the present configuration.

@@ -58,6 +58,13 @@ impl SetStage {
         rules.apply(part, states, &decisions, &before)
     }
 
+    /// Finds pressures and tractions in the present state, and holds the set.
+    pub(super) fn find_tractions(&self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
+        let rules = setup.rules();
+        let (decisions, _) = rules.decide(&part.nodes, states, &mut self.released.clone());
+        rules.press(&part.nodes, states, &decisions);
+    }
+
     /// Lets the rules decide in a converged state, where the set was held.
     pub(super) fn settle(&mut self, part: &mut ModelPart, states: &mut SlaveStates, setup: &Setup) -> Outer {
         if !self.cycles.holds() {

@@ -7,14 +7,14 @@ use zelus_core::register;
 
 use crate::coupling::EXTENSION;
 use crate::scheme::SCHEME;
-use crate::sweeps;
+use crate::way;
 
 /// The object with the settings of the structure.
 const STRUCTURE: &str = "structural_solver_settings";
 
 /// Keys of the solver; those of the two within are theirs.
 const KEYS: [&str; 7] =
-    ["solver_type", "domain_size", "echo_level", STRUCTURE, EXTENSION, sweeps::SETTINGS, "time_integration_method"];
+    ["solver_type", "domain_size", "echo_level", STRUCTURE, EXTENSION, way::SETTINGS, "time_integration_method"];
 
 /// Makes the structure's settings those of the solver, with the ones of heat inside, and names all parts by the structure's root.
 fn unfold(deck: &mut Node) -> Result<()> {
@@ -32,12 +32,12 @@ fn unfold(deck: &mut Node) -> Result<()> {
     let (structure, heat) = (name(STRUCTURE, "Structure")?, name(EXTENSION, "ThermalModelPart")?);
     let Value::Object(top) = &mut deck.value else { return Ok(()) };
     let Some(Node { value: Value::Object(members), .. }) = top.get_mut("solver_settings") else { return Ok(()) };
-    let coupling = members.remove(sweeps::SETTINGS);
+    let coupling = members.remove(way::SETTINGS);
     let (Some(mut own), Some(of_heat)) = (members.remove(STRUCTURE), members.remove(EXTENSION)) else { return Ok(()) };
     // Other programs have defaults for it, which are laid under what is there.
     let mut nothing = of_heat.node.clone();
     nothing.value = Value::Object(Object::default());
-    own.node.set_path(sweeps::SETTINGS, coupling.map_or(nothing, |coupling| coupling.node))?;
+    own.node.set_path(way::SETTINGS, coupling.map_or(nothing, |coupling| coupling.node))?;
     if let Value::Object(members) = &mut own.node.value {
         members.insert(of_heat);
     }

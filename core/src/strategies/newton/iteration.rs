@@ -163,7 +163,10 @@ impl NewtonRaphson {
         if !self.settings.linear {
             part.info.nl_iteration = iteration;
         }
-        let solved = match self.solve_tangent(iteration, step, part, system, monitor) {
+        let solved = self
+            .solve_tangent(iteration, step, part, system, monitor)
+            .and_then(|solved| self.with_follower(solved, &step.prescribed, part, system));
+        let solved = match solved {
             Ok(solved) => solved,
             Err(failed) => return self.give_up(failed, iteration, &step.residual, part, system),
         };
@@ -184,6 +187,9 @@ impl NewtonRaphson {
         let restart =
             step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
         let change = self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
+        if let Some(why) = self.follow(part, system, &mut step.residual)? {
+            return Ok(Turn::Failed(why));
+        }
         let balanced = self.assembler.equations().balanced(&step.residual);
         if iteration == 1 {
             self.refer_to_first(system, &balanced, &mut step.references);
@@ -464,7 +470,7 @@ impl NewtonRaphson {
         (last, if self.settings.continue_if_converging && !self.settings.linear { 2 * last } else { last })
     }
 
-    fn residual(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+    pub(super) fn residual(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let inertia = self.scheme.inertia(part, &system.dofs);
         self.assembler.residual(part, system, inertia.as_ref())
     }
