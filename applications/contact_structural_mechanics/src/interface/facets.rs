@@ -145,7 +145,6 @@ pub fn interfaces(
     if part.info.is(INCOMPLETE) {
         return Ok(Vec::new());
     }
-    let faces = boundary_faces(part);
     let mut named: Vec<(&String, &Vec<String>)> = parts.iter().filter(|(_, list)| !list.is_empty()).collect();
     let zero = "0".to_owned();
     let whole = Vec::new();
@@ -153,6 +152,7 @@ pub fn interfaces(
     if skin {
         named.push((&zero, &whole));
     }
+    let faces = boundary_faces(part, &nodes_of_parts(part, named.iter().flat_map(|(_, list)| *list), skin)?);
     let mut out = Vec::new();
     for (key, list) in named {
         let mut found: Vec<Facet> = Vec::new();
@@ -462,12 +462,30 @@ fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource
     Ok(Facet { nodes, shape, source, element, properties, role: Roles::Open })
 }
 
-fn boundary_faces(part: &ModelPart) -> Faces {
+/// Of each node, whether it is one of these parts or of their conditions; of `all`, that it is.
+///
+/// # Errors
+/// A part that does not exist.
+fn nodes_of_parts<'a>(part: &ModelPart, names: impl Iterator<Item = &'a String>, all: bool) -> Result<Vec<bool>> {
+    let mut is_one = vec![all; part.nodes.len()];
+    for name in names {
+        let sub = part.part(name)?;
+        let of_conditions = sub.conditions.iter().flat_map(|&at| part.conditions.nodes(at));
+        sub.nodes.iter().chain(of_conditions).for_each(|&node| is_one[node as usize] = true);
+    }
+    Ok(is_one)
+}
+
+/// The faces of elements all nodes of which are `wanted`.
+fn boundary_faces(part: &ModelPart, wanted: &[bool]) -> Faces {
     let mut faces = Faces::default();
     for element in 0..part.elements.len() as u32 {
         let Some(cell) = part.elements.kinds[element as usize].cell.map(Shape::cell) else { continue };
         let nodes = part.elements.nodes(element);
-        for facet in cell.faces {
+        if !nodes.iter().any(|&node| wanted[node as usize]) {
+            continue;
+        }
+        for facet in cell.faces.iter().filter(|facet| facet.nodes.iter().all(|&n| wanted[nodes[n] as usize])) {
             let face: Vec<u32> = facet.nodes.iter().map(|&n| nodes[n]).collect();
             let mut sorted = face.clone();
             sorted.sort_unstable();

@@ -138,3 +138,80 @@ pub fn overlapping_pairs(
     }
     pairs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interface::{FacetSource, Roles};
+    use crate::search::{GapCheck, SearchDistance, WithinStep};
+    use zelus_core::geometry::Shape;
+    use zelus_core::model::Nodes;
+
+    /// Warped quadrilaterals and triangles of all sizes, turned about, slaves and masters by turns.
+    fn surfaces(count: usize) -> (ModelPart, Interface) {
+        let mut state = 11_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
+        };
+        let (mut points, mut facets) = (Vec::new(), Vec::new());
+        for at in 0..count {
+            let centre = [2.0 * random(), 2.0 * random(), 0.5 * random()];
+            let (size, tilt) = (0.1 + 0.4 * random().abs(), [0.6 * random(), 0.6 * random()]);
+            let is_slave = at % 2 == 0;
+            let corners: &[[f64; 2]] = match at % 3 {
+                0 => &[[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]],
+                _ => &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
+            };
+            let mut nodes: Vec<u32> = (0..corners.len()).map(|k| (points.len() + k) as u32).collect();
+            for [x, y] in corners {
+                let z = tilt[0] * x + tilt[1] * y + 0.1 * random();
+                points.push([x, y, &z].map(|c| size * c));
+                let last = points.len() - 1;
+                (0..3).for_each(|c| points[last][c] += centre[c]);
+            }
+            if !is_slave {
+                nodes.reverse();
+            }
+            facets.push(Facet {
+                shape: if corners.len() == 3 { Shape::Tri3 } else { Shape::Quad4 },
+                nodes,
+                source: FacetSource::Face(0),
+                element: 0,
+                properties: 0,
+                role: if is_slave { Roles::Slave } else { Roles::Master },
+            });
+        }
+        let mut part = ModelPart::new("Structure");
+        part.info.domain_size = 3;
+        part.nodes = Nodes::new((1..=points.len()).collect(), points);
+        part.nodes.history.add(&NORMAL);
+        (part, Interface { facets, ..Interface::default() })
+    }
+
+    #[test]
+    fn facets_that_the_search_leaves_out_share_no_area() {
+        let (part, interface) = surfaces(240);
+        let search = SearchSettings {
+            factor: 1e3,
+            distance: SearchDistance::BetweenFacets,
+            normal_orientation_threshold: 0.0,
+            within_step: WithinStep::Facing,
+            check: GapCheck::CheckMapping,
+            dynamic: false,
+        };
+        let of = |role: Roles| (0..240_u32).filter(move |&f| (f % 2 == 0) == (role == Roles::Slave));
+        let near: BTreeSet<(u32, u32)> =
+            candidates(&part, &interface, &search).into_iter().map(|found| (found.slave, found.master)).collect();
+        let (mut overlapping, mut left_out) = (0, 0);
+        for (slave, master) in of(Roles::Slave).flat_map(|s| of(Roles::Master).map(move |m| (s, m))) {
+            let facets = [slave, master].map(|at| &interface.facets[at as usize]);
+            let settings = SegmentationSettings::default();
+            let overlaps = facet_operators(&part, facets[0], facets[1], &settings).is_some();
+            assert!(!overlaps || near.contains(&(slave, master)), "facets {slave} and {master}");
+            overlapping += usize::from(overlaps);
+            left_out += usize::from(!near.contains(&(slave, master)));
+        }
+        assert!(overlapping > 300 && left_out > 10 * overlapping, "{overlapping} overlap, {left_out} left out");
+    }
+}

@@ -2,10 +2,13 @@
 
 use rayon::prelude::*;
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{norm, sub};
+use zelus_core::vector3::{dot, norm, scale, sub};
 
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles};
+
+/// Radii within which circles count as meeting.
+const SLACK: f64 = 1.1;
 
 /// How a search decides which slave nodes start the step in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
@@ -68,7 +71,8 @@ pub struct Candidate {
     pub within_reach: bool,
 }
 
-/// Candidates of an interface in the present configuration, ascending.
+/// Candidates of an interface in the present configuration, ascending; none of those that certainly share no area there, unless nodes are
+/// looked for elsewhere.
 ///
 /// The reach is a multiple of the distance from the centre of the slave to its farthest node, as decks set it. Where it is
 /// measured between centres, facets whose boxes meet although their centres are farther apart are given too, marked.
@@ -76,16 +80,19 @@ pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSett
     let of_role = |role: Roles| -> Vec<u32> {
         (0..interface.facets.len() as u32).filter(|&f| interface.facets[f as usize].role == role).collect()
     };
-    among(part, interface, &of_role(Roles::Slave), &of_role(Roles::Master), settings)
+    // Moved bodies and nodes that touch are judged by what is near, not by what overlaps now.
+    let overlapping = !settings.dynamic && settings.check != GapCheck::DirectCheck;
+    among(part, interface, &of_role(Roles::Slave), &of_role(Roles::Master), settings, overlapping)
 }
 
-/// Candidates between two lists of facets.
+/// Candidates between two lists of facets; `overlapping` leaves out those that certainly share no area.
 pub(super) fn among(
     part: &ModelPart,
     interface: &Interface,
     slaves: &[u32],
     masters: &[u32],
     settings: &SearchSettings,
+    overlapping: bool,
 ) -> Vec<Candidate> {
     let place = |f: u32| Place::of(part, &interface.facets[f as usize]);
     let places: Vec<Place> = masters.iter().map(|&m| place(m)).collect();
@@ -101,6 +108,7 @@ pub(super) fn among(
                 .into_iter()
                 .map(|m| (masters[m as usize], &places[m as usize]))
                 .filter(|(_, other)| norm(sub(own.normal, other.normal)) >= settings.normal_orientation_threshold)
+                .filter(|(_, other)| !overlapping || own.may_overlap(other))
                 .filter_map(|(master, other)| {
                     let within_reach = match settings.distance {
                         SearchDistance::BetweenFacets => true,
@@ -122,6 +130,8 @@ pub(super) struct Place {
     pub(super) normal: [f64; 3],
     /// Distance from the centre to the farthest node.
     pub(super) radius: f64,
+    /// Whether it is a surface of first order.
+    is_flat: bool,
 }
 
 impl Place {
@@ -133,6 +143,16 @@ impl Place {
             centre,
             normal: facet.normal_at(&points),
             radius: points.iter().map(|p| norm(sub(*p, centre))).fold(0.0, f64::max),
+            is_flat: facet.shape.dim() == 2 && facet.shape.cell().corners() == points.len(),
         }
+    }
+
+    /// Whether this slave and that master may share an area: seen along the slave's normal, as surfaces of first order are cut, the
+    /// circles around both meet.
+    fn may_overlap(&self, master: &Self) -> bool {
+        let way = sub(master.centre, self.centre);
+        let along = dot(way, self.normal);
+        let across = norm(sub(way, scale(self.normal, along)));
+        !(self.is_flat && master.is_flat) || across <= SLACK * (self.radius + master.radius)
     }
 }

@@ -20,7 +20,7 @@ pub fn assign_roles(part: &ModelPart, interface: &mut Interface, settings: &Sear
     let all: Vec<u32> = (0..count).collect();
     interface.facets.iter_mut().for_each(|f| f.role = Roles::Open);
     let mut facing: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for candidate in among(part, interface, &all, &all, settings).into_iter().filter(|c| c.within_reach) {
+    for candidate in among(part, interface, &all, &all, settings, false).into_iter().filter(|c| c.within_reach) {
         let (a, b) = (&interface.facets[candidate.slave as usize], &interface.facets[candidate.master as usize]);
         let apart = a.nodes.iter().all(|n| !b.nodes.contains(n));
         let (from, to) = (Place::of(part, a), Place::of(part, b));
