@@ -158,15 +158,11 @@ where
             }
             let stress =
                 material.law.stress(&point.state, F::MEASURE, if lhs.is_empty() { None } else { Some(&mut d) });
-            let b = Self::b_matrix::<SIZE>(&point);
-            for (row, s) in b.iter().zip(&stress) {
-                for (r, b) in rhs.iter_mut().zip(row) {
-                    *r -= point.weight * s * b;
-                }
-            }
+            Self::subtract_internal(&point, &stress, rhs);
             if lhs.is_empty() {
                 continue;
             }
+            let b = Self::b_matrix::<SIZE>(&point);
             add_stiffness(point.weight, &d, &b, whole, &mut upper);
             if F::CONSTANT_PRESSURE {
                 let f = inverse(&point.state.f);

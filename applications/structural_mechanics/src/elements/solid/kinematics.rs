@@ -258,6 +258,23 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         b
     }
 
+    /// Subtracts Bᵀ s times the weight: with T = F s where B holds F, else s, this is T ∇N_i, and T_θθ N_i/r about an axis.
+    pub(super) fn subtract_internal<const SIZE: usize>(
+        point: &Point<'_, NODES, DIM, S>,
+        stress: &[f64; S],
+        rhs: &mut [f64; SIZE],
+    ) {
+        let s = stress_tensor(stress);
+        let t = if F::FINITE && !F::PRESENT { point.state.f * s } else { s } * point.weight;
+        let trace = if F::MEAN_DILATATION { point.weight * s.trace() } else { 0.0 };
+        for (i, (r, dn)) in rhs.chunks_exact_mut(DIM).zip(&point.dn).enumerate() {
+            for a in 0..DIM {
+                r[a] -= (0..DIM).map(|b| t[(a, b)] * dn[b]).sum::<f64>() + trace * point.excess[i][a];
+            }
+            r[0] -= t[(2, 2)] * point.hoop[i];
+        }
+    }
+
     /// ∇N_i · s · ∇N_j on the diagonal of each block of nodes, times the weight; the upper triangle unless the `whole` is asked for.
     pub(super) fn add_geometric<const SIZE: usize>(
         point: &Point<'_, NODES, DIM, S>,
