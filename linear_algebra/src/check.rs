@@ -1,5 +1,7 @@
 //! What every engine does before and after its own work: look at the input, refine and measure the answer.
 
+use rayon::prelude::*;
+
 use crate::ghosts::Ghosts;
 use crate::solver::SolveError;
 use crate::system::System;
@@ -8,11 +10,20 @@ use crate::vector;
 /// Largest number of equations named in an error.
 pub(crate) const NAMED_EQUATIONS: usize = 16;
 
+/// Entries or equations that one task looks at.
+const CHUNK: usize = 1 << 14;
+
 /// Nodes without equations that a layout may have, for each equation.
 const NODES_PER_EQUATION: usize = 64;
 
 /// Refuses input whose sizes do not fit or that is not finite.
 pub(crate) fn input(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), SolveError> {
+    vectors(system, rhs, x)?;
+    matrices(system, true)
+}
+
+/// Refuses vectors whose sizes do not fit, and a right-hand side that is not finite.
+pub(crate) fn vectors(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), SolveError> {
     let n = system.equations();
     let sizes = [
         ("layout.node", system.layout.node.len()),
@@ -33,9 +44,16 @@ pub(crate) fn input(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), S
     if let Some(i) = rhs.iter().position(|b| !b.is_finite()) {
         return Err(SolveError::Failed(format!("right-hand side of equation {i} is {}", rhs[i])));
     }
-    for (what, matrix) in [("matrix", Some(system.bulk)), ("coupling matrix", system.coupling)] {
+    Ok(())
+}
+
+/// Refuses matrices that are not finite; the bulk is looked at where asked for.
+pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), SolveError> {
+    let bulk = Some(system.bulk).filter(|_| looks_at_bulk);
+    for (what, matrix) in [("matrix", bulk), ("coupling matrix", system.coupling)] {
         let Some(matrix) = matrix else { continue };
-        if let Some(at) = matrix.values.iter().position(|a| !a.is_finite()) {
+        let all = matrix.values.par_chunks(CHUNK).all(|values| values.iter().all(|a| a.is_finite()));
+        if let Some(at) = matrix.values.iter().position(|a| !all && !a.is_finite()) {
             let row = matrix.row_starts.partition_point(|&start| start <= at) - 1;
             let (column, value) = (matrix.columns[at], matrix.values[at]);
             return Err(SolveError::Failed(format!("entry ({row}, {column}) of the {what} is {value}")));
@@ -48,7 +66,8 @@ pub(crate) fn input(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(), S
 pub(crate) fn empty_rows(system: &System<'_>) -> Result<(), SolveError> {
     let is_zero = |i: usize| system.row(i).next().is_none();
     let is_own = system.shared.map(Ghosts::is_own);
-    let own = (0..system.equations()).filter(|&i| is_own.as_ref().is_none_or(|is_own| is_own[i]));
+    let is_here = |i: &usize| is_own.as_ref().is_none_or(|is_own| is_own[*i]) && !system.layout.is_held(*i);
+    let own = (0..system.equations()).into_par_iter().with_min_len(CHUNK).filter(is_here);
     let empty: Vec<usize> = own.filter(|&i| is_zero(i)).collect();
     if empty.is_empty() {
         return Ok(());

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::row_sums::{row_sums, with_wide_vectors};
+
 /// Rows handled by one task of a product; fixed, so that results do not depend on the number of threads.
 const ROWS_PER_TASK: usize = 512;
 
@@ -93,11 +95,11 @@ impl Csr {
     pub fn without_values(row_starts: Vec<usize>, columns: Vec<u32>) -> Self {
         let rows = row_starts.len().checked_sub(1).expect("row_starts has rows + 1 entries");
         assert_eq!(row_starts[rows], columns.len(), "row_starts ends with the number of entries");
-        for i in 0..rows {
+        (0..rows).into_par_iter().with_min_len(ROWS_PER_TASK).for_each(|i| {
             let row = &columns[row_starts[i]..row_starts[i + 1]];
             assert!(row.windows(2).all(|pair| pair[0] < pair[1]), "columns of row {i} ascend");
             assert!(row.last().is_none_or(|&column| (column as usize) < rows), "column out of range in row {i}");
-        }
+        });
         Self { rows, row_starts, columns, values: Vec::new() }
     }
 
@@ -205,13 +207,15 @@ impl Csr {
         assert_eq!(x.len(), self.rows, "length of x");
         assert_eq!(y.len(), self.rows, "length of y");
         let block = |(task, out): (usize, &mut [f64])| {
-            for (at, value) in out.iter_mut().enumerate() {
-                let row = task * ROWS_PER_TASK + at;
-                let columns = self.columns_of(row);
-                let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
-                let sum = columns.iter().zip(values).map(|(&j, a)| a * x[j as usize]).sum::<f64>();
-                *value = combine(sum, *value);
-            }
+            with_wide_vectors(|| {
+                for (at, value) in out.iter_mut().enumerate() {
+                    let row = task * ROWS_PER_TASK + at;
+                    let columns = self.columns_of(row);
+                    let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
+                    let [sum] = row_sums(columns, [values], x);
+                    *value = combine(sum, *value);
+                }
+            });
         };
         if self.rows <= ROWS_PER_TASK {
             block((0, y));
@@ -223,21 +227,22 @@ impl Csr {
     /// Lengths of the runs of up to [`LONGEST_RUN`] rows with the same columns that the rows fall into, as those of a node do;
     /// no run crosses the border of a task.
     pub(crate) fn runs(&self) -> Runs {
-        let mut lengths = Vec::with_capacity(self.rows / LONGEST_RUN + 1);
-        let mut tasks = Vec::with_capacity(self.rows / ROWS_PER_TASK + 2);
-        let mut row = 0;
-        while row < self.rows {
-            if row % ROWS_PER_TASK == 0 {
-                tasks.push(lengths.len());
+        let of_task = |task: usize| {
+            let end = ((task + 1) * ROWS_PER_TASK).min(self.rows);
+            let (mut lengths, mut row) = (Vec::with_capacity(ROWS_PER_TASK / 2), task * ROWS_PER_TASK);
+            while row < end {
+                let columns = self.row(row).0;
+                let most = LONGEST_RUN.min(end - row);
+                let length = (1..most).find(|k| self.row(row + k).0 != columns).unwrap_or(most);
+                lengths.push(length as u8);
+                row += length;
             }
-            let most = LONGEST_RUN.min(self.rows - row).min(ROWS_PER_TASK - row % ROWS_PER_TASK);
-            let columns = self.row(row).0;
-            let length = (1..most).find(|k| self.row(row + k).0 != columns).unwrap_or(most);
-            lengths.push(length as u8);
-            row += length;
-        }
-        tasks.push(lengths.len());
-        Runs { lengths, tasks }
+            lengths
+        };
+        let parts: Vec<Vec<u8>> = (0..self.rows.div_ceil(ROWS_PER_TASK)).into_par_iter().map(of_task).collect();
+        let mut tasks = vec![0];
+        parts.iter().for_each(|part| tasks.push(tasks[tasks.len() - 1] + part.len()));
+        Runs { lengths: parts.concat(), tasks }
     }
 
     /// As [`Csr::mul_vec`], to the bit, with the columns of each of `runs` read once.
@@ -245,32 +250,27 @@ impl Csr {
         assert_eq!(x.len(), self.rows, "length of x");
         assert_eq!(y.len(), self.rows, "length of y");
         y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, mut out)| {
-            let mut row = task * ROWS_PER_TASK;
-            for &length in runs.of_task(task) {
-                let (now, rest) = out.split_at_mut(length as usize);
-                self.run_product(row, x, now);
-                row += length as usize;
-                out = rest;
-            }
+            with_wide_vectors(|| {
+                let mut row = task * ROWS_PER_TASK;
+                for &length in runs.of_task(task) {
+                    let (now, rest) = std::mem::take(&mut out).split_at_mut(length as usize);
+                    self.run_product(row, x, now);
+                    row += length as usize;
+                    out = rest;
+                }
+            });
         });
     }
 
     /// The product of as many rows as `out` has, with the columns of the first.
+    #[inline(always)]
     fn run_product(&self, row: usize, x: &[f64], out: &mut [f64]) {
-        let (columns, first) = self.row(row);
+        let columns = self.row(row).0;
         let values = |k: usize| self.row(row + k).1;
-        let columns = columns.iter().map(|&j| x[j as usize]).zip(first);
         match out {
-            [a, b, c] => {
-                [*a, *b, *c] = columns
-                    .zip(values(1))
-                    .zip(values(2))
-                    .fold([0.0; 3], |[a, b, c], (((x, p), q), r)| [a + p * x, b + q * x, c + r * x]);
-            }
-            [a, b] => {
-                [*a, *b] = columns.zip(values(1)).fold([0.0; 2], |[a, b], ((x, p), q)| [a + p * x, b + q * x]);
-            }
-            rows => rows[0] = columns.fold(0.0, |sum, (x, p)| sum + p * x),
+            [a, b, c] => [*a, *b, *c] = row_sums(columns, [values(0), values(1), values(2)], x),
+            [a, b] => [*a, *b] = row_sums(columns, [values(0), values(1)], x),
+            rows => [rows[0]] = row_sums(columns, [values(0)], x),
         }
     }
 

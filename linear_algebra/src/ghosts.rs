@@ -175,20 +175,17 @@ impl Ghosts {
 
     /// Takes from `vector` its parts along `basis`, orthonormal vectors of own entries, and gives their sizes; collective.
     ///
-    /// Over several processes all products are those with the vector as it came, so that they travel together.
+    /// All products are those with the vector as it came, so that it is read once, and that they travel together.
     pub(crate) fn orthogonalise<T: Number>(&self, basis: &[Vec<T>], vector: &mut [T]) -> Vec<f64> {
-        let Some(processes) = &self.processes else {
-            let take = |v: &Vec<T>| {
-                let size = vector::dot(v, vector);
-                vector::add_scaled(-size, v, vector);
-                size
-            };
-            return basis.iter().map(take).collect();
+        let own = vector::products(basis, vector);
+        let sizes = match &self.processes {
+            None => own,
+            Some(processes) => {
+                let all = processes.gather(&own);
+                (0..basis.len()).map(|k| all.iter().skip(k).step_by(basis.len()).sum()).collect()
+            }
         };
-        let own: Vec<f64> = basis.iter().map(|v| vector::dot(v, vector)).collect();
-        let all = processes.gather(&own);
-        let sizes: Vec<f64> = (0..basis.len()).map(|k| all.iter().skip(k).step_by(basis.len()).sum()).collect();
-        basis.iter().zip(&sizes).for_each(|(v, size)| vector::add_scaled(-size, v, vector));
+        vector::subtract_combination(basis, &sizes, vector);
         sizes
     }
 

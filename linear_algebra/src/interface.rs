@@ -11,7 +11,7 @@ use crate::csr::Csr;
 use crate::dense_lu::{self, Pivots};
 use crate::equilibrate;
 use crate::ghosts::Ghosts;
-use crate::iterations::gmres;
+use crate::iterations::Gmres;
 use crate::multifrontal::Scaling;
 use crate::square::Square;
 
@@ -176,7 +176,8 @@ impl Interface {
             self.solve_factorised(x);
         };
         x.fill(0.0);
-        let progress = gmres(&Ghosts::none(rhs.len()), multiply, precondition, &rhs, x, ITERATIONS, ITERATIONS, AIM);
+        let (ghosts, mut method) = (Ghosts::none(rhs.len()), Gmres::default());
+        let progress = method.solve(&ghosts, multiply, precondition, &rhs, x, ITERATIONS, ITERATIONS, AIM);
         if progress.relative_residual > ACCEPTED || progress.relative_residual.is_nan() {
             self.lost.set(true);
         }

@@ -8,7 +8,7 @@ use crate::condensation::{Condensation, CondensationSettings, NotCondensable};
 use crate::csr::Csr;
 use crate::direct::DirectSolver;
 use crate::ghosts::Ghosts;
-use crate::iterations::{Progress, conjugate_gradient, gmres};
+use crate::iterations::{Gmres, Progress, conjugate_gradient};
 use crate::memory;
 use crate::precondition::{self, Precondition};
 use crate::solver::{DirectSettings, KrylovSettings, LinearSolver, Multipliers, SolveError, SolveReport};
@@ -104,7 +104,8 @@ impl KrylovSolver {
                 conjugate_gradient(&Ghosts::none(rhs.len()), multiply, apply, rhs, x, most, tolerance)
             }
             Method::Gmres { restart } => {
-                gmres(&Ghosts::none(rhs.len()), multiply, |r, _| apply(r), rhs, x, restart, most, tolerance)
+                let (ghosts, apply) = (Ghosts::none(rhs.len()), |r: &mut [f64], _| apply(r));
+                Gmres::default().solve(&ghosts, multiply, apply, rhs, x, restart, most, tolerance)
             }
         };
         let scale = vector::norm(rhs);

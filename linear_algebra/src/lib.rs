@@ -8,10 +8,12 @@ pub mod address_space;
 
 mod state;
 
+mod row_sums;
 mod csr;
 pub mod vector;
 mod ghosts;
 mod system;
+mod reduced;
 
 mod dense;
 mod columns;

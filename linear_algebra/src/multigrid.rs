@@ -10,9 +10,10 @@ use serde::{Deserialize, Serialize};
 use crate::check;
 use crate::csr::{Csr, Runs};
 use crate::direct::DirectSolver;
-use crate::iterations::{Answer, Answers, Progress, gmres};
+use crate::iterations::{Answer, Answers, Gmres, Progress};
 use crate::memory;
 use crate::precondition::{Blocks, Constrained, Multigrid};
+use crate::reduced::Reduced;
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::state::{Carrier, State, WrongState};
 use crate::system::{Stamps, System};
@@ -87,10 +88,15 @@ pub(crate) struct MultigridSolver {
     constrained: Option<(Constrained, Stamps)>,
     /// What the constraints leave, of the last system that needed it.
     left: Option<(Blocks, Stamps)>,
+    /// Stamps of the bulk that has been looked at last.
+    seen: Option<[u64; 2]>,
     /// Of the bulk's rows, with the stamp of its graph.
     runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
     learnt: Learnt,
+    /// The iterations on the whole system, and on what the constraints leave.
+    outer: Gmres<f64>,
+    inner: Gmres<f32>,
     /// Relative residual to reach.
     tolerance: f64,
     stand_in: DirectSolver,
@@ -127,7 +133,9 @@ impl MultigridSolver {
     pub(crate) fn new(settings: MultigridSettings) -> Self {
         let stand_in = DirectSolver::new(DirectSettings::default());
         let (tolerance, learnt) = (settings.tolerance, Learnt::default());
-        Self { settings, constrained: None, left: None, runs: None, hierarchy: None, learnt, tolerance, stand_in }
+        let (outer, inner) = Default::default();
+        let (constrained, left, seen, runs, hierarchy) = Default::default();
+        Self { settings, constrained, left, seen, runs, hierarchy, learnt, outer, inner, tolerance, stand_in }
     }
 
     /// Solves a system that several processes share; one that does not does less than the rest, so all agree on errors.
@@ -145,12 +153,12 @@ impl MultigridSolver {
 
     /// Whether multigrid is to solve a system, by its size and what came of it before.
     fn serves(&self, system: &System<'_>) -> bool {
-        self.shares(system.equations(), system.bulk.entries())
+        self.shares(system.free(), system.bulk.entries())
     }
 
     /// Iterations of a solve after which a factorisation would have been cheaper.
     fn patience(&self, system: &System<'_>) -> usize {
-        let (equations, entries) = (system.equations(), system.bulk.entries());
+        let (equations, entries) = (system.free(), system.bulk.entries());
         let may_yield = self.settings.yields && system.shared.is_none() && equations <= YIELDS_UP_TO;
         if may_yield && memory::is_dense(equations, entries) {
             let coupled = |coupling: &Csr| (0..coupling.rows).filter(|&i| !coupling.row(i).0.is_empty()).count();
@@ -213,10 +221,12 @@ impl MultigridSolver {
         let scales = &ghosts.narrow(&constrained.row_scales);
         let scale = |r: &mut [f64]| r.iter_mut().zip(scales).for_each(|(r, s)| *r *= s);
         let (mut b, mut start) = (ghosts.narrow(rhs), ghosts.narrow(x));
+        system.clear_held(&mut b);
         scale(&mut b);
         let multiply = |x: &[f64], y: &mut [f64]| {
             if system.shared.is_none() {
                 system.mul_vec_by_runs(runs, x, y);
+                system.clear_held(y);
             } else {
                 let (mut all, mut found) = (ghosts.widen(x), vec![0.0; system.equations()]);
                 ghosts.spread(&mut all, 1);
@@ -232,13 +242,14 @@ impl MultigridSolver {
                 }
                 y.copy_from_slice(answer.product(system.bulk_values, |x, y| system.bulk_product(runs, x, y)));
                 system.add_coupling_product(&answer.x, y);
+                system.clear_held(y);
                 scale(y);
             };
             self.learnt.answers.start(system.bulk_graph, ghosts, product, &b, 0.5 * self.tolerance, &mut start);
         }
         let (tolerance, most) = (self.tolerance, self.settings.iterations.min(most));
         let (mut iterations, mut before, mut rate, mut solves_left) = (0, None, 0.0_f64, !hierarchy.is_old);
-        let latest = &mut self.left;
+        let (latest, inner) = (&mut self.left, &mut self.inner);
         let precondition = |r: &mut [f64], share: f64| {
             let room = most - iterations;
             if room == 0 {
@@ -252,7 +263,8 @@ impl MultigridSolver {
                 if solves_left {
                     let solves = (share.ln() / REACHED.ln()).ceil().max(1.0);
                     let aim = share.powf(1.0 / solves).max(WORTH * rate).min(COARSEST_AIM);
-                    iterations += up_to_date(latest, constrained, system).solve(&hierarchy.levels, b, aim, room);
+                    let left = up_to_date(latest, constrained, system);
+                    iterations += left.solve(&hierarchy.levels, inner, b, aim, room);
                 } else {
                     iterations += 1;
                     hierarchy.levels.apply_double(b, hierarchy.size);
@@ -267,7 +279,8 @@ impl MultigridSolver {
                 r.copy_from_slice(&ghosts.narrow(&all));
             }
         };
-        let progress = gmres(ghosts, multiply, precondition, &b, &mut start, RESTART, most, tolerance);
+        let outer = &mut self.outer;
+        let progress = outer.solve(ghosts, multiply, precondition, &b, &mut start, RESTART, most, tolerance);
         let progress = Progress { iterations, ..progress };
         let digits = (progress.start / progress.relative_residual).log10();
         if digits > TELLING {
@@ -276,6 +289,29 @@ impl MultigridSolver {
         }
         x.copy_from_slice(&ghosts.widen(&start));
         progress
+    }
+
+    /// Lets the direct engine solve.
+    fn solve_by_stand_in(
+        &mut self,
+        system: &System<'_>,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> Result<SolveReport, SolveError> {
+        if system.layout.held.is_empty() {
+            return self.stand_in.solve(system, rhs, x);
+        }
+        let reduced = Reduced::new(system);
+        let (rhs, mut left) = (reduced.gather(rhs), reduced.gather(x));
+        let report = self.stand_in.solve(&reduced.system(system), &rhs, &mut left).map_err(|error| match error {
+            SolveError::Singular { mut equations, rank_deficiency } => {
+                equations.iter_mut().for_each(|equation| *equation = reduced.whole(*equation));
+                SolveError::Singular { equations, rank_deficiency }
+            }
+            other => other,
+        })?;
+        reduced.scatter(&left, x);
+        Ok(report)
     }
 
     /// The answer, or why there is none.
@@ -393,6 +429,10 @@ impl LinearSolver for MultigridSolver {
         self.serves(system)
     }
 
+    fn takes_held(&self, equations: usize, entries: usize) -> bool {
+        self.shares(equations, entries)
+    }
+
     fn shares(&self, equations: usize, entries: usize) -> bool {
         let has_given_up = self.learnt.has_yielded || self.learnt.failures >= FAILURES;
         !has_given_up && self.is_large(equations, entries)
@@ -402,13 +442,16 @@ impl LinearSolver for MultigridSolver {
         if system.shared.is_some() {
             return self.solve_shared(system, rhs, x);
         }
-        check::input(system, rhs, x)?;
+        check::vectors(system, rhs, x)?;
+        let values = [system.bulk_graph, system.bulk_values];
+        check::matrices(system, self.seen != Some(values))?;
+        self.seen = Some(values);
         check::empty_rows(system)?;
         if x.iter().any(|x| !x.is_finite()) {
             x.fill(0.0);
         }
         if !self.serves(system) {
-            let mut report = self.stand_in.solve(system, rhs, x)?;
+            let mut report = self.solve_by_stand_in(system, rhs, x)?;
             if self.learnt.failures == FAILURES {
                 self.learnt.failures += 1;
                 let reason = "multigrid failed before; the direct engine solves from here on";
@@ -423,7 +466,7 @@ impl LinearSolver for MultigridSolver {
             }
             Err(why) => {
                 self.learnt.failures += 1;
-                let mut report = self.stand_in.solve(system, rhs, x)?;
+                let mut report = self.solve_by_stand_in(system, rhs, x)?;
                 let reasons = [Some(why), report.fallback.take()];
                 report.fallback = Some(reasons.into_iter().flatten().collect::<Vec<_>>().join("; "));
                 Ok(report)

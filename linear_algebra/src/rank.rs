@@ -1,6 +1,7 @@
 //! Rank of a small system, for messages.
 
 use crate::equilibrate;
+use crate::reduced::Reduced;
 use crate::system::System;
 
 /// Largest system whose rank is worth its cubic cost.
@@ -10,11 +11,14 @@ const ZERO: f64 = 1e-12;
 
 /// Rank of `bulk + coupling` by elimination with complete pivoting; `None` for a system that is too large for it.
 pub fn rank(system: &System<'_>) -> Option<usize> {
-    let n = system.equations();
+    let n = system.free();
     if n > MOST_EQUATIONS {
         return None;
     }
-    let matrix = system.merged();
+    let matrix = match system.layout.held.is_empty() {
+        true => system.merged(),
+        false => Reduced::new(system).system(system).merged(),
+    };
     let scaling = equilibrate::factors(&matrix);
     let mut rows = vec![vec![0.0; n]; n];
     for (i, row) in rows.iter_mut().enumerate() {

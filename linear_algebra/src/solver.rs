@@ -116,6 +116,11 @@ pub trait LinearSolver: Send {
         false
     }
 
+    /// Whether it solves systems of this size some of whose equations are held ([`Layout::held`](crate::Layout::held)).
+    fn takes_held(&self, _equations: usize, _entries: usize) -> bool {
+        false
+    }
+
     /// Whether it solves systems of this size, over all processes, where their rows are ([`System::shared`]).
     fn shares(&self, _equations: usize, _entries: usize) -> bool {
         false

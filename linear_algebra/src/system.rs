@@ -28,12 +28,15 @@ pub struct Layout {
     pub multiplier: Vec<bool>,
     /// Vectors the bulk nearly maps to zero (rigid motions), for multigrid; may be empty.
     pub near_null_space: Vec<Vec<f64>>,
+    /// Which equations are none: their rows, columns and numbers count for nothing, and what is found of them is zero. Empty where
+    /// there are none. For solvers that say so ([`LinearSolver::takes_held`](crate::LinearSolver::takes_held)).
+    pub held: Vec<bool>,
 }
 
 impl Layout {
     /// Every equation a node of its own and none a multiplier.
     pub fn scalar(equations: usize) -> Self {
-        Self { node: (0..equations as u32).collect(), multiplier: vec![false; equations], near_null_space: Vec::new() }
+        Self { node: (0..equations as u32).collect(), multiplier: vec![false; equations], ..Self::default() }
     }
 
     /// `per_node` equations a node, numbered node by node, none a multiplier.
@@ -42,13 +45,18 @@ impl Layout {
         Self {
             node: (0..equations).map(|i| (i / per_node) as u32).collect(),
             multiplier: vec![false; equations],
-            near_null_space: Vec::new(),
+            ..Self::default()
         }
     }
 
-    /// Number of equations.
+    /// Number of equations, those that are held among them.
     pub fn equations(&self) -> usize {
         self.node.len()
+    }
+
+    /// Whether an equation is none.
+    pub fn is_held(&self, equation: usize) -> bool {
+        self.held.get(equation).is_some_and(|is_held| *is_held)
     }
 }
 
@@ -100,7 +108,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Number of equations.
+    /// Number of equations, those that are held among them.
     pub fn equations(&self) -> usize {
         self.shared.map_or(self.bulk.rows, Ghosts::all)
     }
@@ -110,11 +118,26 @@ impl<'a> System<'a> {
         self.coupling.filter(|coupling| coupling.entries() > 0)
     }
 
+    /// Number of equations that are not held.
+    pub fn free(&self) -> usize {
+        self.equations() - self.layout.held.iter().filter(|is_held| **is_held).count()
+    }
+
+    /// Sets what belongs to equations that are held to zero.
+    pub(crate) fn clear_held(&self, values: &mut [f64]) {
+        values.iter_mut().zip(&self.layout.held).filter(|(_, is_held)| **is_held).for_each(|(value, _)| *value = 0.0);
+    }
+
     /// Entries of a row of both parts that are not zero: columns with values, those of the bulk first.
     pub(crate) fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + use<'a> {
+        let layout = self.layout;
         let of = move |matrix: &'a Csr| matrix.row(i).0.iter().zip(matrix.row(i).1);
-        let parts = [Some(self.bulk).filter(|bulk| i < bulk.rows), self.active_coupling()];
-        parts.into_iter().flatten().flat_map(of).map(|(&j, &value)| (j as usize, value)).filter(|(_, v)| *v != 0.0)
+        let parts = match layout.is_held(i) {
+            true => [None, None],
+            false => [Some(self.bulk).filter(|bulk| i < bulk.rows), self.active_coupling()],
+        };
+        let all = parts.into_iter().flatten().flat_map(of).map(|(&j, &value)| (j as usize, value));
+        all.filter(move |(j, value)| *value != 0.0 && !layout.is_held(*j))
     }
 
     /// `y = (bulk + coupling) x`.
@@ -156,6 +179,7 @@ impl<'a> System<'a> {
         if let Some(coupling) = self.active_coupling() {
             coupling.mul_vec_subtract(x, r);
         }
+        self.clear_held(r);
         crate::vector::norm(r)
     }
 

@@ -7,6 +7,19 @@ use rayon::prelude::*;
 /// Entries summed by one task.
 const CHUNK: usize = 1 << 14;
 
+/// `n` zeros, written by all threads. What adds to memory that nothing has written yet makes the system map it twice, and all processors
+/// wait for each other.
+pub fn zeros(n: usize) -> Vec<f64> {
+    let mut out = vec![0.0; n];
+    clear(&mut out);
+    out
+}
+
+/// Sets all numbers to zero.
+pub fn clear(values: &mut [f64]) {
+    values.par_chunks_mut(CHUNK).for_each(|chunk| chunk.fill(0.0));
+}
+
 /// A number in single or double precision.
 pub trait Number: Copy + Default + Send + Sync + AddAssign + Into<f64> + 'static {
     /// The nearest one to `value`.
@@ -75,6 +88,45 @@ pub fn norm<T: Number>(a: &[T]) -> f64 {
     }
     let scaled: f64 = values().map(|x| (x / largest).powi(2)).sum();
     largest * scaled.sqrt()
+}
+
+/// Inner products of each of `basis` with `vector`, summed in double precision.
+///
+/// # Panics
+/// When the lengths differ.
+pub fn products<T: Number>(basis: &[Vec<T>], vector: &[T]) -> Vec<f64> {
+    let of_chunk = |(at, chunk): (usize, &[T])| -> Vec<f64> {
+        basis.iter().map(|v| dot_chunk(&v[at * CHUNK..][..chunk.len()], chunk)).collect()
+    };
+    let partial: Vec<Vec<f64>> = vector.par_chunks(CHUNK).enumerate().map(of_chunk).collect();
+    (0..basis.len()).map(|k| partial.iter().map(|of_chunk| of_chunk[k]).sum()).collect()
+}
+
+/// `vector -= Σ_k sizes[k] basis[k]`.
+///
+/// # Panics
+/// When the lengths differ.
+pub fn subtract_combination<T: Number>(basis: &[Vec<T>], sizes: &[f64], vector: &mut [T]) {
+    vector.par_chunks_mut(CHUNK).enumerate().for_each(|(at, chunk)| {
+        for (v, size) in basis.iter().zip(sizes) {
+            let (factor, v) = (T::from_f64(-size), &v[at * CHUNK..][..chunk.len()]);
+            chunk.iter_mut().zip(v).for_each(|(y, &x)| *y = y.plus(factor, x));
+        }
+    });
+}
+
+/// `x *= factor`.
+pub fn scale_by<T: Number>(factor: f64, x: &mut [T]) {
+    x.par_iter_mut().with_min_len(CHUNK).for_each(|x| *x = T::from_f64((*x).into() * factor));
+}
+
+/// `y = factor * x`.
+///
+/// # Panics
+/// When the lengths differ.
+pub fn scale_to<T: Number>(factor: f64, x: &[T], y: &mut [T]) {
+    assert_eq!(x.len(), y.len(), "vectors of one length");
+    y.par_iter_mut().zip(x).with_min_len(CHUNK).for_each(|(y, &x)| *y = T::from_f64(x.into() * factor));
 }
 
 /// `y += factor * x`.

@@ -4,7 +4,7 @@ mod samples;
 
 use samples::{Brick, Contact, clamped_box, contact};
 use zelus_linear_algebra::{
-    Engine, Layout, LinearSolver, MultigridSettings, SolveReport, State, Symmetry, System, create,
+    Csr, Engine, Layout, LinearSolver, MultigridSettings, SolveReport, State, Symmetry, System, create,
 };
 
 /// Largest difference from the answer of the direct engine, as a share of the largest value.
@@ -193,4 +193,89 @@ fn the_direct_engine_takes_over_where_it_costs_less() {
     assert_eq!(engines(1e-12, true), [(false, true), (false, false)]);
     assert_eq!(engines(1e-12, false), [(true, false); 2]);
     assert_eq!(engines(1e-2, true), [(true, false); 2]);
+}
+
+/// A system some of whose equations are held, and the same without them.
+struct Held {
+    whole: Contact,
+    left: Contact,
+    equations: Vec<usize>,
+}
+
+fn held(cells: usize, is_held: impl Fn(usize, &Layout) -> bool) -> Held {
+    let mut whole = tied(cells, 0.0, |_| true);
+    let n = whole.layout.equations();
+    whole.layout.held = (0..n).map(|i| is_held(i, &whole.layout)).collect();
+    let equations: Vec<usize> = (0..n).filter(|&i| !whole.layout.held[i]).collect();
+    let number = |i: usize| equations.binary_search(&i).ok();
+    let matrix = |of: &Csr| {
+        let entries = equations.iter().enumerate().flat_map(|(row, &i)| {
+            let (columns, values) = of.row(i);
+            columns.iter().zip(values).filter_map(move |(&j, &value)| Some((row, number(j as usize)?, value)))
+        });
+        Csr::from_triplets(equations.len(), &entries.collect::<Vec<_>>())
+    };
+    let layout = Layout {
+        node: equations.iter().map(|&i| whole.layout.node[i]).collect(),
+        multiplier: equations.iter().map(|&i| whole.layout.multiplier[i]).collect(),
+        near_null_space: whole
+            .layout
+            .near_null_space
+            .iter()
+            .map(|vector| equations.iter().map(|&i| vector[i]).collect())
+            .collect(),
+        held: Vec::new(),
+    };
+    let left = Contact { bulk: matrix(&whole.bulk), coupling: matrix(&whole.coupling), layout };
+    Held { whole, left, equations }
+}
+
+fn system(of: &Contact) -> System<'_> {
+    System { coupling: Some(&of.coupling), ..System::bulk(&of.layout, &of.bulk, Symmetry::PositiveDefinite) }
+}
+
+#[test]
+fn equations_that_are_held_are_none() {
+    // Of every seventh node all, and of the nodes of one layer the first one.
+    let is_held = |i: usize, layout: &Layout| {
+        let first = i == 0 || layout.node[i - 1] != layout.node[i];
+        layout.node[i].is_multiple_of(7) || first && (162..243).contains(&layout.node[i])
+    };
+    let sample = held(8, is_held);
+    let n = sample.whole.layout.equations();
+    // What stands at held equations counts for nothing.
+    let rhs: Vec<f64> =
+        load(n).iter().enumerate().map(|(i, b)| if sample.whole.layout.held[i] { 1e6 } else { *b }).collect();
+    let gather = |of: &[f64]| sample.equations.iter().map(|&i| of[i]).collect::<Vec<f64>>();
+    let (expected, of_left) = multigrid(&system(&sample.left), &gather(&rhs));
+    let (x, report) = multigrid(&system(&sample.whole), &rhs);
+    assert_eq!((report.engine, report.fallback), ("multigrid", None));
+    assert_eq!(report.iterations, of_left.iterations);
+    for (a, b) in gather(&x).iter().zip(&expected) {
+        assert!((a - b).abs() <= AGREE * b.abs().max(1e-3), "{a} {b}");
+    }
+    assert!((0..n).all(|i| !sample.whole.layout.held[i] || x[i] == 0.0));
+}
+
+#[test]
+fn what_the_direct_engine_takes_over_has_no_held_equations() {
+    let is_held = |i: usize, layout: &Layout| layout.node[i].is_multiple_of(7);
+    let sample = held(5, is_held);
+    let rhs = load(sample.whole.layout.equations());
+    let solve = |least: usize| {
+        let mut x = vec![0.0; rhs.len()];
+        let engine = Engine::Multigrid(MultigridSettings {
+            tolerance: 1e-11,
+            iterations: 200,
+            least: [least; 2],
+            ..MultigridSettings::default()
+        });
+        let report = create(engine).solve(&system(&sample.whole), &rhs, &mut x).expect("regular");
+        (x, report.engine)
+    };
+    let ((x, by_multigrid), (other, by_direct)) = (solve(0), solve(usize::MAX));
+    assert_eq!(by_multigrid, "multigrid");
+    assert_ne!(by_direct, "multigrid");
+    let [displacements, multipliers] = differences(&sample.whole.layout, &x, &other);
+    assert!(displacements < AGREE && multipliers < AGREE, "{displacements:.1e} {multipliers:.1e}");
 }

@@ -98,7 +98,7 @@ fn direct(rows: &Rows, node: Vec<u32>, rhs: &[f64], x: &mut [f64]) -> (Seconds, 
     let columns = rows.columns.iter().map(|&column| column as u32).collect();
     let mut matrix = Csr::from_sorted_pattern(rows.starts.clone(), columns);
     matrix.values.copy_from_slice(&rows.values);
-    let layout = Layout { node, multiplier: vec![false; rows.all], near_null_space: Vec::new() };
+    let layout = Layout { node, multiplier: vec![false; rows.all], ..Layout::default() };
     let system = System::bulk(&layout, &matrix, Symmetry::PositiveDefinite);
     let report = create(Engine::default()).solve(&system, rhs, x).expect("an answer");
     ([report.seconds_symbolic + report.seconds_numeric, report.seconds_solve], report.relative_residual)

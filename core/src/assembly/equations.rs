@@ -108,7 +108,7 @@ impl Equations {
         let layout = Layout {
             node: free.iter().map(|&n| dofs.dofs()[n as usize].node).collect(),
             multiplier: free.iter().map(|&n| dofs.dofs()[n as usize].multiplier).collect(),
-            near_null_space: Vec::new(),
+            ..Layout::default()
         };
         let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());
         Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, leaning, layout })

@@ -72,6 +72,7 @@ impl Whole {
         let place = |(meaning, at): (&Meaning, _)| (!meaning.multiplier).then_some((meaning.variable, at));
         let places: Vec<Place> = self.meanings.iter().zip(positions).map(place).collect();
         self.layout = Layout {
+            held: Vec::new(),
             node: sorted().map(|row| row[0] as u32).collect(),
             multiplier: self.meanings.iter().map(|meaning| meaning.multiplier).collect(),
             near_null_space: near_null_space(&places),

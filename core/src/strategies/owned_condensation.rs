@@ -58,6 +58,7 @@ impl OwnedCondensation {
         places.sort_unstable();
         places.dedup();
         let layout = Layout {
+            held: Vec::new(),
             node: seen.iter().map(|number| places.partition_point(|&p| p < known[number].0) as u32).collect(),
             multiplier: seen.iter().map(|number| known[number].1).collect(),
             near_null_space: Vec::new(),

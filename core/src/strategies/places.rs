@@ -125,7 +125,7 @@ impl Places {
             multiplier.push(bits >> (number - first) & 1 == 1);
             next += u32::from(number + 1 == first + count);
         }
-        Layout { node, multiplier, near_null_space: Vec::new() }
+        Layout { node, multiplier, ..Layout::default() }
     }
 
     /// Place and owner of each equation of ghosts.

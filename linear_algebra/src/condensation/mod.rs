@@ -163,6 +163,7 @@ impl Condensation {
         Ok(Self {
             matrix,
             layout: Layout {
+                held: Vec::new(),
                 node: kept.iter().map(|&i| layout.node[i as usize]).collect(),
                 multiplier: vec![false; kept.len()],
                 near_null_space: layout

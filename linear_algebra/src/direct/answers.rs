@@ -4,7 +4,7 @@ use super::WANTED;
 use super::path::Path;
 use crate::check::{self, NAMED_EQUATIONS, Refined};
 use crate::ghosts::Ghosts;
-use crate::iterations::gmres;
+use crate::iterations::Gmres;
 use crate::system::System;
 use crate::vector;
 
@@ -14,7 +14,7 @@ const KRYLOV_ITERATIONS: usize = 40;
 /// Continues from the better of `x` and zero by GMRES, preconditioned with the factors.
 pub(super) fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64], before: Refined) -> Refined {
     let mut trial = if before.relative_residual < 1.0 { x.to_vec() } else { vec![0.0; x.len()] };
-    let progress = gmres(
+    let progress = Gmres::default().solve(
         &Ghosts::none(rhs.len()),
         |x, y| system.mul_vec(x, y),
         |r, _| path.apply(r),

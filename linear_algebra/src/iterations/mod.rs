@@ -6,7 +6,7 @@ mod gmres;
 
 pub(crate) use answers::{Answer, Answers};
 pub(crate) use conjugate_gradient::conjugate_gradient;
-pub(crate) use gmres::gmres;
+pub(crate) use gmres::Gmres;
 
 /// How far an iteration came.
 #[derive(Debug, Clone, Copy)]

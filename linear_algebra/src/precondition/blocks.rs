@@ -5,10 +5,15 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::block_matrix::{BlockMatrix, Into};
 use super::multigrid::Multigrid;
 use crate::ghosts::Ghosts;
-use crate::iterations::gmres;
+use crate::iterations::Gmres;
+
+/// Numbers of a task.
+const CHUNK: usize = 1 << 14;
 
 /// Directions kept in a solve, and its iterations at most.
 const RESTART: usize = 80;
@@ -20,9 +25,10 @@ pub(super) fn in_single(ghosts: &Ghosts, b: &mut [f64], size: f64, solve: impl F
     if largest == 0.0 || !largest.is_finite() {
         return b.fill(0.0);
     }
-    let mut single: Vec<f32> = b.iter().map(|b| (b / largest) as f32).collect();
+    let mut single: Vec<f32> = b.par_iter().with_min_len(CHUNK).map(|b| (b / largest) as f32).collect();
     solve(&mut single);
-    b.iter_mut().zip(single).for_each(|(b, x)| *b = f64::from(x) * largest / size);
+    let both = b.par_iter_mut().zip(&single).with_min_len(CHUNK);
+    both.for_each(|(b, x)| *b = f64::from(*x) * largest / size);
 }
 
 /// A matrix of blocks, own rows.
@@ -38,7 +44,14 @@ pub(crate) struct Blocks {
 impl Blocks {
     /// Replaces `b`, own entries, by an approximate solution that leaves the share `aim` of `b`; gives the iterations, at most `most`.
     /// Collective.
-    pub(crate) fn solve(&self, levels: &Multigrid, b: &mut [f64], aim: f64, most: usize) -> usize {
+    pub(crate) fn solve(
+        &self,
+        levels: &Multigrid,
+        method: &mut Gmres<f32>,
+        b: &mut [f64],
+        aim: f64,
+        most: usize,
+    ) -> usize {
         let mut all = Vec::new();
         let multiply = |x: &[f32], y: &mut [f32]| {
             if self.ghosts.processes().is_none() {
@@ -54,8 +67,9 @@ impl Blocks {
         let mut iterations = 0;
         in_single(&self.ghosts, b, self.size, |rhs| {
             let mut x = vec![0.0; rhs.len()];
-            iterations =
-                gmres(&self.ghosts, multiply, precondition, rhs, &mut x, RESTART, most.min(RESTART), aim).iterations;
+            let most = most.min(RESTART);
+            let progress = method.solve(&self.ghosts, multiply, precondition, rhs, &mut x, RESTART, most, aim);
+            iterations = progress.iterations;
             rhs.copy_from_slice(&x);
         });
         iterations

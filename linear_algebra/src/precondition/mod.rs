@@ -2,6 +2,10 @@
 
 mod aggregation;
 mod block_jacobi;
+mod block_row;
+mod multiplier;
+mod row_product;
+mod sums;
 mod block_matrix;
 mod blocks;
 mod constrained;

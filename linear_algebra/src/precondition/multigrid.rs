@@ -8,11 +8,14 @@
 
 use std::sync::{Arc, Mutex};
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::aggregation::{NONE, Tentative, coarsen};
-use super::block_matrix::{BlockMatrix, BlockRow, Into, multiplier};
+use super::block_matrix::{BlockMatrix, Into, NOTHING_EARLIER};
+use super::block_row::BlockRow;
 use super::blocks::in_single;
+use super::multiplier::{BESIDE, multiplier};
 use super::shared_levels::{Aggregates, gathered};
 use crate::check;
 use crate::dense_lu;
@@ -21,6 +24,7 @@ use crate::memory;
 use crate::multifrontal::{Factor, Kind, Precision, Scatter};
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
+use crate::vector::add_scaled;
 
 /// Equations below which a level is solved directly.
 const COARSEST: usize = 1500;
@@ -257,29 +261,34 @@ impl Level {
         aggregates.complete(&ghosts, &mut coarse, wide);
         let (aggregate, tentative) = (&coarse.aggregate, &coarse.values);
         let multiply = multiplier([height, height, width]);
-        let smoothed = |i: usize, row: &mut BlockRow| {
-            let (columns, values) = matrix.row(i);
-            let mut damped = vec![0.0; size];
-            for (&k, block) in columns.iter().zip(values.chunks_exact(size)) {
+        let shape = [height, height, width];
+        // T - ω D⁻¹ (A T).
+        let smoothed = |i: usize, row: &mut BlockRow, (damping, product): &mut (Vec<f32>, Vec<f32>)| {
+            let (columns, values) = matrix.row_and_beside(i);
+            let of = |k: usize| &tentative[k * wide..(k + 1) * wide];
+            for (at, &k) in columns.iter().enumerate() {
                 let a = aggregate[k as usize];
-                if a == NONE {
-                    continue;
+                if a != NONE {
+                    multiply(shape, &values[at * size..], of(k as usize), row.block_and_beside(a));
                 }
-                damped.fill(0.0);
-                for h in 0..height {
-                    for l in 0..height {
-                        let factor = -omega * inverse[i * size + h * height + l];
-                        (0..height).for_each(|w| damped[w * height + h] += factor * block[w * height + l]);
-                    }
-                }
-                if k as usize == i {
-                    (0..height).for_each(|h| damped[h * height + h] += 1.0);
-                }
-                let from = &tentative[k as usize * wide..(k as usize + 1) * wide];
-                multiply([height, height, width], &damped, from, row.block(a));
+            }
+            let inverse = &inverse[i * size..(i + 1) * size];
+            for h in 0..height {
+                (0..height).for_each(|l| damping[l * height + h] = -omega * inverse[h * height + l]);
+            }
+            for at in 0..row.len() {
+                let block = row.from(at);
+                product.copy_from_slice(&block[..wide]);
+                block[..wide].fill(0.0);
+                multiply(shape, damping, product, block);
+            }
+            if aggregate[i] != NONE {
+                row.block(aggregate[i]).iter_mut().zip(of(i)).for_each(|(sum, t)| *sum += t);
             }
         };
-        let mut prolongation = BlockMatrix::from_rows([matrix.rows, aggregates.all()], [height, width], smoothed);
+        let (shape, blocks) = ([matrix.rows, aggregates.all()], [height, width]);
+        let scratch = || (vec![0.0; size + BESIDE], vec![0.0; wide]);
+        let mut prolongation = BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, scratch, smoothed);
         let mut restriction = prolongation.transpose();
         let (next, of_next) = aggregates.product(&ghosts, &matrix, &mut prolongation, &mut restriction);
         (Self { matrix, inverse, radius, prolongation, restriction, ghosts }, next, of_next)
@@ -313,19 +322,19 @@ impl Level {
                 self.ghosts.spread(x, self.matrix.height);
                 self.matrix.smoothing_step(&self.inverse, b, x, factors, step);
             }
-            x.iter_mut().zip(step.iter()).for_each(|(x, s)| *x += s);
+            add_scaled(1.0, step, &mut x[..step.len()]);
         }
     }
 }
 
 /// `step = gain D⁻¹ b`.
 fn diagonal_step(inverse: &[f32], height: usize, b: &[f32], gain: f32, step: &mut [f32]) {
-    let blocks = b.chunks_exact(height).zip(step.chunks_exact_mut(height)).zip(inverse.chunks_exact(height * height));
-    for ((b, step), inverse) in blocks {
+    let blocks = step.par_chunks_exact_mut(height).zip(b.par_chunks_exact(height));
+    blocks.zip(inverse.par_chunks_exact(height * height)).with_min_len(1024).for_each(|((step, b), inverse)| {
         for (step, row) in step.iter_mut().zip(inverse.chunks_exact(height)) {
             *step = gain * row.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
         }
-    }
+    });
 }
 
 /// Inverses of the diagonal blocks, by rows; tiny pivots are lifted, so that they always exist.

@@ -186,8 +186,7 @@ pub(super) fn gathered(ghosts: &Ghosts, matrix: &BlockMatrix) -> (BlockMatrix, V
         own.extend(columns.iter().map(|&j| number(j)));
     }
     let indices = processes.exchange_indices(&vec![own; processes.size()]);
-    let entries = matrix.starts[matrix.rows] * matrix.size();
-    let own: Vec<f64> = matrix.values[..entries].iter().map(|&v| f64::from(v)).collect();
+    let own: Vec<f64> = matrix.entries().map(f64::from).collect();
     let values = processes.exchange_numbers(&vec![own; processes.size()]);
     let mut rows: Rows = Vec::new();
     for (mut indices, values) in indices.iter().map(|list| &list[..]).zip(&values) {

@@ -19,6 +19,8 @@ pub(super) struct Group {
     pub(super) masters: Vec<Vec<(u32, f64)>>,
     /// Places, with factors, that each unknown of the node follows.
     pub(super) follows: Vec<Vec<(u32, f64)>>,
+    /// The same by blocks: factors of each unknown of the node, for each slot of the block.
+    pub(super) followed: Vec<(u32, Vec<f64>)>,
 }
 
 impl Group {

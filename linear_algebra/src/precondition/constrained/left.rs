@@ -7,8 +7,10 @@ use rayon::prelude::*;
 use super::group::Group;
 use super::{Constrained, NONE};
 use crate::memory;
-use crate::precondition::block_matrix::{BlockMatrix, BlockRow, Sums};
+use crate::precondition::block_matrix::BlockMatrix;
+use crate::precondition::block_row::BlockRow;
 use crate::precondition::blocks::Blocks;
+use crate::precondition::sums::Sums;
 use crate::system::System;
 
 /// Terms with the factors of equal indices added up, ascending.
@@ -61,9 +63,10 @@ impl Constrained {
 
     /// What is left, the matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
     pub(crate) fn left_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
-        let largest = (0..system.equations())
-            .filter(|&i| !system.layout.multiplier[i] && i < system.bulk.rows)
-            .fold(0.0_f64, |m, i| m.max(system.bulk.get(i, i).abs()));
+        let of_bodies = (0..system.bulk.rows).into_par_iter().with_min_len(1024);
+        let is_left = |i: &usize| !system.layout.multiplier[*i] && !system.layout.is_held(*i);
+        let diagonal = of_bodies.filter(is_left).map(|i| system.bulk.get(i, i).abs());
+        let largest = diagonal.reduce(|| 0.0, f64::max);
         let largest = self.ghosts.largest(largest);
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let mut loads: Vec<Option<&[(u32, f64)]>> = vec![None; system.equations()];
@@ -72,11 +75,12 @@ impl Constrained {
         self.beside.iter().for_each(|&e| plain[e as usize] = false);
         self.loads.iter().for_each(|(e, _)| plain[*e as usize] = false);
         let (w, inverse) = (self.width, 1.0 / largest);
-        let at: Vec<(u32, u32)> = self
-            .place
-            .iter()
-            .map(|&place| if place == NONE { (NONE, 0) } else { (place / w as u32, place % w as u32) })
-            .collect();
+        // Block and slot of each place, and of each equation that has one.
+        let blocks = self.equation.len() / w;
+        let of_place: Vec<(u32, u32)> =
+            (0..blocks as u32).flat_map(|block| (0..w as u32).map(move |slot| (block, slot))).collect();
+        let of_equation = |&place: &u32| if place == NONE { (NONE, 0) } else { of_place[place as usize] };
+        let at: Vec<(u32, u32)> = self.place.iter().map(of_equation).collect();
         let coupled = |i: usize| {
             let rows = system.active_coupling().into_iter().map(move |coupling| coupling.row(i));
             rows.flat_map(|(columns, values)| columns.iter().zip(values))
@@ -84,7 +88,8 @@ impl Constrained {
                 .map(|(&j, &value)| (j as usize, value))
         };
         let add = |row: &mut BlockRow, k: usize, place: u32, value: f64| {
-            row.block(place / w as u32)[place as usize % w * w + k] += (value * inverse) as f32;
+            let (block, slot) = of_place[place as usize];
+            row.block(block)[slot as usize * w + k] += (value * inverse) as f32;
         };
         let recovery = |group: &Group| group.multipliers.iter().map(|&m| self.recovery(m)).collect::<Vec<_>>();
         let recoveries: Vec<_> = self.groups.par_iter().map(recovery).collect();
@@ -98,10 +103,7 @@ impl Constrained {
         };
         let of_bulk: Vec<bool> = (0..self.blocks.own()).map(of_bulk).collect();
         let earlier = earlier.filter(|earlier| self.blocks.processes().is_none() && earlier.size == largest);
-        let fill = |b: usize, row: &mut BlockRow, sums: &mut Sums| {
-            if let Some(earlier) = earlier.filter(|earlier| of_bulk[b] && earlier.of_bulk[b]) {
-                return row.copy(earlier.matrix.row(b));
-            }
+        let fill = |b: usize, row: &mut BlockRow, scratch: &mut (Sums, Sums)| {
             let equations = &self.equation[b * w..(b + 1) * w];
             if of_bulk[b] && !equations.contains(&NONE) {
                 let rows: Vec<(&[u32], &[f64])> = equations.iter().map(|&e| system.bulk.row(e as usize)).collect();
@@ -149,27 +151,36 @@ impl Constrained {
                     }
                     continue;
                 }
+                let (sums, met) = scratch;
                 let mut spread = |j: u32, value: f64| {
                     let (place, group) = (self.place[j as usize], self.group_of[j as usize]);
                     if place != NONE && group != NONE {
-                        let group = &self.groups[group as usize];
-                        group.follows[group.slot(j)]
-                            .iter()
-                            .for_each(|&(place, weight)| add(row, k, place, value * weight));
+                        let own = &self.groups[group as usize].own;
+                        let slot = own.iter().position(|&e| e == j).expect("an own equation");
+                        met.add(group as usize * w + slot, value);
                     } else if place != NONE {
                         add(row, k, place, value);
                     }
                 };
                 if self.group_of[i] == NONE && loads[i].is_none() {
                     system.row(i).for_each(|(j, value)| spread(j as u32, value));
-                    continue;
+                } else {
+                    let left = self.left(b * w + k, loads[i], recovery);
+                    idle |= u64::from(left.is_empty()) << k;
+                    for (e, factor) in left {
+                        system.row(e as usize).for_each(|(j, value)| sums.add(j, factor * value));
+                    }
+                    sums.drain(&mut spread);
                 }
-                let left = self.left(b * w + k, loads[i], recovery);
-                idle |= u64::from(left.is_empty()) << k;
-                for (e, factor) in left {
-                    system.row(e as usize).for_each(|(j, value)| sums.add(j, factor * value));
-                }
-                sums.drain(spread);
+                // What stands at unknowns of groups goes to what they follow.
+                met.drain(|at, value| {
+                    let (group, slot) = (at as usize / w, at as usize % w);
+                    for (block, factors) in &self.groups[group].followed {
+                        let entries = row.block(*block).iter_mut().skip(k).step_by(w);
+                        let factors = &factors[slot * w..(slot + 1) * w];
+                        entries.zip(factors).for_each(|(to, factor)| *to += (value * factor * inverse) as f32);
+                    }
+                });
             }
             let own = row.block(b as u32);
             let diagonal = (0..w).fold(0.0_f32, |m, k| m.max(own[k * w + k].abs()));
@@ -177,9 +188,11 @@ impl Constrained {
                 own[k * w + k] = if diagonal > 0.0 { diagonal } else { 1.0 };
             }
         };
-        let shape = [self.blocks.own(), self.equation.len() / w];
-        let sums = || Sums::new(system.equations());
-        let matrix = Arc::new(BlockMatrix::from_rows_with(shape, [w; 2], sums, fill));
+        let shape = [self.blocks.own(), blocks];
+        let scratch = || (Sums::new(system.equations()), Sums::new(self.groups.len() * w));
+        let keeps = |earlier: &Blocks, b: usize| of_bulk[b] && earlier.of_bulk[b];
+        let kept = earlier.map(|earlier| (&*earlier.matrix, move |b: usize| keeps(earlier, b)));
+        let matrix = Arc::new(BlockMatrix::from_rows_with(shape, [w; 2], kept, scratch, fill));
         if self.blocks.processes().is_some() {
             memory::give_back();
         }

@@ -17,6 +17,8 @@ mod elimination;
 mod group;
 mod left;
 
+use rayon::prelude::*;
+
 use super::blocks::Blocks;
 use super::multigrid::Multigrid;
 use crate::ghosts::{Ghosts, Owned};
@@ -66,11 +68,9 @@ fn shared_blocks(ghosts: &Ghosts, place: &[u32], equation: &[u32], width: usize,
 }
 
 /// Columns of a row of both parts of a system, zeros among them.
-fn pattern(system: &System<'_>, i: usize) -> Vec<u32> {
+fn columns<'a>(system: &System<'a>, i: usize) -> impl Iterator<Item = u32> + use<'a> {
     let bulk = Some(system.bulk).filter(|bulk| i < bulk.rows);
-    let mut columns = bulk.map_or(Vec::new(), |bulk| bulk.row(i).0.to_vec());
-    columns.extend(system.active_coupling().into_iter().flat_map(|coupling| coupling.row(i).0));
-    columns
+    [bulk, system.active_coupling()].into_iter().flatten().flat_map(move |matrix| matrix.row(i).0).copied()
 }
 
 /// Sum of the entries of a row in one column.
@@ -93,8 +93,9 @@ impl Constrained {
         let ghosts = system.ghosts();
         // Own nodes come first, then those of ghosts; nothing is known of others.
         let is_own = ghosts.is_own();
-        let mut has_place: Vec<bool> = (0..n).map(|i| is_own[i] && !layout.multiplier[i]).collect();
-        ghosts.owned().iter().for_each(|&(i, _)| has_place[i as usize] = !layout.multiplier[i as usize]);
+        let is_placed = |i: usize| !layout.multiplier[i] && !layout.is_held(i);
+        let mut has_place: Vec<bool> = (0..n).map(|i| is_own[i] && is_placed(i)).collect();
+        ghosts.owned().iter().for_each(|&(i, _)| has_place[i as usize] = is_placed(i as usize));
         let mut owns = vec![false; nodes];
         for i in (0..n).filter(|&i| has_place[i]) {
             slot[i] = count[layout.node[i] as usize];
@@ -147,11 +148,13 @@ impl Constrained {
         // Those of others whose rows are not here act on none that are.
         let is_own = self.ghosts.is_own();
         let is_known = |i: usize| is_own[i] || system.row(i).next().is_some();
-        for i in (0..layout.equations()).filter(|&i| layout.multiplier[i] && is_known(i)) {
+        let is_here = |i: usize| layout.multiplier[i] && !layout.is_held(i) && is_known(i);
+        for i in (0..layout.equations()).filter(|&i| is_here(i)) {
             of_node.entry(layout.node[i]).or_default().push(i as u32);
         }
-        let mut lone = Vec::new();
-        for (node, multipliers) in of_node {
+        // What follows from conditions alone, what nothing here determines, and the group of the rest.
+        type Found = (Vec<(u32, f64, f64)>, Vec<u32>, Option<Result<Group, usize>>);
+        let find = |(node, multipliers): (u32, Vec<u32>)| -> Found {
             let own: Vec<u32> = match block[node as usize] {
                 NONE => Vec::new(),
                 b => {
@@ -163,22 +166,31 @@ impl Constrained {
             // One that acts on nothing belongs to those whose conditions know it.
             let is_known_to = |m: u32, n: u32| m != n && entry(system, n as usize, m as usize) != 0.0;
             let joins = |m: u32| action(m) > 1e-10 * largest || multipliers.iter().any(|&n| is_known_to(m, n));
-            let (acting, idle): (Vec<u32>, Vec<u32>) = multipliers.iter().partition(|&&m| largest > 0.0 && joins(m));
-            for m in idle {
+            let (acting, others): (Vec<u32>, Vec<u32>) = multipliers.iter().partition(|&&m| largest > 0.0 && joins(m));
+            let (mut idle, mut lone) = (Vec::new(), Vec::new());
+            for m in others {
                 let diagonal = entry(system, m as usize, m as usize);
                 let size = system.row(m as usize).fold(0.0_f64, |s, (_, v)| s.max(v.abs()));
-                if diagonal.abs() > DETERMINES * size {
-                    self.idle.push((m, diagonal));
-                    self.row_scales[m as usize] = 1.0 / diagonal.abs();
-                } else {
-                    lone.push(m);
+                match diagonal.abs() > DETERMINES * size {
+                    true => idle.push((m, diagonal, 1.0 / diagonal.abs())),
+                    false => lone.push(m),
                 }
             }
-            if acting.is_empty() {
-                continue;
+            let group = (!acting.is_empty()).then(|| self.group(system, own, acting, largest));
+            (idle, lone, group)
+        };
+        let nodes: Vec<(u32, Vec<u32>)> = of_node.into_iter().collect();
+        let found: Vec<Found> = nodes.into_par_iter().with_min_len(16).map(find).collect();
+        let mut lone = Vec::new();
+        for (idle, more, group) in found {
+            for (m, diagonal, scale) in idle {
+                self.idle.push((m, diagonal));
+                self.row_scales[m as usize] = scale;
             }
-            let group = self.group(system, own, acting, largest)?;
-            self.add_group(group);
+            lone.extend(more);
+            if let Some(group) = group {
+                self.add_group(group?);
+            }
         }
         for m in lone {
             if self.ghosts.processes().is_some() {
@@ -237,14 +249,23 @@ impl Constrained {
         }
         // Conditions now read per displacement and per multiplier times action / stiffness.
         let elimination = elimination::eliminate([d, m], &a, &c, &e).ok_or(multipliers[0] as usize)?;
-        Ok(Group { own, multipliers, elimination, scales, action, stiffness, masters: Vec::new(), follows: Vec::new() })
+        Ok(Group {
+            own,
+            multipliers,
+            elimination,
+            scales,
+            action,
+            stiffness,
+            masters: Vec::new(),
+            follows: Vec::new(),
+            followed: Vec::new(),
+        })
     }
 
     /// What links groups with the rest: unknowns of masters in conditions, multipliers in the equations of masters.
     fn find_neighbours(&mut self, system: &System<'_>) {
         let is_own = |e: usize| self.group_of[e] != NONE && !system.layout.multiplier[e];
-        let mut all = Vec::with_capacity(self.groups.len());
-        for group in &self.groups {
+        let of_group = |group: &Group| {
             let m = group.multipliers.len();
             let mut rows = Vec::new();
             for row in 0..group.elimination.prescribed {
@@ -259,19 +280,21 @@ impl Constrained {
                 }
                 rows.push(terms.into_iter().collect());
             }
-            all.push(rows);
-        }
-        // Patterns are symmetric: what stands in a column stands in the row, too.
-        let near = |of: &dyn Fn(&Group) -> Vec<u32>| {
-            let rows = self.groups.iter().flat_map(of);
-            let mut near: Vec<u32> = rows.flat_map(|e| pattern(system, e as usize)).collect();
-            near.sort_unstable();
-            near.dedup();
-            near
+            rows
         };
-        let beside = near(&|group| group.own.clone());
+        let all: Vec<Vec<Vec<(u32, f64)>>> = self.groups.par_iter().with_min_len(16).map(of_group).collect();
+        // Patterns are symmetric: what stands in a column stands in the row, too.
+        let near = |of: fn(&Group) -> &[u32]| -> Vec<u32> {
+            let mut is_near = vec![false; system.equations()];
+            for &row in self.groups.iter().flat_map(of) {
+                columns(system, row as usize).for_each(|j| is_near[j as usize] = true);
+            }
+            let free = (0..system.equations()).filter(|&j| is_near[j] && !system.layout.is_held(j));
+            free.map(|j| j as u32).collect()
+        };
+        let beside = near(|group| &group.own);
         let mut loads = Vec::new();
-        for i in near(&|group| group.multipliers.clone()) {
+        for i in near(|group| &group.multipliers) {
             if system.layout.multiplier[i as usize] || is_own(i as usize) {
                 continue;
             }
@@ -290,8 +313,8 @@ impl Constrained {
 
     /// What the unknowns of groups follow.
     fn find_follows(&mut self) {
-        let place = &self.place;
-        for group in &mut self.groups {
+        let (place, w) = (&self.place, self.width);
+        self.groups.par_iter_mut().with_min_len(16).for_each(|group| {
             let (free, a) = (group.tangential(), group.elimination.prescribed);
             let of_row = |row: usize| {
                 let own = (0..free).map(|k| (place[group.own[k] as usize], group.elimination.free[row * free + k]));
@@ -302,7 +325,15 @@ impl Constrained {
                 own.chain(masters).collect()
             };
             group.follows = (0..group.own.len()).map(of_row).collect();
-        }
+            let mut blocks = std::collections::BTreeMap::<u32, Vec<f64>>::new();
+            for (row, follows) in group.follows.iter().enumerate() {
+                for &(place, factor) in follows {
+                    let factors = blocks.entry(place / w as u32).or_insert_with(|| vec![0.0; group.own.len() * w]);
+                    factors[row * w + place as usize % w] += factor;
+                }
+            }
+            group.followed = blocks.into_iter().collect();
+        });
     }
 
     /// What each group of this process prescribes: its first unknown and how many motions.

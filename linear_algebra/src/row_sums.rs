@@ -1,0 +1,48 @@
+//! Products of rows of a matrix with a vector.
+//!
+//! Entries are added in one order, so that processors with wider vectors give the same bits, sooner.
+
+/// Products added side by side, which hides the time that an addition takes.
+const LANES: usize = 8;
+/// Entries of the vector that are gathered at a time.
+const GATHERED: usize = 96;
+
+/// `Σ_j a_j x_j` of rows with the same columns.
+#[inline(always)]
+pub(crate) fn row_sums<const R: usize>(columns: &[u32], rows: [&[f64]; R], x: &[f64]) -> [f64; R] {
+    let mut sums = [[0.0; LANES]; R];
+    let mut gathered = [0.0; GATHERED];
+    for (batch, columns) in columns.chunks(GATHERED).enumerate() {
+        let gathered = &mut gathered[..columns.len()];
+        gathered.iter_mut().zip(columns).for_each(|(to, &column)| *to = x[column as usize]);
+        for (sums, row) in sums.iter_mut().zip(rows) {
+            let row = &row[batch * GATHERED..][..columns.len()];
+            let (row, x) = (row.chunks_exact(LANES), gathered.chunks_exact(LANES));
+            let rest = row.remainder().iter().zip(x.remainder());
+            for (sum, (a, x)) in sums.iter_mut().zip(rest) {
+                *sum += a * x;
+            }
+            for (a, x) in row.zip(x) {
+                (0..LANES).for_each(|lane| sums[lane] += a[lane] * x[lane]);
+            }
+        }
+    }
+    sums.map(|[a, b, c, d, e, f, g, h]| ((a + b) + (c + d)) + ((e + f) + (g + h)))
+}
+
+/// Does some work with the widest vectors that this processor and the code know.
+#[inline(always)]
+pub(crate) fn with_wide_vectors<T>(work: impl FnOnce() -> T) -> T {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2")]
+        fn by_avx2<T>(work: impl FnOnce() -> T) -> T {
+            work()
+        }
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has just said that it knows AVX2.
+            return unsafe { by_avx2(work) };
+        }
+    }
+    work()
+}
