@@ -16,7 +16,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Csr, Symmetry};
+use zelus_linear_algebra::vector::zeros;
+use zelus_linear_algebra::{Csr, Layout, Symmetry};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 pub use saved::AssemblerState;
@@ -25,6 +26,7 @@ pub use shares::Push;
 use self::ranks::{Carriers, carriers_of_all};
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::distribution::Distribution;
+use super::dof_table::Dof;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
 use super::near_null_space::{Place, near_null_space};
@@ -59,7 +61,7 @@ pub struct Assembler {
     pattern: BulkPattern,
     element_numbers: Vec<Vec<u32>>,
     condition_numbers: Vec<Vec<u32>>,
-    /// What constant tangents give to the bulk.
+    /// What constant tangents give to the bulk; no numbers where there are none.
     constant: Option<Vec<f64>>,
     mass: Option<Vec<f64>>,
     lumped: bool,
@@ -75,8 +77,14 @@ pub struct Assembler {
     equations: Equations,
     /// Whether the equations are those of a saved run, which says no more of them than their roles.
     incomplete: bool,
+    /// All unknowns as equations, those that are not free as held.
+    whole: Layout,
     reduced_bulk: Csr,
     reduced_coupling: Csr,
+    /// Stamps of the graph and the values that the reduced matrices are of.
+    reduced_of: [Option<[u64; 2]>; 2],
+    /// Whether there is a tangent.
+    has_tangent: bool,
     reduced_loads: Csr,
     stamps: Stamps,
     reduced_graph: u64,
@@ -213,12 +221,15 @@ impl Assembler {
         if changed || std::mem::take(&mut self.incomplete) {
             self.equations = equations;
             if self.distribution.is_none() {
-                let place = |&number: &u32| {
-                    let dof = &system.dofs.dofs()[number as usize];
-                    (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]))
+                let dofs = system.dofs.dofs();
+                let place =
+                    |dof: &Dof| (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]));
+                self.whole = Layout {
+                    node: dofs.iter().map(|dof| dof.node).collect(),
+                    multiplier: dofs.iter().map(|dof| dof.multiplier).collect(),
+                    near_null_space: near_null_space(&dofs.iter().map(place).collect::<Vec<Place>>()),
+                    held: (0..dofs.len()).map(|number| !self.equations.is_free(number)).collect(),
                 };
-                let places: Vec<Place> = self.equations.unknowns().iter().map(place).collect();
-                self.equations.layout.near_null_space = near_null_space(&places);
             }
             self.numbering = self.distribution.as_ref().map(|d| Numbering::new(&self.equations, d));
             self.stamps.bulk_graph += u64::from(changed);
@@ -234,8 +245,6 @@ impl Assembler {
             self.coupling = GroupMatrix::new(&system.dofs, &blocks, &self.interaction_unknowns, is_own);
             self.coupling_graph = Some(graph);
             self.stamps.coupling_graph += 1;
-            let coupling = &self.coupling.matrix;
-            self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, false);
         }
         Ok(())
     }
@@ -328,11 +337,58 @@ impl Assembler {
         Ok(out)
     }
 
-    /// The equations to solve, without the follower loads.
+    /// Brings the matrices of the equations up to date with the tangents.
+    pub fn reduce(&mut self) {
+        let start = Instant::now();
+        let Stamps { bulk_graph, bulk_values, coupling_graph, coupling_values, .. } = self.stamps;
+        let of = [[bulk_graph, bulk_values], [coupling_graph, coupling_values]].map(Some);
+        let graph = |stamps: Option<[u64; 2]>| stamps.map(|[graph, _]| graph);
+        let [bulk_kept, coupling_kept] = [0, 1].map(|which| graph(self.reduced_of[which]) == graph(of[which]));
+        if self.reduced_of[0] != of[0]
+            && let Some(values) = self.bulk.as_deref().or(self.constant.as_deref())
+        {
+            self.equations.reduce_matrix(&self.pattern.matrix, values, &mut self.reduced_bulk, bulk_kept);
+        }
+        if self.reduced_of[1] != of[1] {
+            let coupling = &self.coupling.matrix;
+            self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, coupling_kept);
+        }
+        self.reduced_of = of;
+        if self.equations.layout.near_null_space.len() != self.whole.near_null_space.len() {
+            let of = |vector: &Vec<f64>| self.equations.unknowns().iter().map(|&n| vector[n as usize]).collect();
+            self.equations.layout.near_null_space = self.whole.near_null_space.iter().map(of).collect();
+        }
+        self.seconds.bulk += start.elapsed().as_secs_f64();
+    }
+
+    /// The equations to solve, without the follower loads; [`Assembler::reduce`] comes first.
     pub fn system(&self) -> zelus_linear_algebra::System<'_> {
+        self.system_of(&self.equations.layout, &self.reduced_bulk, &self.reduced_coupling)
+    }
+
+    /// Whether the unknowns may be taken for equations, some of them held: all are here, and none follows others.
+    pub fn has_whole(&self) -> bool {
+        self.distribution.is_none() && !self.equations.has_slaves()
+    }
+
+    /// Gives the same system over all unknowns, those that are not free as held, and the tangents of follower loads, if there are any: no
+    /// second copy of the matrix is made.
+    pub fn with_whole<T>(&mut self, solve: impl FnOnce(&zelus_linear_algebra::System<'_>, Option<&Csr>) -> T) -> T {
+        let kept = self.bulk.as_mut().or(self.constant.as_mut()).map(std::mem::take).unwrap_or_default();
+        self.pattern.matrix.values = kept;
+        let system = self.system_of(&self.whole, &self.pattern.matrix, &self.coupling.matrix);
+        let solved = solve(&system, self.loads.nonzero());
+        let kept = std::mem::take(&mut self.pattern.matrix.values);
+        if let Some(values) = self.bulk.as_mut().or(self.constant.as_mut()) {
+            *values = kept;
+        }
+        solved
+    }
+
+    fn system_of<'a>(&self, layout: &'a Layout, bulk: &'a Csr, coupling: &'a Csr) -> zelus_linear_algebra::System<'a> {
         zelus_linear_algebra::System {
-            layout: &self.equations.layout,
-            bulk: &self.reduced_bulk,
+            layout,
+            bulk,
             bulk_symmetry: if self.bulk_general || !self.equations.keep_symmetry() {
                 Symmetry::General
             } else {
@@ -340,7 +396,7 @@ impl Assembler {
             },
             bulk_graph: self.stamps.bulk_graph,
             bulk_values: self.stamps.bulk_values,
-            coupling: (self.reduced_coupling.entries() > 0).then_some(&self.reduced_coupling),
+            coupling: (coupling.entries() > 0).then_some(coupling),
             coupling_graph: self.stamps.coupling_graph,
             coupling_values: self.stamps.coupling_values,
             coupling_symmetric: false,
@@ -397,7 +453,7 @@ impl Assembler {
         let bulk = if self.traits.variable_elements { &position } else { &displacement };
         let product = |matrix: &Csr, values: &[f64], x: &[f64]| {
             let mut product = vec![0.0; x.len()];
-            abs_product(matrix, values, x, &mut product);
+            abs_products(matrix, values, [x], [&mut product]);
             product
         };
         let coupling = &self.coupling.matrix;
@@ -420,8 +476,7 @@ impl Assembler {
         }
         let mut bodies = vec![0.0; values.len()];
         if let Some(values) = self.bulk_values() {
-            abs_product(&self.pattern.matrix, values, bulk, &mut out);
-            bodies = product(&self.pattern.matrix, values, &farthest);
+            abs_products(&self.pattern.matrix, values, [bulk, &farthest], [&mut out, &mut bodies]);
         }
         for (n, dof) in system.dofs.dofs().iter().enumerate() {
             // Multipliers stand in the tangent of turning normals, too: forces are bounded by the bodies alone.
@@ -437,7 +492,7 @@ impl Assembler {
 
     /// Values of the bulk's tangent on its pattern, once there are any.
     fn bulk_values(&self) -> Option<&[f64]> {
-        self.bulk.as_deref().or(self.constant.as_deref())
+        self.bulk.as_deref().or(self.constant.as_deref()).filter(|values| !values.is_empty())
     }
 
     fn mul_subtract(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
@@ -465,8 +520,11 @@ impl Assembler {
     fn ensure_constant(&mut self, part: &ModelPart, system: &System) -> Result<()> {
         if self.constant.is_none() {
             let start = Instant::now();
-            let mut values = vec![0.0; self.pattern.matrix.entries()];
-            self.add_blocks(part, system, |block| block.tangent() == Tangent::Constant, &mut values)?;
+            let is_constant = |block: &dyn EntityBlock| block.tangent() == Tangent::Constant;
+            let any = system.elements.iter().chain(&system.conditions).any(|block| is_constant(block.as_ref()));
+            let entries = if any { self.pattern.matrix.entries() } else { 0 };
+            let mut values = zeros(entries);
+            self.add_blocks(part, system, is_constant, &mut values)?;
             self.constant = Some(values);
             self.seconds.bulk += start.elapsed().as_secs_f64();
         }
@@ -503,11 +561,18 @@ fn blocks_of(system: &System) -> Blocks<'_> {
     couplings(system).flat_map(|own| own.blocks()).collect()
 }
 
-/// Adds `|A| x` of the matrix A with this pattern and these values.
-fn abs_product(pattern: &Csr, values: &[f64], x: &[f64], out: &mut [f64]) {
-    out.par_iter_mut().enumerate().with_min_len(512).take(pattern.rows).for_each(|(row, y)| {
-        let columns = pattern.columns_of(row);
+/// Adds `|A| x` of the matrix A with this pattern and these values, for each x.
+fn abs_products<const N: usize>(pattern: &Csr, values: &[f64], x: [&[f64]; N], out: [&mut [f64]; N]) {
+    let sums = |row: usize| {
         let values = &values[pattern.row_starts[row]..pattern.row_starts[row + 1]];
-        *y += columns.iter().zip(values).map(|(&c, v)| v.abs() * x[c as usize]).sum::<f64>();
-    });
+        let mut sums = [0.0; N];
+        for (&column, value) in pattern.columns_of(row).iter().zip(values) {
+            (0..N).for_each(|n| sums[n] += value.abs() * x[n][column as usize]);
+        }
+        sums
+    };
+    let found: Vec<[f64; N]> = (0..pattern.rows).into_par_iter().with_min_len(512).map(sums).collect();
+    for (n, out) in out.into_iter().enumerate() {
+        out.iter_mut().zip(&found).for_each(|(out, sums)| *out += sums[n]);
+    }
 }

@@ -1,24 +1,24 @@
 //! The matrix of elements on all unknowns, on a pattern that lasts as long as the mesh.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use zelus_linear_algebra::Csr;
 
-use super::dof_table::DofTable;
-use super::local::{BATCH, evaluate};
+use super::dof_table::{Dof, DofTable};
+use super::local::{BATCH, add_rhs, entity_lhs, evaluate, side_by_side};
+use super::neighbours::Neighbours;
+use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Want};
-
-/// Row ranges that are filled side by side; fixed, so that results do not depend on the number of threads.
-const ROW_PARTS: usize = 4;
 
 /// Pattern over all unknowns: a row of node `a` holds the bulk unknowns of every node that shares an element with `a`.
 ///
 /// Multipliers have empty rows and columns.
 #[derive(Debug, Clone, Default)]
 pub struct BulkPattern {
-    /// Neighbours of each node, ascending, itself included: starts and list.
-    starts: Vec<usize>,
-    neighbours: Vec<u32>,
+    /// Neighbours of each node, itself included.
+    neighbours: Neighbours,
     /// Where the unknowns of each neighbour begin inside a row.
     offsets: Vec<u32>,
     /// First bulk unknown of each node.
@@ -37,7 +37,7 @@ impl BulkPattern {
         nodes: usize,
         blocks: impl Iterator<Item = &'a dyn EntityBlock>,
         groups: &[Vec<u32>],
-        keeps: impl Fn(usize) -> bool,
+        keeps: impl Fn(usize) -> bool + Sync,
     ) -> Self {
         let mut count = vec![0_u8; nodes];
         let mut first = vec![u32::MAX; nodes];
@@ -46,59 +46,35 @@ impl BulkPattern {
             first[node] = first[node].min(number as u32);
             count[node] += 1;
         }
-        let mut lists: Vec<Vec<u32>> =
-            (0..nodes as u32).map(|n| if keeps(n as usize) { vec![n] } else { Vec::new() }).collect();
-        for block in blocks {
-            for at in 0..block.len() {
-                let members = block.nodes(at);
-                for &a in members {
-                    lists[a as usize].extend_from_slice(members);
-                }
+        let mut members: Vec<&[u32]> = groups.iter().map(Vec::as_slice).collect();
+        members.extend(blocks.flat_map(|block| (0..block.len()).map(|at| block.nodes(at))));
+        let neighbours = Neighbours::new(nodes, &members, keeps);
+        let width = |node: usize| neighbours.of(node).iter().map(|&b| u32::from(count[b as usize])).sum::<u32>();
+        let widths: Vec<u32> = (0..nodes).into_par_iter().with_min_len(ROWS).map(width).collect();
+        let mut offsets = vec![0; neighbours.list.len()];
+        fill_rows(&neighbours.starts, &mut offsets, |node, offsets| {
+            let mut end = 0;
+            for (&b, offset) in neighbours.of(node).iter().zip(offsets) {
+                *offset = end;
+                end += u32::from(count[b as usize]);
             }
-        }
-        for group in groups {
-            group.iter().for_each(|&a| lists[a as usize].extend_from_slice(group));
-        }
-        lists.par_iter_mut().with_min_len(256).for_each(|list| {
-            list.sort_unstable();
-            list.dedup();
         });
-        let mut starts = vec![0];
-        let mut neighbours = Vec::new();
-        let mut offsets = Vec::new();
-        for list in &lists {
-            let mut offset = 0;
-            for &b in list {
-                neighbours.push(b);
-                offsets.push(offset);
-                offset += u32::from(count[b as usize]);
-            }
-            starts.push(neighbours.len());
-        }
-        let bulk = || dofs.dofs().iter().filter(|dof| !dof.multiplier).map(|dof| dof.node as usize);
-        let entries =
-            |node: usize| neighbours[starts[node]..starts[node + 1]].iter().map(|&b| count[b as usize] as usize);
-        let mut row_starts = vec![0];
-        let mut columns = Vec::with_capacity(bulk().flat_map(entries).sum());
-        for dof in dofs.dofs() {
-            if !dof.multiplier {
-                let node = dof.node as usize;
-                for &b in &neighbours[starts[node]..starts[node + 1]] {
-                    let b = b as usize;
-                    columns.extend(first[b]..first[b].wrapping_add(u32::from(count[b])));
-                }
-            }
-            row_starts.push(columns.len());
-        }
+        let entries = |dof: &Dof| if dof.multiplier { 0 } else { widths[dof.node as usize] as usize };
+        let row_starts = starts(dofs.dofs().iter().map(entries));
+        let mut columns = vec![0; row_starts[dofs.len()]];
+        fill_rows(&row_starts, &mut columns, |row, columns| {
+            let of_node = |&b: &u32| first[b as usize]..first[b as usize].wrapping_add(u32::from(count[b as usize]));
+            let numbers = neighbours.of(dofs.dofs()[row].node as usize).iter().flat_map(of_node);
+            columns.iter_mut().zip(numbers).for_each(|(column, number)| *column = number);
+        });
         let matrix = Csr::without_values(row_starts, columns);
-        Self { starts, neighbours, offsets, first, matrix }
+        Self { neighbours, offsets, first, matrix }
     }
 
     /// Place in a row of `a` where the unknowns of `b` begin.
     fn offset(&self, a: u32, b: u32) -> usize {
-        let range = self.starts[a as usize]..self.starts[a as usize + 1];
-        let at = self.neighbours[range.clone()].binary_search(&b).expect("nodes of one element are neighbours");
-        self.offsets[range.start + at] as usize
+        let at = self.neighbours.of(a as usize).binary_search(&b).expect("nodes of one element are neighbours");
+        self.offsets[self.neighbours.starts[a as usize] + at] as usize
     }
 
     /// Place of each unknown of an entity, whose nodes and unknowns these are, in the rows of its local node `of`.
@@ -125,26 +101,17 @@ impl BulkPattern {
         block: &dyn EntityBlock,
         numbers: &[u32],
         values: &mut [f64],
-        compute: &(dyn Fn(std::ops::Range<usize>, &mut LocalSystems) -> Result<(), EntityError> + Sync),
+        compute: &(dyn Fn(Range<usize>, &mut LocalSystems) -> Result<(), EntityError> + Sync),
     ) -> Result<(), EntityError> {
         let unknowns = block.unknowns();
         let size = unknowns.len();
-        let rows = self.matrix.rows;
-        let bounds: Vec<usize> = (0..=ROW_PARTS).map(|part| rows * part / ROW_PARTS).collect();
+        let mut buffers = Vec::new();
         for begin in (0..block.len()).step_by(BATCH) {
             let range = begin..(begin + BATCH).min(block.len());
-            let chunks = evaluate(range.clone(), size, Want::Both, compute)?;
-            let mut parts: Vec<(usize, usize, &mut [f64])> = Vec::with_capacity(ROW_PARTS);
-            let mut rest = &mut *values;
-            for pair in bounds.windows(2) {
-                let length = self.matrix.row_starts[pair[1]] - self.matrix.row_starts[pair[0]];
-                let (head, tail) = rest.split_at_mut(length);
-                parts.push((pair[0], pair[1], head));
-                rest = tail;
-            }
-            parts.into_par_iter().for_each(|(first_row, last_row, part)| {
-                let is_here = |row: u32| (first_row..last_row).contains(&(row as usize));
-                let base = self.matrix.row_starts[first_row];
+            let chunks = &*evaluate(range.clone(), size, Want::Both, compute, &mut buffers)?;
+            let touched = numbers[range.start * size..range.end * size].iter().copied();
+            side_by_side(&self.matrix.row_starts, values, touched, |rows, base, part| {
+                let is_here = |row: u32| rows.contains(&(row as usize));
                 // Place of each unknown of an entity in the rows of one of its nodes.
                 let mut places = vec![0; size];
                 for at in range.clone() {
@@ -153,7 +120,7 @@ impl BulkPattern {
                     if !numbers.iter().any(|&row| is_here(row)) {
                         continue;
                     }
-                    let lhs = super::local::entity_lhs(&chunks, at - begin, size);
+                    let lhs = entity_lhs(chunks, at - begin);
                     let mut of_node = None;
                     for (i, &row) in numbers.iter().enumerate().filter(|(_, row)| is_here(**row)) {
                         if of_node.replace(unknowns[i].node) != Some(unknowns[i].node) {
@@ -199,10 +166,11 @@ pub fn add_residual(
 ) -> Result<(), EntityError> {
     let size = block.unknowns().len();
     let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
+    let mut buffers = Vec::new();
     for begin in (0..block.len()).step_by(BATCH) {
         let range = begin..(begin + BATCH).min(block.len());
-        let chunks = evaluate(range, size, want, &compute)?;
-        super::local::add_rhs(&chunks, numbers, begin, size, rhs);
+        let chunks = evaluate(range, size, want, &compute, &mut buffers)?;
+        add_rhs(chunks, numbers, begin, size, rhs);
     }
     Ok(())
 }

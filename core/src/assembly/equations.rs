@@ -11,12 +11,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Csr, Layout};
 
-use super::dof_table::DofTable;
+use super::dof_table::{DofTable, NONE};
+use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{MasterSlaveConstraint, Nodes};
-
-/// Rows that one task copies.
-const ROWS: usize = 1024;
 
 /// What became of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -129,6 +127,11 @@ impl Equations {
         self.symmetric
     }
 
+    /// Whether unknowns follow others.
+    pub fn has_slaves(&self) -> bool {
+        self.has_slaves
+    }
+
     /// Number of equations.
     pub fn len(&self) -> usize {
         self.free.len()
@@ -218,32 +221,22 @@ impl Equations {
             *into = self.reduce_constrained(full, values);
             return;
         }
+        let equation: Vec<u32> =
+            self.roles.iter().map(|role| if let Role::Free(equation) = role { *equation } else { NONE }).collect();
+        let columns_of = |row: usize| full.columns_of(self.free[row] as usize).iter().map(|&c| equation[c as usize]);
         if !same_pattern {
-            let mut row_starts = Vec::with_capacity(self.free.len() + 1);
-            row_starts.push(0);
-            let mut columns = Vec::with_capacity(full.entries());
-            for &n in &self.free {
-                columns.extend(full.columns_of(n as usize).iter().filter_map(|&c| match self.roles[c as usize] {
-                    Role::Free(equation) => Some(equation),
-                    _ => None,
-                }));
-                row_starts.push(columns.len());
-            }
+            let count = |row: usize| columns_of(row).filter(|&to| to != NONE).count();
+            let counts: Vec<usize> = (0..self.len()).into_par_iter().with_min_len(ROWS).map(count).collect();
+            let row_starts = starts(counts);
+            let mut columns = vec![0; row_starts[self.len()]];
+            fill_rows(&row_starts, &mut columns, |row, out| {
+                out.iter_mut().zip(columns_of(row).filter(|&to| to != NONE)).for_each(|(out, to)| *out = to);
+            });
             *into = Csr::from_sorted_pattern(row_starts, columns);
         }
-        let mut parts = Vec::with_capacity(self.free.len() / ROWS + 1);
-        let mut rest = &mut into.values[..];
-        for (task, rows) in self.free.chunks(ROWS).enumerate() {
-            let [from, to] = [0, rows.len()].map(|row| into.row_starts[task * ROWS + row]);
-            let (now, later) = rest.split_at_mut(to - from);
-            parts.push((rows, now));
-            rest = later;
-        }
-        parts.into_par_iter().for_each(|(rows, out)| {
-            let entries = rows.iter().flat_map(|&n| {
-                let values = &values[full.row_starts[n as usize]..];
-                full.columns_of(n as usize).iter().zip(values).filter(|(column, _)| self.is_free(**column as usize))
-            });
+        fill_rows(&into.row_starts, &mut into.values, |row, out| {
+            let values = &values[full.row_starts[self.free[row] as usize]..];
+            let entries = columns_of(row).zip(values).filter(|(to, _)| *to != NONE);
             out.iter_mut().zip(entries).for_each(|(out, (_, value))| *out = *value);
         });
     }

@@ -6,7 +6,8 @@ use zelus_linear_algebra::Csr;
 
 use super::bulk_matrix::block_numbers;
 use super::dof_table::DofTable;
-use super::local::{each_of_runs, own_runs};
+use super::local::{batches_of_runs, each_of_runs, own_runs, side_by_side};
+use super::neighbours::Neighbours;
 use crate::entities::{EntityBlock, EntityError, StepView, Want};
 
 /// A matrix over all unknowns whose rows are empty except where its blocks act.
@@ -29,18 +30,13 @@ impl GroupMatrix {
         let numbers: Vec<Vec<u32>> = blocks.iter().map(|block| block_numbers(*block, dofs)).collect();
         let runs: Vec<Vec<Range<usize>>> =
             blocks.iter().map(|block| own_runs(block.len(), |at| is_own(block.nodes(at)))).collect();
-        let mut adjacency = vec![Vec::new(); dofs.len()];
+        let mut groups: Vec<&[u32]> = lonely.chunks_exact(1).collect();
         for ((block, numbers), runs) in blocks.iter().zip(&numbers).zip(&runs) {
             let size = block.unknowns().len();
-            for at in runs.iter().flat_map(Clone::clone) {
-                let rows = &numbers[at * size..(at + 1) * size];
-                for &row in rows {
-                    adjacency[row as usize].extend_from_slice(rows);
-                }
-            }
+            groups.extend(runs.iter().flat_map(Clone::clone).map(|at| &numbers[at * size..(at + 1) * size]));
         }
-        lonely.iter().for_each(|&n| adjacency[n as usize].push(n));
-        Self { matrix: Csr::from_pattern(&adjacency), numbers, runs, lonely: lonely.to_vec() }
+        let Neighbours { starts, list } = Neighbours::new(dofs.len(), &groups, |_| false);
+        Self { matrix: Csr::from_sorted_pattern(starts, list), numbers, runs, lonely: lonely.to_vec() }
     }
 
     /// Evaluates the entities of `blocks` and hands on, in their order, the place of each one's block, its place there, its
@@ -94,26 +90,43 @@ impl GroupMatrix {
     /// # Errors
     /// The first entity that cannot be computed.
     pub fn assemble(&mut self, blocks: &[&dyn EntityBlock], view: &StepView<'_>) -> Result<(), EntityError> {
-        let mut matrix = std::mem::take(&mut self.matrix);
+        let Self { matrix, numbers, runs, .. } = self;
         matrix.zero();
-        let mut places = Vec::new();
-        let result = self.each(blocks, view, Want::Both, |block, at, rows, lhs, _| {
-            if blocks[block].is_active(at, view) {
-                for (i, &row) in rows.iter().enumerate() {
-                    let columns = matrix.row(row as usize).0;
-                    // Unknowns of a node have rows with the same columns.
-                    if i == 0 || columns != matrix.row(rows[i - 1] as usize).0 {
-                        find_all(columns, rows, &mut places);
+        let Csr { row_starts, columns, values, .. } = matrix;
+        let columns_of = |row: u32| &columns[row_starts[row as usize]..row_starts[row as usize + 1]];
+        for ((block, numbers), runs) in blocks.iter().zip(numbers).zip(runs) {
+            let size = block.unknowns().len();
+            let rows_of = |at: usize| &numbers[at * size..(at + 1) * size];
+            batches_of_runs(*block, view, runs, Want::Both, |batch| {
+                let active = || batch.iter().filter(|(at, ..)| block.is_active(*at, view));
+                let touched = active().flat_map(|(at, ..)| rows_of(*at)).copied();
+                side_by_side(row_starts, values, touched, |here, base, values| {
+                    let mut places = Vec::new();
+                    for &(at, lhs, _) in active() {
+                        let rows = rows_of(at);
+                        let mut known: &[u32] = &[];
+                        for (i, &row) in rows.iter().enumerate().filter(|(_, row)| here.contains(&(**row as usize))) {
+                            let columns = columns_of(row);
+                            // Unknowns of a node have rows with the same columns.
+                            if columns != known {
+                                find_all(columns, rows, &mut places);
+                                known = columns;
+                            }
+                            let values = &mut values[row_starts[row as usize] - base..];
+                            for (&place, value) in places.iter().zip(&lhs[i * size..]) {
+                                values[place] += value;
+                            }
+                        }
                     }
-                    let values = &mut matrix.values[matrix.row_starts[row as usize]..];
-                    for (&place, value) in places.iter().zip(&lhs[i * rows.len()..]) {
-                        values[place] += value;
-                    }
-                }
-            }
-        });
-        self.matrix = matrix;
-        result
+                });
+            })?;
+        }
+        Ok(())
+    }
+
+    /// The matrix, where an entry is not zero.
+    pub fn nonzero(&self) -> Option<&Csr> {
+        Some(&self.matrix).filter(|matrix| matrix.values.iter().any(|v| *v != 0.0))
     }
 
     /// Of each lonely unknown, whether its row has an entry that is not zero.

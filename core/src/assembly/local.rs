@@ -7,38 +7,45 @@ use rayon::prelude::*;
 use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
 
 /// Entities whose local systems are held at a time.
-pub(super) const BATCH: usize = 2048;
+pub(super) const BATCH: usize = 512;
 /// Entities of one task; fixed, so that results do not depend on the number of threads.
-const CHUNK: usize = 64;
+const CHUNK: usize = 32;
 
 type Compute<'a> = &'a (dyn Fn(Range<usize>, &mut LocalSystems) -> Result<(), EntityError> + Sync);
 
-/// Local systems of `range`, in chunks of [`CHUNK`] entities.
-pub(super) fn evaluate(
+/// Local systems of `range`, in chunks of [`CHUNK`] entities; their memory is that of `buffers`, which serve batch after batch.
+///
+/// # Errors
+/// The first entity that cannot be computed.
+pub(super) fn evaluate<'a>(
     range: Range<usize>,
     size: usize,
     want: Want,
     compute: Compute<'_>,
-) -> Result<Vec<LocalSystems>, EntityError> {
+    buffers: &'a mut Vec<LocalSystems>,
+) -> Result<&'a mut [LocalSystems], EntityError> {
     let chunks: Vec<Range<usize>> =
         range.clone().step_by(CHUNK).map(|begin| begin..(begin + CHUNK).min(range.end)).collect();
-    evaluate_runs(&chunks, size, want, compute)
+    evaluate_runs(&chunks, size, want, compute, buffers)
 }
 
 /// Local systems of each of `runs`, which are no longer than [`CHUNK`].
-fn evaluate_runs(
+fn evaluate_runs<'a>(
     runs: &[Range<usize>],
     size: usize,
     want: Want,
     compute: Compute<'_>,
-) -> Result<Vec<LocalSystems>, EntityError> {
-    runs.par_iter()
-        .map(|run| {
-            let mut out = LocalSystems::default();
-            out.reset(run.len(), size, want);
-            compute(run.clone(), &mut out).map(|()| out)
-        })
-        .collect()
+    buffers: &'a mut Vec<LocalSystems>,
+) -> Result<&'a mut [LocalSystems], EntityError> {
+    buffers.resize_with(buffers.len().max(runs.len()), LocalSystems::default);
+    let systems = &mut buffers[..runs.len()];
+    let evaluate = |(run, out): (&Range<usize>, &mut LocalSystems)| {
+        out.reset(run.len(), size, want);
+        compute(run.clone(), out)
+    };
+    let done: Vec<Result<(), EntityError>> = runs.par_iter().zip(&mut *systems).map(evaluate).collect();
+    done.into_iter().collect::<Result<(), _>>()?;
+    Ok(systems)
 }
 
 /// Those of `count` entities that are evaluated here, in runs of at most [`CHUNK`].
@@ -53,6 +60,28 @@ pub(super) fn own_runs(count: usize, is_own: impl Fn(usize) -> bool) -> Vec<Rang
     runs
 }
 
+/// Evaluates the entities of `runs` and hands them on in batches: the number of each with its tangent and its right-hand side, in their
+/// order.
+pub(super) fn batches_of_runs(
+    block: &dyn EntityBlock,
+    view: &StepView<'_>,
+    runs: &[Range<usize>],
+    want: Want,
+    mut take: impl FnMut(&[(usize, &[f64], &[f64])]),
+) -> Result<(), EntityError> {
+    let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
+    let mut buffers = Vec::new();
+    for batch in runs.chunks(BATCH / CHUNK) {
+        let systems = evaluate_runs(batch, block.unknowns().len(), want, &compute, &mut buffers)?;
+        let mut found = Vec::with_capacity(BATCH);
+        for (run, systems) in batch.iter().zip(&*systems) {
+            found.extend(run.clone().enumerate().map(|(slot, at)| (at, systems.lhs_of(slot), systems.rhs_of(slot))));
+        }
+        take(&found);
+    }
+    Ok(())
+}
+
 /// Evaluates the entities of `runs` and hands the number of each, its tangent and its right-hand side on, in their order.
 pub(super) fn each_of_runs(
     block: &dyn EntityBlock,
@@ -61,22 +90,36 @@ pub(super) fn each_of_runs(
     want: Want,
     mut add: impl FnMut(usize, &[f64], &[f64]),
 ) -> Result<(), EntityError> {
-    let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
-    for batch in runs.chunks(BATCH / CHUNK) {
-        for (run, mut systems) in batch.iter().zip(evaluate_runs(batch, block.unknowns().len(), want, &compute)?) {
-            for (slot, at) in run.clone().enumerate() {
-                let (lhs, rhs) = systems.entity(slot);
-                add(at, lhs, rhs);
-            }
-        }
+    batches_of_runs(block, view, runs, want, |batch| batch.iter().for_each(|&(at, lhs, rhs)| add(at, lhs, rhs)))
+}
+
+/// Row ranges that are filled side by side.
+const ROW_PARTS: usize = 16;
+
+/// Lets `add` fill rows side by side: each task is told which, the place of their first entry and their entries. `touched` are the rows,
+/// whose entries begin at `starts`, that need it; entities that stand together touch rows that do.
+pub(super) fn side_by_side(
+    starts: &[usize],
+    values: &mut [f64],
+    touched: impl Iterator<Item = u32> + Clone,
+    add: impl Fn(Range<usize>, usize, &mut [f64]) + Sync,
+) {
+    let (Some(first), Some(last)) = (touched.clone().min(), touched.max()) else { return };
+    let (first, rows) = (first as usize, (last - first) as usize + 1);
+    let bounds: Vec<usize> = (0..=ROW_PARTS).map(|part| first + rows * part / ROW_PARTS).collect();
+    let mut parts = Vec::with_capacity(ROW_PARTS);
+    let mut rest = &mut values[starts[first]..];
+    for pair in bounds.windows(2) {
+        let (head, tail) = rest.split_at_mut(starts[pair[1]] - starts[pair[0]]);
+        parts.push((pair[0]..pair[1], head));
+        rest = tail;
     }
-    Ok(())
+    parts.into_par_iter().for_each(|(rows, values)| add(rows.clone(), starts[rows.start], values));
 }
 
 /// Tangent of the `at`-th entity of the evaluated range.
-pub(super) fn entity_lhs(chunks: &[LocalSystems], at: usize, size: usize) -> &[f64] {
-    let within = at % CHUNK;
-    &chunks[at / CHUNK].lhs[within * size * size..(within + 1) * size * size]
+pub(super) fn entity_lhs(chunks: &[LocalSystems], at: usize) -> &[f64] {
+    chunks[at / CHUNK].lhs_of(at % CHUNK)
 }
 
 /// Adds all right-hand sides; `begin` is the first entity of the evaluated range.

@@ -8,10 +8,12 @@ mod equations;
 mod group_matrix;
 mod local;
 mod near_null_space;
+mod neighbours;
 mod nodal_vectors;
 mod numbering;
 mod reach;
 mod redistribution;
+mod rows;
 mod supports;
 mod system;
 

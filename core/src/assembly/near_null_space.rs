@@ -1,5 +1,7 @@
 //! Motions that elements hardly resist: what multigrid has to carry to the coarser levels.
 
+use rayon::prelude::*;
+
 use crate::communication::Ranks;
 use crate::model::ScalarVariable;
 
@@ -49,12 +51,12 @@ fn motions(places: &[Place], variables: &[ScalarVariable], center: [f64; 3]) -> 
     }
     let mut space = Vec::new();
     for (column, has, is_vector) in fields {
-        let mut add = |value: &dyn Fn(usize, &[f64; 3]) -> f64| {
+        let mut add = |value: &(dyn Fn(usize, &[f64; 3]) -> f64 + Sync)| {
             let of = |place: &Place| match place {
                 Some((variable, at)) if variable.column == column => value(variable.offset(), at),
                 _ => 0.0,
             };
-            space.push(places.iter().map(of).collect());
+            space.push(places.par_iter().with_min_len(4096).map(of).collect());
         };
         for axis in (0..3).filter(|&axis| has[axis]) {
             add(&|along, _| f64::from(u8::from(along == axis)));

@@ -74,6 +74,17 @@ impl LocalSystems {
         self.lhs.resize(if want == Want::Both { count * size * size } else { 0 }, 0.0);
     }
 
+    /// Tangent of the `at`-th entity of the range, empty when not wanted.
+    pub fn lhs_of(&self, at: usize) -> &[f64] {
+        let square = self.size * self.size;
+        if self.lhs.is_empty() { &[] } else { &self.lhs[at * square..(at + 1) * square] }
+    }
+
+    /// Right-hand side of the `at`-th entity of the range.
+    pub fn rhs_of(&self, at: usize) -> &[f64] {
+        &self.rhs[at * self.size..(at + 1) * self.size]
+    }
+
     /// Tangent (empty when not wanted) and right-hand side of the `at`-th entity of the range.
     pub fn entity(&mut self, at: usize) -> (&mut [f64], &mut [f64]) {
         let n = self.size;

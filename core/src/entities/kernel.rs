@@ -4,6 +4,7 @@ use std::any::Any;
 use std::collections::HashMap;
 use std::ops::Range;
 
+use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use zelus_linear_algebra::State;
@@ -268,9 +269,12 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
 
     fn initialize(&mut self, view: &StepView<'_>) -> Result<()> {
         let mut report = crate::diagnostics::Report::new();
-        let mut states = Vec::with_capacity(self.members.len());
-        for at in 0..self.members.len() {
-            match self.kernel.state(&self.gather(at, view), view) {
+        let state = |at: usize| self.kernel.state(&self.gather(at, view), view);
+        let found: Vec<Result<K::State, String>> =
+            (0..self.members.len()).into_par_iter().with_min_len(64).map(state).collect();
+        let mut states = Vec::with_capacity(found.len());
+        for (at, found) in found.into_iter().enumerate() {
+            match found {
                 Ok(state) => states.push(state),
                 Err(fact) => {
                     report.absorb::<()>(Err(self.error(at, view, fact).into()));

@@ -89,6 +89,14 @@ pub(super) fn solve(
     dofs: &DofTable,
     nodes: &Nodes,
 ) -> Result<(Vec<f64>, SolveReport), Failed> {
+    if assembler.has_whole() && solver.takes_held(assembler.equations().len(), assembler.entries()) {
+        let (rhs, stamps) = (assembler.equations().expand(rhs), assembler.merged_stamps());
+        let meaning = |number: usize| Some(Meaning::of(dofs, nodes, number as u32));
+        let (increment, report) =
+            assembler.with_whole(|system, loads| solve_here(system, loads, stamps, solver, &rhs, &meaning))?;
+        return Ok((assembler.equations().reduce(&increment), report));
+    }
+    assembler.reduce();
     let loads = assembler.load_tangents().cloned();
     let system = assembler.system();
     let Some(numbering) = assembler.numbering() else {
@@ -250,7 +258,7 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_
     let rank = match rank_deficiency {
         _ if only_multipliers => system.and_then(|system| {
             let rank = zelus_linear_algebra::rank(system)?;
-            Some(format!(": its rank is {rank}, its size {}", system.equations()))
+            Some(format!(": its rank is {rank}, its size {}", system.free()))
         }),
         free => free.map(|r| format!(", at least {r} free motions")),
     }

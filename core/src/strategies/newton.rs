@@ -284,13 +284,14 @@ impl NewtonRaphson {
             return Ok(Solved { increment, relative_residual: 0.0, iterations: 0, engine, fallback: None });
         }
         let (solver, gathered) = (self.solver.as_mut(), &mut self.gathered);
-        let start = Instant::now();
+        let (start, assembling) = (Instant::now(), self.assembler.seconds.bulk);
         let solved = linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &system.dofs, &part.nodes);
         let known = solved.as_ref().map_or([0.0; 2], |(_, report)| [report.seconds_symbolic, report.seconds_numeric]);
         self.phases.add("linear: order", known[0]);
         self.phases.add("linear: factor", known[1]);
         // With what engines spent that gave no answer.
-        self.phases.add("linear: solve", start.elapsed().as_secs_f64() - known[0] - known[1]);
+        let known = known[0] + known[1] + self.assembler.seconds.bulk - assembling;
+        self.phases.add("linear: solve", start.elapsed().as_secs_f64() - known);
         let (increment, report) = solved.map_err(|failed| failed.in_part(part))?;
         let SolveReport { engine, relative_residual, iterations, mut fallback, .. } = report;
         if let Some(refused) = self.solver.not_condensed().or(self.gathered.not_condensed()) {
@@ -409,6 +410,7 @@ impl NewtonRaphson {
     /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by power and inverse power iteration; on several
     /// ranks, rank 0 knows it. Collective.
     fn condition_number(&mut self, part: &ModelPart, system: &System, monitor: &mut dyn Monitor) -> Option<f64> {
+        self.assembler.reduce();
         let mut matrices = self.assembler.system();
         if self.assembler.numbering().is_some() {
             self.gathered.update(&self.assembler, None, &system.dofs, &part.nodes);

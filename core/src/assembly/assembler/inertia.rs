@@ -1,10 +1,16 @@
 //! What moves: mass and damping matrices on the pattern of the bulk, and the forces they take up.
 
+use rayon::prelude::*;
+use zelus_linear_algebra::vector::{clear, zeros};
+
 use super::{Assembler, is_variable};
 use crate::assembly::{Dof, System};
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
 use crate::model::{ModelPart, Nodes, Rates, Role};
+
+/// Numbers of a task.
+pub(super) const CHUNK: usize = 1 << 14;
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///
@@ -59,7 +65,7 @@ impl Assembler {
             let damping = self.damping(part, system, [inertia.alpha, inertia.beta])?;
             self.mul_subtract(&damping, &minus(1.0), &mut out);
         } else if inertia.beta != 0.0 {
-            self.mul_subtract(&self.stiffness(part, system)?, &minus(inertia.beta), &mut out);
+            self.mul_subtract(&self.stiffness(part, system, Vec::new())?, &minus(inertia.beta), &mut out);
         }
         let is_own = |number: usize| self.distribution.as_ref().is_none_or(|d| d.is_own(number));
         let carried = out.iter_mut().zip(&inertia.carried).enumerate();
@@ -75,7 +81,7 @@ impl Assembler {
         let view = part.view();
         let nodes = undeformed(part);
         let initial = StepView { nodes: &nodes, ..view };
-        let mut values = vec![0.0; self.pattern.matrix.entries()];
+        let mut values = zeros(self.pattern.matrix.entries());
         let mut lasting = true;
         let numbered = system.elements.iter().zip(&self.element_numbers);
         for (block, numbers) in numbered.chain(system.conditions.iter().zip(&self.condition_numbers)) {
@@ -123,7 +129,7 @@ impl Assembler {
         if self.mass.is_none() {
             let nodes = undeformed(part);
             let view = StepView { nodes: &nodes, ..part.view() };
-            let mut values = vec![0.0; self.pattern.matrix.entries()];
+            let mut values = zeros(self.pattern.matrix.entries());
             for (block, numbers) in system.elements.iter().zip(&self.element_numbers) {
                 let lumped = self.lumped;
                 let compute = |range, out: &mut LocalSystems| block.mass(&view, range, lumped, out).map(|_| ());
@@ -148,8 +154,15 @@ impl Assembler {
         Ok(out)
     }
 
-    pub(super) fn stiffness(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
-        let mut values = self.constant.clone().expect("assembled before the first residual");
+    /// Tangents of elements, and of conditions that keep it symmetric; in the `memory` of earlier ones.
+    pub(super) fn stiffness(&self, part: &ModelPart, system: &System, memory: Vec<f64>) -> Result<Vec<f64>> {
+        let mut values = memory;
+        let constant = self.constant.as_ref().expect("assembled before the first residual");
+        match values.len() == self.pattern.matrix.entries() {
+            true => clear(&mut values),
+            false => values = zeros(self.pattern.matrix.entries()),
+        }
+        values.par_iter_mut().zip(constant).with_min_len(CHUNK).for_each(|(value, own)| *value = *own);
         let is_element = |block: &dyn EntityBlock| block.entry().role == Role::Element;
         self.add_blocks(
             part,

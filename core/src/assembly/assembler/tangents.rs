@@ -2,10 +2,11 @@
 
 use std::time::Instant;
 
+use rayon::prelude::*;
 use zelus_linear_algebra::Csr;
 
 use super::{Assembler, blocks_of, couplings, load_blocks};
-use crate::assembly::assembler::inertia::{Inertia, damped_by_properties, without_rates};
+use crate::assembly::assembler::inertia::{CHUNK, Inertia, damped_by_properties, without_rates};
 use crate::assembly::{DofTable, System};
 use crate::diagnostics::Result;
 use crate::entities::Coupling;
@@ -29,8 +30,6 @@ impl Assembler {
         let distribution = self.distribution.as_ref();
         let diagonals = self.coupling_of.iter().map(|&coupling| idle[coupling]);
         self.coupling.set_idle_diagonal(&in_use, diagonals, |n| distribution.is_none_or(|d| d.is_own(n)));
-        let coupling = &self.coupling.matrix;
-        self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;
         self.seconds.coupling += start.elapsed().as_secs_f64();
         Ok(())
@@ -45,10 +44,10 @@ impl Assembler {
         let single = !damped_by_properties(part, system);
         let stale =
             self.traits.variable_bulk || self.reduced_graph != self.stamps.bulk_graph || self.tangent_key != Some(key);
-        let missing = self.reduced_bulk.rows == 0;
-        if stale || missing {
+        if stale || !self.has_tangent {
             let is_constant = inertia.is_none() && !self.traits.variable_bulk;
-            let mut values = if is_constant { Vec::new() } else { self.stiffness(part, system)? };
+            let memory = self.bulk.take().unwrap_or_default();
+            let mut values = if is_constant { Vec::new() } else { self.stiffness(part, system, memory)? };
             // Damping acts on rates only, which takes the symmetry from unknowns without them.
             let mut damped = false;
             if inertia.is_some() {
@@ -63,10 +62,11 @@ impl Assembler {
                 damped = !still.is_empty() && (!single || stiffness_factor != 1.0);
                 self.mass(part, system)?;
                 let mass = self.mass.as_ref().expect("just made");
-                for ((value, m), column) in values.iter_mut().zip(mass).zip(&self.pattern.matrix.columns) {
+                let entries = values.par_iter_mut().zip(mass).zip(&self.pattern.matrix.columns);
+                entries.with_min_len(CHUNK).for_each(|((value, m), column)| {
                     let factor = if moves(column) { stiffness_factor } else { 1.0 };
                     *value = factor * *value + mass_factor * m;
-                }
+                });
                 if !single {
                     let damping = self.damping(part, system, [alpha, beta])?;
                     let moving = values.iter_mut().zip(damping).zip(&self.pattern.matrix.columns);
@@ -75,7 +75,7 @@ impl Assembler {
             }
             self.bulk = (!is_constant).then_some(values);
             self.bulk_general = self.traits.general_elements || damped;
-            self.reduce_bulk(!missing && self.reduced_graph == self.stamps.bulk_graph);
+            self.has_tangent = true;
             self.stamps.bulk_values += u64::from(stale);
             self.reduced_graph = self.stamps.bulk_graph;
             self.tangent_key = Some(key);
@@ -86,11 +86,6 @@ impl Assembler {
         self.coupling.assemble(&blocks_of(system), &view)?;
         self.seconds.coupling += start.elapsed().as_secs_f64();
         Ok(())
-    }
-
-    fn reduce_bulk(&mut self, same_pattern: bool) {
-        let values = self.bulk.as_ref().or(self.constant.as_ref()).expect("assembled before it is reduced");
-        self.equations.reduce_matrix(&self.pattern.matrix, values, &mut self.reduced_bulk, same_pattern);
     }
 
     /// Multiplies the tangents of follower loads, until they are assembled again.
@@ -105,17 +100,12 @@ impl Assembler {
                 self.coupling.matrix.add(number, number, amount);
             }
         }
-        let coupling = &self.coupling.matrix;
-        self.equations.reduce_matrix(coupling, &coupling.values, &mut self.reduced_coupling, true);
         self.stamps.coupling_values += 1;
     }
 
     /// Tangents of follower loads on the equations; `None` when there are none.
     pub fn load_tangents(&mut self) -> Option<&Csr> {
-        if self.loads.matrix.values.iter().all(|v| *v == 0.0) {
-            return None;
-        }
-        let loads = &self.loads.matrix;
+        let loads = self.loads.nonzero()?;
         self.equations.reduce_matrix(loads, &loads.values, &mut self.reduced_loads, false);
         Some(&self.reduced_loads)
     }
