@@ -12,8 +12,8 @@ const TOLERANCE: f64 = 1e-9;
 
 /// The same for bodies that hang on one or two nodes under a light load: the forces that balance there are a difference of
 /// much larger ones in the stiff body, whose round-off is 1e-8 of the pressure. Spheres in contact are such bodies in their first
-/// steps, and pass it on.
-const TOLERANCE_OF_LIGHT_LOADS: f64 = 1e-7;
+/// steps, and pass it on: ten numberings of the lightest case differ by 4e-8 to 1.3e-7.
+const TOLERANCE_OF_LIGHT_LOADS: f64 = 2e-7;
 
 /// The same for [`GROWN_ROUND_OFF`].
 const TOLERANCE_OF_GROWN_ROUND_OFF: f64 = 1e-7;
