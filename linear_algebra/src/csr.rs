@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::row_sums::{row_sums, with_wide_vectors};
+use crate::row_sums::{Gathered, NOTHING_GATHERED, row_sums, with_wide_vectors};
 
 /// Rows handled by one task of a product; fixed, so that results do not depend on the number of threads.
 const ROWS_PER_TASK: usize = 512;
@@ -207,12 +207,18 @@ impl Csr {
         assert_eq!(x.len(), self.rows, "length of x");
         assert_eq!(y.len(), self.rows, "length of y");
         let block = |(task, out): (usize, &mut [f64])| {
+            let mut gathered = NOTHING_GATHERED;
             with_wide_vectors(|| {
                 for (at, value) in out.iter_mut().enumerate() {
                     let row = task * ROWS_PER_TASK + at;
                     let columns = self.columns_of(row);
-                    let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
-                    let [sum] = row_sums(columns, [values], x);
+                    // A matrix of contact has rows at interfaces only.
+                    let sum = if columns.is_empty() {
+                        0.0
+                    } else {
+                        let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
+                        row_sums(columns, [values], x, &mut gathered)[0]
+                    };
                     *value = combine(sum, *value);
                 }
             });
@@ -250,11 +256,12 @@ impl Csr {
         assert_eq!(x.len(), self.rows, "length of x");
         assert_eq!(y.len(), self.rows, "length of y");
         y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, mut out)| {
+            let mut gathered = NOTHING_GATHERED;
             with_wide_vectors(|| {
                 let mut row = task * ROWS_PER_TASK;
                 for &length in runs.of_task(task) {
                     let (now, rest) = std::mem::take(&mut out).split_at_mut(length as usize);
-                    self.run_product(row, x, now);
+                    self.run_product(row, x, now, &mut gathered);
                     row += length as usize;
                     out = rest;
                 }
@@ -264,13 +271,13 @@ impl Csr {
 
     /// The product of as many rows as `out` has, with the columns of the first.
     #[inline(always)]
-    fn run_product(&self, row: usize, x: &[f64], out: &mut [f64]) {
+    fn run_product(&self, row: usize, x: &[f64], out: &mut [f64], gathered: &mut Gathered) {
         let columns = self.row(row).0;
         let values = |k: usize| self.row(row + k).1;
         match out {
-            [a, b, c] => [*a, *b, *c] = row_sums(columns, [values(0), values(1), values(2)], x),
-            [a, b] => [*a, *b] = row_sums(columns, [values(0), values(1)], x),
-            rows => [rows[0]] = row_sums(columns, [values(0)], x),
+            [a, b, c] => [*a, *b, *c] = row_sums(columns, [values(0), values(1), values(2)], x, gathered),
+            [a, b] => [*a, *b] = row_sums(columns, [values(0), values(1)], x, gathered),
+            rows => [rows[0]] = row_sums(columns, [values(0)], x, gathered),
         }
     }
 

@@ -17,6 +17,7 @@ use crate::reduced::Reduced;
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::state::{Carrier, State, WrongState};
 use crate::system::{Stamps, System};
+use crate::vector;
 
 /// Directions kept before a restart.
 const RESTART: usize = 80;
@@ -219,7 +220,7 @@ impl MultigridSolver {
         let (_, runs) = self.runs.as_ref().expect("prepared");
         let ghosts = constrained.ghosts();
         let scales = &ghosts.narrow(&constrained.row_scales);
-        let scale = |r: &mut [f64]| r.iter_mut().zip(scales).for_each(|(r, s)| *r *= s);
+        let scale = |r: &mut [f64]| vector::scale_each(scales, r);
         let (mut b, mut start) = (ghosts.narrow(rhs), ghosts.narrow(x));
         system.clear_held(&mut b);
         scale(&mut b);
@@ -270,7 +271,7 @@ impl MultigridSolver {
                     hierarchy.levels.apply_double(b, hierarchy.size);
                 }
             };
-            r.iter_mut().zip(scales).for_each(|(r, s)| *r /= s);
+            vector::divide_each(scales, r);
             if system.shared.is_none() {
                 constrained.apply(system, solve, r);
             } else {

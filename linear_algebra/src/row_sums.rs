@@ -7,11 +7,21 @@ const LANES: usize = 8;
 /// Entries of the vector that are gathered at a time.
 const GATHERED: usize = 96;
 
+/// Room for what is gathered, which serves row after row.
+pub(crate) type Gathered = [f64; GATHERED];
+
+/// Room for the entries of a vector.
+pub(crate) const NOTHING_GATHERED: Gathered = [0.0; GATHERED];
+
 /// `Σ_j a_j x_j` of rows with the same columns.
 #[inline(always)]
-pub(crate) fn row_sums<const R: usize>(columns: &[u32], rows: [&[f64]; R], x: &[f64]) -> [f64; R] {
+pub(crate) fn row_sums<const R: usize>(
+    columns: &[u32],
+    rows: [&[f64]; R],
+    x: &[f64],
+    gathered: &mut Gathered,
+) -> [f64; R] {
     let mut sums = [[0.0; LANES]; R];
-    let mut gathered = [0.0; GATHERED];
     for (batch, columns) in columns.chunks(GATHERED).enumerate() {
         let gathered = &mut gathered[..columns.len()];
         gathered.iter_mut().zip(columns).for_each(|(to, &column)| *to = x[column as usize]);

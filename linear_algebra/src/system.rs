@@ -1,9 +1,13 @@
 //! What a solver is given: the equations and their matrix in two parts.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::csr::{Csr, Runs};
 use crate::ghosts::Ghosts;
+
+/// Numbers that one task looks at.
+const CHUNK: usize = 1 << 14;
 
 /// What is known of a matrix before it is factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,7 +129,8 @@ impl<'a> System<'a> {
 
     /// Sets what belongs to equations that are held to zero.
     pub(crate) fn clear_held(&self, values: &mut [f64]) {
-        values.iter_mut().zip(&self.layout.held).filter(|(_, is_held)| **is_held).for_each(|(value, _)| *value = 0.0);
+        let both = values.par_iter_mut().zip(&self.layout.held).with_min_len(CHUNK);
+        both.filter(|(_, is_held)| **is_held).for_each(|(value, _)| *value = 0.0);
     }
 
     /// Entries of a row of both parts that are not zero: columns with values, those of the bulk first.
@@ -138,6 +143,16 @@ impl<'a> System<'a> {
         };
         let all = parts.into_iter().flatten().flat_map(of).map(|(&j, &value)| (j as usize, value));
         all.filter(move |(j, value)| *value != 0.0 && !layout.is_held(*j))
+    }
+
+    /// The product of a row of both parts with `x`, which is zero at equations that are held.
+    pub(crate) fn row_product(&self, i: usize, x: &[f64]) -> f64 {
+        let of = |matrix: &Csr| {
+            let (columns, values) = matrix.row(i);
+            columns.iter().zip(values).map(|(&j, value)| value * x[j as usize]).sum::<f64>()
+        };
+        let bulk = if i < self.bulk.rows { of(self.bulk) } else { 0.0 };
+        bulk + self.active_coupling().map_or(0.0, of)
     }
 
     /// `y = (bulk + coupling) x`.

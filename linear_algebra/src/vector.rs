@@ -115,6 +115,24 @@ pub fn subtract_combination<T: Number>(basis: &[Vec<T>], sizes: &[f64], vector: 
     });
 }
 
+/// `x_i *= factors_i`.
+///
+/// # Panics
+/// When the lengths differ.
+pub fn scale_each(factors: &[f64], x: &mut [f64]) {
+    assert_eq!(x.len(), factors.len(), "vectors of one length");
+    x.par_iter_mut().zip(factors).with_min_len(CHUNK).for_each(|(x, factor)| *x *= factor);
+}
+
+/// `x_i /= factors_i`.
+///
+/// # Panics
+/// When the lengths differ.
+pub fn divide_each(factors: &[f64], x: &mut [f64]) {
+    assert_eq!(x.len(), factors.len(), "vectors of one length");
+    x.par_iter_mut().zip(factors).with_min_len(CHUNK).for_each(|(x, factor)| *x /= factor);
+}
+
 /// `x *= factor`.
 pub fn scale_by<T: Number>(factor: f64, x: &mut [T]) {
     x.par_iter_mut().with_min_len(CHUNK).for_each(|x| *x = T::from_f64((*x).into() * factor));

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use crate::ghosts::Ghosts;
-use crate::vector::add_scaled;
+use crate::vector::{add_scaled, scale_by, scale_to};
 
 /// Answers kept.
 const KEPT: usize = 6;
@@ -59,8 +59,8 @@ impl Answers {
         if size > 0.0 && size.is_finite() {
             let mut kept = if self.latest.len() < KEPT { None } else { self.latest.pop_back() }.unwrap_or_default();
             kept.product = None;
-            kept.x.clear();
-            kept.x.extend(x.iter().map(|x| x / size));
+            kept.x.resize(x.len(), 0.0);
+            scale_to(1.0 / size, x, &mut kept.x);
             self.latest.push_front(kept);
         }
     }
@@ -79,8 +79,9 @@ impl Answers {
         if self.graph != graph || self.latest.iter().any(|kept| kept.x.len() != x.len()) {
             return;
         }
-        // Orthonormal products, with what each had of those before it and the part of b along it.
-        let mut basis: Vec<(&[f64], Vec<f64>, Vec<f64>, f64)> = Vec::new();
+        // Orthonormal products; their answers, with what each had of those before it and the part of b along it.
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let mut found: Vec<(&[f64], Vec<f64>, f64)> = Vec::new();
         let mut rest = b.to_vec();
         let least = enough * ghosts.norm(b);
         for kept in &mut self.latest {
@@ -90,23 +91,19 @@ impl Answers {
             let mut product = vec![0.0; b.len()];
             multiply(kept, &mut product);
             let before = ghosts.norm(&product);
-            let mut column: Vec<f64> = Vec::with_capacity(basis.len() + 1);
-            for (_, q, _, _) in &basis {
-                let along = ghosts.dot(q, &product);
-                add_scaled(-along, q, &mut product);
-                column.push(along);
-            }
+            let mut column = ghosts.orthogonalise(&basis, &mut product);
             let left = ghosts.norm(&product);
             if left > INDEPENDENT * before && left.is_finite() {
-                product.iter_mut().for_each(|p| *p /= left);
+                scale_by(1.0 / left, &mut product);
                 column.push(left);
                 let along = ghosts.dot(&product, &rest);
                 add_scaled(-along, &product, &mut rest);
-                basis.push((&kept.x, product, column, along));
+                basis.push(product);
+                found.push((&kept.x, column, along));
             }
         }
-        let mut factors: Vec<f64> = basis.iter().map(|(_, _, _, along)| *along).collect();
-        for (k, (kept, _, column, _)) in basis.iter().enumerate().rev() {
+        let mut factors: Vec<f64> = found.iter().map(|(_, _, along)| *along).collect();
+        for (k, (kept, column, _)) in found.iter().enumerate().rev() {
             factors[k] /= column[k];
             (0..k).for_each(|i| factors[i] -= factors[k] * column[i]);
             add_scaled(factors[k], kept, x);

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::block_row::BlockRow;
 use super::multiplier::multiplier;
+#[cfg(target_arch = "x86_64")]
+use super::row_product::row_product_by_avx2;
 use super::row_product::{TAIL, row_product};
 use crate::csr::Csr;
 
@@ -179,93 +181,81 @@ impl BlockMatrix {
         }
     }
 
-    /// Calls `each(i, A_i x, y_i)` for every block row.
-    fn rows_of_product(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
+    /// Calls `each(i, A x, y)` for the rows of each part, of which row `i` is the first.
+    fn parts_of_product(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
         match (self.height, self.width) {
-            (1, 1) => self.fixed_rows::<1, 1>(x, y, each),
-            (2, 2) => self.fixed_rows::<2, 2>(x, y, each),
-            (3, 3) => self.fixed_rows::<3, 3>(x, y, each),
-            (6, 6) => self.fixed_rows::<6, 6>(x, y, each),
-            (2, 3) => self.fixed_rows::<2, 3>(x, y, each),
-            (3, 2) => self.fixed_rows::<3, 2>(x, y, each),
-            (3, 6) => self.fixed_rows::<3, 6>(x, y, each),
-            (6, 3) => self.fixed_rows::<6, 3>(x, y, each),
-            _ => self.any_rows(x, y, each),
+            (1, 1) => self.fixed_parts::<1, 1>(x, y, each),
+            (2, 2) => self.fixed_parts::<2, 2>(x, y, each),
+            (3, 3) => self.fixed_parts::<3, 3>(x, y, each),
+            (6, 6) => self.fixed_parts::<6, 6>(x, y, each),
+            (2, 3) => self.fixed_parts::<2, 3>(x, y, each),
+            (3, 2) => self.fixed_parts::<3, 2>(x, y, each),
+            (3, 6) => self.fixed_parts::<3, 6>(x, y, each),
+            (6, 3) => self.fixed_parts::<6, 3>(x, y, each),
+            _ => self.any_parts(x, y, each),
         }
     }
 
-    fn fixed_rows<const H: usize, const W: usize>(
+    fn fixed_parts<const H: usize, const W: usize>(
         &self,
         x: &[f32],
         y: &mut [f32],
         each: impl Fn(usize, &[f32], &mut [f32]) + Sync,
     ) {
         y.par_chunks_mut(ROWS * H).zip(&self.parts).enumerate().for_each(|(task, (out, part))| {
-            let each = |at: usize, sum: &[f32], out: &mut [f32]| each(task * ROWS + at, sum, out);
-            #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has just said that it knows AVX2.
-                return unsafe { part.products_by_avx2::<H, W>(x, out, each) };
-            }
-            part.products::<H, W>(x, out, each);
+            let mut sums = [[0.0; H]; ROWS];
+            let sums = &mut sums[..out.len() / H];
+            part.products::<H, W>(x, sums);
+            each(task * ROWS, sums.as_flattened(), out);
         });
     }
 
-    fn any_rows(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
+    fn any_parts(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
         let (h, w) = (self.height, self.width);
         y.par_chunks_mut(ROWS * h).enumerate().for_each(|(task, out)| {
-            let mut sum = vec![0.0_f32; h];
-            for (at, out) in out.chunks_exact_mut(h).enumerate() {
-                let i = task * ROWS + at;
-                let (columns, values) = self.row(i);
-                sum.fill(0.0);
+            let mut sums = vec![0.0_f32; out.len()];
+            for (at, sum) in sums.chunks_exact_mut(h).enumerate() {
+                let (columns, values) = self.row(task * ROWS + at);
                 for (&j, block) in columns.iter().zip(values.chunks_exact(h * w)) {
                     let x = &x[j as usize * w..(j as usize + 1) * w];
                     for (x, column) in x.iter().zip(block.chunks_exact(h)) {
                         sum.iter_mut().zip(column).for_each(|(sum, a)| *sum += a * x);
                     }
                 }
-                each(i, &sum, out);
             }
+            each(task * ROWS, &sums, out);
         });
     }
 
     /// `y = A x` or `y += A x`.
     pub(super) fn mul_vec(&self, x: &[f32], y: &mut [f32], into: Into) {
-        self.rows_of_product(x, y, |_, sum, out| match into {
-            Into::Set => out.copy_from_slice(sum),
-            Into::Add => out.iter_mut().zip(sum).for_each(|(y, s)| *y += s),
+        self.parts_of_product(x, y, |_, sums, out| match into {
+            Into::Set => out.copy_from_slice(sums),
+            Into::Add => out.iter_mut().zip(sums).for_each(|(y, s)| *y += s),
         });
     }
 
     /// `y = b - A x`.
     pub(super) fn residual(&self, b: &[f32], x: &[f32], y: &mut [f32]) {
         let h = self.height;
-        self.rows_of_product(x, y, |i, sum, out| {
-            let b = &b[i * h..(i + 1) * h];
-            for k in 0..h {
-                out[k] = b[k] - sum[k];
-            }
+        self.parts_of_product(x, y, |i, sums, out| {
+            let b = &b[i * h..i * h + out.len()];
+            out.iter_mut().zip(b).zip(sums).for_each(|((y, b), s)| *y = b - s);
         });
     }
 
     /// `step = keep step + gain D⁻¹ (b - A x)` with the inverses of diagonal blocks, all by block rows.
-    pub(super) fn smoothing_step(
-        &self,
-        inverse: &[f32],
-        b: &[f32],
-        x: &[f32],
-        [keep, gain]: [f32; 2],
-        step: &mut [f32],
-    ) {
+    pub(super) fn smoothing_step(&self, inverse: &[f32], b: &[f32], x: &[f32], factors: [f32; 2], step: &mut [f32]) {
         let h = self.height;
-        self.rows_of_product(x, step, |i, sum, out| {
-            let b = &b[i * h..(i + 1) * h];
-            let inverse = &inverse[i * h * h..(i + 1) * h * h];
-            for k in 0..h {
-                let change: f32 = (0..h).map(|l| inverse[k * h + l] * (b[l] - sum[l])).sum();
-                out[k] = keep * out[k] + gain * change;
-            }
+        let change = match h {
+            2 => change::<2>,
+            3 => change::<3>,
+            6 => change::<6>,
+            _ => change_any,
+        };
+        self.parts_of_product(x, step, |i, sums, out| {
+            let (own, square) = (i * h..i * h + out.len(), i * h * h..(i * h + out.len()) * h);
+            change(h, &inverse[square], &b[own], sums, factors, out);
         });
     }
 
@@ -341,29 +331,56 @@ impl BlockMatrix {
     }
 }
 
+/// `step = keep step + gain D⁻¹ (b - sums)` with blocks of `H` rows, the inverses by rows.
+fn change<const H: usize>(
+    _: usize,
+    inverse: &[f32],
+    b: &[f32],
+    sums: &[f32],
+    [keep, gain]: [f32; 2],
+    step: &mut [f32],
+) {
+    let (inverse, _) = inverse.as_chunks::<H>();
+    let rows = step.as_chunks_mut::<H>().0.iter_mut().zip(b.as_chunks::<H>().0).zip(sums.as_chunks::<H>().0);
+    for (((step, b), sums), inverse) in rows.zip(inverse.chunks_exact(H)) {
+        let rest: [f32; H] = std::array::from_fn(|l| b[l] - sums[l]);
+        for k in 0..H {
+            step[k] = keep * step[k] + gain * (0..H).map(|l| inverse[k][l] * rest[l]).sum::<f32>();
+        }
+    }
+}
+
+/// The same with blocks of any number of rows.
+fn change_any(h: usize, inverse: &[f32], b: &[f32], sums: &[f32], [keep, gain]: [f32; 2], step: &mut [f32]) {
+    let rows = step.chunks_exact_mut(h).zip(b.chunks_exact(h)).zip(sums.chunks_exact(h));
+    for (((step, b), sums), inverse) in rows.zip(inverse.chunks_exact(h * h)) {
+        for (step, inverse) in step.iter_mut().zip(inverse.chunks_exact(h)) {
+            let rest = b.iter().zip(sums).map(|(b, s)| b - s);
+            *step = keep * *step + gain * inverse.iter().zip(rest).map(|(a, rest)| a * rest).sum::<f32>();
+        }
+    }
+}
+
 impl Part {
-    /// Calls `each(at, A_i x, y_i)` for every row.
-    #[inline(always)]
-    fn products<const H: usize, const W: usize>(
-        &self,
-        x: &[f32],
-        y: &mut [f32],
-        each: impl Fn(usize, &[f32], &mut [f32]),
-    ) {
-        for (at, out) in y.chunks_exact_mut(H).enumerate() {
+    /// The products of its rows with `x`.
+    fn products<const H: usize, const W: usize>(&self, x: &[f32], sums: &mut [[f32; H]]) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has just said that it knows AVX2.
+            return unsafe { self.products_by_avx2::<H, W>(x, sums) };
+        }
+        for (at, sum) in sums.iter_mut().enumerate() {
             let (columns, values) = self.row(at, H * W);
-            each(at, &row_product::<H, W>(columns, values, x), out);
+            *sum = row_product::<H, W>(columns, values, x);
         }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn products_by_avx2<const H: usize, const W: usize>(
-        &self,
-        x: &[f32],
-        y: &mut [f32],
-        each: impl Fn(usize, &[f32], &mut [f32]),
-    ) {
-        self.products::<H, W>(x, y, each);
+    fn products_by_avx2<const H: usize, const W: usize>(&self, x: &[f32], sums: &mut [[f32; H]]) {
+        for (at, sum) in sums.iter_mut().enumerate() {
+            let (columns, values) = self.row(at, H * W);
+            *sum = row_product_by_avx2::<H, W>(columns, values, x);
+        }
     }
 }

@@ -24,7 +24,7 @@ use crate::memory;
 use crate::multifrontal::{Factor, Kind, Precision, Scatter};
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
-use crate::vector::add_scaled;
+use crate::vector::{add_scaled, scale_by};
 
 /// Equations below which a level is solved directly.
 const COARSEST: usize = 1500;
@@ -341,29 +341,31 @@ fn diagonal_step(inverse: &[f32], height: usize, b: &[f32], gain: f32, step: &mu
 fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
     let h = matrix.height;
     let mut out = vec![0.0; matrix.rows * h * h];
-    for (i, out) in out.chunks_exact_mut(h * h).enumerate() {
+    let invert = |(lu, column): &mut (Vec<f64>, Vec<f64>), (i, out): (usize, &mut [f32])| {
         let (columns, values) = matrix.row(i);
-        let Ok(at) = columns.binary_search(&(i as u32)) else { continue };
+        let Ok(at) = columns.binary_search(&(i as u32)) else { return };
         let block = &values[at * h * h..(at + 1) * h * h];
-        let mut lu: Vec<f64> = block.iter().map(|&v| f64::from(v)).collect();
+        lu.clear();
+        lu.extend(block.iter().map(|&v| f64::from(v)));
         let largest = lu.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         if largest == 0.0 {
-            continue;
+            return;
         }
         for k in 0..h {
             if (0..h).all(|l| lu[k + h * l] == 0.0) {
                 lu[k + h * k] = largest;
             }
         }
-        let pivots = dense_lu::factorise(&mut lu, h, 1e-6 * largest);
-        let mut column = vec![0.0; h];
+        let pivots = dense_lu::factorise(lu, h, 1e-6 * largest);
         for w in 0..h {
             column.fill(0.0);
             column[w] = 1.0;
-            dense_lu::solve(&lu, h, &pivots, &mut column);
+            dense_lu::solve(lu, h, &pivots, column);
             (0..h).for_each(|k| out[k * h + w] = column[k] as f32);
         }
-    }
+    };
+    let rows = out.par_chunks_exact_mut(h * h).enumerate().with_min_len(256);
+    rows.for_each_init(|| (Vec::with_capacity(h * h), vec![0.0; h]), invert);
     out
 }
 
@@ -380,14 +382,12 @@ fn spectral_radius(matrix: &BlockMatrix, inverse: &[f32], ghosts: &Ghosts) -> f3
     let mut x: Vec<f32> = check::pseudo_random(n).into_iter().map(|v| v as f32).collect();
     x.resize(ghosts.all() * matrix.height, 0.0);
     let (zero, mut y) = (vec![0.0; n], vec![0.0; n]);
-    let norm = |v: &[f32]| ghosts.total(v.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>()).sqrt() as f32;
     let mut radius = 1.0;
     for _ in 0..POWER_STEPS {
-        let length = norm(&x[..n]);
-        x.iter_mut().for_each(|x| *x /= length);
+        scale_by(1.0 / ghosts.norm(&x[..n]), &mut x);
         ghosts.spread(&mut x, matrix.height);
         matrix.smoothing_step(inverse, &zero, &x, [0.0, -1.0], &mut y);
-        radius = norm(&y);
+        radius = ghosts.norm(&y) as f32;
         x[..n].copy_from_slice(&y);
     }
     radius.max(f32::MIN_POSITIVE)

@@ -1,7 +1,13 @@
 //! The preconditioner: conditions first, then what is left, then the multipliers.
 
+use rayon::prelude::*;
+
+use super::group::Group;
 use super::{Constrained, NONE};
 use crate::system::System;
+
+/// Equations of a task.
+const CHUNK: usize = 1 << 13;
 
 impl Constrained {
     /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations.
@@ -23,12 +29,13 @@ impl Constrained {
             self.groups.iter().map(|group| group.rows().map(|e| r[e as usize]).collect()).collect();
         if prescribes {
             // Only unknowns that groups prescribe differ from zero.
-            let changes: Vec<f64> =
-                self.beside.iter().map(|&e| system.row(e as usize).map(|(j, v)| v * z[j]).sum()).collect();
+            let beside = self.beside.par_iter().with_min_len(64);
+            let changes: Vec<f64> = beside.map(|&e| system.row_product(e as usize, &z)).collect();
             self.beside.iter().zip(changes).for_each(|(&e, change)| r[e as usize] -= change);
         }
         self.ghosts.spread(r, 1);
-        let mut b: Vec<f64> = self.equation.iter().map(|&e| if e == NONE { 0.0 } else { r[e as usize] }).collect();
+        let all = self.equation.par_iter().with_min_len(CHUNK);
+        let mut b: Vec<f64> = all.map(|&e| if e == NONE { 0.0 } else { r[e as usize] }).collect();
         let mut multipliers = vec![0.0; if self.groups.is_empty() { 0 } else { r.len() }];
         for group in &self.groups {
             let s = group.equations();
@@ -47,35 +54,29 @@ impl Constrained {
         }
         solve(&mut b[..self.blocks.own() * self.width]);
         self.blocks.spread(&mut b, self.width);
-        for (&e, value) in self.equation.iter().zip(&b).filter(|(e, _)| **e != NONE) {
-            if self.group_of[e as usize] == NONE {
-                z[e as usize] = *value;
-            }
-        }
+        let places = self.place.par_iter().zip(&self.group_of).zip(&mut z).with_min_len(CHUNK);
+        let free = places.filter(|((place, group), _)| **place != NONE && **group == NONE);
+        free.for_each(|((place, _), z)| *z = b[*place as usize]);
         for group in &self.groups {
             for (&e, follows) in group.own.iter().zip(&group.follows) {
                 z[e as usize] += follows.iter().map(|&(place, factor)| factor * b[place as usize]).sum::<f64>();
             }
         }
-        multipliers.fill(0.0);
-        for (group, kept) in self.groups.iter().zip(&kept) {
+        let recovered = |(group, kept): (&Group, &Vec<f64>)| -> Vec<f64> {
             let mut kept = kept.iter();
             let known = group.stack(|e| {
                 let known = kept.next().expect("as many as the group has rows");
-                known - system.row(e as usize).map(|(j, v)| v * z[j]).sum::<f64>()
+                known - system.row_product(e as usize, &z)
             });
-            let s = group.equations();
-            for (k, &m) in group.multipliers.iter().enumerate() {
-                let row = &group.elimination.recovery[k * s..(k + 1) * s];
-                multipliers[m as usize] = row.iter().zip(&known).map(|(a, b)| a * b).sum::<f64>() / group.action;
-            }
-        }
-        for group in &self.groups {
-            group.multipliers.iter().for_each(|&m| z[m as usize] = multipliers[m as usize]);
+            let rows = group.elimination.recovery.chunks_exact(group.equations());
+            rows.map(|row| row.iter().zip(&known).map(|(a, b)| a * b).sum::<f64>() / group.action).collect()
+        };
+        let found: Vec<Vec<f64>> = self.groups.par_iter().zip(&kept).with_min_len(16).map(recovered).collect();
+        for (group, found) in self.groups.iter().zip(found) {
+            group.multipliers.iter().zip(found).for_each(|(&m, value)| z[m as usize] = value);
         }
         for (&(m, diagonal), value) in self.idle.iter().zip(idle_rows) {
-            let others: f64 = system.row(m as usize).map(|(j, v)| v * z[j]).sum();
-            z[m as usize] = (value - others) / diagonal;
+            z[m as usize] = (value - system.row_product(m as usize, &z)) / diagonal;
         }
         r.copy_from_slice(&z);
     }
