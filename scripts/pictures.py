@@ -145,13 +145,13 @@ def shrink(path):
 
 
 def draw_times(to):
-    """The first table of docs/performance.md as bars: seconds of the processor."""
+    """The first table of docs/performance.md as bars: seconds of the clock."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plot
     with open(os.path.join(ROOT, "docs", "performance.md")) as file:
         rows = [line.split("|")[1:-1] for line in file if line.startswith("|")]
-    head = next(at for at, row in enumerate(rows) if "processor s" in row[2])
+    head = next(at for at, row in enumerate(rows) if "zelus, s" in row[2])
     names, own, other, last = [], [], [], ""
     for row in rows[head + 2:]:
         if len(row) != len(rows[head]):
@@ -161,7 +161,7 @@ def draw_times(to):
         own.append(float(row[2]))
         other.append(float(row[3].split("(")[0]))
     places = range(len(names))
-    figure, axes = plot.subplots(figsize=(7, 3.6), dpi=90)
+    figure, axes = plot.subplots(figsize=(7, 4.0), dpi=90)
     axes.barh([p - 0.2 for p in places], own, 0.38, label="zelus", color="#20639b")
     axes.barh([p + 0.2 for p in places], other, 0.38, label="Kratos", color="#c9c9c9")
     for p, a, b in zip(places, own, other):
@@ -169,7 +169,7 @@ def draw_times(to):
     axes.set_xscale("log")
     axes.set_yticks(list(places), names, fontsize=7)
     axes.invert_yaxis()
-    axes.set_xlabel("seconds of one processor, both with amgcl (docs/performance.md)", fontsize=8)
+    axes.set_xlabel("seconds, two threads, both with amgcl (docs/performance.md)", fontsize=8)
     axes.legend(fontsize=8)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)

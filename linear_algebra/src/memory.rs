@@ -129,9 +129,9 @@ mod tests {
         // Blocks of hexahedra (docs/performance.md) and squares of quadrilaterals: megabytes of the whole run, of which
         // matrices and model are 24 an entry.
         let measured = [
-            (21_499, 1_590_000, 215, 113),
-            (67_813, 5_200_000, 850, 314),
-            (218_599, 17_100_000, 2_430, 983),
+            (21_499, 1_590_000, 237, 94),
+            (67_813, 5_200_000, 874, 233),
+            (218_599, 17_100_000, 2_567, 692),
             (80_802, 1_450_000, 208, 138),
             (246_402, 4_420_000, 635, 407),
         ];
