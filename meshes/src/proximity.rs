@@ -125,15 +125,21 @@ pub fn find_pairs(mesh: &mut Mesh) -> Vec<Pair> {
     let all = sides(mesh);
     let mut made = FaceCells::new(mesh);
     let mut found: Vec<Found> = Vec::new();
-    for [slave, masters] in close(&all) {
-        let has = |own: &&mut Found| slave.iter().any(|face| own.slave.binary_search(face).is_ok());
-        match found.iter_mut().find(has) {
-            None => found.push(Found { slave, masters }),
-            Some(own) => {
-                join(&mut own.slave, &slave);
-                join(&mut own.masters, &masters);
+    for [mut slave, mut masters] in close(&all) {
+        let shares: Vec<bool> =
+            found.iter().map(|own| slave.iter().any(|face| own.slave.binary_search(face).is_ok())).collect();
+        let place = shares.iter().position(|shares| *shares).unwrap_or(found.len());
+        let mut rest = Vec::with_capacity(found.len() + 1);
+        for (own, shares) in found.into_iter().zip(shares) {
+            if shares {
+                join(&mut slave, &own.slave);
+                join(&mut masters, &own.masters);
+            } else {
+                rest.push(own);
             }
         }
+        found = rest;
+        found.insert(place, Found { slave, masters });
     }
     let mut cells_of = |mesh: &mut Mesh, list: &[usize]| -> Vec<u32> {
         list.iter().map(|&side| made.cell(mesh, all[side].element, all[side].number)).collect()
@@ -224,6 +230,20 @@ mod tests {
         let sizes: Vec<[usize; 2]> =
             pairs.iter().map(|pair| [&pair.slave, &pair.master].map(|name| cells(name).len())).collect();
         assert_eq!(sizes, [[8, 4], [1, 1]], "{pairs:?}");
+    }
+
+    #[test]
+    fn a_body_that_is_close_to_the_slaves_of_two_pairs_makes_them_one() {
+        // Two blocks above a row of small squares, far apart, and a third body above both.
+        let mut mesh = Mesh::default();
+        add_row(&mut mesh, [0.0, 0.0], 0.5, 16);
+        add_row(&mut mesh, [0.0, 0.5], 1.0, 2);
+        add_row(&mut mesh, [5.0, 0.5], 1.0, 2);
+        add_row(&mut mesh, [0.0, 0.55], 1.0, 8);
+        let pairs = find_pairs(&mut mesh);
+        let cells = |name: &str| mesh.groups.iter().find(|group| group.name == name).unwrap().cells.len();
+        assert_eq!(pairs.len(), 1, "{pairs:?}");
+        assert_eq!([&pairs[0].slave, &pairs[0].master].map(|name| cells(name)), [16, 12], "{pairs:?}");
     }
 
     #[test]

@@ -237,7 +237,7 @@ impl SolutionStrategy for Coupled {
         match self.way {
             Way::Staggered(_) => {
                 "\"coupling_settings\": {\"strategy\": \"monolithic\"} where heat and structure drive each other, a shorter \
-                 \"time_step\", more \"max_iteration\", \"line_search\": true"
+                 \"time_step\", more \"max_iteration\", the strategy \"line_search\""
             }
             _ => self.structure.remedy(),
         }

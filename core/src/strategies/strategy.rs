@@ -37,7 +37,7 @@ pub trait SolutionStrategy: Send {
 
     /// What to try when steps fail.
     fn remedy(&self) -> &'static str {
-        "a shorter \"time_step\", more \"max_iteration\", \"line_search\": true, at a limit load \"arc_length\""
+        "a shorter \"time_step\", more \"max_iteration\", the strategy \"line_search\", at a limit load \"arc_length\""
     }
 
     /// Steps between two that are announced: more than 1 where steps are many and short.
