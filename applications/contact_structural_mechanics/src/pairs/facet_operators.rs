@@ -186,6 +186,11 @@ mod tests {
         part.info.domain_size = 3;
         part.nodes = Nodes::new((1..=points.len()).collect(), points);
         part.nodes.history.add(&NORMAL);
+        for facet in &facets {
+            let normal = facet.normal(&part);
+            let column = part.nodes.history.values_mut(&NORMAL, 0);
+            facet.nodes.iter().for_each(|&n| column[3 * n as usize..3 * n as usize + 3].copy_from_slice(&normal));
+        }
         (part, Interface { facets, ..Interface::default() })
     }
 
