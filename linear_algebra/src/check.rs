@@ -5,13 +5,10 @@ use rayon::prelude::*;
 use crate::ghosts::Ghosts;
 use crate::solver::SolveError;
 use crate::system::System;
-use crate::vector;
+use crate::vector::{self, CHUNK};
 
 /// Largest number of equations named in an error.
 pub(crate) const NAMED_EQUATIONS: usize = 16;
-
-/// Entries or equations that one task looks at.
-const CHUNK: usize = 1 << 14;
 
 /// Nodes without equations that a layout may have, for each equation.
 const NODES_PER_EQUATION: usize = 64;
@@ -52,8 +49,8 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
     let bulk = Some(system.bulk).filter(|_| looks_at_bulk);
     for (what, matrix) in [("matrix", bulk), ("coupling matrix", system.coupling)] {
         let Some(matrix) = matrix else { continue };
-        let all = matrix.values.par_chunks(CHUNK).all(|values| values.iter().all(|a| a.is_finite()));
-        if let Some(at) = matrix.values.iter().position(|a| !all && !a.is_finite()) {
+        let entries = matrix.values.par_iter().with_min_len(CHUNK);
+        if let Some(at) = entries.position_first(|a| !a.is_finite()) {
             let row = matrix.row_starts.partition_point(|&start| start <= at) - 1;
             let (column, value) = (matrix.columns[at], matrix.values[at]);
             return Err(SolveError::Failed(format!("entry ({row}, {column}) of the {what} is {value}")));

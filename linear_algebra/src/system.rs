@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::csr::{Csr, Runs};
 use crate::ghosts::Ghosts;
-
-/// Numbers that one task looks at.
-const CHUNK: usize = 1 << 14;
+use crate::vector::{self, CHUNK};
 
 /// What is known of a matrix before it is factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -195,7 +193,7 @@ impl<'a> System<'a> {
             coupling.mul_vec_subtract(x, r);
         }
         self.clear_held(r);
-        crate::vector::norm(r)
+        vector::norm(r)
     }
 
     /// `bulk + coupling` as one matrix.

@@ -4,8 +4,8 @@ use std::ops::AddAssign;
 
 use rayon::prelude::*;
 
-/// Entries summed by one task.
-const CHUNK: usize = 1 << 14;
+/// Entries of one task.
+pub(crate) const CHUNK: usize = 1 << 14;
 
 /// `n` zeros, written by all threads. What adds to memory that nothing has written yet makes the system map it twice, and all processors
 /// wait for each other.

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::block_row::BlockRow;
 use super::multiplier::multiplier;
 #[cfg(target_arch = "x86_64")]
-use super::row_product::row_product_by_avx2;
-use super::row_product::{TAIL, row_product};
+use super::row_product::Avx2;
+use super::row_product::{Lanes, Plain, TAIL, row_product};
 use crate::csr::Csr;
 
 /// Block rows of a part; fixed, so that results do not depend on the number of threads.
@@ -43,11 +43,11 @@ struct Part {
 }
 
 impl Part {
-    /// One with room for rows of so many blocks.
+    /// One with room for so many rows, and blocks of `size` entries.
     fn with_room(rows: usize, blocks: usize, size: usize) -> Self {
         let mut starts = Vec::with_capacity(rows + 1);
         starts.push(0);
-        let (indices, values) = (Vec::with_capacity(rows * blocks), Vec::with_capacity(rows * blocks * size + TAIL));
+        let (indices, values) = (Vec::with_capacity(blocks), Vec::with_capacity(blocks * size + TAIL));
         Self { starts, indices, values }
     }
 
@@ -130,7 +130,7 @@ impl BlockMatrix {
             if let Some((earlier, _)) = earlier.as_ref().filter(|_| own.clone().all(|i| kept(i).is_some())) {
                 return earlier.parts[task].clone();
             }
-            let mut part = Part::with_room(own.len(), BLOCKS_OF_A_ROW.min(columns), height * width);
+            let mut part = Part::with_room(own.len(), own.len() * BLOCKS_OF_A_ROW.min(columns), height * width);
             for i in own {
                 match kept(i) {
                     Some(earlier) => row.copy(earlier.row(i)),
@@ -247,15 +247,16 @@ impl BlockMatrix {
     /// `step = keep step + gain D⁻¹ (b - A x)` with the inverses of diagonal blocks, all by block rows.
     pub(super) fn smoothing_step(&self, inverse: &[f32], b: &[f32], x: &[f32], factors: [f32; 2], step: &mut [f32]) {
         let h = self.height;
-        let change = match h {
-            2 => change::<2>,
-            3 => change::<3>,
-            6 => change::<6>,
-            _ => change_any,
-        };
         self.parts_of_product(x, step, |i, sums, out| {
             let (own, square) = (i * h..i * h + out.len(), i * h * h..(i * h + out.len()) * h);
-            change(h, &inverse[square], &b[own], sums, factors, out);
+            let (inverse, b) = (&inverse[square], &b[own]);
+            // Sizes that are known make loops of known lengths.
+            match h {
+                2 => change(2, inverse, b, sums, factors, out),
+                3 => change(3, inverse, b, sums, factors, out),
+                6 => change(6, inverse, b, sums, factors, out),
+                _ => change(h, inverse, b, sums, factors, out),
+            }
         });
     }
 
@@ -278,9 +279,7 @@ impl BlockMatrix {
             let own = task * ROWS..((task + 1) * ROWS).min(self.columns);
             let begin = |j: usize| j.checked_sub(1).map_or(0, |before| ends[before]);
             let blocks = begin(own.end) - begin(own.start);
-            let mut part = Part::with_room(own.len(), 0, size);
-            part.indices.reserve_exact(blocks);
-            part.values.reserve_exact(blocks * size + TAIL);
+            let mut part = Part::with_room(own.len(), blocks, size);
             for j in own {
                 for &(i, at) in &places[begin(j)..ends[j]] {
                     let block = &self.row(i as usize).1[at as usize * size..(at as usize + 1) * size];
@@ -331,27 +330,9 @@ impl BlockMatrix {
     }
 }
 
-/// `step = keep step + gain D⁻¹ (b - sums)` with blocks of `H` rows, the inverses by rows.
-fn change<const H: usize>(
-    _: usize,
-    inverse: &[f32],
-    b: &[f32],
-    sums: &[f32],
-    [keep, gain]: [f32; 2],
-    step: &mut [f32],
-) {
-    let (inverse, _) = inverse.as_chunks::<H>();
-    let rows = step.as_chunks_mut::<H>().0.iter_mut().zip(b.as_chunks::<H>().0).zip(sums.as_chunks::<H>().0);
-    for (((step, b), sums), inverse) in rows.zip(inverse.chunks_exact(H)) {
-        let rest: [f32; H] = std::array::from_fn(|l| b[l] - sums[l]);
-        for k in 0..H {
-            step[k] = keep * step[k] + gain * (0..H).map(|l| inverse[k][l] * rest[l]).sum::<f32>();
-        }
-    }
-}
-
-/// The same with blocks of any number of rows.
-fn change_any(h: usize, inverse: &[f32], b: &[f32], sums: &[f32], [keep, gain]: [f32; 2], step: &mut [f32]) {
+/// `step = keep step + gain D⁻¹ (b - sums)` with blocks of `h` rows, the inverses by rows.
+#[inline(always)]
+fn change(h: usize, inverse: &[f32], b: &[f32], sums: &[f32], [keep, gain]: [f32; 2], step: &mut [f32]) {
     let rows = step.chunks_exact_mut(h).zip(b.chunks_exact(h)).zip(sums.chunks_exact(h));
     for (((step, b), sums), inverse) in rows.zip(inverse.chunks_exact(h * h)) {
         for (step, inverse) in step.iter_mut().zip(inverse.chunks_exact(h)) {
@@ -369,18 +350,20 @@ impl Part {
             // SAFETY: the processor has just said that it knows AVX2.
             return unsafe { self.products_by_avx2::<H, W>(x, sums) };
         }
-        for (at, sum) in sums.iter_mut().enumerate() {
-            let (columns, values) = self.row(at, H * W);
-            *sum = row_product::<H, W>(columns, values, x);
-        }
+        self.products_in::<H, W, Plain>(x, sums);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn products_by_avx2<const H: usize, const W: usize>(&self, x: &[f32], sums: &mut [[f32; H]]) {
+        self.products_in::<H, W, Avx2>(x, sums);
+    }
+
+    #[inline(always)]
+    fn products_in<const H: usize, const W: usize, L: Lanes>(&self, x: &[f32], sums: &mut [[f32; H]]) {
         for (at, sum) in sums.iter_mut().enumerate() {
             let (columns, values) = self.row(at, H * W);
-            *sum = row_product_by_avx2::<H, W>(columns, values, x);
+            *sum = row_product::<H, W, L>(columns, values, x);
         }
     }
 }

@@ -11,9 +11,7 @@ use super::block_matrix::{BlockMatrix, Into};
 use super::multigrid::Multigrid;
 use crate::ghosts::Ghosts;
 use crate::iterations::Gmres;
-
-/// Numbers of a task.
-const CHUNK: usize = 1 << 14;
+use crate::vector::CHUNK;
 
 /// Directions kept in a solve, and its iterations at most.
 const RESTART: usize = 80;

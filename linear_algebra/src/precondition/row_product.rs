@@ -11,39 +11,30 @@ const GROUP: usize = 8;
 
 /// `Σ_j B_j x_j` over blocks of `H` rows and `W` columns, given by columns one after the other; `values` has [`TAIL`] entries more.
 #[inline(always)]
-pub(super) fn row_product<const H: usize, const W: usize>(columns: &[u32], values: &[f32], x: &[f32]) -> [f32; H] {
-    match H {
-        2 => low::<H, W, { 2 * GROUP }>(columns, values, x),
-        3 if W.is_multiple_of(3) => threes::<H, W, Plain>(columns, values, x),
-        3 => low::<H, W, { 3 * GROUP }>(columns, values, x),
-        _ => high::<H, W>(columns, values, x),
-    }
-}
-
-/// The same by AVX2.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-pub(super) fn row_product_by_avx2<const H: usize, const W: usize>(
+pub(super) fn row_product<const H: usize, const W: usize, L: Lanes>(
     columns: &[u32],
     values: &[f32],
     x: &[f32],
 ) -> [f32; H] {
     match H {
-        3 if W.is_multiple_of(3) => threes::<H, W, Avx2>(columns, values, x),
-        _ => row_product::<H, W>(columns, values, x),
+        2 => low::<H, W, { 2 * GROUP }>(columns, values, x),
+        3 if W.is_multiple_of(3) => threes::<H, W, L>(columns, values, x),
+        3 => low::<H, W, { 3 * GROUP }>(columns, values, x),
+        _ => high::<H, W>(columns, values, x),
     }
 }
 
 /// Eight running sums.
-trait Lanes: Copy {
+pub(super) trait Lanes: Copy {
     fn zero() -> Self;
     /// Adds the products of the entries of a block of three rows and columns but the last, by columns, with those of x.
     fn add(&mut self, block: &[f32; 9], x: [f32; 3]);
     fn sums(self) -> [f32; 8];
 }
 
+/// For any processor.
 #[derive(Clone, Copy)]
-struct Plain([f32; 8]);
+pub(super) struct Plain([f32; 8]);
 
 impl Lanes for Plain {
     #[inline(always)]
@@ -66,7 +57,7 @@ impl Lanes for Plain {
 /// Made only where the processor knows AVX2.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
-struct Avx2(std::arch::x86_64::__m256);
+pub(super) struct Avx2(std::arch::x86_64::__m256);
 
 #[cfg(target_arch = "x86_64")]
 impl Lanes for Avx2 {
@@ -167,4 +158,53 @@ fn high<const H: usize, const W: usize>(columns: &[u32], values: &[f32], x: &[f3
         }
     }
     std::array::from_fn(|h| sums[0][h] + sums[1][h] + sums[2][h])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row of blocks, its columns, and a vector of as many blocks.
+    fn row(blocks: usize, size: usize, width: usize) -> (Vec<u32>, Vec<f32>, Vec<f32>) {
+        let numbers = |n: usize, seed: usize| (0..n).map(move |k| ((k * seed + 7) % 101) as f32 / 37.0 - 1.3);
+        let mut values: Vec<f32> = numbers(blocks * size, 53).collect();
+        values.extend([0.0; TAIL]);
+        let columns = (0..blocks as u32).map(|at| 2 * at + at % 2).collect();
+        (columns, values, numbers((2 * blocks + 1) * width, 29).collect())
+    }
+
+    fn check<const H: usize, const W: usize, L: Lanes>(blocks: usize) {
+        let (columns, values, x) = row(blocks, H * W, W);
+        let found = row_product::<H, W, L>(&columns, &values, &x);
+        assert_eq!(found, row_product::<H, W, Plain>(&columns, &values, &x), "{blocks} blocks of {H} by {W}");
+        for (h, found) in found.into_iter().enumerate() {
+            let entry = |at: usize, w: usize| f64::from(values[at * H * W + w * H + h]);
+            let terms = columns.iter().enumerate().flat_map(|(at, &j)| (0..W).map(move |w| (at, j as usize, w)));
+            let terms = terms.map(|(at, j, w)| entry(at, w) * f64::from(x[j * W + w]));
+            let [sum, size] = terms.fold([0.0_f64; 2], |[sum, size], term| [sum + term, size + term.abs()]);
+            assert!((f64::from(found) - sum).abs() <= 1e-6 * size, "{blocks} blocks of {H} by {W}: {found}, {sum}");
+        }
+    }
+
+    fn check_all<L: Lanes>() {
+        for blocks in [0, 1, 2, 3, 8, 27, 32, 33, 64, 65] {
+            check::<1, 1, L>(blocks);
+            check::<2, 2, L>(blocks);
+            check::<2, 3, L>(blocks);
+            check::<3, 2, L>(blocks);
+            check::<3, 3, L>(blocks);
+            check::<3, 6, L>(blocks);
+            check::<6, 3, L>(blocks);
+            check::<6, 6, L>(blocks);
+        }
+    }
+
+    #[test]
+    fn every_processor_gives_the_same_bits() {
+        check_all::<Plain>();
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            check_all::<Avx2>();
+        }
+    }
 }

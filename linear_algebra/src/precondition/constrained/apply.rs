@@ -5,9 +5,7 @@ use rayon::prelude::*;
 use super::group::Group;
 use super::{Constrained, NONE};
 use crate::system::System;
-
-/// Equations of a task.
-const CHUNK: usize = 1 << 13;
+use crate::vector::CHUNK;
 
 impl Constrained {
     /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations.
