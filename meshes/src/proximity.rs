@@ -218,6 +218,13 @@ mod tests {
         }
     }
 
+    /// How many faces the slave and the master of each pair have.
+    fn sizes_of_pairs(mesh: &mut Mesh) -> Vec<[usize; 2]> {
+        let pairs = find_pairs(mesh);
+        let size = |name: &String| mesh.groups.iter().find(|group| group.name == *name).unwrap().cells.len();
+        pairs.iter().map(|pair| [&pair.slave, &pair.master].map(size)).collect()
+    }
+
     #[test]
     fn a_face_is_the_slave_of_one_pair() {
         // A row of small squares below two larger blocks, which are close to each other, too.
@@ -225,11 +232,7 @@ mod tests {
         add_row(&mut mesh, [0.0, 0.0], 0.5, 8);
         add_row(&mut mesh, [0.0, 0.5], 1.0, 2);
         add_row(&mut mesh, [2.05, 0.5], 1.0, 2);
-        let pairs = find_pairs(&mut mesh);
-        let cells = |name: &str| &mesh.groups.iter().find(|group| group.name == name).unwrap().cells;
-        let sizes: Vec<[usize; 2]> =
-            pairs.iter().map(|pair| [&pair.slave, &pair.master].map(|name| cells(name).len())).collect();
-        assert_eq!(sizes, [[8, 4], [1, 1]], "{pairs:?}");
+        assert_eq!(sizes_of_pairs(&mut mesh), [[8, 4], [1, 1]]);
     }
 
     #[test]
@@ -240,10 +243,7 @@ mod tests {
         add_row(&mut mesh, [0.0, 0.5], 1.0, 2);
         add_row(&mut mesh, [5.0, 0.5], 1.0, 2);
         add_row(&mut mesh, [0.0, 0.55], 1.0, 8);
-        let pairs = find_pairs(&mut mesh);
-        let cells = |name: &str| mesh.groups.iter().find(|group| group.name == name).unwrap().cells.len();
-        assert_eq!(pairs.len(), 1, "{pairs:?}");
-        assert_eq!([&pairs[0].slave, &pairs[0].master].map(|name| cells(name)), [16, 12], "{pairs:?}");
+        assert_eq!(sizes_of_pairs(&mut mesh), [[16, 12]]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::rows::parts_of_rows;
 use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
 
 /// Entities whose local systems are held at a time.
@@ -106,14 +107,8 @@ pub(super) fn side_by_side(
 ) {
     let (Some(first), Some(last)) = (touched.clone().min(), touched.max()) else { return };
     let (first, rows) = (first as usize, (last - first) as usize + 1);
-    let bounds: Vec<usize> = (0..=ROW_PARTS).map(|part| first + rows * part / ROW_PARTS).collect();
-    let mut parts = Vec::with_capacity(ROW_PARTS);
-    let mut rest = &mut values[starts[first]..];
-    for pair in bounds.windows(2) {
-        let (head, tail) = rest.split_at_mut(starts[pair[1]] - starts[pair[0]]);
-        parts.push((pair[0]..pair[1], head));
-        rest = tail;
-    }
+    let bound = |part: usize| first + rows * part / ROW_PARTS;
+    let parts = parts_of_rows(starts, values, (0..ROW_PARTS).map(|part| bound(part)..bound(part + 1)));
     parts.into_par_iter().for_each(|(rows, values)| add(rows.clone(), starts[rows.start], values));
 }
 

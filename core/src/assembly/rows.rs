@@ -1,22 +1,34 @@
 //! Rows of a sparse pattern, filled side by side.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 /// Rows of a task.
 pub(super) const ROWS: usize = 1024;
 
+/// The entries of ranges of rows that follow each other; `starts` says where those of each row begin among all, and where the last end.
+pub(super) fn parts_of_rows<'a, T>(
+    starts: &[usize],
+    entries: &'a mut [T],
+    ranges: impl Iterator<Item = Range<usize>>,
+) -> Vec<(Range<usize>, &'a mut [T])> {
+    let mut rest = entries;
+    let mut passed = 0;
+    let part = |rows: Range<usize>| {
+        let [begin, end] = [rows.start, rows.end].map(|row| starts[row] - passed);
+        let (now, later) = std::mem::take(&mut rest)[begin..].split_at_mut(end - begin);
+        (rest, passed) = (later, passed + end);
+        (rows, now)
+    };
+    ranges.map(part).collect()
+}
+
 /// Lets `fill` write the entries of each row; `starts` says where each begins among all, and where the last ends.
 pub(super) fn fill_rows<T: Send>(starts: &[usize], entries: &mut [T], fill: impl Fn(usize, &mut [T]) + Sync) {
     let rows = starts.len() - 1;
-    let mut parts = Vec::with_capacity(rows.div_ceil(ROWS));
-    let mut rest = entries;
-    for first in (0..rows).step_by(ROWS) {
-        let own = first..(first + ROWS).min(rows);
-        let (now, later) = rest.split_at_mut(starts[own.end] - starts[own.start]);
-        parts.push((own, now));
-        rest = later;
-    }
-    parts.into_par_iter().for_each(|(own, mut rest)| {
+    let ranges = (0..rows).step_by(ROWS).map(|first| first..(first + ROWS).min(rows));
+    parts_of_rows(starts, entries, ranges).into_par_iter().for_each(|(own, mut rest)| {
         for row in own {
             let (now, later) = rest.split_at_mut(starts[row + 1] - starts[row]);
             fill(row, now);

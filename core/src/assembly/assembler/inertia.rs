@@ -156,13 +156,12 @@ impl Assembler {
 
     /// Tangents of elements, and of conditions that keep it symmetric; in the `memory` of earlier ones.
     pub(super) fn stiffness(&self, part: &ModelPart, system: &System, memory: Vec<f64>) -> Result<Vec<f64>> {
-        let mut values = memory;
-        let constant = self.constant.as_ref().expect("assembled before the first residual");
-        match values.len() == self.pattern.matrix.entries() {
-            true => clear(&mut values),
-            false => values = zeros(self.pattern.matrix.entries()),
+        let entries = self.pattern.matrix.entries();
+        let mut values = if memory.len() == entries { memory } else { zeros(entries) };
+        match self.constant.as_deref().expect("assembled before the first residual") {
+            [] => clear(&mut values),
+            constant => values.par_iter_mut().zip(constant).with_min_len(CHUNK).for_each(|(value, own)| *value = *own),
         }
-        values.par_iter_mut().zip(constant).with_min_len(CHUNK).for_each(|(value, own)| *value = *own);
         let is_element = |block: &dyn EntityBlock| block.entry().role == Role::Element;
         self.add_blocks(
             part,
