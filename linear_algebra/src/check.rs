@@ -49,8 +49,11 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
     let bulk = Some(system.bulk).filter(|_| looks_at_bulk);
     for (what, matrix) in [("matrix", bulk), ("coupling matrix", system.coupling)] {
         let Some(matrix) = matrix else { continue };
-        let entries = matrix.values.par_iter().with_min_len(CHUNK);
-        if let Some(at) = entries.position_first(|a| !a.is_finite()) {
+        let is_whole = |chunk: &[f64]| chunk.iter().fold(true, |whole, a| whole & a.is_finite());
+        let chunks = matrix.values.par_chunks(CHUNK);
+        if let Some(chunk) = chunks.position_first(|chunk| !is_whole(chunk)) {
+            let entries = matrix.values[chunk * CHUNK..].iter();
+            let at = chunk * CHUNK + entries.take_while(|a| a.is_finite()).count();
             let row = matrix.row_starts.partition_point(|&start| start <= at) - 1;
             let (column, value) = (matrix.columns[at], matrix.values[at]);
             return Err(SolveError::Failed(format!("entry ({row}, {column}) of the {what} is {value}")));

@@ -88,6 +88,48 @@ fn multipliers_leave_by_their_constraints() {
     }
 }
 
+/// Two boxes that slide on each other, springs hold the upper one sideways.
+fn sliding(cells: usize) -> Contact {
+    let mut sample = tied(cells, 0.0, |_| true);
+    let layout = &sample.layout;
+    let multipliers: Vec<usize> = (0..layout.equations()).filter(|&i| layout.multiplier[i]).collect();
+    let mut triplets = Vec::new();
+    for i in 0..layout.equations() {
+        let is_tangential = |e: usize| e >= multipliers[0] && (e - multipliers[0]) % 3 != 2;
+        let (columns, values) = sample.coupling.row(i);
+        let of_row = columns.iter().zip(values).map(|(&j, &value)| (i, j as usize, value));
+        triplets.extend(of_row.filter(|&(i, j, _)| !is_tangential(i) && !is_tangential(j)));
+        triplets.extend(is_tangential(i).then_some((i, i, -0.01)));
+    }
+    sample.coupling = Csr::from_triplets(layout.equations(), &triplets);
+    let brick = Brick { cells: [cells; 3] };
+    for node in brick.layer(cells) {
+        for direction in 0..2 {
+            let equation = 3 * (brick.nodes() + node) + direction;
+            let at = sample.bulk.find(equation, equation).expect("a diagonal");
+            sample.bulk.values[at] *= 1.1;
+        }
+    }
+    sample
+}
+
+#[test]
+fn bodies_that_slide_need_the_iterations_of_one() {
+    let iterations = [6, 10, 16].map(|cells| {
+        let sample = sliding(cells);
+        let system = System {
+            coupling: Some(&sample.coupling),
+            ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+        };
+        let (_, report) = multigrid(&system, &load(system.equations()));
+        assert_eq!((report.engine, report.fallback), ("multigrid", None));
+        report.iterations
+    });
+    let (bulk, layout) = clamped_box(18);
+    let (_, alone) = multigrid(&System::bulk(&layout, &bulk, Symmetry::PositiveDefinite), &load(bulk.rows));
+    assert!(iterations.iter().all(|&count| count <= alone.iterations + 2), "{iterations:?}, {}", alone.iterations);
+}
+
 #[test]
 fn a_multiplier_without_a_node_of_its_own_is_carried_by_a_master() {
     let mut sample = tied(6, 0.0, |_| true);

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import importlib.abc
 import importlib.machinery
+import json
 import math
 import os
 import sys
@@ -182,9 +183,22 @@ def _utilities(module):
     module.DeleteFileIfExisting = lambda file: os.path.exists(file) and os.remove(file)
 
 
+def _json_utilities(module):
+    def read(file):
+        with open(file, encoding="utf-8") as opened:
+            return json.load(opened)
+
+    def write(file, data):
+        with open(file, "w", encoding="utf-8") as opened:
+            json.dump(data, opened, sort_keys=True, indent=4, separators=(",", ": "))
+
+    module.__dict__.update(read_external_json=read, write_external_json=write)
+
+
 # Modules that are no packages, analyses or processes, and what fills them.
 _OTHERS = {
     "KratosUnittest": _tests,
+    "json_utilities": _json_utilities,
     "kratos_utilities": _utilities,
     "process_factory": lambda module: setattr(module, "KratosProcessFactory", _ProcessFactory),
     "read_csv_table_utility": lambda module: setattr(module, "ReadCsvTableUtility", _CsvTable),

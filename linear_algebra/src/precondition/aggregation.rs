@@ -1,5 +1,7 @@
 //! Aggregates of node blocks and the tentative prolongation that reproduces the near-null space.
 
+use std::cmp::Reverse;
+
 use rayon::prelude::*;
 
 use super::block_matrix::BlockMatrix;
@@ -17,6 +19,8 @@ pub(super) struct Tentative {
     pub(super) aggregate: Vec<u32>,
     /// Number of aggregates.
     pub(super) aggregates: usize,
+    /// Body of each aggregate.
+    pub(super) bodies: Vec<u32>,
     /// Rows of the prolongation, `height × modes` entries a block by columns.
     pub(super) values: Vec<f32>,
     /// The modes on the aggregates, as `modes` vectors of `aggregates × modes` entries.
@@ -24,7 +28,7 @@ pub(super) struct Tentative {
 }
 
 /// Starts and lists of the strong couplings between blocks.
-fn strong_graph(matrix: &BlockMatrix) -> (Vec<usize>, Vec<u32>) {
+fn strong_graph(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<usize>, Vec<u32>) {
     let size = matrix.size();
     let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
     let diagonal: Vec<f64> = (0..matrix.rows)
@@ -40,8 +44,9 @@ fn strong_graph(matrix: &BlockMatrix) -> (Vec<usize>, Vec<u32>) {
         .with_min_len(256)
         .map(|i| {
             let (columns, values) = matrix.row(i);
-            // Aggregates end where the blocks of others begin.
-            let is_neighbour = |j: u32| j as usize != i && (j as usize) < matrix.rows;
+            // Aggregates end where the blocks of others begin, and where another body does: what touches moves apart and slides.
+            let is_neighbour =
+                |j: u32| j as usize != i && (j as usize) < matrix.rows && bodies[j as usize] == bodies[i];
             let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j));
             let is_strong =
                 |j: u32, block: &[f32]| square(block) > (STRONG * STRONG) * (diagonal[i] * diagonal[j as usize]).sqrt();
@@ -54,8 +59,8 @@ fn strong_graph(matrix: &BlockMatrix) -> (Vec<usize>, Vec<u32>) {
 }
 
 /// Aggregate of each block, and their number; blocks without strong neighbours have none.
-fn aggregate(matrix: &BlockMatrix) -> (Vec<u32>, usize) {
-    let (starts, list) = strong_graph(matrix);
+fn aggregate(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<u32>, usize) {
+    let (starts, list) = strong_graph(matrix, bodies);
     let neighbours = |g: usize| &list[starts[g]..starts[g + 1]];
     let mut of = vec![NONE; matrix.rows];
     let mut count = 0;
@@ -67,14 +72,7 @@ fn aggregate(matrix: &BlockMatrix) -> (Vec<u32>, usize) {
             count += 1;
         }
     }
-    let first = of.clone();
-    for g in 0..matrix.rows {
-        if of[g] == NONE
-            && let Some(&h) = neighbours(g).iter().find(|&&h| first[h as usize] != NONE)
-        {
-            of[g] = first[h as usize];
-        }
-    }
+    join(&mut of, count as usize, neighbours);
     for g in 0..matrix.rows {
         if of[g] == NONE && !neighbours(g).is_empty() {
             of[g] = count;
@@ -89,9 +87,27 @@ fn aggregate(matrix: &BlockMatrix) -> (Vec<u32>, usize) {
     (of, count as usize)
 }
 
-/// The tentative coarse space of the own rows of a matrix with these near-null vectors.
-pub(super) fn coarsen(matrix: &BlockMatrix, near_null_space: &[Vec<f64>]) -> Tentative {
-    let (aggregate, aggregates) = aggregate(matrix);
+/// Lets blocks that have no aggregate join the one with most of their strong neighbours, of those the smallest.
+fn join<'a>(of: &mut [u32], aggregates: usize, neighbours: impl Fn(usize) -> &'a [u32]) {
+    let first = of.to_vec();
+    let mut sizes = vec![0_usize; aggregates];
+    first.iter().filter(|&&a| a != NONE).for_each(|&a| sizes[a as usize] += 1);
+    let mut near = Vec::new();
+    for g in (0..first.len()).filter(|&g| first[g] == NONE) {
+        near.clear();
+        near.extend(neighbours(g).iter().map(|&h| first[h as usize]).filter(|&a| a != NONE));
+        near.sort_unstable();
+        let rank = |alike: &[u32]| (alike.len(), Reverse(sizes[alike[0] as usize]), Reverse(alike[0]));
+        if let Some((_, _, Reverse(a))) = near.chunk_by(|a, b| a == b).map(rank).max() {
+            of[g] = a;
+            sizes[a as usize] += 1;
+        }
+    }
+}
+
+/// The tentative coarse space of the own rows of a matrix with these near-null vectors, and a body for each block.
+pub(super) fn coarsen(matrix: &BlockMatrix, bodies: &[u32], near_null_space: &[Vec<f64>]) -> Tentative {
+    let (aggregate, aggregates) = aggregate(matrix, bodies);
     let (height, modes) = (matrix.height, near_null_space.len());
     let mut members = vec![Vec::new(); aggregates];
     for (i, &a) in aggregate.iter().enumerate().filter(|(_, a)| **a != NONE) {
@@ -114,7 +130,8 @@ pub(super) fn coarsen(matrix: &BlockMatrix, near_null_space: &[Vec<f64>]) -> Ten
             vector[a * modes..(a + 1) * modes].copy_from_slice(&triangle[m * modes..(m + 1) * modes]);
         }
     }
-    Tentative { aggregate, aggregates, values, modes: coarse }
+    let bodies = members.iter().map(|list| bodies[list[0]]).collect();
+    Tentative { aggregate, aggregates, bodies, values, modes: coarse }
 }
 
 /// Orthonormal vectors on the blocks of `list` that span the near-null space there, one after the other, and each of its

@@ -131,20 +131,26 @@ impl TryFrom<SavedMultigrid> for Multigrid {
 }
 
 impl Multigrid {
-    /// Builds the hierarchy on the own rows of `matrix`, whose near-null vectors have one entry for each of them; collective.
-    pub(super) fn new(mut matrix: Arc<BlockMatrix>, mut near_null_space: Vec<Vec<f64>>, mut ghosts: Ghosts) -> Self {
+    /// Builds the hierarchy on the own rows of `matrix`, whose near-null vectors have one entry for each of them; no coarse
+    /// motion is one of two bodies, and `bodies` says which each block is of. Collective.
+    pub(super) fn new(
+        mut matrix: Arc<BlockMatrix>,
+        mut bodies: Vec<u32>,
+        mut near_null_space: Vec<Vec<f64>>,
+        mut ghosts: Ghosts,
+    ) -> Self {
         let mut levels: Vec<Level> = Vec::new();
         loop {
             let equations = ghosts.total((matrix.rows * matrix.height) as f64) as usize;
             if equations <= COARSEST || levels.len() >= LEVELS {
                 break;
             }
-            let mut coarse = coarsen(&matrix, &near_null_space);
+            let mut coarse = coarsen(&matrix, &bodies, &near_null_space);
             let aggregates = ghosts.total(coarse.aggregates as f64) as usize;
             if aggregates == 0 || aggregates * near_null_space.len() * 4 > equations * 3 {
                 break;
             }
-            near_null_space = std::mem::take(&mut coarse.modes);
+            (bodies, near_null_space) = (std::mem::take(&mut coarse.bodies), std::mem::take(&mut coarse.modes));
             let (level, next, of_next) = Level::new(matrix, ghosts, coarse, near_null_space.len());
             levels.push(level);
             (matrix, ghosts) = (Arc::new(next), of_next);

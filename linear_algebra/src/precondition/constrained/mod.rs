@@ -348,8 +348,42 @@ impl Constrained {
         &self.ghosts
     }
 
+    /// Body of each own block: those that elements join, one by one, are of the same; all where nothing but elements acts.
+    fn bodies(&self, system: &System<'_>) -> Vec<u32> {
+        let own = self.blocks.own();
+        if system.active_coupling().is_none() {
+            return vec![0; own];
+        }
+        let near = |block: usize| {
+            let equations = self.equation[block * self.width..(block + 1) * self.width].iter();
+            let first = equations.map(|&e| e as usize).find(|&e| e < system.bulk.rows);
+            let columns = first.map_or(&[][..], |e| system.bulk.row(e).0);
+            let blocks = columns.iter().map(|&j| self.place[j as usize]).filter(|&place| place != NONE);
+            blocks.map(|place| place as usize / self.width).filter(|&near| near < own)
+        };
+        let mut bodies = vec![NONE; own];
+        let (mut count, mut reached) = (0, Vec::new());
+        for start in 0..own {
+            if bodies[start] != NONE {
+                continue;
+            }
+            bodies[start] = count;
+            reached.push(start);
+            while let Some(block) = reached.pop() {
+                for next in near(block) {
+                    if bodies[next] == NONE {
+                        bodies[next] = count;
+                        reached.push(next);
+                    }
+                }
+            }
+            count += 1;
+        }
+        bodies
+    }
+
     /// The hierarchy of what is left; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>, left: &Blocks) -> Multigrid {
-        Multigrid::new(left.matrix.clone(), self.near_null_space(system), self.blocks.clone())
+        Multigrid::new(left.matrix.clone(), self.bodies(system), self.near_null_space(system), self.blocks.clone())
     }
 }
