@@ -222,7 +222,9 @@ impl MultigridSolver {
         let scales = &ghosts.narrow(&constrained.row_scales);
         let scale = |r: &mut [f64]| vector::scale_each(scales, r);
         let (mut b, mut start) = (ghosts.narrow(rhs), ghosts.narrow(x));
-        system.clear_held(&mut b);
+        if system.shared.is_none() {
+            system.clear_held(&mut b);
+        }
         scale(&mut b);
         let multiply = |x: &[f64], y: &mut [f64]| {
             if system.shared.is_none() {

@@ -97,8 +97,19 @@ pub struct Assembler {
     ranks: Ranks,
     distribution: Option<Distribution>,
     numbering: Option<Numbering>,
+    /// That of `whole`, where no unknown of any rank follows others.
+    whole_numbering: Option<Numbering>,
     /// Seconds spent so far.
     pub seconds: AssemblySeconds,
+}
+
+/// The system over all unknowns, those that are not free as held.
+#[derive(Debug, Clone, Copy)]
+pub struct Whole<'a> {
+    /// The system without follower loads.
+    pub system: zelus_linear_algebra::System<'a>,
+    /// The tangents of follower loads, where there are any.
+    pub loads: Option<&'a Csr>,
 }
 
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
@@ -220,18 +231,22 @@ impl Assembler {
         let changed = part.ranks.any(changed);
         if changed || std::mem::take(&mut self.incomplete) {
             self.equations = equations;
-            if self.distribution.is_none() {
-                let dofs = system.dofs.dofs();
-                let place =
-                    |dof: &Dof| (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]));
-                self.whole = Layout {
-                    node: dofs.iter().map(|dof| dof.node).collect(),
-                    multiplier: dofs.iter().map(|dof| dof.multiplier).collect(),
-                    near_null_space: near_null_space(&dofs.iter().map(place).collect::<Vec<Place>>()),
-                    held: (0..dofs.len()).map(|number| !self.equations.is_free(number)).collect(),
-                };
-            }
+            let dofs = system.dofs.dofs();
+            let place = |dof: &Dof| (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]));
+            self.whole = Layout {
+                node: dofs.iter().map(|dof| dof.node).collect(),
+                multiplier: dofs.iter().map(|dof| dof.multiplier).collect(),
+                // Motions of bodies that several ranks share are found by all of them.
+                near_null_space: match self.distribution {
+                    None => near_null_space(&dofs.iter().map(place).collect::<Vec<Place>>()),
+                    Some(_) => Vec::new(),
+                },
+                held: (0..dofs.len()).map(|number| !self.equations.is_free(number)).collect(),
+            };
             self.numbering = self.distribution.as_ref().map(|d| Numbering::new(&self.equations, d));
+            let follows = part.ranks.any(self.equations.has_slaves());
+            let numbering = self.numbering.as_ref().filter(|_| !follows);
+            self.whole_numbering = numbering.map(|numbering| numbering.of_unknowns(&self.equations));
             self.stamps.bulk_graph += u64::from(changed);
             self.stamps.bulk_values += u64::from(changed);
             self.coupling_graph = None;
@@ -366,18 +381,25 @@ impl Assembler {
         self.system_of(&self.equations.layout, &self.reduced_bulk, &self.reduced_coupling)
     }
 
-    /// Whether the unknowns may be taken for equations, some of them held: all are here, and none follows others.
+    /// Whether the unknowns may be taken for equations, some of them held: none follows others.
     pub fn has_whole(&self) -> bool {
-        self.distribution.is_none() && !self.equations.has_slaves()
+        match self.distribution {
+            None => !self.equations.has_slaves(),
+            Some(_) => self.whole_numbering.is_some(),
+        }
     }
 
-    /// Gives the same system over all unknowns, those that are not free as held, and the tangents of follower loads, if there are any: no
-    /// second copy of the matrix is made.
-    pub fn with_whole<T>(&mut self, solve: impl FnOnce(&zelus_linear_algebra::System<'_>, Option<&Csr>) -> T) -> T {
+    /// The equations of all ranks where the unknowns are taken for equations.
+    pub fn whole_numbering(&self) -> Option<&Numbering> {
+        self.whole_numbering.as_ref()
+    }
+
+    /// Lets `solve` have the same system as [`Whole`], without a second copy of the matrix.
+    pub fn with_whole<T>(&mut self, solve: impl FnOnce(&Self, Whole<'_>) -> T) -> T {
         let kept = self.bulk.as_mut().or(self.constant.as_mut()).map(std::mem::take).unwrap_or_default();
         self.pattern.matrix.values = kept;
         let system = self.system_of(&self.whole, &self.pattern.matrix, &self.coupling.matrix);
-        let solved = solve(&system, self.loads.nonzero());
+        let solved = solve(self, Whole { system, loads: self.loads.nonzero() });
         let kept = std::mem::take(&mut self.pattern.matrix.values);
         if let Some(values) = self.bulk.as_mut().or(self.constant.as_mut()) {
             *values = kept;

@@ -1,6 +1,7 @@
 //! The equations of all ranks in one row: those rank 0 owns come first, then those of rank 1 and so on.
 
 use super::distribution::Distribution;
+use super::dof_table::NONE;
 use super::equations::Equations;
 
 /// Numbers over all ranks of the equations this rank has.
@@ -8,7 +9,7 @@ use super::equations::Equations;
 pub struct Numbering {
     /// First number of each rank, and the number of all equations.
     pub starts: Vec<usize>,
-    /// Number of each equation this rank has.
+    /// Number of each equation this rank has; [`NONE`](super::NONE) where unknowns are counted and one is held.
     pub numbers: Vec<u32>,
     /// Equations this rank owns, ascending, as they are counted here.
     pub own: Vec<u32>,
@@ -31,6 +32,20 @@ impl Numbering {
         distribution.spread(&mut of_unknowns);
         let numbers = unknowns.iter().map(|&n| of_unknowns[n as usize] as u32).collect();
         Self { starts, numbers, own }
+    }
+
+    /// The same numbers where all unknowns count for equations, of which none follow others and some are held.
+    pub(super) fn of_unknowns(&self, equations: &Equations) -> Self {
+        let unknowns = equations.unknowns();
+        let mut numbers = vec![NONE; equations.unknown_count()];
+        unknowns.iter().zip(&self.numbers).for_each(|(&unknown, &number)| numbers[unknown as usize] = number);
+        let own = self.own.iter().map(|&equation| unknowns[equation as usize]).collect();
+        Self { starts: self.starts.clone(), numbers, own }
+    }
+
+    /// The number of an equation, where it has one.
+    pub fn number(&self, equation: u32) -> Option<u32> {
+        Some(self.numbers[equation as usize]).filter(|&number| number != NONE)
     }
 
     /// Equations each rank owns.

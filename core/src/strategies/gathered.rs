@@ -81,6 +81,14 @@ impl Whole {
 }
 
 impl Gathered {
+    /// Whether PETSc solves.
+    pub(super) fn has_petsc(&self) -> bool {
+        #[cfg(feature = "petsc")]
+        return self.petsc.is_some();
+        #[cfg(not(feature = "petsc"))]
+        false
+    }
+
     /// Brings rank 0 up to date with what the ranks have, as far as its stamps have changed; collective.
     pub(super) fn update(&mut self, assembler: &Assembler, loads: Option<&Csr>, dofs: &DofTable, nodes: &Nodes) {
         let (ranks, own) = (assembler.ranks(), assembler.system());

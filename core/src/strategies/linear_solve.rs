@@ -5,8 +5,9 @@ use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, v
 use super::condensing;
 use super::gathered::Gathered;
 use super::meaning::{Meaning, Meanings};
+use super::shared_rows::{Share, SharedRows};
 use super::whereabouts::{body_of, whereabouts};
-use crate::assembly::{Assembler, DofTable, Numbering};
+use crate::assembly::{Assembler, DofTable, Whole};
 use crate::diagnostics::Error;
 use crate::model::{ModelPart, Nodes};
 
@@ -89,38 +90,35 @@ pub(super) fn solve(
     dofs: &DofTable,
     nodes: &Nodes,
 ) -> Result<(Vec<f64>, SolveReport), Failed> {
-    if assembler.has_whole() && solver.takes_held(assembler.equations().len(), assembler.entries()) {
+    let is_here = assembler.numbering().is_none();
+    if is_here && assembler.has_whole() && solver.takes_held(assembler.equations().len(), assembler.entries()) {
         let (rhs, stamps) = (assembler.equations().expand(rhs), assembler.merged_stamps());
         let meaning = |number: usize| Some(Meaning::of(dofs, nodes, number as u32));
         let (increment, report) =
-            assembler.with_whole(|system, loads| solve_here(system, loads, stamps, solver, &rhs, &meaning))?;
+            assembler.with_whole(|_, whole| solve_here(&whole.system, whole.loads, stamps, solver, &rhs, &meaning))?;
         return Ok((assembler.equations().reduce(&increment), report));
     }
-    assembler.reduce();
-    let loads = assembler.load_tangents().cloned();
-    let system = assembler.system();
-    let Some(numbering) = assembler.numbering() else {
+    if is_here {
+        assembler.reduce();
+        let (loads, system) = (assembler.load_tangents().cloned(), assembler.system());
         let unknowns = assembler.equations().unknowns();
         let meaning = |equation: usize| unknowns.get(equation).map(|&number| Meaning::of(dofs, nodes, number));
         return solve_here(&system, loads.as_ref(), assembler.merged_stamps(), solver, rhs, &meaning);
-    };
+    }
+    let mut why = None;
+    if !gathered.has_petsc() && is_shared(assembler, solver) {
+        match solve_shared(assembler, solver, &mut gathered.shared, rhs, dofs, nodes) {
+            Ok((own, report)) => return Ok((assembler.complete(&own), report)),
+            Err(error) => why = Some(format!("over all ranks: {error}")),
+        }
+    }
+    assembler.reduce();
+    let (loads, system) = (assembler.load_tangents().cloned(), assembler.system());
+    let (numbering, ranks) = (assembler.numbering().expect("several ranks"), assembler.ranks());
     #[cfg(feature = "petsc")]
     if let Some(rows) = &mut gathered.petsc {
         let solved = rows.solve(assembler, numbering, loads.as_ref(), dofs, nodes, rhs)?;
         return solved.map_err(|error| explain(&error, None, &|equation| rows.meaning(equation)));
-    }
-    let ranks = assembler.ranks();
-    let mut why = None;
-    if is_shared(assembler, numbering, solver) {
-        let shared = &mut gathered.shared;
-        shared.update(assembler, numbering, loads.as_ref(), dofs, nodes);
-        let here = shared.system(&system);
-        let own = shared.of_own(numbering, rhs);
-        let mut increment = vec![0.0; own.len()];
-        match solver.solve(&here, &own, &mut increment) {
-            Ok(report) => return Ok((assembler.complete(&numbering.own_of(&increment)), report)),
-            Err(error) => why = Some(format!("over all ranks: {error}")),
-        }
     }
     gathered.update(assembler, loads.as_ref(), dofs, nodes);
     let rhs = gathered.gather(ranks, rhs, numbering);
@@ -149,12 +147,46 @@ pub(super) fn solve(
 }
 
 /// Whether `solver` works where the rows are, on all ranks or on none; collective.
-fn is_shared(assembler: &Assembler, numbering: &Numbering, solver: &dyn LinearSolver) -> bool {
-    let ranks = assembler.ranks();
-    let mut entries = [assembler.system().bulk.entries() as f64];
-    ranks.sum(&mut entries);
+fn is_shared(assembler: &Assembler, solver: &dyn LinearSolver) -> bool {
+    let (ranks, numbering) = (assembler.ranks(), assembler.numbering().expect("several ranks"));
+    let entries = ranks.total(assembler.entries() as f64);
     let equations = numbering.starts[ranks.size()];
-    !ranks.any(!solver.shares(equations, entries[0] as usize))
+    !ranks.any(!solver.shares(equations, entries as usize))
+}
+
+/// Solves where the rows are; gives the increments of own equations. Collective.
+fn solve_shared(
+    assembler: &mut Assembler,
+    solver: &mut dyn LinearSolver,
+    shared: &mut SharedRows,
+    rhs: &[f64],
+    dofs: &DofTable,
+    nodes: &Nodes,
+) -> Result<(Vec<f64>, SolveReport), SolveError> {
+    let mut solve = |share: Share<'_>, rhs: &[f64]| {
+        shared.update(&share, dofs, nodes);
+        let own = shared.of_own(share.numbering, rhs);
+        let mut increment = vec![0.0; own.len()];
+        let report = solver.solve(&shared.system(&share.system), &own, &mut increment)?;
+        Ok((share.numbering.own_of(&increment), report))
+    };
+    if assembler.has_whole() {
+        let rhs = assembler.equations().expand(rhs);
+        return assembler.with_whole(|assembler, Whole { system, loads }| {
+            let numbering = assembler.whole_numbering().expect("no unknown follows others");
+            solve(Share { ranks: assembler.ranks(), numbering, system, loads, unknowns: None }, &rhs)
+        });
+    }
+    assembler.reduce();
+    let loads = assembler.load_tangents().cloned();
+    let share = Share {
+        ranks: assembler.ranks(),
+        numbering: assembler.numbering().expect("several ranks"),
+        system: assembler.system(),
+        loads: loads.as_ref(),
+        unknowns: Some(assembler.equations().unknowns()),
+    };
+    solve(share, rhs)
 }
 
 /// What a rank knows of a solve that rank 0 did.

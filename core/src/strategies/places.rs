@@ -14,7 +14,8 @@ struct Here {
     first: u32,
     /// Equations that it owns, as it counts them.
     own: Vec<u32>,
-    numbers: Vec<u32>,
+    /// Their numbers over all ranks; those that are held have none.
+    numbers: Vec<Option<u32>>,
     /// How it counts those of others, by their numbers.
     at: FxHashMap<u32, u32>,
     /// First number, equations, and a bit for each that is a multiplier, of the node of each own equation.
@@ -48,9 +49,10 @@ impl Places {
             nodes.extend(of_node.iter().map(|_| node));
         }
         let own = first..first + numbering.own.len() as u32;
-        let others = numbering.numbers.iter().zip(0..).filter(|(number, _)| !own.contains(number));
-        let at = others.map(|(&number, e)| (number, e)).collect();
-        let here = Here { first, own: numbering.own.clone(), numbers: numbering.numbers.clone(), at, nodes };
+        let numbers: Vec<Option<u32>> = (0..numbering.numbers.len() as u32).map(|e| numbering.number(e)).collect();
+        let others = numbers.iter().zip(0..).filter_map(|(number, e)| number.map(|number| (number, e)));
+        let at = others.filter(|(number, _)| !own.contains(number)).collect();
+        let here = Here { first, own: numbering.own.clone(), numbers, at, nodes };
         Self { here: Arc::new(here), ..Self::default() }
     }
 
@@ -71,10 +73,10 @@ impl Places {
         self.own(number).or_else(others).expect("an equation that this rank has met")
     }
 
-    /// Number over all ranks of the equation at a place.
-    pub(super) fn number(&self, place: u32) -> u32 {
+    /// Number over all ranks of the equation at a place, unless it is held.
+    pub(super) fn number(&self, place: u32) -> Option<u32> {
         let place = place as usize;
-        place.checked_sub(self.here.numbers.len()).map_or_else(|| self.here.numbers[place], |at| self.beyond[at])
+        place.checked_sub(self.here.numbers.len()).map_or_else(|| self.here.numbers[place], |at| Some(self.beyond[at]))
     }
 
     /// Ghosts with multipliers in the order in which the rank met them: first number, and equations.
@@ -125,7 +127,11 @@ impl Places {
             multiplier.push(bits >> (number - first) & 1 == 1);
             next += u32::from(number + 1 == first + count);
         }
-        Layout { node, multiplier, ..Layout::default() }
+        let mut held = here.held.clone();
+        if !held.is_empty() {
+            held.resize(node.len(), false);
+        }
+        Layout { node, multiplier, held, ..Layout::default() }
     }
 
     /// Place and owner of each equation of ghosts.

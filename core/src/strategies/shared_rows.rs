@@ -9,7 +9,7 @@ use std::sync::Arc;
 use zelus_linear_algebra::{Csr, Ghosts, Layout, System};
 
 use super::places::Places;
-use crate::assembly::{Assembler, DofTable, Numbering, Place, near_null_space_of_all};
+use crate::assembly::{DofTable, Numbering, Place, near_null_space_of_all};
 use crate::communication::Ranks;
 use crate::model::Nodes;
 
@@ -22,6 +22,18 @@ const ROUND_OFF: f64 = 1e-14;
 type Row = (u32, Vec<u32>, Vec<f64>);
 /// A value with its row and column.
 type Entry = (u32, u32, f64);
+
+/// What a rank has of the system of all ranks.
+pub(super) struct Share<'a> {
+    pub(super) ranks: &'a Ranks,
+    /// Of its equations, those that are held without a number.
+    pub(super) numbering: &'a Numbering,
+    pub(super) system: System<'a>,
+    /// Tangents of follower loads.
+    pub(super) loads: Option<&'a Csr>,
+    /// Unknown of each equation; where `None`, equations are unknowns.
+    pub(super) unknowns: Option<&'a [u32]>,
+}
 
 /// What the system of all ranks has here beside the bulk of this one.
 #[derive(Default)]
@@ -43,15 +55,8 @@ pub(super) struct SharedRows {
 
 impl SharedRows {
     /// Brings the rows up to date with what the ranks have, as far as stamps have changed; collective.
-    pub(super) fn update(
-        &mut self,
-        assembler: &Assembler,
-        numbering: &Numbering,
-        loads: Option<&Csr>,
-        dofs: &DofTable,
-        nodes: &Nodes,
-    ) {
-        let (ranks, system) = (assembler.ranks(), assembler.system());
+    pub(super) fn update(&mut self, share: &Share<'_>, dofs: &DofTable, nodes: &Nodes) {
+        let Share { ranks, numbering, system, loads, .. } = *share;
         let has_loads = ranks.any(loads.is_some());
         let stamps = [system.bulk_graph, system.bulk_values, system.coupling_graph, system.coupling_values];
         if !has_loads && self.made_of == Some(stamps) {
@@ -60,7 +65,7 @@ impl SharedRows {
         if self.made_of.is_none_or(|made_of| made_of[0] != stamps[0]) {
             self.of_bulk = Places::new(ranks, numbering, system.layout);
             self.of_bulk.meet(ranks, numbering, columns(numbering, &[system.bulk]).into_iter());
-            self.motions = motions(assembler, numbering, dofs, nodes);
+            self.motions = motions(share, dofs, nodes);
         }
         self.is_coupled = has_loads || ranks.any(system.active_coupling().is_some());
         self.couple(ranks, numbering, &system, loads);
@@ -84,7 +89,8 @@ impl SharedRows {
         for &row in &numbering.own {
             for (columns, values) in beside.iter().map(|matrix| matrix.row(row as usize)) {
                 // As places, equations of this rank keep their numbers here.
-                entries.extend(columns.iter().zip(values).map(|(&column, &value)| (row, column, value)));
+                let filled = columns.iter().zip(values).filter(|(column, _)| numbering.number(**column).is_some());
+                entries.extend(filled.map(|(&column, &value)| (row, column, value)));
             }
         }
         entries.extend(arrived.iter().flat_map(|row| placed(&places, row)));
@@ -135,17 +141,23 @@ fn columns(numbering: &Numbering, matrices: &[&Csr]) -> Vec<u32> {
         let columns = matrices.iter().flat_map(|matrix| matrix.row(row as usize).0);
         columns.for_each(|&column| is_met[column as usize] = true);
     }
-    numbering.numbers.iter().zip(is_met).filter(|(_, is_met)| *is_met).map(|(&number, _)| number).collect()
+    let met = (0..).zip(is_met).filter(|(_, is_met)| *is_met);
+    met.filter_map(|(equation, _)| numbering.number(equation)).collect()
 }
 
 /// What this rank has of the rows of each other one.
 fn rows_of_others(ranks: &Ranks, numbering: &Numbering, places: &Places, matrices: &[&Csr]) -> Vec<Vec<Row>> {
     let mut rows = vec![Vec::new(); ranks.size()];
-    for (e, &number) in numbering.numbers.iter().enumerate().filter(|(_, number)| places.own(**number).is_none()) {
+    let numbered = (0..numbering.numbers.len() as u32).filter_map(|e| numbering.number(e).map(|number| (e, number)));
+    for (e, number) in numbered.filter(|(_, number)| places.own(*number).is_none()) {
         let (mut columns, mut values) = (Vec::new(), Vec::new());
-        for (of_row, found) in matrices.iter().map(|matrix| matrix.row(e)) {
-            columns.extend(of_row.iter().map(|&column| numbering.numbers[column as usize]));
-            values.extend_from_slice(found);
+        for (of_row, found) in matrices.iter().map(|matrix| matrix.row(e as usize)) {
+            for (&column, &value) in of_row.iter().zip(found) {
+                if let Some(column) = numbering.number(column) {
+                    columns.push(column);
+                    values.push(value);
+                }
+            }
         }
         if !columns.is_empty() {
             rows[numbering.owner(number)].push((number, columns, values));
@@ -193,8 +205,12 @@ fn fetch(ranks: &Ranks, numbering: &Numbering, bulk: &Csr, coupling: &Csr, place
             let row = places.own(number).expect("a row that this rank owns") as usize;
             let (mut columns, mut values) = (Vec::new(), Vec::new());
             for (of_row, found) in [bulk.row(row), coupling.row(row)] {
-                columns.extend(of_row.iter().map(|&place| places.number(place)));
-                values.extend_from_slice(found);
+                for (&place, &value) in of_row.iter().zip(found) {
+                    if let Some(column) = places.number(place) {
+                        columns.push(column);
+                        values.push(value);
+                    }
+                }
             }
             (number, columns, values)
         };
@@ -247,12 +263,12 @@ fn summed(rows: usize, mut entries: Vec<Entry>) -> Csr {
 }
 
 /// The motions of bodies at own equations; collective.
-fn motions(assembler: &Assembler, numbering: &Numbering, dofs: &DofTable, nodes: &Nodes) -> Vec<Vec<f64>> {
-    let unknowns = assembler.equations().unknowns();
-    let mut places: Vec<Place> = vec![None; unknowns.len()];
-    for &equation in &numbering.own {
-        let dof = &dofs.dofs()[unknowns[equation as usize] as usize];
+fn motions(share: &Share<'_>, dofs: &DofTable, nodes: &Nodes) -> Vec<Vec<f64>> {
+    let mut places: Vec<Place> = vec![None; share.numbering.numbers.len()];
+    for &equation in &share.numbering.own {
+        let unknown = share.unknowns.map_or(equation, |unknowns| unknowns[equation as usize]);
+        let dof = &dofs.dofs()[unknown as usize];
         places[equation as usize] = (!dof.multiplier).then(|| (dof.variable, nodes.initial[dof.node as usize]));
     }
-    near_null_space_of_all(assembler.ranks(), &dofs.variables().collect::<Vec<_>>(), &places)
+    near_null_space_of_all(share.ranks, &dofs.variables().collect::<Vec<_>>(), &places)
 }
