@@ -15,8 +15,8 @@ use crate::registry::{self, Registered};
 
 use crate::strategies::{
     Builder, BuilderEntry, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionEntry,
-    CriterionRequest, ExplicitSettings, ExplicitStrategy, LinearSolverRequest, NewtonSettings, Scheme, SchemeEntry,
-    SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
+    CriterionRequest, ExplicitSettings, ExplicitStrategy, LineSearch, LinearSolverRequest, NewtonSettings, Scheme,
+    SchemeEntry, SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
     linear_tolerance, make_linear_solver, multipliers,
 };
 
@@ -424,6 +424,9 @@ impl SolverSettings {
             Builder::Direct => (solver, true),
             Builder::Around(make) => (make(&self.settings, solver)?, false),
         };
+        let search_after_failure =
+            self.settings.node().get("line_search_after_failure").map_or(Ok(false), Node::bool)?;
+        let empty = Node::from_json(&serde_json::json!({}), &self.settings.place())?;
         let iteration = NewtonSettings {
             max_iteration,
             continue_if_converging: self.settings.get_bool("continue_if_converging")?,
@@ -432,6 +435,7 @@ impl SolverSettings {
             reactions_of_constraints: self.settings.get_bool("reactions_of_constraints")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
             line_search: None,
+            line_search_after_failure: search_after_failure.then(|| LineSearch::new(&empty)).transpose()?,
         };
         if !scheme.takes_first_order()
             && let Some(column) = part.ranks.first_to_say(first_order(system))
@@ -442,7 +446,6 @@ impl SolverSettings {
         }
         scheme.prepare(part);
         let criterion = self.criterion(report)?;
-        let empty = Node::from_json(&serde_json::json!({}), &self.settings.place())?;
         let made = (strategy.build)(StrategyRequest {
             settings: &self.settings,
             advanced: self.settings.node().get_path(&format!("{STRATEGY}.advanced_settings")).unwrap_or(&empty),

@@ -61,6 +61,8 @@ pub struct NewtonSettings {
     pub move_mesh: bool,
     /// How much of an increment is taken; all of it when `None`.
     pub line_search: Option<LineSearch>,
+    /// The same for steps that have failed, where they may be tried again so.
+    pub line_search_after_failure: Option<LineSearch>,
 }
 
 /// Newton's iteration with its scheme, criterion, linear solver and system.
@@ -72,6 +74,8 @@ pub struct NewtonRaphson {
     pub(super) assembler: Assembler,
     /// Whether the last step did not converge.
     failed: bool,
+    /// Whether a step that failed has made it take up a line search.
+    searches: bool,
     pub(super) gathered: Gathered,
     phases: Phases,
     /// Whether the last step ended at a singular system.
@@ -92,6 +96,7 @@ pub struct NewtonRaphson {
 #[derive(Serialize, Deserialize)]
 struct NewtonState {
     failed: bool,
+    searches: bool,
     /// Of redundant constraints, and of multipliers that are not condensed.
     warned: [bool; 2],
     scheme: Option<Box<dyn State>>,
@@ -125,6 +130,7 @@ impl SolutionStrategy for NewtonRaphson {
     fn state(&self) -> Option<Box<dyn State>> {
         Some(Box::new(NewtonState {
             failed: self.failed,
+            searches: self.searches,
             warned: [self.warned, self.warned_of_multipliers],
             scheme: self.scheme.state(),
             solver: self.solver.state(),
@@ -134,9 +140,9 @@ impl SolutionStrategy for NewtonRaphson {
     }
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
-        let NewtonState { failed, warned, scheme, solver, assembler, account } = state.take()?;
+        let NewtonState { failed, searches, warned, scheme, solver, assembler, account } = state.take()?;
         let unknowns = system.dofs.len();
-        (self.failed, self.account) = (failed, account);
+        (self.failed, self.searches, self.account) = (failed, searches, account);
         [self.warned, self.warned_of_multipliers] = warned;
         self.assembler.resume(part, system, assembler)?;
         scheme.map_or(Ok(()), |state| self.scheme.resume(state))?;
@@ -146,6 +152,12 @@ impl SolutionStrategy for NewtonRaphson {
         }
         solver.map_or(Ok(()), |state| self.solver.resume(state))?;
         Ok(())
+    }
+
+    fn other_way(&mut self) -> Option<&'static str> {
+        let may = self.settings.line_search_after_failure.is_some() && !self.settings.linear;
+        self.searches = may && self.settings.line_search.is_none() && !self.searches;
+        self.searches.then_some("with a line search")
     }
 
     fn solve_step(
@@ -220,6 +232,7 @@ impl NewtonRaphson {
             assembler,
             gathered: Gathered::default(),
             failed: false,
+            searches: false,
             phases: Phases::default(),
             singular: false,
             coarse: None,

@@ -35,6 +35,12 @@ pub trait SolutionStrategy: Send {
         true
     }
 
+    /// A step has failed: takes up another way to iterate that the deck leaves open, and says which; `None` where there is none,
+    /// or where that is what has failed and is given up.
+    fn other_way(&mut self) -> Option<&'static str> {
+        None
+    }
+
     /// What to try when steps fail.
     fn remedy(&self) -> &'static str {
         "a shorter \"time_step\", more \"max_iteration\", the strategy \"line_search\", at a limit load \"arc_length\""

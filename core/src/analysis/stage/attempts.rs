@@ -51,6 +51,13 @@ impl Stage {
             }
             let failure = record.failure.clone().unwrap_or_default();
             let can_cut = saved.is_some() && self.cutting.times > 0;
+            // A system without an answer has none for part of an increment.
+            let other_way = if can_cut && !record.singular { self.strategy.other_way() } else { None };
+            if let Some(how) = other_way {
+                monitor.note(&format!("step {} to time {to}: {failure}; retried {how}", record.step));
+                saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);
+                continue;
+            }
             let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
                 && !self.system.interactions.iter_mut().filter_map(|i| i.retry()).any(|own| own.has_alternative());
             let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {

@@ -338,7 +338,8 @@ impl NewtonRaphson {
     fn take(&mut self, solved: &Solved, step: &mut Step, part: &mut ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut increment = self.assembler.equations().expand(&solved.increment);
         let is_still = !has_motion(&part.ranks, &step.prescribed);
-        let searched = self.settings.line_search.filter(|_| is_still);
+        let after_failure = self.settings.line_search_after_failure.filter(|_| self.searches);
+        let searched = self.settings.line_search.or(after_failure).filter(|_| is_still);
         increment.iter_mut().zip(&step.prescribed).for_each(|(sum, d)| *sum += d);
         step.prescribed.fill(0.0);
         if is_still && searched.is_none() && swings(&step.records) {
