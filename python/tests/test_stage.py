@@ -242,7 +242,7 @@ def test_steps_that_are_cut_set_their_boundary_conditions_anew(inside, end_time)
     stage = Cut(zelus.Model(), own)
     stage.Run()
     result = stage.result()
-    assert times[0] > times[1] and times[-1] == times[0] and times == result.steps["time"].tolist()
+    assert times[0] > min(times) and times[-1] == times[0] and times == result.steps["time"].tolist()
     assert result.converged and result.report["steps"] == zelus.run("ProjectParameters.json").report["steps"]
 
 

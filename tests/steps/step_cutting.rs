@@ -63,7 +63,11 @@ fn assert_same_bits(cut: &Run, given: &Run) {
 fn the_state_before_a_failed_attempt_comes_back_to_the_bit() {
     let folder = root().join("tests/decks/oscillator");
     let elements = ("mesh.mdpa", "SmallDisplacementElement2D4N", "TotalLagrangianElement2D4N");
-    let few = (DECK, "\"max_iteration\": 10", "\"max_iteration\": 3, \"continue_if_converging\": false");
+    let few = (
+        DECK,
+        "\"max_iteration\": 10",
+        "\"max_iteration\": 3, \"continue_if_converging\": false, \"line_search_after_failure\": false",
+    );
     let end = (DECK, "\"end_time\": 1.0", "\"end_time\": 2.0");
     for scheme in ["newmark", "bossak", "generalized_alpha", "bdf2", "bdf3"] {
         let name = format!("\"scheme_type\": \"{scheme}\"");
@@ -79,7 +83,11 @@ fn the_state_before_a_failed_attempt_comes_back_to_the_bit() {
 #[test]
 fn contact_with_friction_comes_back_to_the_bit() {
     let folder = root().join("tests/cases/contact_3d/friction_tresca_slide");
-    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 3, \"continue_if_converging\": false");
+    let few = (
+        DECK,
+        "\"max_iteration\": 30",
+        "\"max_iteration\": 3, \"continue_if_converging\": false, \"line_search_after_failure\": false",
+    );
     let cut = run(&folder, &[few]);
     assert_eq!(cut.code, Some(0), "{}", cut.text);
     let rules = as_intervals(&cut.lengths);
@@ -91,7 +99,11 @@ fn contact_with_friction_comes_back_to_the_bit() {
 #[test]
 fn contact_settings_say_how_steps_are_cut() {
     let folder = root().join("tests/cases/contact_2d/friction_slide");
-    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 2, \"continue_if_converging\": false");
+    let few = (
+        DECK,
+        "\"max_iteration\": 30",
+        "\"max_iteration\": 2, \"continue_if_converging\": false, \"line_search_after_failure\": false",
+    );
     let splits = "\"adaptative_strategy\": true, \"split_factor\": 4.0, \"max_number_splits\": 1, \"mortar_type\"";
     let cut = run(&folder, &[few, (DECK, "\"mortar_type\"", splits)]);
     assert_eq!((cut.code, cut.attempts), (Some(3), 2), "{}", cut.text);
@@ -110,7 +122,11 @@ fn contact_settings_say_how_steps_are_cut() {
 fn steps_grow_back_after_a_cut() {
     let folder = root().join("tests/decks/squeezed_block");
     let newton = (DECK, "\"type\": \"line_search\"", "\"type\": \"newton_raphson\"");
-    let few = (DECK, "\"max_iteration\": 30", "\"max_iteration\": 5, \"continue_if_converging\": false");
+    let few = (
+        DECK,
+        "\"max_iteration\": 30",
+        "\"max_iteration\": 5, \"continue_if_converging\": false, \"line_search_after_failure\": false",
+    );
     let cut = run(&folder, &[newton, few, (DECK, "\"end_time\": 1.0", "\"end_time\": 3.0")]);
     assert_eq!(cut.code, Some(0), "{}", cut.text);
     assert!(cut.lengths[0] < 1.0 && cut.lengths.last() == Some(&1.0), "{:?}", cut.lengths);

@@ -84,6 +84,14 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
+    /// Whether it failed within its iteration, and not because a state that had converged was refused.
+    pub fn failed_to_converge(&self) -> bool {
+        let has_settled = |last: &IterationRecord| {
+            last.active_set_changes + last.stick_slip_changes == 0 && last.checks.iter().all(|check| check.converged)
+        };
+        !self.converged && !self.singular && !self.iterations.last().is_some_and(has_settled)
+    }
+
     /// Whether an attempt failed just as this one did: the same measures and changes of state in every iteration.
     ///
     /// Where nothing but the size of the load tells two steps apart, as without a gap, friction or curvature, a shorter one

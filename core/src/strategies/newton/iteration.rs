@@ -323,7 +323,7 @@ impl NewtonRaphson {
                 Ok(Turn::Failed(why + &worst.unwrap_or_default()))
             }
             // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
-            Failed::Singular(why, _)
+            Failed::Singular(why, _) | Failed::Inaccurate(why)
                 if self.assembler.has_variable_elements() && (iteration > 1 || part.info.step > 1) =>
             {
                 let first = why.lines().next().unwrap_or_default();
