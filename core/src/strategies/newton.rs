@@ -74,7 +74,7 @@ pub struct NewtonRaphson {
     pub(super) assembler: Assembler,
     /// Whether the last step did not converge.
     failed: bool,
-    /// Whether a step that failed has made it take up a line search.
+    /// Whether it searches along increments, since the step has failed without that.
     searches: bool,
     pub(super) gathered: Gathered,
     phases: Phases,
@@ -96,7 +96,6 @@ pub struct NewtonRaphson {
 #[derive(Serialize, Deserialize)]
 struct NewtonState {
     failed: bool,
-    searches: bool,
     /// Of redundant constraints, and of multipliers that are not condensed.
     warned: [bool; 2],
     scheme: Option<Box<dyn State>>,
@@ -130,7 +129,6 @@ impl SolutionStrategy for NewtonRaphson {
     fn state(&self) -> Option<Box<dyn State>> {
         Some(Box::new(NewtonState {
             failed: self.failed,
-            searches: self.searches,
             warned: [self.warned, self.warned_of_multipliers],
             scheme: self.scheme.state(),
             solver: self.solver.state(),
@@ -140,9 +138,9 @@ impl SolutionStrategy for NewtonRaphson {
     }
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
-        let NewtonState { failed, searches, warned, scheme, solver, assembler, account } = state.take()?;
+        let NewtonState { failed, warned, scheme, solver, assembler, account } = state.take()?;
         let unknowns = system.dofs.len();
-        (self.failed, self.searches, self.account) = (failed, searches, account);
+        (self.failed, self.account) = (failed, account);
         [self.warned, self.warned_of_multipliers] = warned;
         self.assembler.resume(part, system, assembler)?;
         scheme.map_or(Ok(()), |state| self.scheme.resume(state))?;
@@ -185,6 +183,7 @@ impl SolutionStrategy for NewtonRaphson {
         if self.scheme.has_inertia() && !system.interactions.is_empty() {
             self.measure_energy(part, system)?;
         }
+        self.searches = false;
         self.account.accept();
         let start = Instant::now();
         let accepted = accept(part, system);

@@ -35,8 +35,8 @@ pub trait SolutionStrategy: Send {
         true
     }
 
-    /// A step has failed: takes up another way to iterate that the deck leaves open, and says which; `None` where there is none,
-    /// or where that is what has failed and is given up.
+    /// A step has failed: takes up another way to iterate until one is accepted, and says which; `None` where there is none, or where
+    /// that is what has failed and is given up.
     fn other_way(&mut self) -> Option<&'static str> {
         None
     }
