@@ -222,6 +222,7 @@ impl MultigridSolver {
         let scales = &ghosts.narrow(&constrained.row_scales);
         let scale = |r: &mut [f64]| vector::scale_each(scales, r);
         let (mut b, mut start) = (ghosts.narrow(rhs), ghosts.narrow(x));
+        // Of several processes, none that one owns is held.
         if system.shared.is_none() {
             system.clear_held(&mut b);
         }

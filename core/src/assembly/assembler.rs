@@ -105,7 +105,7 @@ pub struct Assembler {
 
 /// The system over all unknowns, those that are not free as held.
 #[derive(Debug, Clone, Copy)]
-pub struct Whole<'a> {
+pub struct WholeSystem<'a> {
     /// The system without follower loads.
     pub system: zelus_linear_algebra::System<'a>,
     /// The tangents of follower loads, where there are any.
@@ -394,12 +394,12 @@ impl Assembler {
         self.whole_numbering.as_ref()
     }
 
-    /// Lets `solve` have the same system as [`Whole`], without a second copy of the matrix.
-    pub fn with_whole<T>(&mut self, solve: impl FnOnce(&Self, Whole<'_>) -> T) -> T {
+    /// Lets `solve` have the same system as [`WholeSystem`], without a second copy of the matrix.
+    pub fn with_whole<T>(&mut self, solve: impl FnOnce(&Self, WholeSystem<'_>) -> T) -> T {
         let kept = self.bulk.as_mut().or(self.constant.as_mut()).map(std::mem::take).unwrap_or_default();
         self.pattern.matrix.values = kept;
         let system = self.system_of(&self.whole, &self.pattern.matrix, &self.coupling.matrix);
-        let solved = solve(self, Whole { system, loads: self.loads.nonzero() });
+        let solved = solve(self, WholeSystem { system, loads: self.loads.nonzero() });
         let kept = std::mem::take(&mut self.pattern.matrix.values);
         if let Some(values) = self.bulk.as_mut().or(self.constant.as_mut()) {
             *values = kept;

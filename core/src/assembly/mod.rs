@@ -18,7 +18,7 @@ mod supports;
 mod system;
 
 pub use assembler::{
-    Assembler, AssemblerState, AssemblySeconds, Inertia, Push, Whole, damped_by_properties, strongest_damping,
+    Assembler, AssemblerState, AssemblySeconds, Inertia, Push, WholeSystem, damped_by_properties, strongest_damping,
 };
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};

@@ -48,6 +48,11 @@ impl Numbering {
         Some(self.numbers[equation as usize]).filter(|&number| number != NONE)
     }
 
+    /// The equations that have a number, each with it.
+    pub fn numbered(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        (0..).zip(&self.numbers).map(|(equation, &number)| (equation, number)).filter(|(_, number)| *number != NONE)
+    }
+
     /// Equations each rank owns.
     pub fn counts(&self) -> Vec<usize> {
         self.starts.windows(2).map(|pair| pair[1] - pair[0]).collect()

@@ -7,7 +7,7 @@ use super::gathered::Gathered;
 use super::meaning::{Meaning, Meanings};
 use super::shared_rows::{Share, SharedRows};
 use super::whereabouts::{body_of, whereabouts};
-use crate::assembly::{Assembler, DofTable, Whole};
+use crate::assembly::{Assembler, DofTable, WholeSystem};
 use crate::diagnostics::Error;
 use crate::model::{ModelPart, Nodes};
 
@@ -172,7 +172,7 @@ fn solve_shared(
     };
     if assembler.has_whole() {
         let rhs = assembler.equations().expand(rhs);
-        return assembler.with_whole(|assembler, Whole { system, loads }| {
+        return assembler.with_whole(|assembler, WholeSystem { system, loads }| {
             let numbering = assembler.whole_numbering().expect("no unknown follows others");
             solve(Share { ranks: assembler.ranks(), numbering, system, loads, unknowns: None }, &rhs)
         });

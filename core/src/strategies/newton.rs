@@ -152,9 +152,10 @@ impl SolutionStrategy for NewtonRaphson {
         Ok(())
     }
 
-    fn other_way(&mut self) -> Option<&'static str> {
-        let may = self.settings.line_search_after_failure.is_some() && !self.settings.linear;
-        self.searches = may && self.settings.line_search.is_none() && !self.searches;
+    fn other_way(&mut self, failed: &StepRecord) -> Option<&'static str> {
+        let NewtonSettings { linear, line_search, line_search_after_failure, .. } = &self.settings;
+        let may = line_search_after_failure.is_some() && line_search.is_none() && !linear;
+        self.searches = may && !self.searches && failed.failed_to_converge();
         self.searches.then_some("with a line search")
     }
 

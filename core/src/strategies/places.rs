@@ -12,10 +12,7 @@ use crate::communication::Ranks;
 #[derive(Default)]
 struct Here {
     first: u32,
-    /// Equations that it owns, as it counts them.
-    own: Vec<u32>,
-    /// Their numbers over all ranks; those that are held have none.
-    numbers: Vec<Option<u32>>,
+    numbering: Numbering,
     /// How it counts those of others, by their numbers.
     at: FxHashMap<u32, u32>,
     /// First number, equations, and a bit for each that is a multiplier, of the node of each own equation.
@@ -49,22 +46,21 @@ impl Places {
             nodes.extend(of_node.iter().map(|_| node));
         }
         let own = first..first + numbering.own.len() as u32;
-        let numbers: Vec<Option<u32>> = (0..numbering.numbers.len() as u32).map(|e| numbering.number(e)).collect();
-        let others = numbers.iter().zip(0..).filter_map(|(number, e)| number.map(|number| (number, e)));
-        let at = others.filter(|(number, _)| !own.contains(number)).collect();
-        let here = Here { first, own: numbering.own.clone(), numbers, at, nodes };
+        let others = numbering.numbered().filter(|(_, number)| !own.contains(number));
+        let at = others.map(|(equation, number)| (number, equation)).collect();
+        let here = Here { first, numbering: numbering.clone(), at, nodes };
         Self { here: Arc::new(here), ..Self::default() }
     }
 
     /// Number of all places.
     pub(super) fn len(&self) -> usize {
-        self.here.numbers.len() + self.beyond.len()
+        self.here.numbering.numbers.len() + self.beyond.len()
     }
 
     /// Which of its own equations a number is that of.
     pub(super) fn own(&self, number: u32) -> Option<u32> {
         let at = number.checked_sub(self.here.first)?;
-        self.here.own.get(at as usize).copied()
+        self.here.numbering.own.get(at as usize).copied()
     }
 
     /// Place of an equation that this rank has or has met, by its number over all ranks.
@@ -75,8 +71,11 @@ impl Places {
 
     /// Number over all ranks of the equation at a place, unless it is held.
     pub(super) fn number(&self, place: u32) -> Option<u32> {
-        let place = place as usize;
-        place.checked_sub(self.here.numbers.len()).map_or_else(|| self.here.numbers[place], |at| Some(self.beyond[at]))
+        let numbering = &self.here.numbering;
+        match (place as usize).checked_sub(numbering.numbers.len()) {
+            None => numbering.number(place),
+            Some(at) => Some(self.beyond[at]),
+        }
     }
 
     /// Ghosts with multipliers in the order in which the rank met them: first number, and equations.

@@ -141,26 +141,29 @@ fn columns(numbering: &Numbering, matrices: &[&Csr]) -> Vec<u32> {
         let columns = matrices.iter().flat_map(|matrix| matrix.row(row as usize).0);
         columns.for_each(|&column| is_met[column as usize] = true);
     }
-    let met = (0..).zip(is_met).filter(|(_, is_met)| *is_met);
-    met.filter_map(|(equation, _)| numbering.number(equation)).collect()
+    numbering.numbered().filter(|(equation, _)| is_met[*equation as usize]).map(|(_, number)| number).collect()
+}
+
+/// A row with its parts one after the other, without the columns that have no number.
+fn numbered_row<'a>(
+    row: u32,
+    parts: impl Iterator<Item = (&'a [u32], &'a [f64])>,
+    number: impl Fn(u32) -> Option<u32>,
+) -> Row {
+    let entries = parts.flat_map(|(columns, values)| columns.iter().zip(values));
+    let (columns, values) =
+        entries.filter_map(|(&column, &value)| number(column).map(|column| (column, value))).unzip();
+    (row, columns, values)
 }
 
 /// What this rank has of the rows of each other one.
 fn rows_of_others(ranks: &Ranks, numbering: &Numbering, places: &Places, matrices: &[&Csr]) -> Vec<Vec<Row>> {
     let mut rows = vec![Vec::new(); ranks.size()];
-    let numbered = (0..numbering.numbers.len() as u32).filter_map(|e| numbering.number(e).map(|number| (e, number)));
-    for (e, number) in numbered.filter(|(_, number)| places.own(*number).is_none()) {
-        let (mut columns, mut values) = (Vec::new(), Vec::new());
-        for (of_row, found) in matrices.iter().map(|matrix| matrix.row(e as usize)) {
-            for (&column, &value) in of_row.iter().zip(found) {
-                if let Some(column) = numbering.number(column) {
-                    columns.push(column);
-                    values.push(value);
-                }
-            }
-        }
-        if !columns.is_empty() {
-            rows[numbering.owner(number)].push((number, columns, values));
+    for (e, number) in numbering.numbered().filter(|(_, number)| places.own(*number).is_none()) {
+        let parts = matrices.iter().map(|matrix| matrix.row(e as usize));
+        let row = numbered_row(number, parts, |column| numbering.number(column));
+        if !row.1.is_empty() {
+            rows[numbering.owner(number)].push(row);
         }
     }
     rows
@@ -203,16 +206,8 @@ fn fetch(ranks: &Ranks, numbering: &Numbering, bulk: &Csr, coupling: &Csr, place
         done += nodes.len();
         let complete = |number: u32| {
             let row = places.own(number).expect("a row that this rank owns") as usize;
-            let (mut columns, mut values) = (Vec::new(), Vec::new());
-            for (of_row, found) in [bulk.row(row), coupling.row(row)] {
-                for (&place, &value) in of_row.iter().zip(found) {
-                    if let Some(column) = places.number(place) {
-                        columns.push(column);
-                        values.push(value);
-                    }
-                }
-            }
-            (number, columns, values)
+            let parts = [bulk.row(row), coupling.row(row)];
+            numbered_row(number, parts.into_iter(), |place| places.number(place))
         };
         let asked = ranks.exchange_indices(&wanted);
         let rows = asked.into_iter().map(|list| list.into_iter().map(complete).collect()).collect();

@@ -35,9 +35,9 @@ pub trait SolutionStrategy: Send {
         true
     }
 
-    /// A step has failed: takes up another way to iterate until one is accepted, and says which; `None` where there is none, or where
-    /// that is what has failed and is given up.
-    fn other_way(&mut self) -> Option<&'static str> {
+    /// An attempt at a step has failed: takes up another way to iterate until a step is accepted, and says which; `None` where none would
+    /// mend what failed, or where the other way is what has failed and is given up.
+    fn other_way(&mut self, _failed: &StepRecord) -> Option<&'static str> {
         None
     }
 

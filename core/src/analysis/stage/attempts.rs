@@ -51,7 +51,7 @@ impl Stage {
             }
             let failure = record.failure.clone().unwrap_or_default();
             let can_cut = saved.is_some() && self.cutting.times > 0;
-            let other_way = if can_cut && record.failed_to_converge() { self.strategy.other_way() } else { None };
+            let other_way = if can_cut { self.strategy.other_way(&record) } else { None };
             if let Some(how) = other_way {
                 monitor.note(&format!("step {} to time {to}: {failure}; retried {how}", record.step));
                 saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);

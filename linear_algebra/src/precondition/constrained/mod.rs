@@ -348,7 +348,7 @@ impl Constrained {
         &self.ghosts
     }
 
-    /// Body of each own block: those that elements join, one by one, are of the same; all where nothing but elements acts.
+    /// Body of each own block: blocks that elements join, directly or through others, are of one. One for all where elements act alone.
     fn bodies(&self, system: &System<'_>) -> Vec<u32> {
         let own = self.blocks.own();
         if system.active_coupling().is_none() {
