@@ -34,6 +34,9 @@ pub trait Real:
     + MulAssign<f64>
     + DivAssign<f64>
 {
+    /// Whether it carries derivatives.
+    const DIFFERENTIATES: bool;
+
     /// A number without derivative.
     fn constant(value: f64) -> Self;
 
@@ -170,6 +173,8 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    const DIFFERENTIATES: bool = false;
+
     #[inline]
     fn constant(value: f64) -> Self {
         value
@@ -264,6 +269,8 @@ impl<const N: usize> PartialOrd for Dual<N> {
 }
 
 impl<const N: usize> Real for Dual<N> {
+    const DIFFERENTIATES: bool = true;
+
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value, gradient: [0.0; N] }

@@ -312,12 +312,17 @@ impl Csr {
     pub fn plus(&self, other: &Self) -> Self {
         assert_eq!(self.rows, other.rows, "matrices of one size");
         let mut sum = Self::empty(self.rows);
-        sum.columns.reserve(self.entries().max(other.entries()));
-        sum.values.reserve(self.entries().max(other.entries()));
+        sum.columns.reserve(self.entries() + other.entries());
+        sum.values.reserve(self.entries() + other.entries());
         for i in 0..self.rows {
             let (a_columns, a_values) = self.row(i);
             let (b_columns, b_values) = other.row(i);
             let (mut a, mut b) = (0, 0);
+            if a_columns.is_empty() || b_columns.is_empty() {
+                sum.columns.extend(a_columns.iter().chain(b_columns));
+                sum.values.extend(a_values.iter().chain(b_values));
+                (a, b) = (a_columns.len(), b_columns.len());
+            }
             while a < a_columns.len() || b < b_columns.len() {
                 let a_column = a_columns.get(a).copied().unwrap_or(u32::MAX);
                 let b_column = b_columns.get(b).copied().unwrap_or(u32::MAX);

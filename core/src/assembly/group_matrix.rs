@@ -96,20 +96,21 @@ impl GroupMatrix {
         let columns_of = |row: u32| &columns[row_starts[row as usize]..row_starts[row as usize + 1]];
         for ((block, numbers), runs) in blocks.iter().zip(numbers).zip(runs) {
             let size = block.unknowns().len();
-            let rows_of = |at: usize| &numbers[at * size..(at + 1) * size];
+            let columns_of_entity = |at: usize| &numbers[at * size..(at + 1) * size];
+            let rows_of = |at: usize| &columns_of_entity(at)[..block.equations()];
             batches_of_runs(*block, view, runs, Want::Both, |batch| {
                 let active = || batch.iter().filter(|(at, ..)| block.is_active(*at, view));
                 let touched = active().flat_map(|(at, ..)| rows_of(*at)).copied();
                 side_by_side(row_starts, values, touched, |here, base, values| {
                     let mut places = Vec::new();
                     for &(at, lhs, _) in active() {
-                        let rows = rows_of(at);
+                        let (rows, wanted) = (rows_of(at), columns_of_entity(at));
                         let mut known: &[u32] = &[];
                         for (i, &row) in rows.iter().enumerate().filter(|(_, row)| here.contains(&(**row as usize))) {
                             let columns = columns_of(row);
                             // Unknowns of a node have rows with the same columns.
                             if columns != known {
-                                find_all(columns, rows, &mut places);
+                                find_all(columns, wanted, &mut places);
                                 known = columns;
                             }
                             let values = &mut values[row_starts[row as usize] - base..];

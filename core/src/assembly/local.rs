@@ -27,13 +27,13 @@ pub(super) fn evaluate<'a>(
 ) -> Result<&'a mut [LocalSystems], EntityError> {
     let chunks: Vec<Range<usize>> =
         range.clone().step_by(CHUNK).map(|begin| begin..(begin + CHUNK).min(range.end)).collect();
-    evaluate_runs(&chunks, size, want, compute, buffers)
+    evaluate_runs(&chunks, [size, size], want, compute, buffers)
 }
 
-/// Local systems of each of `runs`, which are no longer than [`CHUNK`].
+/// Local systems, of so many rows and columns, of each of `runs`, which are no longer than [`CHUNK`].
 fn evaluate_runs<'a>(
     runs: &[Range<usize>],
-    size: usize,
+    sizes: [usize; 2],
     want: Want,
     compute: Compute<'_>,
     buffers: &'a mut Vec<LocalSystems>,
@@ -41,7 +41,7 @@ fn evaluate_runs<'a>(
     buffers.resize_with(buffers.len().max(runs.len()), LocalSystems::default);
     let systems = &mut buffers[..runs.len()];
     let evaluate = |(run, out): (&Range<usize>, &mut LocalSystems)| {
-        out.reset(run.len(), size, want);
+        out.reset_rows(run.len(), sizes, want);
         compute(run.clone(), out)
     };
     let done: Vec<Result<(), EntityError>> = runs.par_iter().zip(&mut *systems).map(evaluate).collect();
@@ -73,7 +73,8 @@ pub(super) fn batches_of_runs(
     let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
     let mut buffers = Vec::new();
     for batch in runs.chunks(BATCH / CHUNK) {
-        let systems = evaluate_runs(batch, block.unknowns().len(), want, &compute, &mut buffers)?;
+        let sizes = [block.equations(), block.unknowns().len()];
+        let systems = evaluate_runs(batch, sizes, want, &compute, &mut buffers)?;
         let mut found = Vec::with_capacity(BATCH);
         for (run, systems) in batch.iter().zip(&*systems) {
             found.extend(run.clone().enumerate().map(|(slot, at)| (at, systems.lhs_of(slot), systems.rhs_of(slot))));

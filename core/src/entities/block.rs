@@ -56,28 +56,35 @@ pub enum Want {
 /// Buffers for the local systems of a range of entities, one after another.
 #[derive(Debug, Default)]
 pub struct LocalSystems {
-    /// Rows of one local system.
+    /// Unknowns of one local system.
     pub size: usize,
-    /// `size * size` numbers an entity, row by row; empty when no tangent is wanted.
+    /// Rows of a tangent, see [`EntityBlock::equations`].
+    rows: usize,
+    /// `rows * size` numbers an entity, row by row; empty when no tangent is wanted.
     pub lhs: Vec<f64>,
     /// `size` numbers an entity.
     pub rhs: Vec<f64>,
 }
 
 impl LocalSystems {
-    /// Zeroed buffers for `count` entities of `size` rows.
+    /// Zeroed buffers for `count` entities of `size` unknowns.
     pub fn reset(&mut self, count: usize, size: usize, want: Want) {
-        self.size = size;
+        self.reset_rows(count, [size, size], want);
+    }
+
+    /// Zeroed buffers for `count` entities whose tangents have so many rows and columns.
+    pub fn reset_rows(&mut self, count: usize, [rows, size]: [usize; 2], want: Want) {
+        (self.rows, self.size) = (rows, size);
         self.rhs.clear();
         self.rhs.resize(count * size, 0.0);
         self.lhs.clear();
-        self.lhs.resize(if want == Want::Both { count * size * size } else { 0 }, 0.0);
+        self.lhs.resize(if want == Want::Both { count * rows * size } else { 0 }, 0.0);
     }
 
     /// Tangent of the `at`-th entity of the range, empty when not wanted.
     pub fn lhs_of(&self, at: usize) -> &[f64] {
-        let square = self.size * self.size;
-        if self.lhs.is_empty() { &[] } else { &self.lhs[at * square..(at + 1) * square] }
+        let entries = self.rows * self.size;
+        if self.lhs.is_empty() { &[] } else { &self.lhs[at * entries..(at + 1) * entries] }
     }
 
     /// Right-hand side of the `at`-th entity of the range.
@@ -87,8 +94,8 @@ impl LocalSystems {
 
     /// Tangent (empty when not wanted) and right-hand side of the `at`-th entity of the range.
     pub fn entity(&mut self, at: usize) -> (&mut [f64], &mut [f64]) {
-        let n = self.size;
-        let lhs = if self.lhs.is_empty() { &mut [][..] } else { &mut self.lhs[at * n * n..(at + 1) * n * n] };
+        let (n, entries) = (self.size, self.rows * self.size);
+        let lhs = if self.lhs.is_empty() { &mut [][..] } else { &mut self.lhs[at * entries..(at + 1) * entries] };
         (lhs, &mut self.rhs[at * n..(at + 1) * n])
     }
 }
@@ -170,6 +177,12 @@ pub trait EntityBlock: Send + Sync {
 
     /// The rows of every local system.
     fn unknowns(&self) -> &[LocalUnknown];
+
+    /// Number of unknowns, the first ones, in whose equations entities of the block have a part. The others have none: their rows are
+    /// zero, and entities depend on them.
+    fn equations(&self) -> usize {
+        self.unknowns().len()
+    }
 
     /// How the tangent behaves.
     fn tangent(&self) -> Tangent;

@@ -228,31 +228,29 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
         for _ in 0..MAX_STEPS {
             let step = state.solve([dot(state.tangent[0], state.gap), dot(state.tangent[1], state.gap)]);
             xi = [xi[0] - step[0], xi[1] - step[1]];
+            // So short a step changes no derivative.
+            if step[0].abs().max(step[1].abs()) < 1e-13 {
+                break;
+            }
             if Self::CURVED {
                 bend = bend_at::<Self>(&x, xi);
             }
             state = HalfSquare::new::<Self>(&x, p, xi, &bend);
-            if step[0].abs().max(step[1].abs()) < 1e-13 {
-                break;
-            }
         }
-        let gap = sub(Self::combine(&Self::values(xi), nodes), point);
+        if !T::DIFFERENTIATES {
+            return xi.map(T::constant);
+        }
+        // d(∂ₐx·(x − p)) at a fixed ξ: the motion of the gap along the tangents, and that of the tangents along the gap.
+        let (shape, gradient) = (Self::values(xi), Self::gradients(xi));
         let mut residual = [T::zero(); 2];
-        for a in 0..2 {
-            for c in 0..3 {
-                residual[a].add_scaled(gap[c], state.tangent[a][c]);
-            }
-        }
-        // The turning of the tangents matters only for a point off the facet.
-        if dot(state.gap, state.gap) > 1e-24 * dot(state.tangent[0], state.tangent[0]) {
-            let gradient = Self::gradients(xi);
-            for a in 0..2 {
-                for c in 0..3 {
-                    for n in 0..Self::NODES {
-                        residual[a].add_scaled(nodes[n][c] - x[n][c], gradient[n][a] * state.gap[c]);
-                    }
+        for c in 0..3 {
+            for n in 0..Self::NODES {
+                let moved = nodes[n][c] - x[n][c];
+                for a in 0..2 {
+                    residual[a].add_scaled(moved, shape[n] * state.tangent[a][c] + gradient[n][a] * state.gap[c]);
                 }
             }
+            (0..2).for_each(|a| residual[a].add_scaled(point[c] - p[c], -state.tangent[a][c]));
         }
         let inverse = [state.solve([1.0, 0.0]), state.solve([0.0, 1.0])];
         let mut local = xi.map(T::constant);

@@ -1,5 +1,7 @@
 //! Convergence criteria: what they may look at, and what they say.
 
+use std::cell::LazyCell;
+
 use crate::assembly::{Distribution, Dof, DofTable, Equations};
 use crate::communication::Ranks;
 use crate::diagnostics::{Report, Result};
@@ -53,8 +55,9 @@ pub struct Measures<'a> {
     pub increment: &'a [f64],
     /// Values after the update.
     pub values: &'a [f64],
-    /// Size of the round-off of each entry of the residual.
-    pub round_off: &'a [f64],
+    /// Size of the round-off of each entry of the residual; collective. It takes a pass over the matrix, so it is computed for the
+    /// first criterion that asks.
+    pub round_off: LazyCell<Vec<f64>, Box<dyn FnOnce() -> Vec<f64> + 'a>>,
 }
 
 impl Measures<'_> {

@@ -1,5 +1,7 @@
 //! A block of unknowns measured against its tolerances, each variable in its own units.
 
+use std::cell::LazyCell;
+
 use super::criterion::{Block, Check, ConvergenceCriterion, Measures, Norm, Verdict, is_last_digit, is_round_off};
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
@@ -89,7 +91,8 @@ impl Measure {
     /// Measures, and says whether that is good enough; collective.
     pub fn check(&self, measures: &Measures<'_>) -> Check {
         let norms = |vector: &[f64]| measures.norms(vector, self.block, self.apart);
-        let (residuals, round_offs) = (norms(measures.residual), norms(measures.round_off));
+        let residuals = norms(measures.residual);
+        let round_offs = LazyCell::new(|| norms(&measures.round_off));
         let is_balanced = |kind: usize| is_round_off(residuals[kind].size, round_offs[kind].size);
         let mut checks = match self.form {
             Form::Residual => {
@@ -100,7 +103,7 @@ impl Measure {
                     // Equations that nothing acted in at the start refer to what the last change of state left of them.
                     let of_switch = switched.as_ref().map_or(0.0, |left| left[kind].size);
                     let reference = [of_start, of_switch, norm.size].into_iter().find(|size| *size > 0.0);
-                    self.of_variable(*norm, reference.unwrap_or(0.0), is_balanced(kind))
+                    self.of_variable(*norm, reference.unwrap_or(0.0), || is_balanced(kind))
                 };
                 residuals.iter().enumerate().map(check).collect::<Vec<_>>()
             }
@@ -108,23 +111,25 @@ impl Measure {
                 let totals = norms(measures.values);
                 let check = |(norm, total): (Norm, &Norm)| {
                     let reference = if total.size > 0.0 { total.size } else { norm.size };
-                    self.of_variable(norm, reference, is_last_digit(norm.size, total.size))
+                    self.of_variable(norm, reference, || is_last_digit(norm.size, total.size))
                 };
                 let mut checks: Vec<Check> = norms(measures.increment).into_iter().zip(&totals).map(check).collect();
                 // What is zero but for round-off moves by as much as it is: it holds up no other variable.
                 if checks.iter().any(|check| check.converged) {
-                    checks.iter_mut().enumerate().for_each(|(kind, check)| check.converged |= is_balanced(kind));
+                    for (kind, check) in checks.iter_mut().enumerate() {
+                        check.converged = check.converged || is_balanced(kind);
+                    }
                 }
                 checks
             }
         };
         let worse = |a: &Check, b: &Check| b.converged.cmp(&a.converged).then(a.ratio.total_cmp(&b.ratio));
         checks.sort_by(worse);
-        checks.pop().unwrap_or_else(|| self.of_variable(Norm::default(), 0.0, true))
+        checks.pop().unwrap_or_else(|| self.of_variable(Norm::default(), 0.0, || true))
     }
 
-    /// One variable: its norm against `reference`; `done` where it cannot become smaller.
-    fn of_variable(&self, norm: Norm, reference: f64, done: bool) -> Check {
+    /// One variable: its norm against `reference`; `done` says whether it can become no smaller.
+    fn of_variable(&self, norm: Norm, reference: f64, done: impl FnOnce() -> bool) -> Check {
         let ratio = if norm.size > 0.0 && reference > 0.0 { norm.size / reference } else { 0.0 };
         let count = norm.count.max(1) as f64;
         // As Kratos divides: residuals of all unknowns by their number, all else by its root.
@@ -142,7 +147,7 @@ impl Measure {
             ratio_tolerance: self.tolerance.relative,
             absolute,
             absolute_tolerance: self.tolerance.absolute,
-            converged: done || self.tolerance.met(ratio, absolute),
+            converged: self.tolerance.met(ratio, absolute) || done(),
         }
     }
 }
@@ -181,7 +186,7 @@ mod tests {
             switched: None,
             increment: &of(moved),
             values: &of([1.0, 1e-17]),
-            round_off: &of([1e-16, 1e-16]),
+            round_off: LazyCell::new(Box::new(|| of([1e-16, 1e-16]))),
         })
     }
 

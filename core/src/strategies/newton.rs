@@ -6,6 +6,7 @@ mod lost_body;
 mod references;
 mod start;
 
+use std::cell::LazyCell;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -343,7 +344,7 @@ impl NewtonRaphson {
             switched: references.switched.as_deref(),
             increment,
             values: &self.assembler.values(part, system),
-            round_off: &self.assembler.round_off(part, system),
+            round_off: LazyCell::new(Box::new(|| self.assembler.round_off(part, system))),
         })
     }
 

@@ -20,7 +20,7 @@ const INDEPENDENT: f64 = 1e-7;
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Answer {
-    /// Of length one.
+    /// Of a length between one and two: the power of two by which it was divided changes no digit of it or of its product.
     pub x: Vec<f64>,
     /// Its product with the bulk of a system, with the stamp of the values of that bulk.
     #[serde(skip)]
@@ -49,24 +49,30 @@ pub(crate) struct Answers {
 }
 
 impl Answers {
-    /// Keeps an answer for systems with this graph.
-    pub(crate) fn keep(&mut self, graph: u64, ghosts: &Ghosts, x: &[f64]) {
+    /// Keeps an answer for systems with this graph, with its product with the bulk of a stamp where that is known.
+    pub(crate) fn keep(&mut self, graph: u64, ghosts: &Ghosts, x: &[f64], product: Option<(u64, &[f64])>) {
         if self.graph != graph {
             self.latest.clear();
             self.graph = graph;
         }
         let size = ghosts.norm(x);
-        if size > 0.0 && size.is_finite() {
+        if size >= f64::MIN_POSITIVE && size.is_finite() {
+            let factor = (-size.log2().floor()).exp2();
             let mut kept = if self.latest.len() < KEPT { None } else { self.latest.pop_back() }.unwrap_or_default();
-            kept.product = None;
-            kept.x.resize(x.len(), 0.0);
-            scale_to(1.0 / size, x, &mut kept.x);
+            let scaled = |from: &[f64], mut to: Vec<f64>| {
+                to.resize(from.len(), 0.0);
+                scale_to(factor, from, &mut to);
+                to
+            };
+            let old = kept.product.take().map(|(_, product)| product).unwrap_or_default();
+            kept.product = product.map(|(stamp, product)| (stamp, scaled(product, old)));
+            kept.x = scaled(x, kept.x);
             self.latest.push_front(kept);
         }
     }
 
-    /// Sets `x` to the combination of answers that leaves the least of `b`, or no more than `enough` times its norm;
-    /// `multiply(answer, y)` is `y = A x`.
+    /// Sets `x` to the combination of answers that leaves the least of `b`, or no more than `enough` times its norm, and gives what
+    /// it leaves; `multiply(answer, y)` is `y = A x`.
     pub(crate) fn start(
         &mut self,
         graph: u64,
@@ -75,9 +81,9 @@ impl Answers {
         b: &[f64],
         enough: f64,
         x: &mut [f64],
-    ) {
+    ) -> Vec<f64> {
         if self.graph != graph || self.latest.iter().any(|kept| kept.x.len() != x.len()) {
-            return;
+            return b.to_vec();
         }
         // Orthonormal products; their answers, with what each had of those before it and the part of b along it.
         let mut basis: Vec<Vec<f64>> = Vec::new();
@@ -108,6 +114,7 @@ impl Answers {
             (0..k).for_each(|i| factors[i] -= factors[k] * column[i]);
             add_scaled(factors[k], kept, x);
         }
+        rest
     }
 }
 
@@ -124,14 +131,17 @@ mod tests {
             y.copy_from_slice(answer.product(1, product));
         };
         let mut answers = Answers::default();
-        answers.keep(7, &Ghosts::none(4), &[1.0, 1.0, 0.0, 0.0]);
-        answers.keep(7, &Ghosts::none(4), &[0.0, 1.0, 1.0, 0.0]);
-        answers.keep(7, &Ghosts::none(4), &[2.0, 2.0, 0.0, 0.0]);
+        answers.keep(7, &Ghosts::none(4), &[1.0, 1.0, 0.0, 0.0], None);
+        // Its product is known, by a wrong stamp and by the right one.
+        answers.keep(7, &Ghosts::none(4), &[0.0, 1.0, 1.0, 0.0], Some((3, &[0.0; 4])));
+        answers.keep(7, &Ghosts::none(4), &[2.0, 2.0, 0.0, 0.0], Some((1, &[2.0, 4.0, 0.0, 0.0])));
         let mut x = [0.0; 4];
-        answers.start(7, &Ghosts::none(4), multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut x);
+        let left = answers.start(7, &Ghosts::none(4), multiply, &[3.0, 2.0, -8.0, 0.8], 0.0, &mut x);
         // 3 (1, 1, 0, 0) and the best multiple of (0, 1, 1, 0) for (0, -4, -8, 0.8).
         let expected = [3.0, 1.0, -2.0, 0.0];
         assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
+        let rest = [0.0, 0.0, 0.0, 0.8];
+        assert!(left.iter().zip(rest).all(|(left, rest)| (left - rest).abs() < 1e-12), "{left:?}");
         // What is known is not made again, unless the matrix is another.
         let known = |answer: &mut Answer, y: &mut [f64]| {
             y.copy_from_slice(answer.product(1, |_, _| unreachable!("the product is known")));

@@ -13,8 +13,8 @@ use crate::ghosts::Ghosts;
 use crate::iterations::Gmres;
 use crate::vector::CHUNK;
 
-/// Directions kept in a solve, and its iterations at most.
-const RESTART: usize = 80;
+/// Iterations of a solve at most.
+const MOST: usize = 80;
 
 /// Replaces `b`, own entries, by what `solve` makes of it in single precision, divided by `size`; `solve` sees numbers up to one.
 /// Collective.
@@ -64,11 +64,7 @@ impl Blocks {
         let precondition = |r: &mut [f32], _: f64| levels.apply(r);
         let mut iterations = 0;
         in_single(&self.ghosts, b, self.size, |rhs| {
-            let mut x = vec![0.0; rhs.len()];
-            let most = most.min(RESTART);
-            let progress = method.solve(&self.ghosts, multiply, precondition, rhs, &mut x, RESTART, most, aim);
-            iterations = progress.iterations;
-            rhs.copy_from_slice(&x);
+            iterations = method.approximate(&self.ghosts, multiply, precondition, rhs, most.min(MOST), aim);
         });
         iterations
     }

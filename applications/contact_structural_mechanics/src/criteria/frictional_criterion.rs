@@ -4,6 +4,8 @@
 //! part by the state of the node; without friction or contact the whole node belongs to the normal part. Equations of
 //! sliding nodes state tractions, and are measured by these besides.
 
+use std::cell::LazyCell;
+
 use zelus_core::Result;
 use zelus_core::strategies::{
     Block, Check, ConvergenceCriterion, CriterionRequest, Form, Measure, Measures, Tolerance, Verdict, is_last_digit,
@@ -147,16 +149,17 @@ impl ConvergenceCriterion for FrictionalCriterion {
         if !measures.dofs.dofs().iter().any(|dof| dof.multiplier) {
             return Verdict::all(checks);
         }
-        let (sizes, references, round_off) = match self.multiplier {
-            Form::Residual => (
-                split(measures, measures.residual, true),
-                references(measures),
-                Some(split(measures, measures.round_off, false)),
-            ),
+        let (sizes, references) = match self.multiplier {
+            Form::Residual => (split(measures, measures.residual, true), references(measures)),
             Form::Increment => {
                 let values = split(measures, measures.values, true);
-                (split(measures, measures.increment, true), std::array::from_fn(|part| values.norm(part)), None)
+                (split(measures, measures.increment, true), std::array::from_fn(|part| values.norm(part)))
             }
+        };
+        let round_off = LazyCell::new(|| split(measures, &measures.round_off, false));
+        let is_done = |part: usize, size: f64, reference: f64| match self.multiplier {
+            Form::Residual => is_round_off(size, round_off.norm(part)),
+            Form::Increment => is_last_digit(size, reference),
         };
         let normal = sizes.norm(0) / (sizes.counts[0].max(1) as f64).sqrt();
         for part in 0..3 {
@@ -165,9 +168,9 @@ impl ConvergenceCriterion for FrictionalCriterion {
             let reference = if references[part] > 0.0 { references[part] } else { size };
             let ratio = if size > 0.0 { size / reference } else { 0.0 };
             let tolerance = self.tolerances[part];
-            let converged = round_off.map_or(is_last_digit(size, reference), |r| is_round_off(size, r.norm(part)))
-                || tolerance.met(ratio, absolute)
-                || (part > 0 && absolute <= self.threshold * normal);
+            let converged = tolerance.met(ratio, absolute)
+                || (part > 0 && absolute <= self.threshold * normal)
+                || is_done(part, size, reference);
             checks.push(Check {
                 label: PARTS[part][usize::from(self.multiplier == Form::Increment)],
                 ratio,

@@ -4,7 +4,7 @@ use super::held::restate;
 use super::pair::{Kinematics, PairResidual, SlaveNode};
 use super::{Formulation, Multiplier};
 use crate::kratos::FirstIterateTangent;
-use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, operators, variable_from};
+use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, operators_by_normals};
 use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::{Differentiated, Dual, Real};
 use zelus_core::vector3::constant;
@@ -14,32 +14,30 @@ pub const fn local_size<F: Formulation, S: FacetShape, M: FacetShape>() -> usize
     S::SPACE * (S::NODES + M::NODES) + S::NODES * F::MULTIPLIER.count(S::SPACE)
 }
 
-/// Writes the right-hand side of a pair; zero without overlap. Returns its operators.
+/// Writes the right-hand side of a pair with these operators; zero without overlap.
 ///
 /// # Panics
 /// If `rhs` does not have [`local_size`] entries.
 pub fn residual<F: Formulation, S: FacetShape, M: FacetShape>(
     formulation: &F,
     geometry: &PairGeometry<f64, S, M>,
-    settings: &SegmentationSettings,
+    found: Overlap<Operators<f64, S, M>>,
     nodes: &S::Nodal<SlaveNode>,
     multipliers: &S::Nodal<[f64; 3]>,
     history: &F::History<S, M>,
     rhs: &mut [f64],
-) -> Overlap<Operators<f64, S, M>> {
+) {
     assert_eq!(rhs.len(), local_size::<F, S, M>(), "one entry per local unknown");
     rhs.fill(0.0);
-    let found = operators(geometry, settings);
     if let Overlap::Cells(operators) = found {
         let out = stated(formulation, &kinematics(geometry, operators, multipliers), nodes, history);
         for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, value| rhs[row] = value);
     }
-    found
 }
 
 /// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns); zero without overlap.
 /// `seeded` gives the pair with `LANES` of its displacement unknowns as variables, from a number on. `lhs` has a row for each
-/// unknown, each of `width` numbers that begin with those of the unknowns. Returns the operators.
+/// unknown, each of `width` numbers that begin with those of the unknowns.
 ///
 /// # Panics
 /// If `rhs` does not have [`local_size`] entries, or `lhs` not `width` for each of them.
@@ -53,7 +51,7 @@ pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usize>
     history: &F::History<S, M>,
     (lhs, width): (&mut [f64], usize),
     rhs: &mut [f64],
-) -> Overlap<Operators<f64, S, M>> {
+) {
     let n = local_size::<F, S, M>();
     assert_eq!(rhs.len(), n, "one entry per local unknown");
     assert_eq!(lhs.len(), n * width, "one row per local unknown");
@@ -63,7 +61,7 @@ pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usize>
     let mut last = None;
     for first in (0..unknowns).step_by(LANES) {
         let geometry = seeded(first);
-        let Some(dual) = knows.operators(&geometry, settings) else { return Overlap::None };
+        let Some(dual) = knows.operators(&geometry, settings) else { return };
         let out = stated(formulation, &kinematics(&geometry, dual, multipliers), nodes, history);
         for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b: Dual<LANES>| {
             rhs[row] = b.value;
@@ -90,7 +88,6 @@ pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usize>
             }
         });
     }
-    Overlap::Cells(plain)
 }
 
 /// Visits the rows of a pair with ∂b/∂n: the derivatives by the components of the normals of its slave nodes, node by node,
@@ -104,13 +101,10 @@ pub fn by_normals<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usi
     history: &F::History<S, M>,
     mut visit: impl FnMut(usize, usize, &[f64]),
 ) {
-    let (dim, count) = (S::SPACE, PairGeometry::<f64, S, M>::NORMALS);
+    let count = PairGeometry::<f64, S, M>::NORMALS;
     for first in (0..count).step_by(LANES) {
-        let mut seeded: PairGeometry<Dual<LANES>, S, M> = geometry.as_constants();
-        for (j, normal) in seeded.nodal_normals.iter_mut().enumerate() {
-            (0..dim).for_each(|c| normal[c] = variable_from(first, dim * j + c, normal[c].value));
-        }
-        let Some(operators) = operators(&seeded, settings).cells() else { return };
+        let Some(operators) = operators_by_normals(geometry, settings, first).cells() else { return };
+        let seeded: PairGeometry<Dual<LANES>, S, M> = geometry.seeded_by_normals(first);
         let out = stated(formulation, &kinematics(&seeded, operators, multipliers), nodes, history);
         let known = LANES.min(count - first);
         for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b| visit(row, first, &b.gradient[..known]));

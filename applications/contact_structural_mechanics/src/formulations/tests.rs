@@ -90,7 +90,7 @@ fn check_tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usiz
                 (&mut lhs, n),
                 &mut rhs,
             );
-            residual(formulation, &pair, &settings, &nodes, &lambda, &history, &mut plain);
+            residual(formulation, &pair, operators(&pair, &settings), &nodes, &lambda, &history, &mut plain);
             let size = plain.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
             rhs.iter().zip(&plain).for_each(|(a, b)| assert!((a - b).abs() < 1e-12 * size, "{a} {b}"));
 
@@ -102,7 +102,7 @@ fn check_tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usiz
                 } else {
                     lambda[(column - unknowns) / count][(column - unknowns) % count] += step;
                 }
-                residual(formulation, &moved, &settings, &nodes, &lambda, &history, &mut out);
+                residual(formulation, &moved, operators(&moved, &settings), &nodes, &lambda, &history, &mut out);
                 out
             };
             let largest = lhs.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
@@ -224,7 +224,7 @@ fn check_references<F: Formulation>(
         let expected = &line[36..];
         let mut rhs = vec![0.0; expected.len()];
         let settings = SegmentationSettings::default();
-        residual(formulation, &pair, &settings, &nodes, &[vector(6), vector(7)], &history, &mut rhs);
+        residual(formulation, &pair, operators(&pair, &settings), &nodes, &[vector(6), vector(7)], &history, &mut rhs);
         let size = expected.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         for (row, (a, b)) in rhs.iter().zip(expected).enumerate() {
             assert!((a - b).abs() <= 1e-12 * size, "row {row}: {a} {b}");
@@ -281,8 +281,8 @@ fn scalar_and_components_agree() {
     let scalar = pressure.map(|p| [p, 0.0, 0.0]);
     let vector = std::array::from_fn(|j| pair.nodal_normals[j].map(|n| n * pressure[j]));
     let (mut a, mut b) = (vec![0.0; 25], vec![0.0; 33]);
-    residual(&ALM, &pair, &settings, &nodes, &scalar, &(), &mut a);
-    residual(&COMPONENTS, &pair, &settings, &nodes, &vector, &(), &mut b);
+    residual(&ALM, &pair, operators(&pair, &settings), &nodes, &scalar, &(), &mut a);
+    residual(&COMPONENTS, &pair, operators(&pair, &settings), &nodes, &vector, &(), &mut b);
     for (x, y) in a[..21].iter().zip(&b) {
         assert!((x - y).abs() < 1e-13);
     }
@@ -331,10 +331,18 @@ fn sign_of_the_contact_force() {
         }
     };
     let (settings, none) = (SegmentationSettings::default(), [[0.0; 3]; 4]);
-    residual(&PenaltyFrictionless, &pair, &settings, &[node; 4], &none, &(), &mut rhs);
+    residual(&PenaltyFrictionless, &pair, operators(&pair, &settings), &[node; 4], &none, &(), &mut rhs);
     check(50.0 * 0.0025 / 4.0, &rhs);
     let last = LastState { slave, master };
-    residual(&PenaltyByNode { tangent_factor: 1.0 }, &pair, &settings, &[node; 4], &none, &last, &mut rhs);
+    residual(
+        &PenaltyByNode { tangent_factor: 1.0 },
+        &pair,
+        operators(&pair, &settings),
+        &[node; 4],
+        &none,
+        &last,
+        &mut rhs,
+    );
     check(50.0 * 0.01 / 4.0, &rhs);
 }
 
@@ -393,7 +401,7 @@ fn cost_of_local_systems() {
                 .collect();
             let start = std::time::Instant::now();
             for (pair, nodes, lambda, history) in (0..40).flat_map(|_| &cases) {
-                residual(formulation, pair, &settings, nodes, lambda, history, &mut rhs);
+                residual(formulation, pair, operators(pair, &settings), nodes, lambda, history, &mut rhs);
             }
             let plain = start.elapsed().as_secs_f64();
             let start = std::time::Instant::now();
@@ -467,7 +475,15 @@ fn penalty_friction_acts_through_the_mortar_operators() {
             // The slave has come along x by 0.02 since.
             let last = LastState { slave: slave.map(|x| [x[0] - 0.02, x[1], x[2]]), master };
             let mut rhs = [0.0; 24];
-            residual(&PENALTY, &pair, &SegmentationSettings::default(), &[node; 4], &[[0.0; 3]; 4], &last, &mut rhs);
+            residual(
+                &PENALTY,
+                &pair,
+                operators(&pair, &SegmentationSettings::default()),
+                &[node; 4],
+                &[[0.0; 3]; 4],
+                &last,
+                &mut rhs,
+            );
             for n in 0..4 {
                 let force = |at: usize| [rhs[at + 3 * n], rhs[at + 3 * n + 1], rhs[at + 3 * n + 2]];
                 let [along, across] = [free([1.0, 0.0, 0.0]), free([0.0, 1.0, 0.0])];

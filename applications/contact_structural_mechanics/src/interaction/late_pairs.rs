@@ -82,7 +82,7 @@ pub(super) fn late_pairs(
     blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, setup.limit()))?);
     let slaves = states.slaves();
     let mut more = NodalSums::<2>::new(part.nodes.len(), &slaves);
-    let integrals = integrals(&blocks, part, states);
+    let integrals = integrals(&mut blocks, part, states);
     for (block, integrals) in blocks.iter().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate().filter(|(_, integral)| integral.overlapping) {
             for (local, &node) in block.slave_nodes(at).iter().enumerate() {

@@ -294,8 +294,8 @@ impl Pairing {
     }
 
     /// The integrals of the pairs of this rank, and of all pairs how they meet.
-    pub(super) fn integrals(&self, part: &ModelPart, states: &SlaveStates) -> (Vec<Vec<Integral>>, Vec<Meeting>) {
-        let integrals = integrals(&self.blocks, part, states);
+    pub(super) fn integrals(&mut self, part: &ModelPart, states: &SlaveStates) -> (Vec<Vec<Integral>>, Vec<Meeting>) {
+        let integrals = integrals(&mut self.blocks, part, states);
         let mut flags: Vec<bool> = integrals.iter().flatten().flat_map(|i| [i.overlapping, i.facing]).collect();
         if part.share.is_some() {
             part.ranks.any_of(&mut flags);
@@ -335,7 +335,8 @@ impl Pairing {
         if slivers {
             let slaves = states.slaves();
             let mut area = NodalSums::new(part.nodes.len(), &slaves);
-            for (block, integrals) in self.blocks.iter().zip(&self.integrals(part, states).0) {
+            let (integrals, _) = self.integrals(part, states);
+            for (block, integrals) in self.blocks.iter().zip(&integrals) {
                 for (at, integral) in integrals.iter().enumerate() {
                     for (local, &node) in block.slave_nodes(at).iter().enumerate() {
                         area[node][0] += integral.area[local];
@@ -438,11 +439,15 @@ pub(super) fn searching(parameters: &StepParameters, limit: f64) -> Arc<StepPara
 
 /// The integrals of the pairs of this rank.
 pub(super) fn integrals(
-    blocks: &[Box<dyn ContactBlock>],
+    blocks: &mut [Box<dyn ContactBlock>],
     part: &ModelPart,
     states: &SlaveStates,
 ) -> Vec<Vec<Integral>> {
     let own = |nodes: &[u32]| part.evaluates_pair(nodes);
     let present = Present { view: &part.view(), states, own: &own };
-    blocks.iter().map(|block| block.integrate(present)).collect()
+    let integrals = blocks.iter_mut().map(|block| {
+        block.find_operators(present);
+        block.integrate(present)
+    });
+    integrals.collect()
 }

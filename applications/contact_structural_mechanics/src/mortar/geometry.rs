@@ -1,7 +1,7 @@
 //! The two facets of a contact pair as they stand, and the normals that go with them.
 
 use super::choices::Choices;
-use zelus_core::geometry::FacetShape;
+use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, value};
 
@@ -59,6 +59,16 @@ impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
             master: M::nodal(|n| seed(self.master[n], dim * n)),
             ..self.as_constants()
         }
+    }
+
+    /// The same pair with `LANES` components of its nodal normals as variables, from the one numbered `first` on, node by node.
+    #[inline]
+    pub fn seeded_by_normals<const LANES: usize>(&self, first: usize) -> PairGeometry<Dual<LANES>, S, M> {
+        let mut seeded: PairGeometry<Dual<LANES>, S, M> = self.as_constants();
+        for (j, normal) in seeded.nodal_normals.iter_mut().enumerate() {
+            (0..S::SPACE).for_each(|c| normal[c] = variable_from(first, S::SPACE * j + c, normal[c].value));
+        }
+        seeded
     }
 
     /// The same pair in another scalar, without derivatives.

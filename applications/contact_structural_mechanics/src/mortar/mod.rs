@@ -45,7 +45,7 @@ pub use curved::nodal_shares;
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{PairGeometry, variable_from};
 pub use inner::{inner_point, inner_values};
-pub use operators::{Operators, Overlap, choices_of, operators, operators_by};
+pub use operators::{Operators, Overlap, choices_of, operators, operators_by, operators_by_normals};
 pub use points::MasterMotion;
 pub use settings::{IntegrationOrder, SegmentationSettings};
 pub use shapes::{MOST_NODES, carries_contact, condition_name, lanes, makes_pairs};

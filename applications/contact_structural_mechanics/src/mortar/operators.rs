@@ -15,7 +15,7 @@ use super::points::{ExactMotion, MasterMotion, Point, Points};
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
 use zelus_core::geometry::{FacetShape, NodeArray};
-use zelus_core::scalar::Real;
+use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::value;
 
 /// Share of the slave's measure below which an overlap is a sliver.
@@ -85,6 +85,54 @@ pub fn operators_by<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape
     motion: &P,
 ) -> Overlap<Operators<T, S, M>> {
     ByOrder::<T, P, S, M>::OPERATORS(pair, settings, motion)
+}
+
+/// The same with derivatives by components of the nodal normals, `LANES` of them from the one numbered `first` on, node by node.
+pub fn operators_by_normals<S: FacetShape, M: FacetShape, const LANES: usize>(
+    pair: &PairGeometry<f64, S, M>,
+    settings: &SegmentationSettings,
+    first: usize,
+) -> Overlap<Operators<Dual<LANES>, S, M>> {
+    ByNormals::<S, M, LANES>::OPERATORS(pair, settings, first)
+}
+
+/// How derivatives by normals are found, by the dimension and the order of the shapes.
+struct ByNormals<S: FacetShape, M: FacetShape, const LANES: usize>(PhantomData<(S, M)>);
+
+impl<S: FacetShape, M: FacetShape, const LANES: usize> ByNormals<S, M, LANES> {
+    const OPERATORS: fn(
+        &PairGeometry<f64, S, M>,
+        &SegmentationSettings,
+        usize,
+    ) -> Overlap<Operators<Dual<LANES>, S, M>> =
+        if S::SPACE == 2 || S::CURVED || M::CURVED { Self::of_any } else { Self::in_space };
+
+    /// In space the overlap is cut along the slave's normal: those of nodes say where points meet the master and nothing else, each point
+    /// by the one interpolated there. That has three components, whatever the number of nodes.
+    fn in_space(
+        pair: &PairGeometry<f64, S, M>,
+        settings: &SegmentationSettings,
+        first: usize,
+    ) -> Overlap<Operators<Dual<LANES>, S, M>> {
+        let still: PairGeometry<Dual<3>, S, M> = pair.as_constants();
+        let mut sums = Sums::<Dual<LANES>, S, M>::new();
+        let covered = Points { pair, motion: &ExactMotion }.visit(settings, |point| {
+            let normal = S::interpolate(&point.slave, &pair.nodal_normals);
+            let normal = std::array::from_fn(|c| Dual::variable(normal[c], c));
+            let x = S::interpolate(&point.slave, &pair.slave).map(Dual::constant);
+            let master = Points { pair: &still, motion: &ExactMotion }.along(normal, x, Dual::zero());
+            sums.add_point_by_normals(point, &master, first);
+        });
+        if sums.is_finite() { Overlap::of(covered, pair, || sums.finish(pair.choices)) } else { Overlap::None }
+    }
+
+    fn of_any(
+        pair: &PairGeometry<f64, S, M>,
+        settings: &SegmentationSettings,
+        first: usize,
+    ) -> Overlap<Operators<Dual<LANES>, S, M>> {
+        operators(&pair.seeded_by_normals(first), settings)
+    }
 }
 
 /// What differs by the order of the shapes. As constants, so that only what a pair of shapes needs is compiled for it.
@@ -283,6 +331,26 @@ impl<T: Real, S: FacetShape, M: FacetShape> Sums<T, S, M> {
             }
         }
         operators
+    }
+}
+
+impl<S: FacetShape, M: FacetShape, const LANES: usize> Sums<Dual<LANES>, S, M> {
+    /// Adds a point whose shape functions on the master have derivatives by the normal that is interpolated there.
+    #[inline]
+    fn add_point_by_normals(&mut self, point: &Point<f64, S, M>, master: &M::Nodal<Dual<3>>, first: usize) {
+        let weighted = S::map(&point.slave, |shape| shape * point.weight);
+        for j in 0..S::NODES {
+            (j..S::NODES).for_each(|k| self.me[j][k].value += weighted[j] * point.slave[k]);
+        }
+        let known = LANES.min(PairGeometry::<f64, S, M>::NORMALS - first);
+        for l in 0..M::NODES {
+            let mut moved = Dual::constant(master[l].value);
+            for lane in 0..known {
+                let (node, c) = ((first + lane) / S::SPACE, (first + lane) % S::SPACE);
+                moved.gradient[lane] = point.slave[node] * master[l].gradient[c];
+            }
+            (0..S::NODES).for_each(|j| self.mixed[j][l].add_scaled(moved, weighted[j]));
+        }
     }
 }
 

@@ -200,8 +200,13 @@ impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> Points<'_, T,
     /// [`MasterMotion`].
     #[inline]
     fn on_master(&self, slave: &S::Nodal<T>, x: [T; 3], lift: T) -> M::Nodal<T> {
+        self.along(S::interpolate(slave, &self.pair.nodal_normals), x, lift)
+    }
+
+    /// Shape functions of the master where a point `x` of the slave goes along `normal`.
+    #[inline]
+    pub(super) fn along(&self, normal: [T; 3], x: [T; 3], lift: T) -> M::Nodal<T> {
         let pair = self.pair;
-        let normal = S::interpolate(slave, &pair.nodal_normals);
         let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
         let mut projected = x;
         (0..3).for_each(|c| projected[c].add_product(normal[c], distance));

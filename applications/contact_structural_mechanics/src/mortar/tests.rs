@@ -156,6 +156,33 @@ fn operators_have_exact_derivatives() {
     for_all_shapes!(derivative_matches_differences);
 }
 
+/// Derivatives by nodal normals, found by the normal of each point, are those of numbers that carry them through everything.
+fn normals_of_nodes<S: FacetShape, M: FacetShape>() {
+    let settings = SegmentationSettings::default();
+    for seed in 0..8 {
+        let pair = random_pair::<S, M>(seed);
+        for first in (0..PairGeometry::<f64, S, M>::NORMALS).step_by(4) {
+            let whole = operators(&pair.seeded_by_normals::<4>(first), &settings).cells();
+            let found = operators_by_normals::<S, M, 4>(&pair, &settings, first).cells();
+            assert_eq!(whole.is_some(), found.is_some());
+            let (Some(whole), Some(found)) = (whole, found) else { continue };
+            for (a, b) in flat(&whole).iter().zip(&flat(&found)) {
+                assert!((a.value - b.value).abs() < 1e-13);
+                let apart = a.gradient.iter().zip(&b.gradient).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(apart < 1e-12, "{:?} seed {seed}: {a:?} {b:?}", [S::SHAPE, M::SHAPE]);
+            }
+        }
+    }
+}
+
+#[test]
+fn normals_of_nodes_move_points_on_the_master() {
+    normals_of_nodes::<Triangle3, Triangle3>();
+    normals_of_nodes::<Triangle3, Quadrilateral4>();
+    normals_of_nodes::<Quadrilateral4, Triangle3>();
+    normals_of_nodes::<Quadrilateral4, Quadrilateral4>();
+}
+
 #[test]
 fn normals_may_vary_too() {
     // All normals turn with one parameter; coordinates stay.

@@ -32,6 +32,9 @@ pub trait ContactBlock: EntityBlock {
     /// Takes the states of slave nodes in which the assembly evaluates the block from now on.
     fn set_states(&mut self, states: Arc<SlaveStates>);
 
+    /// Computes the operators of this rank's pairs in the present state. Whatever is asked next of the same state has them.
+    fn find_operators(&mut self, present: Present<'_>);
+
     /// Gap, slip and area of every pair in the present configuration; those of other ranks stay without overlap.
     fn integrate(&self, present: Present<'_>) -> Vec<Integral>;
 

@@ -6,6 +6,7 @@ mod facing_points;
 mod family;
 mod grouping;
 mod in_parallel;
+mod known_operators;
 mod nitsche_block;
 mod pair;
 mod pair_block;

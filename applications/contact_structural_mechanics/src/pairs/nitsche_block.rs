@@ -251,6 +251,10 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheB
         self.pairs.set_states(states);
     }
 
+    fn find_operators(&mut self, present: Present<'_>) {
+        self.pairs.find_operators(present);
+    }
+
     /// The forces of points stand for area times traction. Where an element is inverted there are none; the assembly, which
     /// meets the same element, says so.
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {

@@ -1,6 +1,5 @@
 //! A block of pairs of one family and one pair of shapes.
 
-use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -14,6 +13,7 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
 use super::in_parallel::in_parallel;
+use super::known_operators::KnownOperators;
 use super::pair::{Integral, Pair, Previous};
 use crate::formulations::{
     self, Augmentation, Formulation, Kinematics, NormalVariation, PairHistory, SlaveNode, StepParameters,
@@ -23,9 +23,6 @@ use crate::kratos::FirstIterateTangent;
 use crate::mortar::shapes::for_shapes;
 use crate::mortar::{Operators, Overlap, PairGeometry, choices_of, lanes, operators, weighted_gap};
 use crate::slave_states::SlaveStates;
-
-/// A pair as it is now, with its operators.
-type PairNow<S, M> = (PairGeometry<f64, S, M>, Overlap<Operators<f64, S, M>>);
 
 /// The block of a formulation for a pair of shapes (slave, master); `None` for shapes that carry no contact.
 pub(super) fn pair_block<F: Formulation>(
@@ -49,6 +46,8 @@ pub(super) fn pair_block<F: Formulation>(
 pub struct PairBlock<F, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> {
     entry: &'static EntityKind,
     pairs: Vec<Pair>,
+    /// Of each pair what was computed last; none for any before that.
+    known: Vec<Option<KnownOperators<S, M>>>,
     nodes: Vec<u32>,
     around: usize,
     patches: Arc<NormalPatches>,
@@ -56,7 +55,6 @@ pub struct PairBlock<F, S: FacetShape, M: FacetShape, const NU: usize, const NN:
     states: Arc<SlaveStates>,
     formulation: F,
     unknowns: Vec<LocalUnknown>,
-    shapes: PhantomData<(S, M)>,
 }
 
 impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> PairBlock<F, S, M, NU, NN> {
@@ -81,7 +79,8 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
             unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
         }
         unknowns.extend(displacements(0..around));
-        Self { entry, pairs, nodes, around, patches, parameters, states, formulation, unknowns, shapes: PhantomData }
+        let known = Vec::new();
+        Self { entry, pairs, known, nodes, around, patches, parameters, states, formulation, unknowns }
     }
 
     pub(super) fn parameters(&self) -> &StepParameters {
@@ -156,7 +155,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         history: &F::History<S, M>,
         (lhs, width): (&mut [f64], usize),
     ) {
-        let (rows, count) = (width - S::SPACE * self.around, PairGeometry::<f64, S, M>::NORMALS);
+        let (rows, count) = (self.equations(), PairGeometry::<f64, S, M>::NORMALS);
         let mut by_normals = vec![0.0; rows * count];
         let keep = |row: usize, first: usize, derivatives: &[f64]| {
             let at = row * count + first;
@@ -186,19 +185,30 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         let own = self.pairs[at].key;
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
+        // By column, how the normal of a node turns: several facets tell of the same neighbour.
+        let mut turning: Vec<(usize, [[f64; 3]; 3])> = Vec::new();
         for (j, node) in self.slaves(at).into_iter().enumerate() {
             if self.states[node].normal_of_master {
                 continue;
             }
+            turning.clear();
             self.patches.variation(node, &view.nodes.current, &knows, &mut |by, matrix| {
                 let column = self.first_row(at, by);
-                for (row, derivatives) in by_normals.chunks_exact(PairGeometry::<f64, S, M>::NORMALS).enumerate() {
-                    let entries = &mut lhs[row * width + column..row * width + column + dim];
-                    for (c, entry) in entries.iter_mut().enumerate() {
-                        *entry -= (0..dim).map(|r| derivatives[dim * j + r] * matrix[r][c]).sum::<f64>();
-                    }
+                match turning.iter_mut().find(|(known, _)| *known == column) {
+                    Some((_, sum)) => (0..dim).for_each(|r| (0..dim).for_each(|c| sum[r][c] += matrix[r][c])),
+                    None => turning.push((column, matrix)),
                 }
             });
+            for (row, derivatives) in by_normals.chunks_exact(PairGeometry::<f64, S, M>::NORMALS).enumerate() {
+                let by_normal: [f64; 3] = std::array::from_fn(|r| if r < dim { derivatives[dim * j + r] } else { 0.0 });
+                let lhs = &mut lhs[row * width..(row + 1) * width];
+                for (column, matrix) in &turning {
+                    let entries = &mut lhs[*column..*column + dim];
+                    for (c, entry) in entries.iter_mut().enumerate() {
+                        *entry -= (0..dim).map(|r| by_normal[r] * matrix[r][c]).sum::<f64>();
+                    }
+                }
+            }
         }
     }
 
@@ -250,11 +260,16 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         })
     }
 
+    /// The operators of a pair that stands like this; known ones, or else new ones.
+    fn operators_of(&self, at: usize, geometry: &PairGeometry<f64, S, M>) -> Overlap<Operators<f64, S, M>> {
+        let known = self.known.get(at).and_then(|known| known.as_ref()?.of(geometry));
+        known.unwrap_or_else(|| operators(geometry, &self.parameters.segmentation))
+    }
+
     /// The pair in the present state with its operators, if it is this rank's.
-    fn operators_now(&self, at: usize, present: Present<'_>) -> Option<PairNow<S, M>> {
+    fn operators_now(&self, at: usize, present: Present<'_>) -> Option<KnownOperators<S, M>> {
         let geometry = (present.own)(self.nodes(at)).then(|| self.geometry(at, present.view, present.states))?;
-        let found = operators(&geometry, &self.parameters.segmentation);
-        Some((geometry, found))
+        Some(KnownOperators { geometry, found: self.operators_of(at, &geometry) })
     }
 
     fn multipliers(&self, at: usize, view: &StepView<'_>) -> S::Nodal<[f64; 3]> {
@@ -291,6 +306,11 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         &self.unknowns
     }
 
+    /// Nodes around a pair turn its normals; it pushes none of them.
+    fn equations(&self) -> usize {
+        self.unknowns.len() - S::SPACE * self.around
+    }
+
     fn tangent(&self) -> Tangent {
         Tangent::General
     }
@@ -315,7 +335,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
             let multipliers = self.multipliers(at, view);
             let history = F::History::of(self.pairs[at].previous.operators(), &self.previous(at, view, &self.states));
             let settings = &self.parameters.segmentation;
-            let (width, rows) = (out.size, out.size - S::SPACE * self.around);
+            let (width, rows) = (out.size, self.equations());
             let (lhs, rhs) = out.entity(slot);
             let rhs = &mut rhs[..rows];
             if want == Want::Both {
@@ -336,7 +356,8 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
                     self.add_turning(at, view, &geometry, &nodes, &multipliers, &history, (lhs, width));
                 }
             } else {
-                formulations::residual(&self.formulation, &geometry, settings, &nodes, &multipliers, &history, rhs);
+                let found = self.operators_of(at, &geometry);
+                formulations::residual(&self.formulation, &geometry, found, &nodes, &multipliers, &history, rhs);
             }
         }
         Ok(())
@@ -362,11 +383,15 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         self.states = states;
     }
 
+    fn find_operators(&mut self, present: Present<'_>) {
+        self.known = in_parallel(self.pairs.len(), &|at| self.operators_now(at, present));
+    }
+
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
         let Present { view, states, .. } = present;
         in_parallel(self.pairs.len(), &|at| {
             let mut out = Integral::default();
-            let Some((geometry, found)) = self.operators_now(at, present) else { return out };
+            let Some(KnownOperators { geometry, found }) = self.operators_now(at, present) else { return out };
             out.facing = !matches!(found, Overlap::None);
             if let Overlap::Cells(operators) = found {
                 out.overlapping = true;
@@ -394,7 +419,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
 
     fn keep_operators(&mut self, present: Present<'_>) {
         let kept = |at: usize| {
-            let found = self.operators_now(at, present).map(|(_, found)| found).and_then(Overlap::cells);
+            let found = self.operators_now(at, present).and_then(|now| now.found.cells());
             found.map_or_else(Previous::default, |found| Previous::of(&found))
         };
         let kept = in_parallel(self.pairs.len(), &kept);
@@ -403,7 +428,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
 
     fn freeze_choices(&mut self, present: Present<'_>) {
         let choices = |at: usize| {
-            let (geometry, found) = self.operators_now(at, present)?;
+            let KnownOperators { geometry, found } = self.operators_now(at, present)?;
             Some(choices_of(&geometry, &self.parameters.segmentation, &found.cells()?))
         };
         let choices = |at: usize| choices(at).unwrap_or(self.pairs[at].choices);
