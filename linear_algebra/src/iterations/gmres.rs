@@ -105,9 +105,9 @@ impl<T: Number> Gmres<T> {
         }
     }
 
-    /// Replaces `b` by an approximation of `A⁻¹ b` that leaves about the share `aim` of it; gives the iterations, at most `most`.
+    /// Replaces `b` by an approximation of `A⁻¹ b` that leaves no more than the share `aim` of it; gives the iterations, at most `most`.
     ///
-    /// What it leaves is not computed but known from the iteration, which is good enough for a preconditioner.
+    /// What it leaves is not computed but known from the iteration to be half as much, which is good enough for a preconditioner.
     pub(crate) fn approximate(
         &mut self,
         ghosts: &Ghosts,
@@ -123,7 +123,7 @@ impl<T: Number> Gmres<T> {
             return 0;
         }
         at(&mut self.basis, 0, b.len()).copy_from_slice(b);
-        let cycle = self.cycle(ghosts, multiply, precondition, size, most, aim * size);
+        let cycle = self.cycle(ghosts, multiply, precondition, size, most, 0.5 * aim * size);
         b.fill(T::default());
         subtract_combination(&self.directions[..cycle.coefficients.len()], &cycle.coefficients, b);
         cycle.iterations
