@@ -177,7 +177,7 @@ impl Interface {
         };
         x.fill(0.0);
         let (ghosts, mut method) = (Ghosts::none(rhs.len()), Gmres::default());
-        let progress = method.solve(&ghosts, multiply, precondition, &rhs, x, ITERATIONS, ITERATIONS, AIM);
+        let progress = method.solve(None, &ghosts, multiply, precondition, &rhs, x, ITERATIONS, ITERATIONS, AIM);
         if progress.relative_residual > ACCEPTED || progress.relative_residual.is_nan() {
             self.lost.set(true);
         }

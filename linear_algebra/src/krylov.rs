@@ -105,7 +105,7 @@ impl KrylovSolver {
             }
             Method::Gmres { restart } => {
                 let (ghosts, apply) = (Ghosts::none(rhs.len()), |r: &mut [f64], _| apply(r));
-                Gmres::default().solve(&ghosts, multiply, apply, rhs, x, restart, most, tolerance)
+                Gmres::default().solve(None, &ghosts, multiply, apply, rhs, x, restart, most, tolerance)
             }
         };
         let scale = vector::norm(rhs);

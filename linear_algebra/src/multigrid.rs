@@ -213,8 +213,8 @@ impl MultigridSolver {
         Ok(())
     }
 
-    /// At most `most` iterations; gives the norm of what is left besides.
-    fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64], most: usize) -> (Progress, f64) {
+    /// At most `most` iterations.
+    fn iterate(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64], most: usize) -> Progress {
         let (constrained, _) = self.constrained.as_ref().expect("prepared");
         let hierarchy = self.hierarchy.as_mut().expect("prepared");
         let (_, runs) = self.runs.as_ref().expect("prepared");
@@ -227,6 +227,12 @@ impl MultigridSolver {
             system.clear_held(&mut b);
         }
         scale(&mut b);
+        // What makes a product of one with the bulk.
+        let complete = |x: &[f64], y: &mut [f64]| {
+            system.add_coupling_product(x, y);
+            system.clear_held(y);
+            scale(y);
+        };
         // The bulk's product of the latest vector, which is the answer in the end.
         let mut bulk_product = Vec::new();
         let mut multiply = |x: &[f64], y: &mut [f64]| {
@@ -234,14 +240,12 @@ impl MultigridSolver {
                 system.bulk_product(runs, x, y);
                 bulk_product.clear();
                 bulk_product.extend_from_slice(y);
-                system.add_coupling_product(x, y);
-                system.clear_held(y);
-            } else {
-                let (mut all, mut found) = (ghosts.widen(x), vec![0.0; system.equations()]);
-                ghosts.spread(&mut all, 1);
-                system.mul_vec_by_runs(runs, &all, &mut found);
-                y.copy_from_slice(&ghosts.narrow(&found));
+                return complete(x, y);
             }
+            let (mut all, mut found) = (ghosts.widen(x), vec![0.0; system.equations()]);
+            ghosts.spread(&mut all, 1);
+            system.mul_vec_by_runs(runs, &all, &mut found);
+            y.copy_from_slice(&ghosts.narrow(&found));
             scale(y);
         };
         let mut known = None;
@@ -251,9 +255,7 @@ impl MultigridSolver {
                     return multiply(&answer.x, y);
                 }
                 y.copy_from_slice(answer.product(system.bulk_values, |x, y| system.bulk_product(runs, x, y)));
-                system.add_coupling_product(&answer.x, y);
-                system.clear_held(y);
-                scale(y);
+                complete(&answer.x, y);
             };
             let enough = 0.5 * self.tolerance;
             known = Some(self.learnt.answers.start(system.bulk_graph, ghosts, product, &b, enough, &mut start));
@@ -292,8 +294,7 @@ impl MultigridSolver {
         };
         let outer = &mut self.outer;
         let known = known.as_deref();
-        let progress =
-            outer.solve_from(known, ghosts, multiply, precondition, &b, &mut start, RESTART, most, tolerance);
+        let progress = outer.solve(known, ghosts, multiply, precondition, &b, &mut start, RESTART, most, tolerance);
         let progress = Progress { iterations, ..progress };
         let digits = (progress.start / progress.relative_residual).log10();
         if digits > TELLING {
@@ -302,15 +303,13 @@ impl MultigridSolver {
         }
         if progress.relative_residual <= DRIFT * tolerance {
             // Within the tolerance the latest product was that of the answer, if one was needed at all.
-            let is_known = progress.iterations > 0 && progress.relative_residual <= tolerance;
-            let is_known = is_known && system.shared.is_none();
+            let is_known =
+                system.shared.is_none() && progress.iterations > 0 && progress.relative_residual <= tolerance;
             let product = is_known.then_some((system.bulk_values, &*bulk_product));
             self.learnt.answers.keep(system.bulk_graph, ghosts, &start, product);
         }
         x.copy_from_slice(&ghosts.widen(&start));
-        let mut left = outer.residual().to_vec();
-        vector::divide_each(scales, &mut left);
-        (progress, ghosts.norm(&left))
+        progress
     }
 
     /// Lets the direct engine solve.
@@ -343,7 +342,7 @@ impl MultigridSolver {
         let mut seconds_numeric = start.elapsed().as_secs_f64();
         let guess = x.to_vec();
         let patience = self.patience(system);
-        let (mut progress, mut left) = self.iterate(system, rhs, x, patience);
+        let mut progress = self.iterate(system, rhs, x, patience);
         let accepted = DRIFT * self.tolerance;
         let is_good = |progress: Progress| progress.relative_residual <= accepted;
         if !is_good(progress) && progress.iterations >= patience {
@@ -358,7 +357,7 @@ impl MultigridSolver {
             self.prepare(system)?;
             seconds_numeric += start.elapsed().as_secs_f64();
             x.copy_from_slice(&guess);
-            (progress, left) = self.iterate(system, rhs, x, patience);
+            progress = self.iterate(system, rhs, x, patience);
         }
         if !is_good(progress) {
             self.hierarchy = None;
@@ -367,7 +366,10 @@ impl MultigridSolver {
         }
         let ghosts = system.ghosts();
         ghosts.spread(x, 1);
-        let size = ghosts.norm(&ghosts.narrow(rhs));
+        let (constrained, _) = self.constrained.as_ref().expect("prepared");
+        let mut residual = self.outer.residual().to_vec();
+        vector::divide_each(&ghosts.narrow(&constrained.row_scales), &mut residual);
+        let (size, left) = (ghosts.norm(&ghosts.narrow(rhs)), ghosts.norm(&residual));
         Ok(SolveReport {
             engine: if system.shared.is_some() { "multigrid over ranks" } else { self.name() },
             relative_residual: if size > 0.0 { left / size } else { 0.0 },

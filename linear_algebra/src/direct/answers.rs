@@ -15,6 +15,7 @@ const KRYLOV_ITERATIONS: usize = 40;
 pub(super) fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64], before: Refined) -> Refined {
     let mut trial = if before.relative_residual < 1.0 { x.to_vec() } else { vec![0.0; x.len()] };
     let progress = Gmres::default().solve(
+        None,
         &Ghosts::none(rhs.len()),
         |x, y| system.mul_vec(x, y),
         |r, _| path.apply(r),

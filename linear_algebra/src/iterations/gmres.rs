@@ -31,24 +31,9 @@ struct Cycle {
 impl<T: Number> Gmres<T> {
     /// Improves `x` until `‖b - A x‖ ≤ tolerance ‖b‖` or `most` iterations are done.
     ///
-    /// `ghosts` says who has which entries; `multiply(x, y)` is `y = A x`, `precondition(x, left)` replaces `x` by an approximation of
+    /// `known` is `b - A x` at the start, where that is known; `ghosts` says who has which entries; `multiply(x, y)` is `y = A x`, `precondition(x, left)` replaces `x` by an approximation of
     /// `A⁻¹ x`, and the iteration would be done if that left no more than the share `left` of `x`.
     pub(crate) fn solve(
-        &mut self,
-        ghosts: &Ghosts,
-        multiply: impl FnMut(&[T], &mut [T]),
-        precondition: impl FnMut(&mut [T], f64),
-        b: &[T],
-        x: &mut [T],
-        restart: usize,
-        most: usize,
-        tolerance: f64,
-    ) -> Progress {
-        self.solve_from(None, ghosts, multiply, precondition, b, x, restart, most, tolerance)
-    }
-
-    /// As [`Gmres::solve`], with what `x` leaves of `b` where that is known.
-    pub(crate) fn solve_from(
         &mut self,
         known: Option<&[T]>,
         ghosts: &Ghosts,
@@ -227,7 +212,8 @@ mod tests {
         for restart in [10, 60] {
             let mut x = vec![0.0; n];
             let multiply = |x: &[f64], y: &mut [f64]| a.mul_vec(x, y);
-            let done = Gmres::default().solve(&Ghosts::none(n), multiply, |_, _| {}, &b, &mut x, restart, 300, 1e-12);
+            let done =
+                Gmres::default().solve(None, &Ghosts::none(n), multiply, |_, _| {}, &b, &mut x, restart, 300, 1e-12);
             assert!(done.relative_residual < 1e-12, "{done:?}");
         }
     }
@@ -243,7 +229,7 @@ mod tests {
         };
         let known = [4.0 - 3.9, 0.0, 8.0 - 7.6];
         let mut method = Gmres::default();
-        let done = method.solve_from(Some(&known), &Ghosts::none(3), multiply, |_, _| {}, &b, &mut x, 9, 9, 1e-13);
+        let done = method.solve(Some(&known), &Ghosts::none(3), multiply, |_, _| {}, &b, &mut x, 9, 9, 1e-13);
         assert_eq!(products, done.iterations + 1);
         let expected = [1.0, 1.0, 2.0];
         assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");

@@ -1,7 +1,7 @@
 //! The two facets of a contact pair as they stand, and the normals that go with them.
 
 use super::choices::Choices;
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::FacetShape;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, value};
 
@@ -25,11 +25,26 @@ pub struct PairGeometry<T: Real, S: FacetShape, M: FacetShape> {
 
 /// Variable `number` where it is among those from `first` on, else a constant.
 #[inline]
-pub fn variable_from<const LANES: usize>(first: usize, number: usize, value: f64) -> Dual<LANES> {
+fn variable_from<const LANES: usize>(first: usize, number: usize, value: f64) -> Dual<LANES> {
     match number.checked_sub(first) {
         Some(lane) if lane < LANES => Dual::variable(value, lane),
         _ => Dual::constant(value),
     }
+}
+
+/// The first `dim` components of a vector as the variables from `number` on, of which those from `first` on are differentiated by.
+#[inline]
+pub fn variables_from<const LANES: usize>(
+    first: usize,
+    number: usize,
+    vector: [f64; 3],
+    dim: usize,
+) -> [Dual<LANES>; 3] {
+    std::array::from_fn(
+        |c| {
+            if c < dim { variable_from(first, number + c, vector[c]) } else { Dual::constant(vector[c]) }
+        },
+    )
 }
 
 impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
@@ -51,12 +66,9 @@ impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
     #[inline]
     pub fn seeded_from<const LANES: usize>(&self, first: usize) -> PairGeometry<Dual<LANES>, S, M> {
         let dim = S::SPACE;
-        let seed = |x: [f64; 3], number: usize| {
-            std::array::from_fn(|c| if c < dim { variable_from(first, number + c, x[c]) } else { Dual::constant(x[c]) })
-        };
         PairGeometry {
-            slave: S::nodal(|n| seed(self.slave[n], dim * (M::NODES + n))),
-            master: M::nodal(|n| seed(self.master[n], dim * n)),
+            slave: S::nodal(|n| variables_from(first, dim * (M::NODES + n), self.slave[n], dim)),
+            master: M::nodal(|n| variables_from(first, dim * n, self.master[n], dim)),
             ..self.as_constants()
         }
     }
@@ -64,11 +76,9 @@ impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
     /// The same pair with `LANES` components of its nodal normals as variables, from the one numbered `first` on, node by node.
     #[inline]
     pub fn seeded_by_normals<const LANES: usize>(&self, first: usize) -> PairGeometry<Dual<LANES>, S, M> {
-        let mut seeded: PairGeometry<Dual<LANES>, S, M> = self.as_constants();
-        for (j, normal) in seeded.nodal_normals.iter_mut().enumerate() {
-            (0..S::SPACE).for_each(|c| normal[c] = variable_from(first, S::SPACE * j + c, normal[c].value));
-        }
-        seeded
+        let dim = S::SPACE;
+        let nodal_normals = S::nodal(|j| variables_from(first, dim * j, self.nodal_normals[j], dim));
+        PairGeometry { nodal_normals, ..self.as_constants() }
     }
 
     /// The same pair in another scalar, without derivatives.

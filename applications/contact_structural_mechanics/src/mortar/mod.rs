@@ -43,7 +43,7 @@ pub mod turn;
 pub use choices::Choices;
 pub use curved::nodal_shares;
 pub use gap::{weighted_gap, weighted_jump};
-pub use geometry::{PairGeometry, variable_from};
+pub use geometry::{PairGeometry, variables_from};
 pub use inner::{inner_point, inner_values};
 pub use operators::{Operators, Overlap, choices_of, operators, operators_by, operators_by_normals};
 pub use points::MasterMotion;

@@ -123,7 +123,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> ByNormals<S, M, LANES> {
             let master = Points { pair: &still, motion: &ExactMotion }.along(normal, x, Dual::zero());
             sums.add_point_by_normals(point, &master, first);
         });
-        if sums.is_finite() { Overlap::of(covered, pair, || sums.finish(pair.choices)) } else { Overlap::None }
+        sums.found(covered, pair)
     }
 
     fn of_any(
@@ -149,8 +149,7 @@ impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> ByOrder<T, P,
     ) -> Overlap<Operators<T, S, M>> {
         let mut sums = Sums::new();
         let covered = Points { pair, motion }.visit(settings, |point| sums.add_point(point));
-        // Points have no place on a master that is folded.
-        if sums.is_finite() { Overlap::of(covered, pair, || sums.finish(pair.choices)) } else { Overlap::None }
+        sums.found(covered, pair)
     }
 
     fn curved(pair: &PairGeometry<T, S, M>, settings: &SegmentationSettings, _: &P) -> Overlap<Operators<T, S, M>> {
@@ -286,6 +285,12 @@ impl<T: Real, S: FacetShape, M: FacetShape> Sums<T, S, M> {
                 self.mixed[j][l].add_product(weighted, point.master[l]);
             }
         }
+    }
+
+    /// The operators of a pair whose cells have this length or area.
+    fn found<R: Real>(self, covered: f64, pair: &PairGeometry<R, S, M>) -> Overlap<Operators<T, S, M>> {
+        // Points have no place on a master that is folded.
+        if self.is_finite() { Overlap::of(covered, pair, || self.finish(pair.choices)) } else { Overlap::None }
     }
 
     fn is_finite(&self) -> bool {

@@ -7,7 +7,7 @@ use zelus_core::model::EntityKind;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{FacetShape, NodeArray, Shape};
 use zelus_core::scalar::{Dual, Real};
-use zelus_core::vector3::{constant, dot};
+use zelus_core::vector3::dot;
 
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
@@ -17,7 +17,7 @@ use super::pair_block::PairBlock;
 use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
 use crate::interface::{Bodies, Tractions};
 use crate::mortar::shapes::for_shapes;
-use crate::mortar::{PairGeometry, lanes, variable_from};
+use crate::mortar::{PairGeometry, lanes, variables_from};
 use crate::slave_states::SlaveStates;
 
 /// The block of Nitsche's method for a pair of shapes (slave, master); `None` for shapes that carry no contact.
@@ -132,15 +132,11 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
         let mut weights = S::nodal(|_| [0.0; 3]);
         for first in (0..all).step_by(LANES) {
             let mut geometry = self.pairs.seeded::<LANES>(&plain, first);
-            let variable = |vector: [f64; 3], number: usize| -> [Dual<LANES>; 3] {
-                let mut out = constant(vector);
-                (0..dim).for_each(|c| out[c] = variable_from(first, number + c, vector[c]));
-                out
-            };
             if turns {
-                geometry.nodal_normals = S::nodal(|j| variable(plain.nodal_normals[j], displacements + dim * j));
+                geometry.nodal_normals =
+                    S::nodal(|j| variables_from(first, displacements + dim * j, plain.nodal_normals[j], dim));
             }
-            let tractions = S::nodal(|g| variable(values[g], displacements + normals + dim * g));
+            let tractions = S::nodal(|g| variables_from(first, displacements + normals + dim * g, values[g], dim));
             let Some(out) = self.forces(at, (view, states), &geometry, &tractions) else { return Ok(()) };
             let mut add = |row: usize, factor: f64, force: Dual<LANES>| {
                 if first == 0 {

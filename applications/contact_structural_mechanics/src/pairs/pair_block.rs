@@ -186,7 +186,7 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
         // By column, how the normal of a node turns: several facets tell of the same neighbour.
-        let mut turning: Vec<(usize, [[f64; 3]; 3])> = Vec::new();
+        let mut turning: Vec<(usize, [[f64; 3]; 3])> = Vec::with_capacity(self.nodes(at).len());
         for (j, node) in self.slaves(at).into_iter().enumerate() {
             if self.states[node].normal_of_master {
                 continue;
