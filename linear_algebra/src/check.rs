@@ -134,7 +134,7 @@ pub(crate) fn refine(
     Refined { relative_residual: best, steps: most_steps }
 }
 
-/// `|A| |x|`, row by row.
+/// `|A| |x|`, row by row, `x` being zero at equations that are held.
 pub(crate) fn magnitude(system: &System<'_>, x: &[f64]) -> Vec<f64> {
     let of_row = |i: usize| {
         let matrices = [Some(system.bulk), system.active_coupling()].into_iter().flatten();
@@ -145,7 +145,7 @@ pub(crate) fn magnitude(system: &System<'_>, x: &[f64]) -> Vec<f64> {
             })
             .sum()
     };
-    (0..x.len()).map(of_row).collect()
+    (0..x.len()).map(|i| if system.layout.is_held(i) { 0.0 } else { of_row(i) }).collect()
 }
 
 /// Whether the residual of `x` is what rounding leaves of the products it is made of, so that no method does better.

@@ -15,7 +15,7 @@ const FACTOR_IN_SPACE: f64 = 20.0;
 /// Numbers of a factor in the plane for each `n log₂ n`.
 const FACTOR_IN_PLANE: f64 = 8.0;
 /// Bytes of a factorisation for each number of the factor, which is kept in double precision or in single.
-const BYTES_A_NUMBER: [f64; 2] = [13.5, 8.0];
+const BYTES_A_NUMBER: [f64; 2] = [13.5, 7.0];
 /// Bytes of the levels of multigrid, while they are made, for each entry of the matrix.
 const LEVELS: u64 = 16;
 /// Bytes of incomplete factors for each entry.
@@ -131,7 +131,7 @@ mod tests {
         let measured = [
             (21_499, 1_590_000, 237, 94),
             (67_813, 5_200_000, 874, 233),
-            (218_599, 17_100_000, 2_567, 692),
+            (218_599, 17_100_000, 2_106, 692),
             (80_802, 1_450_000, 208, 138),
             (246_402, 4_420_000, 635, 407),
         ];

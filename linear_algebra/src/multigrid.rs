@@ -319,7 +319,7 @@ impl MultigridSolver {
         rhs: &[f64],
         x: &mut [f64],
     ) -> Result<SolveReport, SolveError> {
-        if system.layout.held.is_empty() {
+        if system.layout.held.is_empty() || self.stand_in.takes_held(system.free(), system.bulk.entries()) {
             return self.stand_in.solve(system, rhs, x);
         }
         let reduced = Reduced::new(system);
@@ -450,7 +450,7 @@ impl LinearSolver for MultigridSolver {
     }
 
     fn takes_held(&self, equations: usize, entries: usize) -> bool {
-        self.shares(equations, entries)
+        self.shares(equations, entries) || self.stand_in.takes_held(equations, entries)
     }
 
     fn shares(&self, equations: usize, entries: usize) -> bool {

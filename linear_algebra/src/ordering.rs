@@ -6,6 +6,9 @@ use crate::csr::Csr;
 use crate::solver::SolveError;
 use crate::system::Layout;
 
+/// The vertex of an equation that has none.
+const NONE: u32 = u32::MAX;
+
 /// An undirected graph without loops; neighbours of `v` are `targets[starts[v]..starts[v + 1]]`, ascending.
 pub(crate) struct Graph {
     pub(crate) starts: Vec<usize>,
@@ -34,17 +37,17 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// Gathers the equations of `pattern`, those with `last` apart from the others of their node.
+    /// Gathers the equations of `pattern`, those with `last` apart from the others of their node, those that are held not at all.
     pub(crate) fn new(pattern: &Csr, layout: &Layout, last: &[bool]) -> Self {
         let nodes = layout.node.iter().max().map_or(0, |&node| node as usize + 1);
-        let mut vertex_of_key = vec![u32::MAX; 2 * nodes];
+        let mut vertex_of_key = vec![NONE; 2 * nodes];
         let mut equations: Vec<Vec<u32>> = Vec::new();
-        let mut vertex_of = vec![0_u32; pattern.rows];
+        let mut vertex_of = vec![NONE; pattern.rows];
         let mut interior = 0;
         for wanted in [false, true] {
-            for i in (0..pattern.rows).filter(|&i| last[i] == wanted) {
+            for i in (0..pattern.rows).filter(|&i| last[i] == wanted && !layout.is_held(i)) {
                 let key = &mut vertex_of_key[2 * layout.node[i] as usize + usize::from(wanted)];
-                if *key == u32::MAX {
+                if *key == NONE {
                     *key = equations.len() as u32;
                     equations.push(Vec::new());
                 }
@@ -66,7 +69,7 @@ impl Vertices {
 /// The graph of `pattern + patternᵀ` on the vertices.
 fn compressed_graph(pattern: &Csr, equations: &[Vec<u32>], vertex_of: &[u32]) -> Graph {
     let vertices = equations.len();
-    let mut seen = vec![u32::MAX; vertices];
+    let mut seen = vec![NONE; vertices];
     let mut starts = vec![0_usize];
     let mut targets = Vec::new();
     for (v, list) in equations.iter().enumerate() {
@@ -74,7 +77,7 @@ fn compressed_graph(pattern: &Csr, equations: &[Vec<u32>], vertex_of: &[u32]) ->
         for &i in list {
             for &j in pattern.row(i as usize).0 {
                 let w = vertex_of[j as usize];
-                if seen[w as usize] != v as u32 {
+                if w != NONE && seen[w as usize] != v as u32 {
                     seen[w as usize] = v as u32;
                     targets.push(w);
                 }

@@ -7,6 +7,8 @@ use crate::dense::{PARALLEL_WORK, for_each};
 
 /// Columns of a tile.
 pub(crate) const TILE: usize = 192;
+/// Numbers that are worth giving back; the allocator passes as many on to the system.
+const MUCH: usize = 1 << 22;
 
 /// A square matrix, column-major in its tiles; tiles of a symmetric one begin with the row of their first column.
 ///
@@ -16,6 +18,8 @@ pub(crate) struct Square {
     order: usize,
     symmetric: bool,
     values: Vec<f64>,
+    /// Numbers of the leading tiles that are gone.
+    gone: usize,
 }
 
 /// A tile for writing.
@@ -37,7 +41,11 @@ impl Square {
 
     /// A matrix in memory of at least [`Square::size`] numbers, which keep their values.
     pub(crate) fn over(values: Vec<f64>, order: usize, symmetric: bool) -> Self {
-        Self { order, symmetric, values }
+        Self { order, symmetric, values, gone: 0 }
+    }
+
+    pub(crate) fn order(&self) -> usize {
+        self.order
     }
 
     pub(crate) fn is_symmetric(&self) -> bool {
@@ -57,10 +65,10 @@ impl Square {
     /// Where a column begins, as if its tile began with row 0.
     fn origin(&self, column: usize) -> usize {
         if !self.symmetric {
-            return column * self.order;
+            return column * self.order - self.gone;
         }
         let first = self.first_row(column);
-        start(self.order, first) + (column - first) * (self.order - first) - first
+        start(self.order, first) + (column - first) * (self.order - first) - first - self.gone
     }
 
     /// Rows `from..` of a column, which stand there.
@@ -73,6 +81,17 @@ impl Square {
     pub(crate) fn entry_mut(&mut self, row: usize, column: usize) -> &mut f64 {
         let at = self.origin(column) + row;
         &mut self.values[at]
+    }
+
+    /// Gives the memory of the tiles before that of `column` back to the system, where it is much: they are gone.
+    pub(crate) fn forget_before(&mut self, column: usize) {
+        let first = column - column % TILE;
+        let gone = if self.symmetric { start(self.order, first) } else { first * self.order };
+        if gone >= MUCH {
+            self.values.drain(..gone);
+            self.values.shrink_to_fit();
+            self.gone = gone;
+        }
     }
 
     /// A diagonal entry.
@@ -178,6 +197,22 @@ mod tests {
                 assert_eq!(matrix.diagonal(order - 1), entry(order - 1, order - 1));
                 assert_eq!(matrix.below(order / 2, order / 2).len(), order - order / 2);
             }
+        }
+    }
+
+    #[test]
+    fn what_is_left_of_a_matrix_stands_where_it_did() {
+        for symmetric in [true, false] {
+            let order = 3000;
+            let mut matrix =
+                Square::over((0..Square::size(order, symmetric)).map(|k| k as f64).collect(), order, symmetric);
+            let from = |matrix: &Square, column: usize| matrix.below(column, column).to_vec();
+            let whole = [2700, 2688, 2999].map(|column| from(&matrix, column));
+            matrix.forget_before(300);
+            assert_eq!(matrix.gone, 0, "too little to be worth it");
+            matrix.forget_before(2700);
+            assert!(matrix.gone >= MUCH);
+            assert_eq!([2700, 2688, 2999].map(|column| from(&matrix, column)), whole);
         }
     }
 }

@@ -8,6 +8,8 @@ use crate::solver::SolveError;
 use crate::system::Layout;
 
 const NONE: usize = usize::MAX;
+/// The position of an equation that is held.
+pub(crate) const HELD: u32 = u32::MAX;
 
 /// A stretch of consecutive rows of a front and where it lies in the front of the parent.
 #[derive(Debug, Clone, Copy)]
@@ -56,9 +58,9 @@ impl Front {
 /// When equations were kept last, the last front holds them as its columns; it is the root and is not eliminated.
 #[derive(Debug)]
 pub(crate) struct Symbolic {
-    /// Equation at each position.
+    /// Equation at each position; those that are held have none.
     pub(crate) equation: Vec<u32>,
-    /// Position of each equation.
+    /// Position of each equation, [`HELD`] of those that have none.
     pub(crate) position: Vec<u32>,
     pub(crate) fronts: Vec<Front>,
     /// Roots of the forest, ascending.
@@ -104,11 +106,17 @@ impl Symbolic {
         if vertices.interior < order.len() {
             group_ends.push(order.len());
         }
-        Ok(Self::from_groups(&graph, &order, &group_ends, &vertices))
+        Ok(Self::from_groups(&graph, &order, &group_ends, &vertices, pattern.rows))
     }
 
-    /// Builds the fronts of consecutive groups of vertices.
-    fn from_groups(graph: &Graph, order: &[usize], group_ends: &[usize], vertices: &Vertices) -> Self {
+    /// Builds the fronts of consecutive groups of vertices; `equations` are those of the matrix.
+    fn from_groups(
+        graph: &Graph,
+        order: &[usize],
+        group_ends: &[usize],
+        vertices: &Vertices,
+        equations: usize,
+    ) -> Self {
         let mut start = vec![0_usize; order.len() + 1];
         let mut equation = Vec::with_capacity(start.len());
         for (at, &v) in order.iter().enumerate() {
@@ -168,7 +176,7 @@ impl Symbolic {
             }
             begin = end;
         }
-        let mut position = vec![0_u32; equation.len()];
+        let mut position = vec![HELD; equations];
         for (at, &i) in equation.iter().enumerate() {
             position[i as usize] = at as u32;
         }
@@ -185,11 +193,6 @@ impl Symbolic {
             tops.sort_unstable();
         }
         (tops, root)
-    }
-
-    /// Number of equations.
-    pub(crate) fn equations(&self) -> usize {
-        self.equation.len()
     }
 
     /// Number of fronts that are eliminated.

@@ -126,7 +126,7 @@ impl<'a> System<'a> {
     }
 
     /// Sets what belongs to equations that are held to zero.
-    pub(crate) fn clear_held(&self, values: &mut [f64]) {
+    pub fn clear_held(&self, values: &mut [f64]) {
         let both = values.par_iter_mut().zip(&self.layout.held).with_min_len(CHUNK);
         both.filter(|(_, is_held)| **is_held).for_each(|(value, _)| *value = 0.0);
     }

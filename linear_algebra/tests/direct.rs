@@ -91,6 +91,46 @@ fn a_floating_body_is_held_by_multipliers() {
     }
 }
 
+#[test]
+fn equations_that_are_held_count_for_nothing() {
+    let mut sample = contact(7, 0.2, |at| at % 4 != 1);
+    let n = sample.bulk.rows;
+    let is_tangential = |i: usize| !sample.layout.multiplier[i] && i % 3 != 2;
+    sample.layout.held = (0..n).map(|i| is_tangential(i) && sample.layout.node[i] % 7 == 3).collect();
+    let contact = System {
+        coupling: Some(&sample.coupling),
+        coupling_symmetric: false,
+        ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
+    };
+    let (clamped, mut layout) = clamped_box(8);
+    layout.held = (0..clamped.rows).map(|i| i % 5 == 0).collect();
+    let alone = System::bulk(&layout, &clamped, Symmetry::PositiveDefinite);
+    let general = System::bulk(&layout, &clamped, Symmetry::General);
+    let cases = [
+        (contact, 9000, "cholesky+interface"),
+        (contact, 0, "multifrontal_lu"),
+        (alone, 9000, "cholesky"),
+        (general, 9000, "multifrontal_lu"),
+    ];
+    for (system, limit, engine) in cases {
+        let held = &system.layout.held;
+        let exact: Vec<f64> =
+            held.iter().enumerate().map(|(i, &h)| if h { 0.0 } else { 1.0 + (i % 17) as f64 }).collect();
+        let mut rhs = vec![0.0; exact.len()];
+        system.mul_vec(&exact, &mut rhs);
+        // What stands at equations that are held is of no account.
+        rhs.iter_mut().zip(held).filter(|(_, is_held)| **is_held).for_each(|(b, _)| *b = 1e6);
+        for mut solver in [direct(limit), single(limit)] {
+            let mut x = vec![3.0; exact.len()];
+            let report = solver.solve(&system, &rhs, &mut x).expect("regular without what is held");
+            assert_eq!(report.engine, engine);
+            let error = x.iter().zip(&exact).map(|(x, e)| (x - e).abs()).fold(0.0, f64::max) / 17.0;
+            assert!(error < 1e-7, "{engine}: {error}");
+            assert!(x.iter().zip(held).all(|(x, is_held)| !is_held || *x == 0.0), "{engine}");
+        }
+    }
+}
+
 /// The engine with all factors in single precision.
 fn single(interface_limit: usize) -> Box<dyn LinearSolver> {
     create(Engine::Direct(DirectSettings { interface_limit, single_from: 0, ..Default::default() }))

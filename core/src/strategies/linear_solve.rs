@@ -241,6 +241,7 @@ fn solve_here(
     for _ in 0..CORRECTIONS {
         system.residual(rhs, &increment, &mut residual);
         loads.mul_vec_subtract(&increment, &mut residual);
+        system.clear_held(&mut residual);
         let size = vector::norm(&residual);
         report.relative_residual = if scale > 0.0 { size / scale } else { 0.0 };
         if report.relative_residual <= ACCURACY {

@@ -17,7 +17,10 @@ pub(super) fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64
     let progress = Gmres::default().solve(
         None,
         &Ghosts::none(rhs.len()),
-        |x, y| system.mul_vec(x, y),
+        |x, y| {
+            system.mul_vec(x, y);
+            system.clear_held(y);
+        },
         |r, _| path.apply(r),
         rhs,
         &mut trial,
@@ -35,7 +38,8 @@ pub(super) fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64
 
 /// Whether a right-hand side that no singular matrix could produce is solved.
 pub(super) fn is_regular(system: &System<'_>, path: &Path) -> bool {
-    let x: Vec<f64> = check::pseudo_random(system.equations());
+    let mut x = check::pseudo_random(system.equations());
+    system.clear_held(&mut x);
     let mut rhs = check::magnitude(system, &vec![1.0; x.len()]);
     rhs.iter_mut().zip(&x).for_each(|(size, x)| *size *= x);
     let mut solution = vec![0.0; x.len()];
@@ -49,6 +53,7 @@ pub(super) fn is_regular(system: &System<'_>, path: &Path) -> bool {
 /// A vector the matrix nearly maps to zero, by inverse iteration, and how nearly: `‖A v‖ / ‖|A| 1‖`, `v` of size one.
 pub(super) fn null_vector(system: &System<'_>, path: &Path) -> (Vec<f64>, f64) {
     let mut vector = check::pseudo_random(system.equations());
+    system.clear_held(&mut vector);
     for _ in 0..4 {
         path.apply(&mut vector);
         let size = vector.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -59,6 +64,7 @@ pub(super) fn null_vector(system: &System<'_>, path: &Path) -> (Vec<f64>, f64) {
     }
     let mut image = vec![0.0; vector.len()];
     system.mul_vec(&vector, &mut image);
+    system.clear_held(&mut image);
     let ratio = vector::norm(&image) / vector::norm(&check::magnitude(system, &vec![1.0; vector.len()]));
     (vector, ratio)
 }

@@ -7,6 +7,7 @@
 mod answers;
 mod path;
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -114,7 +115,9 @@ impl DirectSolver {
     /// Ways to try, best first.
     fn ways(&mut self, system: &System<'_>) -> Result<Vec<Way>, SolveError> {
         let n = system.equations();
-        if n <= self.settings.dense_below {
+        // The dense matrix and the last resort know nothing of equations that are held.
+        let is_whole = system.layout.held.is_empty();
+        if is_whole && n <= self.settings.dense_below {
             return Ok(vec![Way::Dense]);
         }
         let mut ways = Vec::new();
@@ -127,7 +130,7 @@ impl DirectSolver {
             ways.push(Way::InterfaceLu);
         }
         ways.push(Way::WholeLu);
-        ways.extend((n <= SPARSE_LU_LIMIT).then_some(Way::SparseLu));
+        ways.extend((is_whole && n <= SPARSE_LU_LIMIT).then_some(Way::SparseLu));
         Ok(ways)
     }
 
@@ -340,8 +343,8 @@ impl DirectSolver {
 fn covers(sparse: &Sparse, kept: &[bool]) -> bool {
     let symbolic = &sparse.symbolic;
     let count = kept.iter().filter(|&&kept| kept).count();
-    symbolic.equations() == kept.len()
-        && symbolic.equations() - symbolic.interior == count
+    symbolic.position.len() == kept.len()
+        && symbolic.equation.len() - symbolic.interior == count
         && symbolic.equation[symbolic.interior..].iter().all(|&i| kept[i as usize])
 }
 
@@ -352,6 +355,11 @@ impl LinearSolver for DirectSolver {
 
     fn needs(&self, equations: usize, entries: usize) -> u64 {
         memory::factor(equations, entries, self.settings.single_from)
+    }
+
+    /// Where a second copy of the matrix would weigh, and all ways do.
+    fn takes_held(&self, equations: usize, _: usize) -> bool {
+        equations > SPARSE_LU_LIMIT.max(self.settings.dense_below)
     }
 
     /// Factors of an interface whose coupling has changed since would be iterated with.
@@ -373,6 +381,11 @@ impl LinearSolver for DirectSolver {
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
         check::input(system, rhs, x)?;
         check::empty_rows(system)?;
+        let mut free = Cow::Borrowed(rhs);
+        if !system.layout.held.is_empty() {
+            system.clear_held(free.to_mut());
+        }
+        let rhs = &*free;
         (self.seconds_symbolic, self.seconds_numeric) = (0.0, 0.0);
         let start = Instant::now();
         let mut failed: Vec<&'static str> = Vec::new();

@@ -124,10 +124,11 @@ pub(crate) fn dense(system: &System<'_>) -> Path {
 
 /// Equations that must stay in the dense interface: those of the coupling and those the bulk knows nothing of.
 pub(crate) fn interface_equations(system: &System<'_>) -> Vec<bool> {
+    let layout = system.layout;
     let mut kept: Vec<bool> =
-        (0..system.equations()).map(|i| system.layout.multiplier[i] || system.bulk.row(i).0.is_empty()).collect();
+        (0..system.equations()).map(|i| layout.multiplier[i] || system.bulk.row(i).0.is_empty()).collect();
     if let Some(coupling) = system.active_coupling() {
-        for i in 0..coupling.rows {
+        for i in (0..coupling.rows).filter(|&i| !layout.is_held(i)) {
             let columns = coupling.row(i).0;
             if !columns.is_empty() {
                 kept[i] = true;
@@ -135,6 +136,7 @@ pub(crate) fn interface_equations(system: &System<'_>) -> Vec<bool> {
             }
         }
     }
+    kept.iter_mut().zip(&layout.held).for_each(|(kept, is_held)| *kept &= !is_held);
     kept
 }
 
@@ -144,7 +146,8 @@ pub(crate) fn local_coupling(system: &System<'_>, equations: &[u32], local: impl
     if let Some(coupling) = system.active_coupling() {
         for (at, &i) in equations.iter().enumerate() {
             let (columns, values) = coupling.row(i as usize);
-            triplets.extend(columns.iter().zip(values).map(|(&j, &value)| (at, local(j), value)));
+            let entries = columns.iter().zip(values).filter(|(j, _)| !system.layout.is_held(**j as usize));
+            triplets.extend(entries.map(|(&j, &value)| (at, local(j), value)));
         }
     }
     Csr::from_triplets(equations.len(), &triplets)

@@ -52,7 +52,7 @@ impl Elimination<'_> {
     fn eliminate(&self, blocks: &mut [Block<'_>], top: usize) -> Result<Square, NotPositiveDefinite> {
         let front = &self.symbolic.fronts[top];
         let (own, inner) = blocks.split_last_mut().expect("a subtree has a top");
-        let updates = self.subtrees(inner, front.first, &front.children)?;
+        let mut updates = self.subtrees(inner, front.first, &front.children)?;
         let (pivots, order, rows) = (front.pivots(), front.order(), front.rows.len());
         let symmetric = self.kind == Kind::Cholesky;
         let (mut panel_memory, mut right_memory) =
@@ -75,6 +75,11 @@ impl Elimination<'_> {
                 extend_right(child, update, right, pivots);
             }
         }
+        for (&child, update) in front.children.iter().zip(&mut updates) {
+            let below = self.symbolic.fronts[child].runs.iter().find(|run| run.parent >= pivots);
+            update.forget_before(below.map_or(update.order(), |run| run.child));
+        }
+        let updates = updates;
         match self.kind {
             Kind::Cholesky => {
                 dense::cholesky_panel(panel, order, pivots).map_err(|_| NotPositiveDefinite)?;
