@@ -9,7 +9,7 @@ use crate::system::Layout;
 
 const NONE: usize = usize::MAX;
 /// The position of an equation that is held.
-pub(crate) const HELD: u32 = u32::MAX;
+const HELD: u32 = u32::MAX;
 
 /// A stretch of consecutive rows of a front and where it lies in the front of the parent.
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +61,7 @@ pub(crate) struct Symbolic {
     /// Equation at each position; those that are held have none.
     pub(crate) equation: Vec<u32>,
     /// Position of each equation, [`HELD`] of those that have none.
-    pub(crate) position: Vec<u32>,
+    position: Vec<u32>,
     pub(crate) fronts: Vec<Front>,
     /// Roots of the forest, ascending.
     pub(crate) roots: Vec<usize>,
@@ -193,6 +193,16 @@ impl Symbolic {
             tops.sort_unstable();
         }
         (tops, root)
+    }
+
+    /// Number of equations, those that are held among them.
+    pub(crate) fn equations(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Position of an equation; `None` of one that is held.
+    pub(crate) fn position_of(&self, equation: u32) -> Option<usize> {
+        Some(self.position[equation as usize]).filter(|&position| position != HELD).map(|position| position as usize)
     }
 
     /// Number of fronts that are eliminated.

@@ -153,16 +153,17 @@ impl<'a> System<'a> {
         bulk + self.active_coupling().map_or(0.0, of)
     }
 
-    /// `y = (bulk + coupling) x`.
+    /// `y = (bulk + coupling) x`, zero at equations that are held, as `x` is.
     ///
     /// # Panics
     /// When a length is not the number of equations.
     pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
         self.bulk.mul_vec(x, y);
         self.add_coupling_product(x, y);
+        self.clear_held(y);
     }
 
-    /// As [`System::mul_vec`], to the bit, with the runs of the bulk's rows.
+    /// As [`System::mul_vec`], to the bit, at equations that are not held, with the runs of the bulk's rows.
     pub(crate) fn mul_vec_by_runs(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
         self.bulk_product(runs, x, y);
         self.add_coupling_product(x, y);

@@ -17,10 +17,7 @@ pub(super) fn krylov(system: &System<'_>, path: &Path, rhs: &[f64], x: &mut [f64
     let progress = Gmres::default().solve(
         None,
         &Ghosts::none(rhs.len()),
-        |x, y| {
-            system.mul_vec(x, y);
-            system.clear_held(y);
-        },
+        |x, y| system.mul_vec(x, y),
         |r, _| path.apply(r),
         rhs,
         &mut trial,
@@ -64,7 +61,6 @@ pub(super) fn null_vector(system: &System<'_>, path: &Path) -> (Vec<f64>, f64) {
     }
     let mut image = vec![0.0; vector.len()];
     system.mul_vec(&vector, &mut image);
-    system.clear_held(&mut image);
     let ratio = vector::norm(&image) / vector::norm(&check::magnitude(system, &vec![1.0; vector.len()]));
     (vector, ratio)
 }

@@ -222,7 +222,7 @@ impl DirectSolver {
                 let symbolic = &sparse.symbolic;
                 let interior = symbolic.interior;
                 let equations = &symbolic.equation[interior..];
-                let local = |equation: u32| symbolic.position[equation as usize] as usize - interior;
+                let local = |equation| symbolic.position_of(equation).map(|position| position - interior);
                 let interface = Interface::new(
                     &sparse.factor.as_ref().expect("factorised").root,
                     path::local_coupling(system, equations, local),
@@ -343,7 +343,7 @@ impl DirectSolver {
 fn covers(sparse: &Sparse, kept: &[bool]) -> bool {
     let symbolic = &sparse.symbolic;
     let count = kept.iter().filter(|&&kept| kept).count();
-    symbolic.position.len() == kept.len()
+    symbolic.equations() == kept.len()
         && symbolic.equation.len() - symbolic.interior == count
         && symbolic.equation[symbolic.interior..].iter().all(|&i| kept[i as usize])
 }

@@ -140,14 +140,13 @@ pub(crate) fn interface_equations(system: &System<'_>) -> Vec<bool> {
     kept
 }
 
-/// The coupling among the `equations` of an interface; `local` gives the place of each among them.
-pub(crate) fn local_coupling(system: &System<'_>, equations: &[u32], local: impl Fn(u32) -> usize) -> Csr {
+/// The coupling among the `equations` of an interface; `local` gives the place of each among them, of those that are held none.
+pub(crate) fn local_coupling(system: &System<'_>, equations: &[u32], local: impl Fn(u32) -> Option<usize>) -> Csr {
     let mut triplets = Vec::new();
     if let Some(coupling) = system.active_coupling() {
         for (at, &i) in equations.iter().enumerate() {
             let (columns, values) = coupling.row(i as usize);
-            let entries = columns.iter().zip(values).filter(|(j, _)| !system.layout.is_held(**j as usize));
-            triplets.extend(entries.map(|(&j, &value)| (at, local(j), value)));
+            triplets.extend(columns.iter().zip(values).filter_map(|(&j, &value)| Some((at, local(j)?, value))));
         }
     }
     Csr::from_triplets(equations.len(), &triplets)

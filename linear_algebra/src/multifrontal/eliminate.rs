@@ -79,7 +79,6 @@ impl Elimination<'_> {
             let below = self.symbolic.fronts[child].runs.iter().find(|run| run.parent >= pivots);
             update.forget_before(below.map_or(update.order(), |run| run.child));
         }
-        let updates = updates;
         match self.kind {
             Kind::Cholesky => {
                 dense::cholesky_panel(panel, order, pivots).map_err(|_| NotPositiveDefinite)?;

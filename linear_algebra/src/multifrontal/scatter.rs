@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::csr::Csr;
-use crate::symbolic::{HELD, Symbolic};
+use crate::symbolic::Symbolic;
 
 /// One entry of the matrix.
 #[derive(Debug, Clone, Copy)]
@@ -91,9 +91,8 @@ fn entries_of(
     for p in front.columns.clone() {
         let j = symbolic.equation[p] as usize;
         let mut add = |i: u32, source: u32| {
-            let q = symbolic.position[i as usize];
-            if q != HELD && q as usize >= p {
-                entries.push(Entry { source, target: (local(q as usize) + (p - begin) * order) as u32 });
+            if let Some(q) = symbolic.position_of(i).filter(|&q| q >= p) {
+                entries.push(Entry { source, target: (local(q) + (p - begin) * order) as u32 });
             }
         };
         match transposed {
@@ -111,9 +110,8 @@ fn entries_of(
             let i = symbolic.equation[p];
             let start = pattern.row_starts[i as usize];
             for (at, &j) in pattern.row(i as usize).0.iter().enumerate() {
-                let q = symbolic.position[j as usize];
-                if q != HELD && q as usize > p {
-                    let target = match local(q as usize) {
+                if let Some(q) = symbolic.position_of(j).filter(|&q| q > p) {
+                    let target = match local(q) {
                         column if column < pivots => p - begin + column * order,
                         column => order * pivots + p - begin + (column - pivots) * pivots,
                     };
