@@ -62,13 +62,31 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
     Ok(())
 }
 
-/// Names equations whose row is zero, which no solver can solve.
-pub(crate) fn empty_rows(system: &System<'_>) -> Result<(), SolveError> {
-    let is_zero = |i: usize| system.row(i).next().is_none();
+/// Rows between one that is looked at and the one that is asked for.
+const ROWS_AHEAD: usize = 16;
+
+/// Equations whose row in the bulk is zero, such as those of multipliers.
+pub(crate) fn zero_in_bulk(system: &System<'_>) -> Vec<usize> {
     let is_own = system.shared.map(Ghosts::is_own);
     let is_here = |i: &usize| is_own.as_ref().is_none_or(|is_own| is_own[*i]) && !system.layout.is_held(*i);
     let own = (0..system.equations()).into_par_iter().with_min_len(CHUNK).filter(is_here);
-    let empty: Vec<usize> = own.filter(|&i| is_zero(i)).collect();
+    let alone = System { coupling: None, ..*system };
+    let is_zero = |i: &usize| {
+        system.bulk.prefetch_row(*i + ROWS_AHEAD);
+        alone.row(*i).next().is_none()
+    };
+    own.filter(is_zero).collect()
+}
+
+/// Names equations whose row is zero, which no solver can solve.
+pub(crate) fn empty_rows(system: &System<'_>) -> Result<(), SolveError> {
+    empty_rows_among(system, &zero_in_bulk(system))
+}
+
+/// The same where [`zero_in_bulk`] is known.
+pub(crate) fn empty_rows_among(system: &System<'_>, zero_in_bulk: &[usize]) -> Result<(), SolveError> {
+    let is_zero = |i: &usize| system.row(*i).next().is_none();
+    let empty: Vec<usize> = zero_in_bulk.iter().copied().filter(is_zero).collect();
     if empty.is_empty() {
         return Ok(());
     }

@@ -2,10 +2,14 @@
 
 use rayon::prelude::*;
 
-use crate::row_sums::{Gathered, NOTHING_GATHERED, row_sums, with_wide_vectors};
+use crate::prefetch::{AHEAD, prefetch};
+use crate::row_sums::{Gathered, NOTHING_GATHERED, row_sums};
 
 /// Rows handled by one task of a product; fixed, so that results do not depend on the number of threads.
 const ROWS_PER_TASK: usize = 512;
+
+/// Products of a row that are added side by side, which hides the time that an addition takes.
+const SUMS: usize = 8;
 
 /// Rows of a run at most.
 const LONGEST_RUN: usize = 3;
@@ -170,6 +174,26 @@ impl Csr {
         (0..self.rows).map(|i| self.get(i, i)).collect()
     }
 
+    /// Asks for the memory at the start of a row, if there is such a row.
+    #[inline]
+    pub(crate) fn prefetch_row(&self, row: usize) {
+        if row < self.rows {
+            let start = self.row_starts[row];
+            prefetch(&self.columns[start..], 0);
+            prefetch(&self.values[start..], 0);
+        }
+    }
+
+    /// Asks for the memory around the diagonal of a row, if there is such a row.
+    #[inline]
+    pub(crate) fn prefetch_diagonal(&self, row: usize) {
+        if row < self.rows {
+            let middle = usize::midpoint(self.row_starts[row], self.row_starts[row + 1]);
+            prefetch(&self.columns[middle..], 0);
+            prefetch(&self.values[middle..], 0);
+        }
+    }
+
     /// `y = A x`, the same bits on any number of threads.
     ///
     /// # Panics
@@ -208,25 +232,49 @@ impl Csr {
         assert_eq!(y.len(), self.rows, "length of y");
         let block = |(task, out): (usize, &mut [f64])| {
             let mut gathered = NOTHING_GATHERED;
-            with_wide_vectors(|| {
-                for (at, value) in out.iter_mut().enumerate() {
-                    let row = task * ROWS_PER_TASK + at;
-                    let columns = self.columns_of(row);
-                    // A matrix of contact has rows at interfaces only.
-                    let sum = if columns.is_empty() {
-                        0.0
-                    } else {
-                        let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
-                        row_sums(columns, [values], x, &mut gathered)[0]
-                    };
-                    *value = combine(sum, *value);
-                }
-            });
+            for (at, value) in out.iter_mut().enumerate() {
+                let row = task * ROWS_PER_TASK + at;
+                let columns = self.columns_of(row);
+                // A matrix of contact has rows at interfaces only.
+                let sum = if columns.is_empty() {
+                    0.0
+                } else {
+                    let values = &all[self.row_starts[row]..self.row_starts[row + 1]];
+                    row_sums(columns, [values], x, &mut gathered)[0]
+                };
+                *value = combine(sum, *value);
+            }
         };
         if self.rows <= ROWS_PER_TASK {
             block((0, y));
         } else {
             y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(block);
+        }
+    }
+
+    /// Adds `|A| x` to `out` for several x at once, for the matrix A with this pattern and these values.
+    ///
+    /// # Panics
+    /// When an `x` or `out` has not `rows` entries, or `values` not one for each entry.
+    pub fn add_products_of_sizes<const N: usize>(&self, values: &[f64], x: [&[f64]; N], out: [&mut [f64]; N]) {
+        assert_eq!(values.len(), self.entries(), "length of values");
+        assert!(x.iter().all(|x| x.len() == self.rows), "length of x");
+        let sums = |row: usize| {
+            let (columns, values) = (self.columns_of(row), &values[self.row_starts[row]..self.row_starts[row + 1]]);
+            let mut sums = [[0.0; SUMS]; N];
+            for (columns, values) in columns.chunks(SUMS).zip(values.chunks(SUMS)) {
+                prefetch(columns, AHEAD / 2);
+                prefetch(values, AHEAD);
+                for (lane, (&column, value)) in columns.iter().zip(values).enumerate() {
+                    (0..N).for_each(|n| sums[n][lane] += value.abs() * x[n][column as usize]);
+                }
+            }
+            sums.map(|sums| sums.iter().sum::<f64>())
+        };
+        let found: Vec<[f64; N]> = (0..self.rows).into_par_iter().with_min_len(ROWS_PER_TASK).map(sums).collect();
+        for (n, out) in out.into_iter().enumerate() {
+            let both = out.par_iter_mut().zip(&found).with_min_len(ROWS_PER_TASK);
+            both.for_each(|(out, sums)| *out += sums[n]);
         }
     }
 
@@ -257,15 +305,13 @@ impl Csr {
         assert_eq!(y.len(), self.rows, "length of y");
         y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, mut out)| {
             let mut gathered = NOTHING_GATHERED;
-            with_wide_vectors(|| {
-                let mut row = task * ROWS_PER_TASK;
-                for &length in runs.of_task(task) {
-                    let (now, rest) = std::mem::take(&mut out).split_at_mut(length as usize);
-                    self.run_product(row, x, now, &mut gathered);
-                    row += length as usize;
-                    out = rest;
-                }
-            });
+            let mut row = task * ROWS_PER_TASK;
+            for &length in runs.of_task(task) {
+                let (now, rest) = std::mem::take(&mut out).split_at_mut(length as usize);
+                self.run_product(row, x, now, &mut gathered);
+                row += length as usize;
+                out = rest;
+            }
         });
     }
 
@@ -311,10 +357,30 @@ impl Csr {
     /// When the sizes differ.
     pub fn plus(&self, other: &Self) -> Self {
         assert_eq!(self.rows, other.rows, "matrices of one size");
-        let mut sum = Self::empty(self.rows);
-        sum.columns.reserve(self.entries() + other.entries());
-        sum.values.reserve(self.entries() + other.entries());
-        for i in 0..self.rows {
+        let tasks = (0..self.rows.div_ceil(ROWS_PER_TASK)).into_par_iter();
+        let parts: Vec<Self> = tasks.map(|task| self.rows_plus(other, task)).collect();
+        let entries = parts.iter().map(Self::entries).sum();
+        let mut sum = Self::empty(0);
+        sum.row_starts.reserve(self.rows);
+        sum.columns.reserve(entries);
+        sum.values.reserve(entries);
+        for part in parts {
+            let before = sum.columns.len();
+            sum.row_starts.extend(part.row_starts[1..].iter().map(|start| before + start));
+            sum.columns.extend(part.columns);
+            sum.values.extend(part.values);
+        }
+        Self { rows: self.rows, ..sum }
+    }
+
+    /// The rows of one task of the sum.
+    fn rows_plus(&self, other: &Self, task: usize) -> Self {
+        let rows = task * ROWS_PER_TASK..((task + 1) * ROWS_PER_TASK).min(self.rows);
+        let mut sum = Self::empty(rows.len());
+        let entries = |matrix: &Self| matrix.row_starts[rows.end] - matrix.row_starts[rows.start];
+        sum.columns.reserve(entries(self) + entries(other));
+        sum.values.reserve(entries(self) + entries(other));
+        for (at, i) in rows.enumerate() {
             let (a_columns, a_values) = self.row(i);
             let (b_columns, b_values) = other.row(i);
             let (mut a, mut b) = (0, 0);
@@ -339,7 +405,7 @@ impl Csr {
                 sum.columns.push(column);
                 sum.values.push(value);
             }
-            sum.row_starts[i + 1] = sum.columns.len();
+            sum.row_starts[at + 1] = sum.columns.len();
         }
         sum
     }

@@ -84,16 +84,16 @@ impl Ghosts {
     /// Own entries of a vector over all places.
     pub(crate) fn narrow(&self, all: &[f64]) -> Vec<f64> {
         match self.places.is_empty() {
-            true => all[..self.own].to_vec(),
+            true => vector::copied(&all[..self.own]),
             false => self.places.iter().map(|&place| all[place as usize]).collect(),
         }
     }
 
     /// A vector over all places with own entries, and zero elsewhere.
     pub(crate) fn widen(&self, own: &[f64]) -> Vec<f64> {
-        let mut all = vec![0.0; self.all];
+        let mut all = vector::zeros(self.all);
         match self.places.is_empty() {
-            true => all[..self.own].copy_from_slice(own),
+            true => vector::copy(own, &mut all[..self.own]),
             false => self.places.iter().zip(own).for_each(|(&place, &value)| all[place as usize] = value),
         }
         all

@@ -8,6 +8,7 @@ pub mod address_space;
 
 mod state;
 
+mod prefetch;
 mod row_sums;
 mod csr;
 pub mod vector;

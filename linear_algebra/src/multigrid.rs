@@ -89,8 +89,8 @@ pub(crate) struct MultigridSolver {
     constrained: Option<(Constrained, Stamps)>,
     /// What the constraints leave, of the last system that needed it.
     left: Option<(Blocks, Stamps)>,
-    /// Stamps of the bulk that has been looked at last.
-    seen: Option<[u64; 2]>,
+    /// Stamps of the bulk that has been looked at last, and its equations that are zero.
+    seen: Option<([u64; 2], Vec<usize>)>,
     /// Of the bulk's rows, with the stamp of its graph.
     runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
@@ -238,8 +238,8 @@ impl MultigridSolver {
         let mut multiply = |x: &[f64], y: &mut [f64]| {
             if system.shared.is_none() {
                 system.bulk_product(runs, x, y);
-                bulk_product.clear();
-                bulk_product.extend_from_slice(y);
+                vector::set_length(&mut bulk_product, y.len());
+                vector::copy(y, &mut bulk_product);
                 return complete(x, y);
             }
             let (mut all, mut found) = (ghosts.widen(x), vec![0.0; system.equations()]);
@@ -254,7 +254,7 @@ impl MultigridSolver {
                 if system.shared.is_some() {
                     return multiply(&answer.x, y);
                 }
-                y.copy_from_slice(answer.product(system.bulk_values, |x, y| system.bulk_product(runs, x, y)));
+                vector::copy(answer.product(system.bulk_values, |x, y| system.bulk_product(runs, x, y)), y);
                 complete(&answer.x, y);
             };
             let enough = 0.5 * self.tolerance;
@@ -308,7 +308,7 @@ impl MultigridSolver {
             let product = is_known.then_some((system.bulk_values, &*bulk_product));
             self.learnt.answers.keep(system.bulk_graph, ghosts, &start, product);
         }
-        x.copy_from_slice(&ghosts.widen(&start));
+        vector::copy(&ghosts.widen(&start), x);
         progress
     }
 
@@ -340,7 +340,7 @@ impl MultigridSolver {
         let start = Instant::now();
         self.prepare(system)?;
         let mut seconds_numeric = start.elapsed().as_secs_f64();
-        let guess = x.to_vec();
+        let guess = vector::copied(x);
         let patience = self.patience(system);
         let mut progress = self.iterate(system, rhs, x, patience);
         let accepted = DRIFT * self.tolerance;
@@ -367,7 +367,7 @@ impl MultigridSolver {
         let ghosts = system.ghosts();
         ghosts.spread(x, 1);
         let (constrained, _) = self.constrained.as_ref().expect("prepared");
-        let mut residual = self.outer.residual().to_vec();
+        let mut residual = vector::copied(self.outer.residual());
         vector::divide_each(&ghosts.narrow(&constrained.row_scales), &mut residual);
         let (size, left) = (ghosts.norm(&ghosts.narrow(rhs)), ghosts.norm(&residual));
         Ok(SolveReport {
@@ -464,9 +464,10 @@ impl LinearSolver for MultigridSolver {
         }
         check::vectors(system, rhs, x)?;
         let values = [system.bulk_graph, system.bulk_values];
-        check::matrices(system, self.seen != Some(values))?;
-        self.seen = Some(values);
-        check::empty_rows(system)?;
+        let seen = self.seen.take().filter(|(of, _)| *of == values);
+        check::matrices(system, seen.is_none())?;
+        let (_, zero_in_bulk) = self.seen.insert(seen.unwrap_or_else(|| (values, check::zero_in_bulk(system))));
+        check::empty_rows_among(system, zero_in_bulk)?;
         if x.iter().any(|x| !x.is_finite()) {
             x.fill(0.0);
         }

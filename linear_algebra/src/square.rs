@@ -62,24 +62,23 @@ impl Square {
         if self.symmetric { column - column % TILE } else { 0 }
     }
 
-    /// Where a column begins, as if its tile began with row 0.
-    fn origin(&self, column: usize) -> usize {
+    /// Where an entry stands.
+    fn place(&self, row: usize, column: usize) -> usize {
         if !self.symmetric {
-            return column * self.order - self.gone;
+            return column * self.order + row - self.gone;
         }
         let first = self.first_row(column);
-        start(self.order, first) + (column - first) * (self.order - first) - first - self.gone
+        start(self.order, first) + (column - first) * (self.order - first) + (row - first) - self.gone
     }
 
     /// Rows `from..` of a column, which stand there.
     pub(crate) fn below(&self, column: usize, from: usize) -> &[f64] {
-        let origin = self.origin(column);
-        &self.values[origin + from..origin + self.order]
+        &self.values[self.place(from, column)..][..self.order - from]
     }
 
     /// An entry on or below the diagonal, or anywhere when not symmetric, for writing.
     pub(crate) fn entry_mut(&mut self, row: usize, column: usize) -> &mut f64 {
-        let at = self.origin(column) + row;
+        let at = self.place(row, column);
         &mut self.values[at]
     }
 
@@ -96,7 +95,7 @@ impl Square {
 
     /// A diagonal entry.
     pub(crate) fn diagonal(&self, at: usize) -> f64 {
-        self.values[self.origin(at) + at]
+        self.values[self.place(at, at)]
     }
 
     /// All tiles.
@@ -126,7 +125,7 @@ impl Square {
         let of_tile = |&first: &usize| {
             let (width, row) = (TILE.min(order - first), self.first_row(first));
             let stride = order - row;
-            let tile = &self.values[self.origin(first) + row..][..width * stride];
+            let tile = &self.values[self.place(row, first)..][..width * stride];
             let mut part = vec![0.0; stride];
             if !self.symmetric {
                 subtract_product(&mut part, tile, stride, &x[first..first + width]);

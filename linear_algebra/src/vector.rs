@@ -9,15 +9,37 @@ pub(crate) const CHUNK: usize = 1 << 14;
 
 /// `n` zeros, written by all threads. What adds to memory that nothing has written yet makes the system map it twice, and all processors
 /// wait for each other.
-pub fn zeros(n: usize) -> Vec<f64> {
-    let mut out = vec![0.0; n];
+pub fn zeros<T: Number>(n: usize) -> Vec<T> {
+    let mut out = vec![T::default(); n];
     clear(&mut out);
     out
 }
 
 /// Sets all numbers to zero.
-pub fn clear(values: &mut [f64]) {
-    values.par_chunks_mut(CHUNK).for_each(|chunk| chunk.fill(0.0));
+pub fn clear<T: Number>(values: &mut [T]) {
+    values.par_chunks_mut(CHUNK).for_each(|chunk| chunk.fill(T::default()));
+}
+
+/// A copy, written by all threads.
+pub fn copied<T: Copy + Send + Sync>(values: &[T]) -> Vec<T> {
+    values.par_iter().with_min_len(CHUNK).copied().collect()
+}
+
+/// Copies all numbers, by all threads.
+///
+/// # Panics
+/// When the lengths differ.
+pub fn copy<T: Number>(from: &[T], to: &mut [T]) {
+    assert_eq!(from.len(), to.len(), "vectors of one length");
+    to.par_chunks_mut(CHUNK).zip(from.par_chunks(CHUNK)).for_each(|(to, from)| to.copy_from_slice(from));
+}
+
+/// Gives a vector `n` entries, zeros where it had not as much room; its memory is then written by all threads.
+pub(crate) fn set_length<T: Number>(values: &mut Vec<T>, n: usize) {
+    match values.capacity() < n {
+        true => *values = zeros(n),
+        false => values.resize(n, T::default()),
+    }
 }
 
 /// A number in single or double precision.

@@ -1,6 +1,6 @@
 //! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values, loads that are given twice.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart};
@@ -47,7 +47,7 @@ fn is_smallest(part: &SubPart, at: &u32) -> bool {
 
 /// Entities with the nodes of an earlier one, conditions of the same kind: the earlier and the later.
 fn twins(table: &EntityTable, wanted: impl Fn(u32) -> bool) -> Vec<[u32; 2]> {
-    let mut first: FxHashMap<(&str, u32, u64), u32> = FxHashMap::default();
+    let mut first: FxHashMap<(&str, u32, u64), u32> = FxHashMap::with_capacity_and_hasher(table.len(), FxBuildHasher);
     let mut out = Vec::new();
     for at in (0..table.len() as u32).filter(|&at| wanted(at)) {
         let nodes = table.nodes(at);

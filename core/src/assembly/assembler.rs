@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::vector::zeros;
+use zelus_linear_algebra::vector::{scale_by, zeros};
 use zelus_linear_algebra::{Csr, Layout, Symmetry};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
@@ -33,11 +33,12 @@ use super::near_null_space::{Place, near_null_space};
 use super::numbering::Numbering;
 use super::reach::reach;
 use super::redistribution::Redistribution;
+use super::rows::ROWS;
 use super::system::System;
 use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::entities::{Coupling, EntityBlock, LocalSystems, Tangent, Want};
-use crate::model::ModelPart;
+use crate::model::{ModelPart, ScalarVariable};
 
 /// Largest stiffness of an interaction in those of the bodies: what a stiff penalty adds to the round-off of forces.
 const STIFFEST: f64 = 100.0;
@@ -151,16 +152,21 @@ impl Traits {
 impl Assembler {
     /// Numbers the unknowns of the part and lays out the patterns that last.
     pub fn new(part: &ModelPart, system: &mut System, lumped_mass: bool) -> Self {
-        let mut carriers: Vec<Carriers> = Vec::new();
+        let mut carries: Vec<(ScalarVariable, Vec<bool>)> = Vec::new();
         for block in system.elements.iter().chain(&system.conditions) {
             for unknown in block.unknowns() {
-                let nodes = (0..block.len()).map(|at| block.nodes(at)[unknown.node as usize]);
-                match carriers.iter_mut().find(|(known, ..)| *known == unknown.variable) {
-                    Some((.., list)) => list.extend(nodes),
-                    None => carriers.push((unknown.variable, false, nodes.collect())),
-                }
+                let at = carries.iter().position(|(known, _)| *known == unknown.variable).unwrap_or_else(|| {
+                    carries.push((unknown.variable, vec![false; part.nodes.len()]));
+                    carries.len() - 1
+                });
+                let marks = &mut carries[at].1;
+                (0..block.len()).for_each(|at| marks[block.nodes(at)[unknown.node as usize] as usize] = true);
             }
         }
+        let those =
+            |marks: Vec<bool>| (0..).zip(marks).filter(|(_, is_marked)| *is_marked).map(|(node, _)| node).collect();
+        let mut carriers: Vec<Carriers> =
+            carries.into_iter().map(|(variable, marks)| (variable, false, those(marks))).collect();
         if let Some(share) = &part.share {
             carriers = carriers_of_all(carriers, part.nodes.len(), &share.halo);
         }
@@ -452,37 +458,28 @@ impl Assembler {
         let reach = reach(&part.ranks, &part.nodes, &system.dofs, &self.equations);
         let before = system.dofs.gather(&part.nodes, 1);
         let values = self.values(part, system);
-        // Of every unknown: its displacement, its position, its size as a multiplier, and how far it may go.
-        let sizes: Vec<[f64; 4]> = system
-            .dofs
-            .dofs()
-            .iter()
-            .enumerate()
-            .map(|(n, dof)| match values[n].abs() {
-                value if dof.multiplier => [0.0, 0.0, value, 0.0],
-                value if dof.moves_mesh() => {
-                    let (node, c) = (dof.node as usize, dof.variable.offset());
-                    let held = value.min(before[n].abs() + reach);
-                    let farthest = part.nodes.initial[node][c].abs() + held;
-                    [held, part.nodes.current[node][c].abs().min(farthest).max(held), 0.0, reach]
-                }
-                value => [value, value, 0.0, 0.0],
-            })
-            .collect();
-        let [displacement, position, multiplier, farthest] =
-            [0, 1, 2, 3].map(|i| sizes.iter().map(|s| s[i]).collect::<Vec<f64>>());
-        let mut out = vec![0.0; values.len()];
-        let bulk = if self.traits.variable_elements { &position } else { &displacement };
-        let product = |matrix: &Csr, values: &[f64], x: &[f64]| {
-            let mut product = vec![0.0; x.len()];
-            abs_products(matrix, values, [x], [&mut product]);
-            product
-        };
-        let coupling = &self.coupling.matrix;
-        let [mut coupled, pushed, gaps] =
-            [&position, &multiplier, &farthest].map(|x| product(coupling, &coupling.values, x));
-        // Gaps are integrated over facets: a node at the origin is known no better than what lies around it.
         let dofs = system.dofs.dofs();
+        // Of every unknown: its displacement, its position, its size as a multiplier, and how far it may go.
+        let sizes = |n: usize| match values[n].abs() {
+            value if dofs[n].multiplier => [0.0, 0.0, value, 0.0],
+            value if system.dofs.moves_mesh(n) => {
+                let (node, c) = (dofs[n].node as usize, dofs[n].variable.offset());
+                let held = value.min(before[n].abs() + reach);
+                let farthest = part.nodes.initial[node][c].abs() + held;
+                [held, part.nodes.current[node][c].abs().min(farthest).max(held), 0.0, reach]
+            }
+            value => [value, value, 0.0, 0.0],
+        };
+        let [displacement, position, multiplier, farthest] = [0, 1, 2, 3].map(|i| {
+            let unknowns = (0..dofs.len()).into_par_iter().with_min_len(ROWS);
+            unknowns.map(|n| sizes(n)[i]).collect::<Vec<f64>>()
+        });
+        let bulk = if self.traits.variable_elements { &position } else { &displacement };
+        let [mut out, mut bodies, mut coupled, mut pushed, mut gaps] = std::array::from_fn(|_| zeros(dofs.len()));
+        let coupling = &self.coupling.matrix;
+        let of_coupling = [&mut coupled[..], &mut pushed, &mut gaps];
+        coupling.add_products_of_sizes(&coupling.values, [&position, &multiplier, &farthest], of_coupling);
+        // Gaps are integrated over facets: a node at the origin is known no better than what lies around it.
         for (n, _) in dofs.iter().enumerate().filter(|(_, dof)| dof.multiplier) {
             let (columns, values) = coupling.row(n);
             // Rows with multipliers are no gaps alone.
@@ -496,19 +493,19 @@ impl Assembler {
             coupled[n] =
                 motions().map(|(&column, value)| value.abs() * position[column as usize].max(mean)).sum::<f64>();
         }
-        let mut bodies = vec![0.0; values.len()];
         if let Some(values) = self.bulk_values() {
-            abs_products(&self.pattern.matrix, values, [bulk, &farthest], [&mut out, &mut bodies]);
+            let matrix = &self.pattern.matrix;
+            matrix.add_products_of_sizes(values, [bulk, &farthest], [&mut out, &mut bodies]);
         }
-        for (n, dof) in system.dofs.dofs().iter().enumerate() {
+        out.par_iter_mut().zip(dofs).enumerate().with_min_len(ROWS).for_each(|(n, (out, dof))| {
             // Multipliers stand in the tangent of turning normals, too: forces are bounded by the bodies alone.
-            out[n] += match dof.multiplier {
+            *out += match dof.multiplier {
                 true => coupled[n] + pushed[n].min(gaps[n]),
                 false => (coupled[n] + pushed[n]).min(STIFFEST * bodies[n]),
             };
-        }
+        });
         self.add_up(&mut out);
-        out.iter_mut().for_each(|v| *v *= f64::EPSILON);
+        scale_by(f64::EPSILON, &mut out);
         out
     }
 
@@ -581,20 +578,4 @@ fn graph_of(system: &System) -> u64 {
 
 fn blocks_of(system: &System) -> Blocks<'_> {
     couplings(system).flat_map(|own| own.blocks()).collect()
-}
-
-/// Adds `|A| x` of the matrix A with this pattern and these values, for each x.
-fn abs_products<const N: usize>(pattern: &Csr, values: &[f64], x: [&[f64]; N], out: [&mut [f64]; N]) {
-    let sums = |row: usize| {
-        let values = &values[pattern.row_starts[row]..pattern.row_starts[row + 1]];
-        let mut sums = [0.0; N];
-        for (&column, value) in pattern.columns_of(row).iter().zip(values) {
-            (0..N).for_each(|n| sums[n] += value.abs() * x[n][column as usize]);
-        }
-        sums
-    };
-    let found: Vec<[f64; N]> = (0..pattern.rows).into_par_iter().with_min_len(512).map(sums).collect();
-    for (n, out) in out.into_iter().enumerate() {
-        out.iter_mut().zip(&found).for_each(|(out, sums)| *out += sums[n]);
-    }
 }

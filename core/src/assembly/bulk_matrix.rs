@@ -145,11 +145,13 @@ impl BulkPattern {
 pub fn block_numbers(block: &dyn EntityBlock, dofs: &DofTable) -> Vec<u32> {
     let unknowns = block.unknowns();
     let columns: Vec<&[u32]> = unknowns.iter().map(|u| dofs.numbers(u.variable)).collect();
-    let mut out = Vec::with_capacity(block.len() * unknowns.len());
-    for at in 0..block.len() {
+    let mut out = vec![0; block.len() * unknowns.len()];
+    let entities = out.par_chunks_exact_mut(unknowns.len().max(1)).enumerate().with_min_len(ROWS);
+    entities.for_each(|(at, out)| {
         let nodes = block.nodes(at);
-        out.extend(unknowns.iter().zip(&columns).map(|(u, column)| column[nodes[u.node as usize] as usize]));
-    }
+        let numbers = unknowns.iter().zip(&columns).map(|(u, column)| column[nodes[u.node as usize] as usize]);
+        out.iter_mut().zip(numbers).for_each(|(to, number)| *to = number);
+    });
     out
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use zelus_linear_algebra::Unknowns;
+use zelus_linear_algebra::vector::zeros;
 
 use crate::model::{ColumnOf, Fields, Nodes, Rates, ScalarVariable};
 
@@ -36,6 +37,8 @@ impl Dof {
 #[derive(Debug, Clone, Default)]
 pub struct DofTable {
     dofs: Vec<Dof>,
+    /// Which of them move their node.
+    moving: Vec<bool>,
     numbers: BTreeMap<ScalarVariable, Vec<u32>>,
     version: u64,
 }
@@ -54,15 +57,22 @@ impl DofTable {
             list.iter().for_each(|&node| present[at].2[node as usize] = true);
         }
         self.dofs.clear();
-        self.numbers = present.iter().map(|(variable, ..)| (*variable, vec![NONE; nodes.len()])).collect();
+        self.moving.clear();
+        let moving: Vec<bool> = present
+            .iter()
+            .map(|(variable, ..)| Rates::of(variable.column).is_some_and(|rates| rates.moves_mesh))
+            .collect();
+        let mut numbers = vec![vec![NONE; nodes.len()]; present.len()];
         for node in 0..nodes.len() {
-            for (variable, multiplier, carried) in &present {
+            for (at, (variable, multiplier, carried)) in present.iter().enumerate() {
                 if carried[node] {
-                    self.numbers.get_mut(variable).expect("just made")[node] = self.dofs.len() as u32;
+                    numbers[at][node] = self.dofs.len() as u32;
+                    self.moving.push(moving[at]);
                     self.dofs.push(Dof { node: node as u32, variable: *variable, multiplier: *multiplier });
                 }
             }
         }
+        self.numbers = present.iter().map(|(variable, ..)| *variable).zip(numbers).collect();
         self.version += 1;
     }
 
@@ -87,6 +97,11 @@ impl DofTable {
     /// All unknowns in the order of their numbers.
     pub fn dofs(&self) -> &[Dof] {
         &self.dofs
+    }
+
+    /// Whether an unknown moves its node.
+    pub fn moves_mesh(&self, number: usize) -> bool {
+        self.moving[number]
     }
 
     /// Number of unknowns.
@@ -121,7 +136,7 @@ impl DofTable {
 
     /// Values of all unknowns at a time level (0 the present).
     pub fn gather(&self, nodes: &Nodes, level: usize) -> Vec<f64> {
-        let mut out = vec![0.0; self.dofs.len()];
+        let mut out = zeros(self.dofs.len());
         for (variable, numbers) in &self.numbers {
             let Some(field) = nodes.history.get(variable.column) else { continue };
             let (values, offset) = (&field.levels[level.min(field.levels.len() - 1)], variable.offset());
@@ -145,7 +160,7 @@ impl DofTable {
 
     /// One of the columns that go with unknowns at a time level (0 the present), a number an unknown; 0 where there is none.
     pub fn column(&self, fields: &Fields, column: ColumnOf, level: usize) -> Vec<f64> {
-        let mut out = vec![0.0; self.dofs.len()];
+        let mut out = zeros(self.dofs.len());
         for (variable, numbers) in &self.numbers {
             let Some(field) = Rates::of(variable.column).and_then(column).and_then(|name| fields.get(name)) else {
                 continue;

@@ -164,7 +164,7 @@ impl Equations {
 
     /// Tᵀ v: a vector over unknowns gathered on equations.
     pub fn reduce(&self, full: &[f64]) -> Vec<f64> {
-        let mut out: Vec<f64> = self.free.iter().map(|&n| full[n as usize]).collect();
+        let mut out: Vec<f64> = self.free.par_iter().with_min_len(ROWS).map(|&n| full[n as usize]).collect();
         if self.has_slaves {
             for (role, value) in self.roles.iter().zip(full) {
                 if let Role::Slave(terms) = role {
@@ -197,14 +197,13 @@ impl Equations {
 
     /// T v: increments of the equations spread to all unknowns; fixed ones get zero.
     pub fn expand(&self, reduced: &[f64]) -> Vec<f64> {
-        self.roles
-            .iter()
-            .map(|role| match role {
-                Role::Free(equation) => reduced[*equation as usize],
-                Role::Fixed => 0.0,
-                Role::Slave(terms) => terms.iter().map(|term| term.weight * reduced[term.equation as usize]).sum(),
-            })
-            .collect()
+        let roles = self.roles.par_iter().with_min_len(ROWS);
+        let value = |role: &Role| match role {
+            Role::Free(equation) => reduced[*equation as usize],
+            Role::Fixed => 0.0,
+            Role::Slave(terms) => terms.iter().map(|term| term.weight * reduced[term.equation as usize]).sum(),
+        };
+        roles.map(value).collect()
     }
 
     /// Lumped masses of unknowns gathered on equations: what slaves carry is lumped on their masters.

@@ -34,14 +34,18 @@ impl Neighbours {
         let task = |task: usize| {
             let own = task * ITEMS..((task + 1) * ITEMS).min(items);
             let (mut counts, mut list, mut of_item) = (Vec::with_capacity(own.len()), Vec::new(), Vec::new());
+            let mut before: Option<&[u32]> = None;
             for a in own {
-                of_item.clear();
-                of_item.extend(keeps(a).then_some(a as u32));
-                for &group in &of_items[a.checked_sub(1).map_or(0, |before| ends[before])..ends[a]] {
-                    of_item.extend_from_slice(groups[group as usize]);
+                let (keeps, own) = (keeps(a), &of_items[a.checked_sub(1).map_or(0, |before| ends[before])..ends[a]]);
+                // The unknowns of a node are together in all groups.
+                if before.replace(own) != Some(own) || keeps {
+                    of_item.clear();
+                    of_item.extend(keeps.then_some(a as u32));
+                    own.iter().for_each(|&group| of_item.extend_from_slice(groups[group as usize]));
+                    of_item.sort_unstable();
+                    of_item.dedup();
+                    before = before.filter(|_| !keeps);
                 }
-                of_item.sort_unstable();
-                of_item.dedup();
                 counts.push(of_item.len());
                 list.extend_from_slice(&of_item);
             }

@@ -12,7 +12,7 @@ const FAR: f64 = 1e3;
 /// Farthest motion of a held body within a step: a thousand times the diagonal of the box around all nodes and the largest
 /// prescribed value (length); infinite for models without extent, which are no bodies. Collective.
 pub fn reach(ranks: &Ranks, nodes: &Nodes, dofs: &DofTable, equations: &Equations) -> f64 {
-    let prescribed = dofs.dofs().iter().enumerate().filter(|(n, dof)| dof.moves_mesh() && equations.is_fixed(*n));
+    let prescribed = dofs.dofs().iter().enumerate().filter(|(n, _)| dofs.moves_mesh(*n) && equations.is_fixed(*n));
     let prescribed = prescribed.filter_map(|(_, dof)| nodes.history.scalar(dof.variable, dof.node as usize));
     let prescribed = prescribed.fold(0.0, |most: f64, u| most.max(u.abs()));
     let side = |c: usize| {

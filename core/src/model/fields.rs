@@ -3,18 +3,25 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use zelus_linear_algebra::vector::copied;
 
 use super::variable::{ColumnType, ScalarVariable, Variable};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::names;
 
 /// One variable over all nodes (or entities): `levels[0]` is the present, `levels[1]` the previous step.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Numbers a value takes: 1 or 3.
     pub components: usize,
     /// `count * components` numbers a time level, newest first.
     pub levels: Vec<Vec<f64>>,
+}
+
+impl Clone for Field {
+    fn clone(&self) -> Self {
+        Self { components: self.components, levels: self.levels.iter().map(|level| copied(level)).collect() }
+    }
 }
 
 impl Field {
@@ -64,7 +71,11 @@ impl Fields {
         self.count = count;
         for field in self.columns.values_mut() {
             for level in &mut field.levels {
-                level.resize(count * field.components, 0.0);
+                match level.is_empty() {
+                    // Zeros that nothing writes take no memory.
+                    true => *level = vec![0.0; count * field.components],
+                    false => level.resize(count * field.components, 0.0),
+                }
             }
         }
     }

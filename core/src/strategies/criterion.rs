@@ -106,9 +106,14 @@ pub(super) fn norms(
         columns.truncate(1);
     }
     let mut sums = vec![0.0; 2 * columns.len()];
+    // The components of a vector stand side by side.
+    let (mut known, mut at) = ("", 0);
     for n in own {
         let column = dofs.dofs()[n].variable.column;
-        let at = columns.iter().position(|own| *own == column).unwrap_or(0);
+        if !std::ptr::eq(column, known) {
+            at = columns.iter().position(|own| *own == column).unwrap_or(0);
+            known = column;
+        }
         sums[2 * at] += vector[n] * vector[n];
         sums[2 * at + 1] += 1.0;
     }

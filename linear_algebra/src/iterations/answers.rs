@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use crate::ghosts::Ghosts;
-use crate::vector::{add_scaled, scale_by, scale_to};
+use crate::vector::{add_scaled, copied, scale_by, scale_to, set_length, zeros};
 
 /// Answers kept.
 const KEPT: usize = 6;
@@ -32,7 +32,7 @@ impl Answer {
     pub(crate) fn product(&mut self, stamp: u64, multiply: impl FnOnce(&[f64], &mut [f64])) -> &[f64] {
         let known = self.product.take().filter(|(of, _)| *of == stamp);
         let (_, product) = self.product.insert(known.unwrap_or_else(|| {
-            let mut product = vec![0.0; self.x.len()];
+            let mut product = zeros(self.x.len());
             multiply(&self.x, &mut product);
             (stamp, product)
         }));
@@ -60,7 +60,7 @@ impl Answers {
             let factor = (-size.log2().floor()).exp2();
             let mut kept = if self.latest.len() < KEPT { None } else { self.latest.pop_back() }.unwrap_or_default();
             let scaled = |from: &[f64], mut to: Vec<f64>| {
-                to.resize(from.len(), 0.0);
+                set_length(&mut to, from.len());
                 scale_to(factor, from, &mut to);
                 to
             };
@@ -83,18 +83,18 @@ impl Answers {
         x: &mut [f64],
     ) -> Vec<f64> {
         if self.graph != graph || self.latest.iter().any(|kept| kept.x.len() != x.len()) {
-            return b.to_vec();
+            return copied(b);
         }
         // Orthonormal products; their answers, with what each had of those before it and the part of b along it.
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut found: Vec<(&[f64], Vec<f64>, f64)> = Vec::new();
-        let mut rest = b.to_vec();
+        let mut rest = copied(b);
         let least = enough * ghosts.norm(b);
         for kept in &mut self.latest {
             if ghosts.norm(&rest) <= least {
                 break;
             }
-            let mut product = vec![0.0; b.len()];
+            let mut product = zeros(b.len());
             multiply(kept, &mut product);
             let before = ghosts.norm(&product);
             let mut column = ghosts.orthogonalise(&basis, &mut product);

@@ -3,7 +3,7 @@
 
 use super::Progress;
 use crate::ghosts::Ghosts;
-use crate::vector::{Number, add_scaled, scale_by, scale_to, subtract_combination};
+use crate::vector::{Number, add_scaled, clear, copy, scale_by, scale_to, set_length, subtract_combination};
 
 /// The method, with vectors that serve solve after solve.
 #[derive(Default)]
@@ -18,7 +18,7 @@ fn at<T: Number>(list: &mut Vec<Vec<T>>, place: usize, n: usize) -> &mut Vec<T> 
     if list.len() == place {
         list.push(Vec::new());
     }
-    list[place].resize(n, T::default());
+    set_length(&mut list[place], n);
     &mut list[place]
 }
 
@@ -58,11 +58,11 @@ impl<T: Number> Gmres<T> {
         loop {
             let residual = at(&mut self.basis, 0, n);
             match known.filter(|_| iterations == 0) {
-                Some(known) => residual.copy_from_slice(known),
+                Some(known) => copy(known, residual),
                 None => {
-                    residual.copy_from_slice(b);
+                    copy(b, residual);
                     if ghosts.any(x.iter().any(|&x| x.into() != 0.0)) {
-                        self.work.resize(n, T::default());
+                        set_length(&mut self.work, n);
                         multiply(x, &mut self.work);
                         add_scaled(-1.0, &self.work, residual);
                     }
@@ -107,9 +107,9 @@ impl<T: Number> Gmres<T> {
             b.fill(T::default());
             return 0;
         }
-        at(&mut self.basis, 0, b.len()).copy_from_slice(b);
+        copy(b, at(&mut self.basis, 0, b.len()));
         let cycle = self.cycle(ghosts, multiply, precondition, size, most, 0.5 * aim * size);
-        b.fill(T::default());
+        clear(b);
         subtract_combination(&self.directions[..cycle.coefficients.len()], &cycle.coefficients, b);
         cycle.iterations
     }
@@ -132,7 +132,7 @@ impl<T: Number> Gmres<T> {
     ) -> Cycle {
         let Self { basis, directions, work } = self;
         let n = basis[0].len();
-        work.resize(n, T::default());
+        set_length(work, n);
         scale_by(size.recip(), &mut basis[0]);
         let mut triangle: Vec<Vec<f64>> = Vec::new();
         let mut rotations: Vec<(f64, f64)> = Vec::new();
@@ -140,7 +140,7 @@ impl<T: Number> Gmres<T> {
         while iterations < most {
             let k = triangle.len();
             let direction = at(directions, k, n);
-            direction.copy_from_slice(&basis[k]);
+            copy(&basis[k], direction);
             precondition(direction, (goal / g[k].abs()).min(1.0));
             multiply(direction, work);
             iterations += 1;

@@ -27,56 +27,72 @@ pub(super) struct Tentative {
     pub(super) modes: Vec<Vec<f64>>,
 }
 
-/// Starts and lists of the strong couplings between blocks.
-fn strong_graph(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<usize>, Vec<u32>) {
-    let size = matrix.size();
-    let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
-    let diagonal: Vec<f64> = (0..matrix.rows)
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|i| {
-            let (columns, values) = matrix.row(i);
-            columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
-        })
-        .collect();
-    let lists: Vec<Vec<u32>> = (0..matrix.rows)
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|i| {
-            let (columns, values) = matrix.row(i);
-            // Aggregates end where the blocks of others begin, and where another body does: what touches moves apart and slides.
-            let is_neighbour =
-                |j: u32| j as usize != i && (j as usize) < matrix.rows && bodies[j as usize] == bodies[i];
-            let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j));
-            let is_strong =
-                |j: u32, block: &[f32]| square(block) > (STRONG * STRONG) * (diagonal[i] * diagonal[j as usize]).sqrt();
-            blocks.filter(|(j, block)| is_strong(**j, block)).map(|(j, _)| *j).collect()
-        })
-        .collect();
-    let mut starts = vec![0];
-    lists.iter().for_each(|list| starts.push(starts[starts.len() - 1] + list.len()));
-    (starts, lists.concat())
+/// Rows of one task.
+const ROWS: usize = 256;
+
+/// The strong couplings between blocks, row after row.
+struct Strong {
+    /// Ends of the lists of the rows of each task, and the lists.
+    parts: Vec<(Vec<u32>, Vec<u32>)>,
+}
+
+impl Strong {
+    fn new(matrix: &BlockMatrix, bodies: &[u32]) -> Self {
+        let size = matrix.size();
+        let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
+        let diagonal: Vec<f64> = (0..matrix.rows)
+            .into_par_iter()
+            .with_min_len(ROWS)
+            .map(|i| {
+                let (columns, values) = matrix.row(i);
+                columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
+            })
+            .collect();
+        let of_task = |task: usize| {
+            let (mut ends, mut lists) = (Vec::with_capacity(ROWS), Vec::new());
+            for i in task * ROWS..((task + 1) * ROWS).min(matrix.rows) {
+                let (columns, values) = matrix.row(i);
+                // Aggregates end where the blocks of others begin, and where another body does: what touches moves apart and slides.
+                let is_neighbour =
+                    |j: u32| j as usize != i && (j as usize) < matrix.rows && bodies[j as usize] == bodies[i];
+                let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j));
+                let is_strong = |j: u32, block: &[f32]| {
+                    square(block) > (STRONG * STRONG) * (diagonal[i] * diagonal[j as usize]).sqrt()
+                };
+                lists.extend(blocks.filter(|(j, block)| is_strong(**j, block)).map(|(j, _)| *j));
+                ends.push(lists.len() as u32);
+            }
+            (ends, lists)
+        };
+        Self { parts: (0..matrix.rows.div_ceil(ROWS)).into_par_iter().map(of_task).collect() }
+    }
+
+    /// Strong neighbours of a block.
+    fn of(&self, g: usize) -> &[u32] {
+        let (ends, lists) = &self.parts[g / ROWS];
+        let at = g % ROWS;
+        &lists[at.checked_sub(1).map_or(0, |before| ends[before] as usize)..ends[at] as usize]
+    }
 }
 
 /// Aggregate of each block, and their number; blocks without strong neighbours have none.
 fn aggregate(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<u32>, usize) {
-    let (starts, list) = strong_graph(matrix, bodies);
-    let neighbours = |g: usize| &list[starts[g]..starts[g + 1]];
+    let strong = Strong::new(matrix, bodies);
     let mut of = vec![NONE; matrix.rows];
     let mut count = 0;
     for g in 0..matrix.rows {
-        let near = neighbours(g);
+        let near = strong.of(g);
         if of[g] == NONE && !near.is_empty() && near.iter().all(|&h| of[h as usize] == NONE) {
             of[g] = count;
             near.iter().for_each(|&h| of[h as usize] = count);
             count += 1;
         }
     }
-    join(&mut of, count as usize, neighbours);
+    join(&mut of, count as usize, &strong);
     for g in 0..matrix.rows {
-        if of[g] == NONE && !neighbours(g).is_empty() {
+        if of[g] == NONE && !strong.of(g).is_empty() {
             of[g] = count;
-            for &h in neighbours(g) {
+            for &h in strong.of(g) {
                 if of[h as usize] == NONE {
                     of[h as usize] = count;
                 }
@@ -88,14 +104,14 @@ fn aggregate(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<u32>, usize) {
 }
 
 /// Lets blocks that have no aggregate join the one with most of their strong neighbours, of those the smallest.
-fn join<'a>(of: &mut [u32], aggregates: usize, neighbours: impl Fn(usize) -> &'a [u32]) {
+fn join(of: &mut [u32], aggregates: usize, strong: &Strong) {
     let first = of.to_vec();
     let mut sizes = vec![0_usize; aggregates];
     first.iter().filter(|&&a| a != NONE).for_each(|&a| sizes[a as usize] += 1);
     let mut near = Vec::new();
     for g in (0..first.len()).filter(|&g| first[g] == NONE) {
         near.clear();
-        near.extend(neighbours(g).iter().map(|&h| first[h as usize]).filter(|&a| a != NONE));
+        near.extend(strong.of(g).iter().map(|&h| first[h as usize]).filter(|&a| a != NONE));
         near.sort_unstable();
         let rank = |alike: &[u32]| (alike.len(), Reverse(sizes[alike[0] as usize]), Reverse(alike[0]));
         if let Some((_, _, Reverse(a))) = near.chunk_by(|a, b| a == b).map(rank).max() {
@@ -110,22 +126,25 @@ pub(super) fn coarsen(matrix: &BlockMatrix, bodies: &[u32], near_null_space: &[V
     let (aggregate, aggregates) = aggregate(matrix, bodies);
     let (height, modes) = (matrix.height, near_null_space.len());
     let mut members = vec![Vec::new(); aggregates];
+    // Place of each block among the members of its aggregate.
+    let mut place = vec![0_u32; matrix.rows];
     for (i, &a) in aggregate.iter().enumerate().filter(|(_, a)| **a != NONE) {
+        place[i] = members[a as usize].len() as u32;
         members[a as usize].push(i);
     }
     let orthonormal: Vec<(Vec<f64>, Vec<f64>)> =
         members.par_iter().with_min_len(16).map(|list| orthonormalise(list, height, near_null_space)).collect();
     let mut values = vec![0.0; matrix.rows * height * modes];
-    let mut coarse = vec![vec![0.0; aggregates * modes]; modes];
-    for (a, (list, (basis, triangle))) in members.iter().zip(&orthonormal).enumerate() {
-        let length = list.len() * height;
-        for (at, &i) in list.iter().enumerate() {
-            for h in 0..height {
-                for m in 0..modes {
-                    values[(i * modes + m) * height + h] = basis[m * length + at * height + h] as f32;
-                }
-            }
+    let blocks = values.par_chunks_exact_mut((height * modes).max(1)).zip(&aggregate).zip(&place).with_min_len(ROWS);
+    blocks.filter(|((_, a), _)| **a != NONE).for_each(|((block, &a), &place)| {
+        let length = members[a as usize].len() * height;
+        for (m, column) in block.chunks_exact_mut(height).enumerate() {
+            let known = &orthonormal[a as usize].0[m * length + place as usize * height..][..height];
+            column.iter_mut().zip(known).for_each(|(to, from)| *to = *from as f32);
         }
+    });
+    let mut coarse = vec![vec![0.0; aggregates * modes]; modes];
+    for (a, (_, triangle)) in orthonormal.iter().enumerate() {
         for (m, vector) in coarse.iter_mut().enumerate() {
             vector[a * modes..(a + 1) * modes].copy_from_slice(&triangle[m * modes..(m + 1) * modes]);
         }

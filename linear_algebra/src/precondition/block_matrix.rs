@@ -6,14 +6,14 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::block_row::BlockRow;
-use super::multiplier::multiplier;
+use super::product_row::ProductRow;
 #[cfg(target_arch = "x86_64")]
 use super::row_product::Avx2;
 use super::row_product::{Lanes, Plain, TAIL, row_product};
 use crate::csr::Csr;
 
 /// Block rows of a part; fixed, so that results do not depend on the number of threads.
-const ROWS: usize = 256;
+const ROWS: usize = 64;
 
 /// No block has more rows or columns.
 const LARGEST: usize = 64;
@@ -284,9 +284,14 @@ impl BlockMatrix {
                 for &(i, at) in &places[begin(j)..ends[j]] {
                     let block = &self.row(i as usize).1[at as usize * size..(at as usize + 1) * size];
                     part.indices.push(i);
-                    part.values.extend(
-                        (0..self.height).flat_map(|h| (0..self.width).map(move |w| block[w * self.height + h])),
-                    );
+                    let begin = part.values.len();
+                    part.values.resize(begin + size, 0.0);
+                    for (h, column) in part.values[begin..].chunks_exact_mut(self.width).enumerate() {
+                        column
+                            .iter_mut()
+                            .zip(block[h..].iter().step_by(self.height))
+                            .for_each(|(to, from)| *to = *from);
+                    }
                 }
                 part.end_row();
             }
@@ -300,16 +305,17 @@ impl BlockMatrix {
     /// `self right`.
     pub(super) fn times(&self, right: &Self) -> Self {
         let (size, shape) = (self.size(), [self.height, right.width]);
-        let multiply = multiplier([self.height, self.width, right.width]);
-        Self::from_rows([self.rows, right.columns], shape, |i, row| {
+        let scratch = || ProductRow::new([self.height, self.width, right.width]);
+        Self::from_rows_with([self.rows, right.columns], shape, NOTHING_EARLIER, scratch, |i, row, product| {
             let (columns, values) = self.row_and_beside(i);
             for (at, &k) in columns.iter().enumerate() {
                 let a = &values[at * size..];
                 let (columns, blocks) = right.row(k as usize);
                 for (&j, b) in columns.iter().zip(blocks.chunks_exact(right.size())) {
-                    multiply([self.height, self.width, right.width], a, b, row.block_and_beside(j));
+                    product.add(row, j, a, b);
                 }
             }
+            product.write(row);
         })
     }
 

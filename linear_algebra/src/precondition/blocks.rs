@@ -19,7 +19,8 @@ const MOST: usize = 80;
 /// Replaces `b`, own entries, by what `solve` makes of it in single precision, divided by `size`; `solve` sees numbers up to one.
 /// Collective.
 pub(super) fn in_single(ghosts: &Ghosts, b: &mut [f64], size: f64, solve: impl FnOnce(&mut [f32])) {
-    let largest = ghosts.largest(b.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
+    let own = b.par_iter().with_min_len(CHUNK).map(|v| v.abs()).reduce(|| 0.0, f64::max);
+    let largest = ghosts.largest(own);
     if largest == 0.0 || !largest.is_finite() {
         return b.fill(0.0);
     }

@@ -6,6 +6,7 @@ mod block_row;
 mod multiplier;
 mod row_product;
 mod sums;
+mod product_row;
 mod block_matrix;
 mod blocks;
 mod constrained;

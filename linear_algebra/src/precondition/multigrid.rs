@@ -15,7 +15,8 @@ use super::aggregation::{NONE, Tentative, coarsen};
 use super::block_matrix::{BlockMatrix, Into, NOTHING_EARLIER};
 use super::block_row::BlockRow;
 use super::blocks::in_single;
-use super::multiplier::{BESIDE, multiplier};
+use super::multiplier::BESIDE;
+use super::product_row::ProductRow;
 use super::shared_levels::{Aggregates, gathered};
 use crate::check;
 use crate::dense_lu;
@@ -24,7 +25,7 @@ use crate::memory;
 use crate::multifrontal::{Factor, Kind, Precision, Scatter};
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
-use crate::vector::{add_scaled, scale_by};
+use crate::vector::{self, add_scaled, scale_by};
 
 /// Equations below which a level is solved directly.
 const COARSEST: usize = 1500;
@@ -189,9 +190,9 @@ impl Multigrid {
     /// Replaces `x`, own entries, by an approximation of `A⁻¹ x`; collective.
     pub(super) fn apply(&self, x: &mut [f32]) {
         let mut vectors = self.vectors.lock().expect("no cycle panics");
-        vectors[0].b[..x.len()].copy_from_slice(x);
+        vector::copy(x, &mut vectors[0].b[..x.len()]);
         self.cycle(0, &mut vectors);
-        x.copy_from_slice(&vectors[0].x[..x.len()]);
+        vector::copy(&vectors[0].x[..x.len()], x);
     }
 
     fn cycle(&self, depth: usize, vectors: &mut [Vectors]) {
@@ -266,34 +267,33 @@ impl Level {
         let mut aggregates = Aggregates::new(&ghosts, coarse.aggregates);
         aggregates.complete(&ghosts, &mut coarse, wide);
         let (aggregate, tentative) = (&coarse.aggregate, &coarse.values);
-        let multiply = multiplier([height, height, width]);
-        let shape = [height, height, width];
         // T - ω D⁻¹ (A T).
-        let smoothed = |i: usize, row: &mut BlockRow, (damping, product): &mut (Vec<f32>, Vec<f32>)| {
-            let (columns, values) = matrix.row_and_beside(i);
-            let of = |k: usize| &tentative[k * wide..(k + 1) * wide];
-            for (at, &k) in columns.iter().enumerate() {
-                let a = aggregate[k as usize];
-                if a != NONE {
-                    multiply(shape, &values[at * size..], of(k as usize), row.block_and_beside(a));
+        let smoothed =
+            |i: usize, row: &mut BlockRow, (damping, product, before): &mut (Vec<f32>, ProductRow, Vec<f32>)| {
+                let (columns, values) = matrix.row_and_beside(i);
+                let of = |k: usize| &tentative[k * wide..(k + 1) * wide];
+                for (at, &k) in columns.iter().enumerate() {
+                    let a = aggregate[k as usize];
+                    if a != NONE {
+                        product.add(row, a, &values[at * size..], of(k as usize));
+                    }
                 }
-            }
-            let inverse = &inverse[i * size..(i + 1) * size];
-            for h in 0..height {
-                (0..height).for_each(|l| damping[l * height + h] = -omega * inverse[h * height + l]);
-            }
-            for at in 0..row.len() {
-                let block = row.from(at);
-                product.copy_from_slice(&block[..wide]);
-                block[..wide].fill(0.0);
-                multiply(shape, damping, product, block);
-            }
-            if aggregate[i] != NONE {
-                row.block(aggregate[i]).iter_mut().zip(of(i)).for_each(|(sum, t)| *sum += t);
-            }
-        };
+                let inverse = &inverse[i * size..(i + 1) * size];
+                for h in 0..height {
+                    (0..height).for_each(|l| damping[l * height + h] = -omega * inverse[h * height + l]);
+                }
+                product.write(row);
+                before.clear();
+                before.extend_from_slice(row.entries());
+                let blocks = before.chunks_exact(wide).enumerate();
+                blocks.for_each(|(place, block)| product.add_at(place, damping, block));
+                product.write(row);
+                if aggregate[i] != NONE {
+                    row.block(aggregate[i]).iter_mut().zip(of(i)).for_each(|(sum, t)| *sum += t);
+                }
+            };
         let (shape, blocks) = ([matrix.rows, aggregates.all()], [height, width]);
-        let scratch = || (vec![0.0; size + BESIDE], vec![0.0; wide]);
+        let scratch = || (vec![0.0; size + BESIDE], ProductRow::new([height, height, width]), Vec::new());
         let mut prolongation = BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, scratch, smoothed);
         let mut restriction = prolongation.transpose();
         let (next, of_next) = aggregates.product(&ghosts, &matrix, &mut prolongation, &mut restriction);
@@ -308,7 +308,7 @@ impl Level {
         let mut rho = 1.0 / sigma;
         let Vectors { b, x, step } = vectors;
         if from_zero {
-            x.fill(0.0);
+            vector::clear(x);
         }
         for k in 0..DEGREE {
             let factors = if k == 0 {
@@ -320,7 +320,7 @@ impl Level {
                 factors
             };
             if k == 0 {
-                step.fill(0.0);
+                vector::clear(step);
             }
             if k == 0 && from_zero {
                 diagonal_step(&self.inverse, self.matrix.height, b, factors[1], step);

@@ -2,6 +2,8 @@
 //!
 //! Entries are added in one order, so that processors with wider vectors give the same bits, sooner.
 
+use crate::prefetch::{AHEAD, prefetch, prefetch_as_many};
+
 /// Entries behind the last block that may be read, but count for nothing.
 pub(super) const TAIL: usize = 24;
 /// Entries of the vector that are gathered at a time.
@@ -95,6 +97,7 @@ fn threes<const H: usize, const W: usize, L: Lanes>(columns: &[u32], values: &[f
     let (blocks, _) = values.as_chunks::<9>();
     let (x, _) = x.as_chunks::<3>();
     let mut add = |way: usize, at: usize, j: usize| {
+        prefetch(&blocks[at], AHEAD);
         sums[way].add(&blocks[at], x[j]);
         last[way] += blocks[at][8] * x[j][2];
     };
@@ -132,6 +135,7 @@ fn low<const H: usize, const W: usize, const L: usize>(columns: &[u32], values: 
         gathered[known..known + GROUP].fill(0.0);
         let values = &values[batch * GATHERED * H..];
         for (x, values) in gathered[..known.next_multiple_of(GROUP)].chunks_exact(GROUP).zip(values.chunks_exact(L)) {
+            prefetch_as_many(values, AHEAD);
             for l in 0..L {
                 sums[l] += values[l] * x[l / H];
             }
@@ -149,6 +153,7 @@ fn high<const H: usize, const W: usize>(columns: &[u32], values: &[f32], x: &[f3
     let mut sums = [[0.0_f32; GROUP]; 3];
     for (at, &j) in columns.iter().enumerate() {
         let block = &values[at * H * W..at * H * W + (W - 1) * H + GROUP];
+        prefetch_as_many(block, AHEAD);
         let x: &[f32; W] = x[j as usize * W..j as usize * W + W].try_into().expect("a block of x");
         for w in 0..W {
             let column: &[f32; GROUP] = block[w * H..w * H + GROUP].try_into().expect("a column of the block");

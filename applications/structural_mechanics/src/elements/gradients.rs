@@ -30,6 +30,14 @@ pub(super) fn padded<const DIM: usize>(a: &[[f64; DIM]; DIM]) -> Tensor {
     out
 }
 
+/// Determinant of the map from the reference cell to the positions `x`.
+pub(super) fn determinant<const NODES: usize, const DIM: usize>(
+    x: &[[f64; 3]; NODES],
+    local: &[[f64; DIM]; NODES],
+) -> f64 {
+    padded(&gradient(x, local)).determinant()
+}
+
 /// Gradients with respect to the positions `x`, and the determinant of the map from the reference cell.
 pub fn physical_gradients<const NODES: usize, const DIM: usize>(
     x: &[[f64; 3]; NODES],

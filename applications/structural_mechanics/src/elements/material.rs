@@ -109,8 +109,12 @@ impl<const S: usize> Material<S> {
 
     /// # Errors
     /// A band that would have to snap back as it softens.
-    pub(super) fn accepts_band(&self, width: f64) -> Result<(), String> {
+    pub(super) fn accepts_band(&self, width: impl FnOnce() -> f64) -> Result<(), String> {
         let widest = self.law.widest_band();
+        if widest == f64::INFINITY {
+            return Ok(());
+        }
+        let width = width();
         if width <= widest {
             return Ok(());
         }

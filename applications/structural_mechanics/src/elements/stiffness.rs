@@ -4,39 +4,63 @@
 
 use crate::laws::Matrix;
 
-/// Entries of a row that are added side by side.
-const LANES: usize = 4;
+/// Rows and columns of a tile, whose sums stay in registers.
+const TILE: usize = 4;
 
-/// `w D B`, row by row.
+/// Adds `Σ_s aᵀ_s rows_s` to `out`, tile by tile; of the entries left of the diagonal only those of its tiles, unless `whole`.
 #[inline(always)]
-fn weighted<const S: usize, const SIZE: usize>(weight: f64, d: &Matrix<S>, b: &[[f64; SIZE]; S]) -> [[f64; SIZE]; S] {
-    let mut out = [[0.0; SIZE]; S];
-    for (row, d) in out.iter_mut().zip(d) {
-        add_rows(&d.map(|d| weight * d), b, 0, row);
+fn add_product<const S: usize, const M: usize, const N: usize>(
+    a: &[[f64; M]; S],
+    rows: &[[f64; N]; S],
+    whole: bool,
+    out: &mut [[f64; N]; M],
+) {
+    let mut column = 0;
+    while column + TILE <= N {
+        add_columns::<TILE, S, M, N>(a, rows, column, whole, out);
+        column += TILE;
     }
-    out
+    for column in column..N {
+        add_columns::<1, S, M, N>(a, rows, column, whole, out);
+    }
 }
 
-/// Adds `Σ_s factors[s] rows[s]` to `out`, from the entry `first` on, rounded down to whole lanes.
+/// `W` columns of the product.
 #[inline(always)]
-fn add_rows<const S: usize, const SIZE: usize>(
-    factors: &[f64; S],
-    rows: &[[f64; SIZE]; S],
-    first: usize,
-    out: &mut [f64; SIZE],
+fn add_columns<const W: usize, const S: usize, const M: usize, const N: usize>(
+    a: &[[f64; M]; S],
+    rows: &[[f64; N]; S],
+    column: usize,
+    whole: bool,
+    out: &mut [[f64; N]; M],
 ) {
-    let mut at = first / LANES * LANES;
-    while at + LANES <= SIZE {
-        let mut sums: [f64; LANES] = out[at..at + LANES].try_into().expect("whole lanes");
-        for (factor, row) in factors.iter().zip(rows) {
-            (0..LANES).for_each(|lane| sums[lane] += factor * row[at + lane]);
+    let part: [[f64; W]; S] = std::array::from_fn(|s| std::array::from_fn(|w| rows[s][column + w]));
+    let end = if whole { M } else { M.min(column + W) };
+    let mut row = 0;
+    while row + TILE <= end {
+        add_tile::<TILE, W, S, M, N>(a, &part, [row, column], out);
+        row += TILE;
+    }
+    for row in row..end {
+        add_tile::<1, W, S, M, N>(a, &part, [row, column], out);
+    }
+}
+
+/// `R` rows of them.
+#[inline(always)]
+fn add_tile<const R: usize, const W: usize, const S: usize, const M: usize, const N: usize>(
+    a: &[[f64; M]; S],
+    part: &[[f64; W]; S],
+    [row, column]: [usize; 2],
+    out: &mut [[f64; N]; M],
+) {
+    let mut sums: [[f64; W]; R] = std::array::from_fn(|r| std::array::from_fn(|w| out[row + r][column + w]));
+    for (a, part) in a.iter().zip(part) {
+        for (r, sums) in sums.iter_mut().enumerate() {
+            (0..W).for_each(|w| sums[w] += a[row + r] * part[w]);
         }
-        out[at..at + LANES].copy_from_slice(&sums);
-        at += LANES;
     }
-    for at in at..SIZE {
-        factors.iter().zip(rows).for_each(|(factor, row)| out[at] += factor * row[at]);
-    }
+    sums.iter().zip(&mut out[row..]).for_each(|(sums, out)| out[column..column + W].copy_from_slice(sums));
 }
 
 #[inline(always)]
@@ -47,10 +71,10 @@ fn add<const S: usize, const SIZE: usize>(
     whole: bool,
     out: &mut [[f64; SIZE]; SIZE],
 ) {
-    let db = weighted(weight, d, b);
-    for (r, row) in out.iter_mut().enumerate() {
-        add_rows(&b.map(|b| b[r]), &db, if whole { 0 } else { r }, row);
-    }
+    let transposed: Matrix<S> = std::array::from_fn(|s| std::array::from_fn(|row| weight * d[row][s]));
+    let mut db = [[0.0; SIZE]; S];
+    add_product(&transposed, b, true, &mut db);
+    add_product(b, &db, whole, out);
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -59,8 +59,11 @@ impl Quantity {
     pub(super) fn gather(&self, fields: &Fields, items: &[u32]) -> Column {
         let components = self.components(fields);
         let mut values = vec![0.0; items.len() * components];
-        for (row, &item) in values.chunks_exact_mut(components).zip(items) {
-            self.read(fields, item, row);
+        if let Some(field) = self.column(fields) {
+            let first = self.variable.column().1;
+            for (row, &item) in values.chunks_exact_mut(components).zip(items) {
+                row.copy_from_slice(&field.levels[0][item as usize * field.components + first..][..components]);
+            }
         }
         Column::real(&self.name, components, values)
     }

@@ -16,7 +16,7 @@ impl NewtonRaphson {
         }
         let reach = reach(&part.ranks, &part.nodes, &system.dofs, self.assembler.equations());
         let now = self.assembler.values(part, system);
-        let gone = system.dofs.dofs().iter().enumerate().filter(|(_, dof)| dof.moves_mesh());
+        let gone = system.dofs.dofs().iter().enumerate().filter(|(n, _)| system.dofs.moves_mesh(*n));
         let gone = gone.map(|(n, dof)| ((now[n] - begin[n]).abs(), dof.node)).filter(|(motion, _)| *motion > reach);
         let farthest = gone.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let said = farthest.map(|(motion, node)| {

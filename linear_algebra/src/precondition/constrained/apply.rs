@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use super::group::Group;
 use super::{Constrained, NONE};
 use crate::system::System;
-use crate::vector::CHUNK;
+use crate::vector::{self, CHUNK};
 
 impl Constrained {
     /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations.
     /// `solve` does the same for what is left, own entries. Collective.
     pub(crate) fn apply(&self, system: &System<'_>, solve: impl FnOnce(&mut [f64]), r: &mut [f64]) {
         self.ghosts.spread(r, 1);
-        let mut z = vec![0.0; r.len()];
+        let mut z: Vec<f64> = vector::zeros(r.len());
         let mut prescribes = false;
         for group in &self.groups {
             let a = group.elimination.prescribed;
@@ -76,6 +76,6 @@ impl Constrained {
         for (&(m, diagonal), value) in self.idle.iter().zip(idle_rows) {
             z[m as usize] = (value - system.row_product(m as usize, &z)) / diagonal;
         }
-        r.copy_from_slice(&z);
+        vector::copy(&z, r);
     }
 }

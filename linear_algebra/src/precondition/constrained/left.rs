@@ -12,6 +12,10 @@ use crate::precondition::block_row::BlockRow;
 use crate::precondition::blocks::Blocks;
 use crate::precondition::sums::Sums;
 use crate::system::System;
+use crate::vector::CHUNK;
+
+/// Rows between the one that is looked at and the one that is asked for.
+const ROWS_AHEAD: usize = 16;
 
 /// Terms with the factors of equal indices added up, ascending.
 fn summed(mut terms: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
@@ -65,7 +69,10 @@ impl Constrained {
     pub(crate) fn left_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
         let of_bodies = (0..system.bulk.rows).into_par_iter().with_min_len(1024);
         let is_left = |i: &usize| !system.layout.multiplier[*i] && !system.layout.is_held(*i);
-        let diagonal = of_bodies.filter(is_left).map(|i| system.bulk.get(i, i).abs());
+        let diagonal = of_bodies.filter(is_left).map(|i| {
+            system.bulk.prefetch_diagonal(i + ROWS_AHEAD);
+            system.bulk.get(i, i).abs()
+        });
         let largest = diagonal.reduce(|| 0.0, f64::max);
         let largest = self.ghosts.largest(largest);
         let largest = if largest > 0.0 { largest } else { 1.0 };
@@ -204,16 +211,18 @@ impl Constrained {
         let mut on_blocks: Vec<Vec<f64>> = if system.layout.near_null_space.is_empty() {
             let alike = |k: usize| {
                 let is_set = |at: usize| at % self.width == k && self.equation[at] != NONE;
-                (0..self.equation.len()).map(|at| f64::from(u8::from(is_set(at)))).collect()
+                let places = (0..self.equation.len()).into_par_iter().with_min_len(CHUNK);
+                places.map(|at| f64::from(u8::from(is_set(at)))).collect()
             };
             (0..self.width).map(alike).collect()
         } else {
             let of = |vector: &Vec<f64>| {
-                self.equation.iter().map(|&e| if e == NONE { 0.0 } else { vector[e as usize] }).collect()
+                let equations = self.equation.par_iter().with_min_len(CHUNK);
+                equations.map(|&e| if e == NONE { 0.0 } else { vector[e as usize] }).collect()
             };
             system.layout.near_null_space.iter().map(of).collect()
         };
-        for vector in &mut on_blocks {
+        on_blocks.par_iter_mut().for_each(|vector| {
             for group in &self.groups {
                 let free = group.tangential();
                 let motion: Vec<f64> = group.own.iter().map(|&e| vector[self.place[e as usize] as usize]).collect();
@@ -226,7 +235,7 @@ impl Constrained {
                 }
             }
             vector.truncate(self.blocks.own() * self.width);
-        }
+        });
         on_blocks
     }
 }

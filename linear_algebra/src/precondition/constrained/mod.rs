@@ -349,17 +349,24 @@ impl Constrained {
     }
 
     /// Body of each own block: blocks that elements join, directly or through others, are of one. One for all where elements act alone.
-    fn bodies(&self, system: &System<'_>) -> Vec<u32> {
+    fn bodies(&self, system: &System<'_>, left: &Blocks) -> Vec<u32> {
         let own = self.blocks.own();
         if system.active_coupling().is_none() {
             return vec![0; own];
         }
-        let near = |block: usize| {
+        let by_equations = |block: usize| {
             let equations = self.equation[block * self.width..(block + 1) * self.width].iter();
             let first = equations.map(|&e| e as usize).find(|&e| e < system.bulk.rows);
             let columns = first.map_or(&[][..], |e| system.bulk.row(e).0);
             let blocks = columns.iter().map(|&j| self.place[j as usize]).filter(|&place| place != NONE);
-            blocks.map(|place| place as usize / self.width).filter(|&near| near < own)
+            blocks.map(|place| place / self.width as u32)
+        };
+        // Rows of the bulk alone have its blocks.
+        let near = |block: usize| {
+            let is_bulk = left.of_bulk[block];
+            let blocks = if is_bulk { left.matrix.row(block).0 } else { &[] };
+            let others = (!is_bulk).then(|| by_equations(block)).into_iter().flatten();
+            blocks.iter().copied().chain(others).map(|near| near as usize).filter(|&near| near < own)
         };
         let mut bodies = vec![NONE; own];
         let (mut count, mut reached) = (0, Vec::new());
@@ -384,6 +391,11 @@ impl Constrained {
 
     /// The hierarchy of what is left; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>, left: &Blocks) -> Multigrid {
-        Multigrid::new(left.matrix.clone(), self.bodies(system), self.near_null_space(system), self.blocks.clone())
+        Multigrid::new(
+            left.matrix.clone(),
+            self.bodies(system, left),
+            self.near_null_space(system),
+            self.blocks.clone(),
+        )
     }
 }

@@ -10,7 +10,7 @@ use zelus_core::geometry::ShapeTable;
 use super::Solid;
 use crate::elements::band::{self, BANDS_AS_KRATOS};
 use crate::elements::formulation::Formulation;
-use crate::elements::gradients::{gradient, nodal_vectors, padded, physical_gradients};
+use crate::elements::gradients::{determinant, gradient, nodal_vectors, padded, physical_gradients};
 use crate::elements::material::{Material, NO_TEMPERATURE};
 use crate::laws::StrainState;
 use crate::tensor::{IDENTITY, Tensor, inverse, pairs, strain_vector, stress_tensor};
@@ -99,7 +99,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
     pub(super) fn initial_weight(table: &ShapeTable, g: usize, entity: &Gather<'_, NODES>) -> f64 {
-        let (_, det) = physical_gradients(&entity.initial, &table.dn::<NODES, DIM>()[g]);
+        let det = determinant(&entity.initial, &table.dn::<NODES, DIM>()[g]);
         let turn = if Self::AXISYMMETRIC { 2.0 * PI * radius(&table.n()[g], &entity.initial) } else { 1.0 };
         table.weight(g) * det * turn
     }
