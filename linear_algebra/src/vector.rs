@@ -11,7 +11,9 @@ pub(crate) const CHUNK: usize = 1 << 14;
 /// wait for each other.
 pub fn zeros<T: Number>(n: usize) -> Vec<T> {
     let mut out = vec![T::default(); n];
-    clear(&mut out);
+    if n > CHUNK {
+        clear(&mut out);
+    }
     out
 }
 
@@ -22,7 +24,10 @@ pub fn clear<T: Number>(values: &mut [T]) {
 
 /// A copy, written by all threads.
 pub fn copied<T: Copy + Send + Sync>(values: &[T]) -> Vec<T> {
-    values.par_iter().with_min_len(CHUNK).copied().collect()
+    match values.len() <= CHUNK {
+        true => values.to_vec(),
+        false => values.par_iter().with_min_len(CHUNK).copied().collect(),
+    }
 }
 
 /// Copies all numbers, by all threads.
