@@ -416,6 +416,23 @@ mod tests {
     use super::*;
 
     #[test]
+    fn products_of_sizes_are_added() {
+        let n = 40;
+        let entry = |i: usize, j: usize| ((i * 7 + j * 3) % 11) as f64 - 5.0;
+        let all = (0..n).flat_map(|i| (0..n).filter(move |j| (i + j) % 3 > 0).map(move |j| (i, j, entry(i, j))));
+        let matrix = Csr::from_triplets(n, &all.collect::<Vec<_>>());
+        let x: [Vec<f64>; 2] = [2, 5].map(|k| (0..n).map(|i| (i % k) as f64).collect());
+        let mut out = [vec![1.0; n], vec![-1.0; n]];
+        let [a, b] = &mut out;
+        matrix.add_products_of_sizes(&matrix.values, [&x[0], &x[1]], [a, b]);
+        for (i, (a, b)) in out[0].iter().zip(&out[1]).enumerate() {
+            let exact =
+                |x: &[f64]| matrix.row(i).0.iter().map(|&j| entry(i, j as usize).abs() * x[j as usize]).sum::<f64>();
+            assert_eq!([*a, *b], [1.0 + exact(&x[0]), -1.0 + exact(&x[1])], "{i}");
+        }
+    }
+
+    #[test]
     fn pattern_is_sorted_and_unique() {
         let matrix = Csr::from_pattern(&[vec![2, 0, 2], vec![], vec![1]]);
         assert_eq!(matrix.row_starts, [0, 2, 2, 3]);
