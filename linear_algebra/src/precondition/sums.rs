@@ -24,11 +24,11 @@ impl Sums {
         self.values[*at as usize] += value;
     }
 
-    /// Hands on the sums by the order of their first numbers; none is left then.
+    /// Hands on the sums by ascending places; none is left then.
     pub(super) fn drain(&mut self, mut each: impl FnMut(u32, f64)) {
-        for (&place, &sum) in self.places.iter().zip(&self.values) {
-            self.at[place as usize] = u32::MAX;
-            each(place, sum);
+        self.places.sort_unstable();
+        for &place in &self.places {
+            each(place, self.values[std::mem::replace(&mut self.at[place as usize], u32::MAX) as usize]);
         }
         self.places.clear();
         self.values.clear();
