@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::ghosts::Ghosts;
+use crate::prefetch::ROWS_AHEAD;
 use crate::solver::SolveError;
 use crate::system::System;
 use crate::vector::{self, CHUNK};
@@ -61,9 +62,6 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
     }
     Ok(())
 }
-
-/// Rows between one that is looked at and the one that is asked for.
-const ROWS_AHEAD: usize = 16;
 
 /// Equations whose row in the bulk is zero, such as those of multipliers.
 pub(crate) fn zero_in_bulk(system: &System<'_>) -> Vec<usize> {

@@ -178,9 +178,7 @@ impl Csr {
     #[inline]
     pub(crate) fn prefetch_row(&self, row: usize) {
         if row < self.rows {
-            let start = self.row_starts[row];
-            prefetch(&self.columns[start..], 0);
-            prefetch(&self.values[start..], 0);
+            self.prefetch_entry(self.row_starts[row]);
         }
     }
 
@@ -188,10 +186,14 @@ impl Csr {
     #[inline]
     pub(crate) fn prefetch_diagonal(&self, row: usize) {
         if row < self.rows {
-            let middle = usize::midpoint(self.row_starts[row], self.row_starts[row + 1]);
-            prefetch(&self.columns[middle..], 0);
-            prefetch(&self.values[middle..], 0);
+            self.prefetch_entry(usize::midpoint(self.row_starts[row], self.row_starts[row + 1]));
         }
+    }
+
+    #[inline]
+    fn prefetch_entry(&self, at: usize) {
+        prefetch(&self.columns[at..], 0);
+        prefetch(&self.values[at..], 0);
     }
 
     /// `y = A x`, the same bits on any number of threads.

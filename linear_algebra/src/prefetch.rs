@@ -2,6 +2,8 @@
 
 /// Bytes between what is read and what is asked for, where entries are read one after the other.
 pub(crate) const AHEAD: usize = 6144;
+/// Rows between one of which little is read and the one that is asked for.
+pub(crate) const ROWS_AHEAD: usize = 16;
 /// Bytes that come at a time.
 const LINE: usize = 64;
 

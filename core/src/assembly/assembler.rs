@@ -38,7 +38,7 @@ use super::system::System;
 use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::entities::{Coupling, EntityBlock, LocalSystems, Tangent, Want};
-use crate::model::{ModelPart, ScalarVariable};
+use crate::model::ModelPart;
 
 /// Largest stiffness of an interaction in those of the bodies: what a stiff penalty adds to the round-off of forces.
 const STIFFEST: f64 = 100.0;
@@ -152,21 +152,16 @@ impl Traits {
 impl Assembler {
     /// Numbers the unknowns of the part and lays out the patterns that last.
     pub fn new(part: &ModelPart, system: &mut System, lumped_mass: bool) -> Self {
-        let mut carries: Vec<(ScalarVariable, Vec<bool>)> = Vec::new();
+        let mut carriers: Vec<Carriers> = Vec::new();
         for block in system.elements.iter().chain(&system.conditions) {
             for unknown in block.unknowns() {
-                let at = carries.iter().position(|(known, _)| *known == unknown.variable).unwrap_or_else(|| {
-                    carries.push((unknown.variable, vec![false; part.nodes.len()]));
-                    carries.len() - 1
-                });
-                let marks = &mut carries[at].1;
-                (0..block.len()).for_each(|at| marks[block.nodes(at)[unknown.node as usize] as usize] = true);
+                let nodes = (0..block.len()).map(|at| block.nodes(at)[unknown.node as usize]);
+                match carriers.iter_mut().find(|(known, ..)| *known == unknown.variable) {
+                    Some((.., list)) => list.extend(nodes),
+                    None => carriers.push((unknown.variable, false, nodes.collect())),
+                }
             }
         }
-        let those =
-            |marks: Vec<bool>| (0..).zip(marks).filter(|(_, is_marked)| *is_marked).map(|(node, _)| node).collect();
-        let mut carriers: Vec<Carriers> =
-            carries.into_iter().map(|(variable, marks)| (variable, false, those(marks))).collect();
         if let Some(share) = &part.share {
             carriers = carriers_of_all(carriers, part.nodes.len(), &share.halo);
         }

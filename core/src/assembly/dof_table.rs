@@ -29,8 +29,12 @@ impl Dof {
 
     /// Whether it moves its node.
     pub fn moves_mesh(&self) -> bool {
-        self.rates().is_some_and(|rates| rates.moves_mesh)
+        moves_mesh(self.variable)
     }
+}
+
+fn moves_mesh(unknown: ScalarVariable) -> bool {
+    Rates::of(unknown.column).is_some_and(|rates| rates.moves_mesh)
 }
 
 /// All unknowns, numbered by node first so that those of a node stand together.
@@ -58,10 +62,7 @@ impl DofTable {
         }
         self.dofs.clear();
         self.moving.clear();
-        let moving: Vec<bool> = present
-            .iter()
-            .map(|(variable, ..)| Rates::of(variable.column).is_some_and(|rates| rates.moves_mesh))
-            .collect();
+        let moving: Vec<bool> = present.iter().map(|(variable, ..)| moves_mesh(*variable)).collect();
         let mut numbers = vec![vec![NONE; nodes.len()]; present.len()];
         for node in 0..nodes.len() {
             for (at, (variable, multiplier, carried)) in present.iter().enumerate() {

@@ -51,6 +51,11 @@ impl Quantity {
     /// Its numbers at one item, to `out`.
     pub(super) fn read(&self, fields: &Fields, item: u32, out: &mut [f64]) {
         let Some(field) = self.column(fields) else { return out.fill(0.0) };
+        self.read_from(field, item, out);
+    }
+
+    /// The same from its column.
+    fn read_from(&self, field: &Field, item: u32, out: &mut [f64]) {
         let at = item as usize * field.components + self.variable.column().1;
         out.copy_from_slice(&field.levels[0][at..at + out.len()]);
     }
@@ -60,9 +65,8 @@ impl Quantity {
         let components = self.components(fields);
         let mut values = vec![0.0; items.len() * components];
         if let Some(field) = self.column(fields) {
-            let first = self.variable.column().1;
             for (row, &item) in values.chunks_exact_mut(components).zip(items) {
-                row.copy_from_slice(&field.levels[0][item as usize * field.components + first..][..components]);
+                self.read_from(field, item, row);
             }
         }
         Column::real(&self.name, components, values)

@@ -11,11 +11,9 @@ use crate::precondition::block_matrix::BlockMatrix;
 use crate::precondition::block_row::BlockRow;
 use crate::precondition::blocks::Blocks;
 use crate::precondition::sums::Sums;
+use crate::prefetch::ROWS_AHEAD;
 use crate::system::System;
 use crate::vector::CHUNK;
-
-/// Rows between the one that is looked at and the one that is asked for.
-const ROWS_AHEAD: usize = 16;
 
 /// Terms with the factors of equal indices added up, ascending.
 fn summed(mut terms: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
