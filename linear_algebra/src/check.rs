@@ -56,7 +56,7 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
             let entries = matrix.values[chunk * CHUNK..].iter();
             let at = chunk * CHUNK + entries.take_while(|a| a.is_finite()).count();
             let row = matrix.row_starts.partition_point(|&start| start <= at) - 1;
-            let (column, value) = (matrix.columns[at], matrix.values[at]);
+            let (column, value) = (matrix.columns_of(row)[at - matrix.row_starts[row]], matrix.values[at]);
             return Err(SolveError::Failed(format!("entry ({row}, {column}) of the {what} is {value}")));
         }
     }

@@ -30,16 +30,18 @@ impl Runs {
 
 /// A square sparse matrix by rows; columns of a row ascend and occur once.
 ///
-/// `row_starts` has `rows + 1` entries; the entries of row `i` are `row_starts[i]..row_starts[i + 1]` of `columns`
-/// and `values`.
+/// `row_starts` has `rows + 1` entries; the entries of row `i` are `row_starts[i]..row_starts[i + 1]` of `values`, and of `columns`, too,
+/// unless rows share theirs, as those of a node may: [`Csr::columns_of`] gives them either way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Csr {
     /// Number of rows and of columns.
     pub rows: usize,
     /// Where each row starts, and the number of entries at the end.
     pub row_starts: Vec<usize>,
-    /// Column of each entry.
+    /// Column of each entry, or columns that rows share.
     pub columns: Vec<u32>,
+    /// Where the columns of each row begin; empty where each entry has its own.
+    pub(crate) column_starts: Vec<usize>,
     /// Value of each entry.
     pub values: Vec<f64>,
 }
@@ -51,9 +53,13 @@ impl Default for Csr {
 }
 
 impl Csr {
+    fn nothing() -> Self {
+        Self { rows: 0, row_starts: Vec::new(), columns: Vec::new(), column_starts: Vec::new(), values: Vec::new() }
+    }
+
     /// A matrix of `rows` rows without entries.
     pub fn empty(rows: usize) -> Self {
-        Self { rows, row_starts: vec![0; rows + 1], columns: Vec::new(), values: Vec::new() }
+        Self { rows, row_starts: vec![0; rows + 1], ..Self::nothing() }
     }
 
     /// A zero matrix whose row `i` has the columns `adjacency[i]`, in any order and possibly repeated.
@@ -80,7 +86,7 @@ impl Csr {
             entries += row.len();
             row_starts.push(entries);
         }
-        Self { rows, row_starts, columns: sorted.concat(), values: vec![0.0; entries] }
+        Self { rows, row_starts, columns: sorted.concat(), values: vec![0.0; entries], ..Self::nothing() }
     }
 
     /// A zero matrix of a pattern whose rows are already sorted and free of repetitions.
@@ -97,14 +103,38 @@ impl Csr {
     /// # Panics
     /// As there.
     pub fn without_values(row_starts: Vec<usize>, columns: Vec<u32>) -> Self {
-        let rows = row_starts.len().checked_sub(1).expect("row_starts has rows + 1 entries");
-        assert_eq!(row_starts[rows], columns.len(), "row_starts ends with the number of entries");
-        (0..rows).into_par_iter().with_min_len(ROWS_PER_TASK).for_each(|i| {
-            let row = &columns[row_starts[i]..row_starts[i + 1]];
+        assert_eq!(row_starts.last(), Some(&columns.len()), "row_starts ends with the number of entries");
+        let rows = row_starts.len() - 1;
+        Self { rows, row_starts, columns, ..Self::nothing() }.checked()
+    }
+
+    /// As [`Csr::without_values`] where rows share their columns: those of a row begin at its place of `column_starts`.
+    ///
+    /// # Panics
+    /// As there.
+    pub fn with_shared_columns(row_starts: Vec<usize>, columns: Vec<u32>, column_starts: Vec<usize>) -> Self {
+        assert_eq!(row_starts.len(), column_starts.len() + 1, "one start of columns for each row");
+        let rows = column_starts.len();
+        Self { rows, row_starts, columns, column_starts, ..Self::nothing() }.checked()
+    }
+
+    /// The same matrix, whose columns have been looked at.
+    fn checked(self) -> Self {
+        (0..self.rows).into_par_iter().with_min_len(ROWS_PER_TASK).for_each(|i| {
+            let row = self.columns_of(i);
+            if i > 0 && std::ptr::eq(row, self.columns_of(i - 1)) {
+                return;
+            }
             assert!(row.windows(2).all(|pair| pair[0] < pair[1]), "columns of row {i} ascend");
-            assert!(row.last().is_none_or(|&column| (column as usize) < rows), "column out of range in row {i}");
+            assert!(row.last().is_none_or(|&column| (column as usize) < self.rows), "column out of range in row {i}");
         });
-        Self { rows, row_starts, columns, values: Vec::new() }
+        self
+    }
+
+    /// The same matrix, each entry with a column of its own.
+    pub(crate) fn with_own_columns(&self) -> Self {
+        let columns = (0..self.rows).flat_map(|i| self.columns_of(i)).copied().collect();
+        Self { columns, column_starts: Vec::new(), ..self.clone() }
     }
 
     /// The matrix with the sum of all `(row, column, value)` given.
@@ -125,7 +155,7 @@ impl Csr {
 
     /// Number of stored entries.
     pub fn entries(&self) -> usize {
-        self.columns.len()
+        self.row_starts[self.rows]
     }
 
     /// Sets every stored value to zero and keeps the pattern.
@@ -136,22 +166,25 @@ impl Csr {
     /// Columns and values of row `i`.
     #[inline]
     pub fn row(&self, i: usize) -> (&[u32], &[f64]) {
-        let range = self.row_starts[i]..self.row_starts[i + 1];
-        (&self.columns[range.clone()], &self.values[range])
+        (self.columns_of(i), &self.values[self.row_starts[i]..self.row_starts[i + 1]])
     }
 
     /// Columns of row `i`, ascending.
     #[inline]
     pub fn columns_of(&self, i: usize) -> &[u32] {
-        &self.columns[self.row_starts[i]..self.row_starts[i + 1]]
+        let begin = self.first_column(i);
+        &self.columns[begin..begin + (self.row_starts[i + 1] - self.row_starts[i])]
     }
 
-    /// Position of entry `(i, j)` in `columns` and `values`, or `None` outside the pattern.
+    #[inline]
+    fn first_column(&self, i: usize) -> usize {
+        if self.column_starts.is_empty() { self.row_starts[i] } else { self.column_starts[i] }
+    }
+
+    /// Position of entry `(i, j)` in `values`, or `None` outside the pattern.
     #[inline]
     pub fn find(&self, i: usize, j: usize) -> Option<usize> {
-        let start = self.row_starts[i];
-        let row = &self.columns[start..self.row_starts[i + 1]];
-        row.binary_search(&(j as u32)).ok().map(|at| start + at)
+        self.columns_of(i).binary_search(&(j as u32)).ok().map(|at| self.row_starts[i] + at)
     }
 
     /// Value of entry `(i, j)`; zero outside the pattern.
@@ -178,7 +211,7 @@ impl Csr {
     #[inline]
     pub(crate) fn prefetch_row(&self, row: usize) {
         if row < self.rows {
-            self.prefetch_entry(self.row_starts[row]);
+            self.prefetch_entry(row, 0);
         }
     }
 
@@ -186,14 +219,14 @@ impl Csr {
     #[inline]
     pub(crate) fn prefetch_diagonal(&self, row: usize) {
         if row < self.rows {
-            self.prefetch_entry(usize::midpoint(self.row_starts[row], self.row_starts[row + 1]));
+            self.prefetch_entry(row, (self.row_starts[row + 1] - self.row_starts[row]) / 2);
         }
     }
 
     #[inline]
-    fn prefetch_entry(&self, at: usize) {
-        prefetch(&self.columns[at..], 0);
-        prefetch(&self.values[at..], 0);
+    fn prefetch_entry(&self, row: usize, at: usize) {
+        prefetch(&self.columns[self.first_column(row) + at..], 0);
+        prefetch(&self.values[self.row_starts[row] + at..], 0);
     }
 
     /// `y = A x`, the same bits on any number of threads.
@@ -287,9 +320,10 @@ impl Csr {
             let end = ((task + 1) * ROWS_PER_TASK).min(self.rows);
             let (mut lengths, mut row) = (Vec::with_capacity(ROWS_PER_TASK / 2), task * ROWS_PER_TASK);
             while row < end {
-                let columns = self.row(row).0;
+                let columns = self.columns_of(row);
                 let most = LONGEST_RUN.min(end - row);
-                let length = (1..most).find(|k| self.row(row + k).0 != columns).unwrap_or(most);
+                let is_other = |k: &usize| !are_same(self.columns_of(row + k), columns);
+                let length = (1..most).find(is_other).unwrap_or(most);
                 lengths.push(length as u8);
                 row += length;
             }
@@ -320,7 +354,7 @@ impl Csr {
     /// The product of as many rows as `out` has, with the columns of the first.
     #[inline(always)]
     fn run_product(&self, row: usize, x: &[f64], out: &mut [f64], gathered: &mut Gathered) {
-        let columns = self.row(row).0;
+        let columns = self.columns_of(row);
         let values = |k: usize| self.row(row + k).1;
         match out {
             [a, b, c] => [*a, *b, *c] = row_sums(columns, [values(0), values(1), values(2)], x, gathered),
@@ -332,7 +366,7 @@ impl Csr {
     /// The transposed matrix.
     pub fn transpose(&self) -> Self {
         let mut row_starts = vec![0; self.rows + 1];
-        for &j in &self.columns {
+        for &j in (0..self.rows).flat_map(|i| self.columns_of(i)) {
             row_starts[j as usize + 1] += 1;
         }
         for i in 0..self.rows {
@@ -350,7 +384,7 @@ impl Csr {
                 *at += 1;
             }
         }
-        Self { rows: self.rows, row_starts, columns, values }
+        Self { rows: self.rows, row_starts, columns, values, ..Self::nothing() }
     }
 
     /// `self + other` on the union of both patterns.
@@ -413,6 +447,11 @@ impl Csr {
     }
 }
 
+/// Whether two rows have the same columns.
+pub(crate) fn are_same(a: &[u32], b: &[u32]) -> bool {
+    std::ptr::eq(a, b) || a == b
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -440,6 +479,23 @@ mod tests {
         assert_eq!(matrix.row_starts, [0, 2, 2, 3]);
         assert_eq!(matrix.columns, [0, 2, 1]);
         assert_eq!((matrix.find(0, 2), matrix.find(1, 1)), (Some(1), None));
+    }
+
+    #[test]
+    fn rows_that_share_columns_are_those_that_have_their_own() {
+        let own =
+            Csr { values: (0..6).map(f64::from).collect(), ..Csr::from_pattern(&[vec![0, 2], vec![0, 2], vec![0, 2]]) };
+        let shared = Csr::with_shared_columns(vec![0, 2, 4, 6], vec![0, 2], vec![0; 3]);
+        let shared = Csr { values: own.values.clone(), ..shared };
+        assert_eq!((shared.entries(), shared.find(2, 2), shared.find(2, 1)), (6, Some(5), None));
+        assert!((0..3).all(|i| shared.row(i) == own.row(i)));
+        assert_eq!(shared.with_own_columns(), own);
+        assert_eq!(shared.transpose(), own.transpose());
+        assert_eq!(shared.plus(&own), own.plus(&own));
+        let (mut a, mut b) = ([0.0; 3], [0.0; 3]);
+        own.mul_vec(&[1.0, 2.0, 3.0], &mut a);
+        shared.mul_vec(&[1.0, 2.0, 3.0], &mut b);
+        assert_eq!(a, b);
     }
 
     #[test]

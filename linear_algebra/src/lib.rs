@@ -8,7 +8,7 @@ pub mod address_space;
 
 mod state;
 
-mod prefetch;
+pub mod prefetch;
 mod row_sums;
 mod csr;
 pub mod vector;

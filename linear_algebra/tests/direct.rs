@@ -142,7 +142,8 @@ fn factors_in_single_precision_give_answers_in_double() {
     for (symmetry, engine) in [(Symmetry::PositiveDefinite, "cholesky"), (Symmetry::General, "multifrontal_lu")] {
         // Stiffness far from one, which single precision alone could not hold.
         for unit in [1.0, 1e60, 1e-60] {
-            let scaled = Csr { values: bulk.values.iter().map(|value| unit * value).collect(), ..bulk.clone() };
+            let mut scaled = bulk.clone();
+            scaled.values.iter_mut().for_each(|value| *value *= unit);
             let (report, error) = solve_known(&mut *single(9000), &System::bulk(&layout, &scaled, symmetry));
             assert_eq!((report.engine, report.fallback), (engine, None));
             assert!(report.iterations > 0, "one solve in single precision leaves seven digits");
@@ -251,7 +252,8 @@ fn equal_stamps_reuse_and_new_ones_renew() {
     let (x, _) = solve(&changed);
     let mut r = vec![0.0; rhs.len()];
     assert!(changed.residual(&rhs, &x, &mut r) < 1e-9);
-    let stiffer = Csr { values: sample.bulk.values.iter().map(|v| 2.0 * v).collect(), ..sample.bulk.clone() };
+    let mut stiffer = sample.bulk.clone();
+    stiffer.values.iter_mut().for_each(|value| *value *= 2.0);
     (changed.bulk, changed.bulk_values) = (&stiffer, 9);
     let (x, _) = solve(&changed);
     assert!(changed.residual(&rhs, &x, &mut r) < 1e-9);

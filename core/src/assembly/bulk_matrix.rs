@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use zelus_linear_algebra::Csr;
+use zelus_linear_algebra::prefetch::prefetch_as_many;
 
 use super::dof_table::{Dof, DofTable};
 use super::local::{BATCH, add_rhs, entity_lhs, evaluate, side_by_side};
@@ -25,6 +26,38 @@ pub struct BulkPattern {
     first: Vec<u32>,
     /// The matrix without values.
     pub matrix: Csr,
+}
+
+/// An entity whose local matrix is added.
+struct Entity<'a> {
+    nodes: &'a [u32],
+    unknowns: &'a [LocalUnknown],
+    /// Numbers of its unknowns.
+    numbers: &'a [u32],
+}
+
+/// Unknowns of one node of an entity that stand side by side in every row.
+struct Run {
+    /// The first of them in the entity.
+    first: usize,
+    length: usize,
+    /// Where they begin in a row.
+    place: usize,
+}
+
+impl Entity<'_> {
+    /// Sets `runs` to those of the entity, without their places.
+    fn find_runs(&self, runs: &mut Vec<Run>) {
+        runs.clear();
+        for at in 0..self.numbers.len() {
+            let follows =
+                |i: usize| self.unknowns[i].node == self.unknowns[at].node && self.numbers[i] + 1 == self.numbers[at];
+            match runs.last_mut().filter(|_| follows(at - 1)) {
+                Some(run) => run.length += 1,
+                None => runs.push(Run { first: at, length: 1, place: 0 }),
+            }
+        }
+    }
 }
 
 impl BulkPattern {
@@ -61,13 +94,16 @@ impl BulkPattern {
         });
         let entries = |dof: &Dof| if dof.multiplier { 0 } else { widths[dof.node as usize] as usize };
         let row_starts = starts(dofs.dofs().iter().map(entries));
-        let mut columns = vec![0; row_starts[dofs.len()]];
-        fill_rows(&row_starts, &mut columns, |row, columns| {
+        // Unknowns of a node have the same columns.
+        let of_nodes = starts(widths.iter().zip(&count).map(|(&w, &count)| if count > 0 { w as usize } else { 0 }));
+        let mut columns = vec![0; of_nodes[nodes]];
+        fill_rows(&of_nodes, &mut columns, |node, columns| {
             let of_node = |&b: &u32| first[b as usize]..first[b as usize].wrapping_add(u32::from(count[b as usize]));
-            let numbers = neighbours.of(dofs.dofs()[row].node as usize).iter().flat_map(of_node);
+            let numbers = neighbours.of(node).iter().flat_map(of_node);
             columns.iter_mut().zip(numbers).for_each(|(column, number)| *column = number);
         });
-        let matrix = Csr::without_values(row_starts, columns);
+        let column_starts = dofs.dofs().iter().map(|dof| of_nodes[dof.node as usize]).collect();
+        let matrix = Csr::with_shared_columns(row_starts, columns, column_starts);
         Self { neighbours, offsets, first, matrix }
     }
 
@@ -77,16 +113,10 @@ impl BulkPattern {
         self.offsets[self.neighbours.starts[a as usize] + at] as usize
     }
 
-    /// Place of each unknown of an entity, whose nodes and unknowns these are, in the rows of its local node `of`.
-    fn places(&self, nodes: &[u32], unknowns: &[LocalUnknown], numbers: &[u32], of: u8, places: &mut [usize]) {
-        let mut known = (u8::MAX, 0);
-        for ((unknown, &number), place) in unknowns.iter().zip(numbers).zip(places) {
-            let node = nodes[unknown.node as usize];
-            if known.0 != unknown.node {
-                known = (unknown.node, self.offset(nodes[of as usize], node));
-            }
-            *place = known.1 + (number - self.first[node as usize]) as usize;
-        }
+    /// Place of an unknown of an entity in rows of node `a`.
+    fn place(&self, a: u32, entity: &Entity<'_>, unknown: usize) -> usize {
+        let node = entity.nodes[entity.unknowns[unknown].node as usize];
+        self.offset(a, node) + (entity.numbers[unknown] - self.first[node as usize]) as usize
     }
 
     /// Adds the local matrices of a block to `values`.
@@ -105,30 +135,45 @@ impl BulkPattern {
     ) -> Result<(), EntityError> {
         let unknowns = block.unknowns();
         let size = unknowns.len();
+        let starts = &self.matrix.row_starts[..];
+        let numbers_of = |at: usize| &numbers[at * size..(at + 1) * size];
         let mut buffers = Vec::new();
         for begin in (0..block.len()).step_by(BATCH) {
             let range = begin..(begin + BATCH).min(block.len());
             let chunks = &*evaluate(range.clone(), size, Want::Both, compute, &mut buffers)?;
-            let touched = numbers[range.start * size..range.end * size].iter().copied();
-            side_by_side(&self.matrix.row_starts, values, touched, |rows, base, part| {
-                let is_here = |row: u32| rows.contains(&(row as usize));
-                // Place of each unknown of an entity in the rows of one of its nodes.
-                let mut places = vec![0; size];
-                for at in range.clone() {
-                    let entity_nodes = block.nodes(at);
-                    let numbers = &numbers[at * size..(at + 1) * size];
-                    if !numbers.iter().any(|&row| is_here(row)) {
-                        continue;
-                    }
+            // Rows of each entity, from the first to the last.
+            let reach = |at| numbers_of(at).iter().fold([u32::MAX, 0], |[a, b], &n| [a.min(n), b.max(n)]);
+            let reaches: Vec<[u32; 2]> = range.clone().map(reach).collect();
+            let touched = reaches.iter().flatten().copied();
+            side_by_side(starts, values, touched, |rows, base, part| {
+                let mut runs = Vec::new();
+                let is_near = |[first, last]: [u32; 2]| rows.start <= last as usize && (first as usize) < rows.end;
+                for at in range.clone().filter(|at| is_near(reaches[at - begin])) {
                     let lhs = entity_lhs(chunks, at - begin);
+                    let numbers = numbers_of(at);
+                    let entity = Entity { nodes: block.nodes(at), unknowns, numbers };
+                    entity.find_runs(&mut runs);
+                    // Rows of the next entity are on their way while this one is added.
+                    if at + 1 < range.end {
+                        let next = numbers_of(at + 1).iter().map(|row| *row as usize).filter(|row| rows.contains(row));
+                        next.for_each(|row| prefetch_as_many(&part[starts[row] - base..starts[row + 1] - base], 0));
+                    }
                     let mut of_node = None;
-                    for (i, &row) in numbers.iter().enumerate().filter(|(_, row)| is_here(**row)) {
-                        if of_node.replace(unknowns[i].node) != Some(unknowns[i].node) {
-                            self.places(entity_nodes, unknowns, numbers, unknowns[i].node, &mut places);
+                    let here = numbers.iter().enumerate().filter(|(_, row)| rows.contains(&(**row as usize)));
+                    for (i, &row) in here {
+                        let node = entity.nodes[unknowns[i].node as usize];
+                        if of_node.replace(node) != Some(node) {
+                            runs.iter_mut().for_each(|run| run.place = self.place(node, &entity, run.first));
                         }
-                        let start = self.matrix.row_starts[row as usize] - base;
-                        for (place, value) in places.iter().zip(&lhs[i * size..(i + 1) * size]) {
-                            part[start + place] += value;
+                        let start = starts[row as usize] - base;
+                        let lhs = &lhs[i * size..(i + 1) * size];
+                        for &Run { first, length, place } in &runs {
+                            let (sums, values) = (&mut part[start + place..][..length], &lhs[first..][..length]);
+                            // A length that is known makes no loop.
+                            match (<&mut [f64; 3]>::try_from(&mut *sums), <&[f64; 3]>::try_from(values)) {
+                                (Ok(sums), Ok(values)) => (0..3).for_each(|i| sums[i] += values[i]),
+                                _ => sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
+                            }
                         }
                     }
                 }

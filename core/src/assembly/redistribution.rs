@@ -129,11 +129,12 @@ impl Redistribution {
         let below: FxHashMap<u32, &Vec<(u32, f64)>> = self.unknowns.iter().map(|(n, list)| (*n, list)).collect();
         self.rows.clear();
         for &(number, _) in &self.unknowns {
-            let range = pattern.row_starts[number as usize]..pattern.row_starts[number as usize + 1];
-            let entries = range.map(|at| (pattern.columns[at], values[at])).filter(|(_, value)| *value != 0.0);
+            let row = &values[pattern.row_starts[number as usize]..];
+            let entries = pattern.columns_of(number as usize).iter().zip(row).map(|(&j, &value)| (j, value));
+            let entries = entries.filter(|(_, value)| *value != 0.0);
             self.rows.push(entries.collect());
         }
-        let at = |i: u32, j: u32| place(pattern, i as usize, j as usize).expect("the pattern holds the groups");
+        let at = |i: u32, j: u32| pattern.find(i as usize, j as usize).expect("the pattern holds the groups");
         for ((number, own), row) in self.unknowns.iter().zip(&self.rows) {
             for &(column, value) in row {
                 values[at(*number, column)] = 0.0;
@@ -181,14 +182,7 @@ impl Redistribution {
     }
 }
 
-/// Place of an entry of the matrix.
-fn place(pattern: &Csr, row: usize, column: usize) -> Option<usize> {
-    let range = pattern.row_starts[row]..pattern.row_starts[row + 1];
-    let at = pattern.columns[range.clone()].binary_search(&(column as u32)).ok()?;
-    Some(range.start + at)
-}
-
 /// The diagonal of a matrix with this pattern; zero where it has none.
 pub(super) fn diagonal(pattern: &Csr, values: &[f64]) -> Vec<f64> {
-    (0..pattern.rows).map(|row| place(pattern, row, row).map_or(0.0, |at| values[at])).collect()
+    (0..pattern.rows).map(|row| pattern.find(row, row).map_or(0.0, |at| values[at])).collect()
 }

@@ -43,8 +43,9 @@ impl Scaling {
     pub(crate) fn apply(&self, matrix: &Csr) -> Vec<f64> {
         let mut values = matrix.values.clone();
         for i in 0..matrix.rows {
-            for at in matrix.row_starts[i]..matrix.row_starts[i + 1] {
-                values[at] *= self.row[i] * self.column[matrix.columns[at] as usize];
+            let row = &mut values[matrix.row_starts[i]..matrix.row_starts[i + 1]];
+            for (value, &j) in row.iter_mut().zip(matrix.columns_of(i)) {
+                *value *= self.row[i] * self.column[j as usize];
             }
         }
         values

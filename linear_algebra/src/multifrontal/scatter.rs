@@ -49,7 +49,7 @@ struct Transposed {
 impl Transposed {
     fn new(pattern: &Csr) -> Self {
         let mut starts = vec![0; pattern.rows + 1];
-        for &j in &pattern.columns {
+        for &j in (0..pattern.rows).flat_map(|i| pattern.columns_of(i)) {
             starts[j as usize + 1] += 1;
         }
         for j in 0..pattern.rows {
@@ -58,9 +58,9 @@ impl Transposed {
         let mut next = starts.clone();
         let mut entries = vec![(0, 0); pattern.entries()];
         for i in 0..pattern.rows {
-            for at in pattern.row_starts[i]..pattern.row_starts[i + 1] {
-                let slot = &mut next[pattern.columns[at] as usize];
-                entries[*slot] = (i as u32, at as u32);
+            for (&j, at) in pattern.columns_of(i).iter().zip(pattern.row_starts[i] as u32..) {
+                let slot = &mut next[j as usize];
+                entries[*slot] = (i as u32, at);
                 *slot += 1;
             }
         }
@@ -100,7 +100,7 @@ fn entries_of(
             // A column of a symmetric matrix is its row.
             None => {
                 let start = pattern.row_starts[j] as u32;
-                pattern.row(j).0.iter().zip(start..).for_each(|(&i, source)| add(i, source));
+                pattern.columns_of(j).iter().zip(start..).for_each(|(&i, source)| add(i, source));
             }
         }
     }
@@ -109,7 +109,7 @@ fn entries_of(
         for p in front.columns.clone() {
             let i = symbolic.equation[p];
             let start = pattern.row_starts[i as usize];
-            for (at, &j) in pattern.row(i as usize).0.iter().enumerate() {
+            for (at, &j) in pattern.columns_of(i as usize).iter().enumerate() {
                 if let Some(q) = symbolic.position_of(j).filter(|&q| q > p) {
                     let target = match local(q) {
                         column if column < pivots => p - begin + column * order,

@@ -19,7 +19,7 @@ impl Ilu0 {
         let n = matrix.rows;
         let missing = (0..n).any(|i| matrix.find(i, i).is_none());
         let unit: Vec<(usize, usize, f64)> = if missing { (0..n).map(|i| (i, i, 0.0)).collect() } else { Vec::new() };
-        let mut factors = if missing { matrix.plus(&Csr::from_triplets(n, &unit)) } else { matrix.clone() };
+        let mut factors = if missing { matrix.plus(&Csr::from_triplets(n, &unit)) } else { matrix.with_own_columns() };
         let diagonal: Vec<usize> = (0..n).map(|i| factors.find(i, i).expect("the diagonal was added")).collect();
         let mut place = vec![usize::MAX; n];
         for i in 0..n {

@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use rayon::prelude::*;
 use zelus_linear_algebra::Csr;
 
 use super::{Assembler, blocks_of, couplings, load_blocks};
-use crate::assembly::assembler::inertia::{CHUNK, Inertia, damped_by_properties, without_rates};
+use crate::assembly::assembler::inertia::{Inertia, damped_by_properties, without_rates};
+use crate::assembly::rows::fill_rows;
 use crate::assembly::{DofTable, System};
 use crate::diagnostics::Result;
 use crate::entities::Coupling;
@@ -58,19 +58,27 @@ impl Assembler {
                     [mass_factor, 1.0]
                 };
                 let still = without_rates(system);
-                let moves = |column: &u32| !still.get(*column as usize).copied().unwrap_or(false);
+                let moves = |column: u32| !still.get(column as usize).copied().unwrap_or(false);
                 damped = !still.is_empty() && (!single || stiffness_factor != 1.0);
                 self.mass(part, system)?;
                 let mass = self.mass.as_ref().expect("just made");
-                let entries = values.par_iter_mut().zip(mass).zip(&self.pattern.matrix.columns);
-                entries.with_min_len(CHUNK).for_each(|((value, m), column)| {
-                    let factor = if moves(column) { stiffness_factor } else { 1.0 };
-                    *value = factor * *value + mass_factor * m;
+                let pattern = &self.pattern.matrix;
+                fill_rows(&pattern.row_starts, &mut values, |row, values| {
+                    let entries = values.iter_mut().zip(&mass[pattern.row_starts[row]..]).zip(pattern.columns_of(row));
+                    for ((value, m), &column) in entries {
+                        let factor = if moves(column) { stiffness_factor } else { 1.0 };
+                        *value = factor * *value + mass_factor * m;
+                    }
                 });
                 if !single {
                     let damping = self.damping(part, system, [alpha, beta])?;
-                    let moving = values.iter_mut().zip(damping).zip(&self.pattern.matrix.columns);
-                    moving.filter(|(_, column)| moves(column)).for_each(|((value, c), _)| *value += damping_factor * c);
+                    let pattern = &self.pattern.matrix;
+                    fill_rows(&pattern.row_starts, &mut values, |row, values| {
+                        let damping = &damping[pattern.row_starts[row]..];
+                        let entries = values.iter_mut().zip(damping).zip(pattern.columns_of(row));
+                        let moving = entries.filter(|(_, column)| moves(**column));
+                        moving.for_each(|((value, c), _)| *value += damping_factor * c);
+                    });
                 }
             }
             self.bulk = (!is_constant).then_some(values);
