@@ -12,7 +12,7 @@ use crate::csr::{Csr, Runs};
 use crate::direct::DirectSolver;
 use crate::iterations::{Answer, Answers, Gmres, Progress};
 use crate::memory;
-use crate::precondition::{Blocks, Constrained, Multigrid};
+use crate::precondition::{Constrained, LatestBlocks, Multigrid};
 use crate::reduced::Reduced;
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::state::{Carrier, State, WrongState};
@@ -21,8 +21,9 @@ use crate::vector;
 
 /// Directions kept before a restart.
 const RESTART: usize = 80;
-/// Iterations from which on it pays to make what the constraints leave, where the hierarchy is one of an earlier matrix.
-const PAYS: f64 = 10.0;
+/// Iterations from which on it pays to make what the constraints leave, where the hierarchy is one of an earlier matrix: of a new bulk,
+/// and of one that only has other constraints, most of whose rows are known.
+const PAYS: [f64; 2] = [10.0, 3.0];
 /// Share of a residual that a solve leaves at least: beyond it rounding counts.
 const REACHED: f64 = 1e-4;
 /// What a solve leaves at most.
@@ -87,8 +88,7 @@ impl Hierarchy {
 pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
-    /// What the constraints leave, of the last system that needed it.
-    left: Option<(Blocks, Stamps)>,
+    left: LatestBlocks,
     /// Stamps of the bulk that has been looked at last, and its equations that are zero.
     seen: Option<([u64; 2], Vec<usize>)>,
     /// Of the bulk's rows, with the stamp of its graph.
@@ -195,7 +195,7 @@ impl MultigridSolver {
         let (constrained, _) = self.constrained.as_ref().expect("made above");
         if !self.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.suits(system, constrained)) {
             self.hierarchy = None;
-            let left = up_to_date(&mut self.left, constrained, system);
+            let left = self.left.up_to_date(constrained, system);
             self.hierarchy = Some(Hierarchy {
                 levels: Arc::new(constrained.hierarchy(system, left)),
                 size: left.size,
@@ -263,20 +263,21 @@ impl MultigridSolver {
         let (tolerance, most) = (self.tolerance, self.settings.iterations.min(most));
         let (mut iterations, mut before, mut rate, mut solves_left) = (0, None, 0.0_f64, !hierarchy.is_old);
         let (latest, inner) = (&mut self.left, &mut self.inner);
+        let pays = PAYS[usize::from(latest.has_bulk_of(system))];
         let precondition = |r: &mut [f64], share: f64| {
             let room = most - iterations;
             if room == 0 {
                 return r.fill(0.0);
             }
             if iterations == 0 {
-                solves_left |= -hierarchy.last * share.log10() > PAYS;
+                solves_left |= -hierarchy.last * share.log10() > pays;
             }
             rate = before.replace(share).map_or(rate, |before| before / share);
             let solve = |b: &mut [f64]| {
                 if solves_left {
                     let solves = (share.ln() / REACHED.ln()).ceil().max(1.0);
                     let aim = share.powf(1.0 / solves).max(WORTH * rate).min(COARSEST_AIM);
-                    let left = up_to_date(latest, constrained, system);
+                    let left = latest.up_to_date(constrained, system);
                     iterations += left.solve(&hierarchy.levels, inner, b, aim, room);
                 } else {
                     iterations += 1;
@@ -382,21 +383,6 @@ impl MultigridSolver {
     }
 }
 
-/// What the constraints leave of a system, made of that of an earlier one as far as both have the same bulk.
-fn up_to_date<'a>(
-    latest: &'a mut Option<(Blocks, Stamps)>,
-    constrained: &Constrained,
-    system: &System<'_>,
-) -> &'a Blocks {
-    let stamps = Stamps::of(system);
-    if latest.as_ref().is_none_or(|(_, old)| *old != stamps) {
-        let same_bulk = |old: &Stamps| [old.bulk_graph, old.bulk_values] == [stamps.bulk_graph, stamps.bulk_values];
-        let earlier = latest.take().filter(|(_, old)| same_bulk(old));
-        *latest = Some((constrained.left_blocks(system, earlier.as_ref().map(|(left, _)| left)), stamps));
-    }
-    &latest.as_ref().expect("made above").0
-}
-
 impl LinearSolver for MultigridSolver {
     fn name(&self) -> &'static str {
         "multigrid"
@@ -414,6 +400,7 @@ impl LinearSolver for MultigridSolver {
 
     fn forget(&mut self) {
         self.stand_in.forget();
+        self.left.forget();
         // Levels that processes share are not saved.
         self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old || !hierarchy.levels.is_shared());
         if let Some(hierarchy) = self.hierarchy.as_mut().filter(|hierarchy| !hierarchy.is_old) {

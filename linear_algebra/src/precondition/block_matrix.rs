@@ -1,5 +1,6 @@
 //! Sparse matrices of small dense blocks, in single precision: what the levels of multigrid are made of.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -14,6 +15,10 @@ use crate::csr::Csr;
 
 /// Block rows of a part; fixed, so that results do not depend on the number of threads.
 const ROWS: usize = 64;
+
+/// Parts of a product of three matrices that are made at a time, at least, and how many times that is done at most.
+const PANEL: usize = 16;
+const PANELS: usize = 16;
 
 /// No block has more rows or columns.
 const LARGEST: usize = 64;
@@ -49,6 +54,24 @@ impl Part {
         starts.push(0);
         let (indices, values) = (Vec::with_capacity(blocks), Vec::with_capacity(blocks * size + TAIL));
         Self { starts, indices, values }
+    }
+
+    /// Rows over `columns` blocks of `size` entries, each of which `fill` writes to an empty `row`.
+    fn of_rows(
+        rows: Range<usize>,
+        columns: usize,
+        size: usize,
+        row: &mut BlockRow,
+        mut fill: impl FnMut(usize, &mut BlockRow),
+    ) -> Arc<Self> {
+        let mut part = Self::with_room(rows.len(), rows.len() * BLOCKS_OF_A_ROW.min(columns), size);
+        for i in rows {
+            fill(i, row);
+            row.take(&mut part.indices, &mut part.values);
+            part.end_row();
+        }
+        part.end();
+        Arc::new(part)
     }
 
     /// Ends a row whose blocks have been appended.
@@ -130,17 +153,10 @@ impl BlockMatrix {
             if let Some((earlier, _)) = earlier.as_ref().filter(|_| own.clone().all(|i| kept(i).is_some())) {
                 return earlier.parts[task].clone();
             }
-            let mut part = Part::with_room(own.len(), own.len() * BLOCKS_OF_A_ROW.min(columns), height * width);
-            for i in own {
-                match kept(i) {
-                    Some(earlier) => row.copy(earlier.row(i)),
-                    None => fill(i, row, scratch),
-                }
-                row.take(&mut part.indices, &mut part.values);
-                part.end_row();
-            }
-            part.end();
-            Arc::new(part)
+            Part::of_rows(own, columns, height * width, row, |i, row| match kept(i) {
+                Some(earlier) => row.copy(earlier.row(i)),
+                None => fill(i, row, scratch),
+            })
         };
         let scratch = || (BlockRow::new(columns, height * width), scratch());
         let parts = (0..rows.div_ceil(ROWS)).into_par_iter().map_init(scratch, make).collect();
@@ -302,21 +318,56 @@ impl BlockMatrix {
         Self { rows: self.columns, columns: self.rows, height, width, parts }
     }
 
-    /// `self right`.
-    pub(super) fn times(&self, right: &Self) -> Self {
-        let (size, shape) = (self.size(), [self.height, right.width]);
-        let scratch = || ProductRow::new([self.height, self.width, right.width]);
-        Self::from_rows_with([self.rows, right.columns], shape, NOTHING_EARLIER, scratch, |i, row, product| {
-            let (columns, values) = self.row_and_beside(i);
-            for (at, &k) in columns.iter().enumerate() {
-                let a = &values[at * size..];
-                let (columns, blocks) = right.row(k as usize);
-                for (&j, b) in columns.iter().zip(blocks.chunks_exact(right.size())) {
-                    product.add(row, j, a, b);
+    /// `self (middle right)`.
+    ///
+    /// The inner product is bigger than what comes of it, so no more of it is held than the rows under way need.
+    pub(super) fn times_product(&self, middle: &Self, right: &Self) -> Self {
+        let nothing = Arc::new(Part::with_room(0, 0, 0));
+        let parts = vec![nothing.clone(); middle.rows.div_ceil(ROWS)];
+        let mut inner =
+            Self { rows: middle.rows, columns: right.columns, height: middle.height, width: right.width, parts };
+        let tasks: Vec<usize> = (0..self.rows.div_ceil(ROWS)).collect();
+        let panels: Vec<&[usize]> = tasks.chunks(PANEL.max(tasks.len() / PANELS)).collect();
+        let needs = |panel: &&[usize]| -> Vec<usize> {
+            let mut is_needed = vec![false; inner.parts.len()];
+            let rows = panel.iter().flat_map(|&task| &self.parts[task].indices);
+            rows.for_each(|&k| is_needed[k as usize / ROWS] = true);
+            (0..is_needed.len()).filter(|&part| is_needed[part]).collect()
+        };
+        let needed: Vec<Vec<usize>> = panels.par_iter().map(needs).collect();
+        let mut last = vec![0; inner.parts.len()];
+        needed.iter().enumerate().for_each(|(at, needed)| needed.iter().for_each(|&part| last[part] = at));
+        let mut parts = Vec::with_capacity(tasks.len());
+        for (at, (panel, needed)) in panels.into_iter().zip(&needed).enumerate() {
+            let missing: Vec<usize> =
+                needed.iter().copied().filter(|&part| Arc::ptr_eq(&inner.parts[part], &nothing)).collect();
+            let made = middle.parts_of_times(right, &missing);
+            missing.into_iter().zip(made).for_each(|(part, made)| inner.parts[part] = made);
+            parts.extend(self.parts_of_times(&inner, panel));
+            needed.iter().filter(|part| last[**part] == at).for_each(|&part| inner.parts[part] = nothing.clone());
+        }
+        Self { rows: self.rows, columns: right.columns, height: self.height, width: right.width, parts }
+    }
+
+    /// Parts of `self right`.
+    fn parts_of_times(&self, right: &Self, tasks: &[usize]) -> Vec<Arc<Part>> {
+        let (size, of_product) = (self.size(), self.height * right.width);
+        let make = |(row, product): &mut (BlockRow, ProductRow), &task: &usize| {
+            let own = task * ROWS..((task + 1) * ROWS).min(self.rows);
+            Part::of_rows(own, right.columns, of_product, row, |i, row| {
+                let (columns, values) = self.row_and_beside(i);
+                for (at, &k) in columns.iter().enumerate() {
+                    let (columns, blocks) = right.row(k as usize);
+                    product.add(row, columns, &values[at * size..], blocks);
                 }
-            }
-            product.write(row);
-        })
+                product.write(row);
+            })
+        };
+        let scratch = || {
+            let product = ProductRow::new([self.height, self.width, right.width]);
+            (BlockRow::new(right.columns, of_product), product)
+        };
+        tasks.par_iter().map_init(scratch, make).collect()
     }
 
     /// The square matrix by scalar rows.

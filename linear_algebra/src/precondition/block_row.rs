@@ -20,6 +20,11 @@ impl BlockRow {
         self.place(column) * self.size
     }
 
+    /// How many blocks it has so far.
+    pub(super) fn blocks(&self) -> usize {
+        self.columns.len()
+    }
+
     /// The place of a block in the order of their first entry.
     #[inline]
     pub(super) fn place(&mut self, column: u32) -> usize {

@@ -11,11 +11,12 @@ mod block_matrix;
 mod blocks;
 mod constrained;
 mod ilu0;
+mod latest_blocks;
 mod multigrid;
 mod shared_levels;
 
-pub(crate) use blocks::Blocks;
 pub(crate) use constrained::Constrained;
+pub(crate) use latest_blocks::LatestBlocks;
 pub(crate) use multigrid::Multigrid;
 
 pub(crate) use crate::solver::Precondition;

@@ -275,7 +275,7 @@ impl Level {
                 for (at, &k) in columns.iter().enumerate() {
                     let a = aggregate[k as usize];
                     if a != NONE {
-                        product.add(row, a, &values[at * size..], of(k as usize));
+                        product.add(row, &[a], &values[at * size..], of(k as usize));
                     }
                 }
                 let inverse = &inverse[i * size..(i + 1) * size];
@@ -285,8 +285,7 @@ impl Level {
                 product.write(row);
                 before.clear();
                 before.extend_from_slice(row.entries());
-                let blocks = before.chunks_exact(wide).enumerate();
-                blocks.for_each(|(place, block)| product.add_at(place, damping, block));
+                product.add_to_each(row, damping, before);
                 product.write(row);
                 if aggregate[i] != NONE {
                     row.block(aggregate[i]).iter_mut().zip(of(i)).for_each(|(sum, t)| *sum += t);

@@ -8,29 +8,35 @@ pub(super) struct ProductRow {
     shape: [usize; 3],
     multiply: Multiply,
     sums: Vec<f32>,
+    places: Vec<u32>,
 }
 
 impl ProductRow {
     /// For products of blocks of a shape `[h, k, w]`.
     pub(super) fn new(shape: [usize; 3]) -> Self {
-        Self { shape, multiply: multiplier(shape), sums: Vec::new() }
+        Self { shape, multiply: multiplier(shape), sums: Vec::new(), places: Vec::new() }
     }
 
-    /// Adds the product of two blocks to what stands in a column of the row; see [`Multiply`].
+    /// Adds the products of a block with blocks that stand side by side to what stands in these columns of the row; see [`Multiply`].
     #[inline]
-    pub(super) fn add(&mut self, row: &mut BlockRow, column: u32, a: &[f32], b: &[f32]) {
-        self.add_at(row.place(column), a, b);
+    pub(super) fn add(&mut self, row: &mut BlockRow, columns: &[u32], a: &[f32], b: &[f32]) {
+        self.places.clear();
+        self.places.extend(columns.iter().map(|&column| row.place(column) as u32));
+        self.multiply(row.blocks(), a, b);
     }
 
-    /// The same for the block at a place of the row: one that has sums, or the next.
+    /// The same for as many blocks as the row has, one after the other.
     #[inline]
-    pub(super) fn add_at(&mut self, place: usize, a: &[f32], b: &[f32]) {
+    pub(super) fn add_to_each(&mut self, row: &BlockRow, a: &[f32], b: &[f32]) {
+        self.places.clear();
+        self.places.extend(0..row.blocks() as u32);
+        self.multiply(row.blocks(), a, b);
+    }
+
+    fn multiply(&mut self, blocks: usize, a: &[f32], b: &[f32]) {
         let size = lanes(self.shape[0]) * self.shape[2];
-        let begin = place * size;
-        if begin == self.sums.len() {
-            self.sums.resize(begin + size, 0.0);
-        }
-        (self.multiply)(self.shape, a, b, &mut self.sums[begin..begin + size]);
+        self.sums.resize(blocks * size, 0.0);
+        (self.multiply)(self.shape, a, b, &self.places, &mut self.sums);
     }
 
     /// Writes the sums to the blocks of the row; there are none then.

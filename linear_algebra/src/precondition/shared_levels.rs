@@ -84,7 +84,7 @@ impl Aggregates {
         restriction: &mut BlockMatrix,
     ) -> (BlockMatrix, Ghosts) {
         let Some(processes) = ghosts.processes() else {
-            return (restriction.times(&matrix.times(prolongation)), Ghosts::none(self.own));
+            return (restriction.times_product(matrix, prolongation), Ghosts::none(self.own));
         };
         let processes = processes.as_ref();
         let rows =
@@ -105,7 +105,7 @@ impl Aggregates {
             }
         });
         restriction.add_rows(self.all());
-        let here = restriction.times(&matrix.times(&whole));
+        let here = restriction.times_product(matrix, &whole);
         drop(whole);
         let mut sent = vec![Vec::new(); processes.size()];
         for (at, &(owner, item)) in self.others.iter().enumerate() {

@@ -1,34 +1,38 @@
-//! A sparse sum of numbers under way.
+//! A sparse sum of vectors under way.
 
-/// Numbers by places, of which it holds few.
+/// Vectors of a width by places, of which it holds few.
 pub(super) struct Sums {
+    width: usize,
     at: Vec<u32>,
     places: Vec<u32>,
     values: Vec<f64>,
 }
 
 impl Sums {
-    /// No number yet at any of `places`.
-    pub(super) fn new(places: usize) -> Self {
-        Self { at: vec![u32::MAX; places], places: Vec::new(), values: Vec::new() }
+    /// No vector of this width yet at any of `places`.
+    pub(super) fn new(places: usize, width: usize) -> Self {
+        Self { width, at: vec![u32::MAX; places], places: Vec::new(), values: Vec::new() }
     }
 
-    /// Adds a number at a place.
-    pub(super) fn add(&mut self, place: usize, value: f64) {
+    /// The sum at a place, zero at first.
+    #[inline]
+    pub(super) fn at(&mut self, place: usize) -> &mut [f64] {
         let at = &mut self.at[place];
         if *at == u32::MAX {
             *at = self.places.len() as u32;
             self.places.push(place as u32);
-            self.values.push(0.0);
+            self.values.resize(self.values.len() + self.width, 0.0);
         }
-        self.values[*at as usize] += value;
+        let begin = *at as usize * self.width;
+        &mut self.values[begin..begin + self.width]
     }
 
     /// Hands on the sums by ascending places; none is left then.
-    pub(super) fn drain(&mut self, mut each: impl FnMut(u32, f64)) {
+    pub(super) fn drain(&mut self, mut each: impl FnMut(u32, &[f64])) {
         self.places.sort_unstable();
         for &place in &self.places {
-            each(place, self.values[std::mem::replace(&mut self.at[place as usize], u32::MAX) as usize]);
+            let at = std::mem::replace(&mut self.at[place as usize], u32::MAX) as usize;
+            each(place, &self.values[at * self.width..(at + 1) * self.width]);
         }
         self.places.clear();
         self.values.clear();

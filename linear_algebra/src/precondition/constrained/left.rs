@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::group::Group;
 use super::{Constrained, NONE};
+use crate::csr::are_same;
 use crate::memory;
 use crate::precondition::block_matrix::BlockMatrix;
 use crate::precondition::block_row::BlockRow;
@@ -26,6 +27,22 @@ fn summed(mut terms: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
         is_same
     });
     terms
+}
+
+fn add_multiple(sums: &mut [f64], value: f64, vector: &[f64]) {
+    sums.iter_mut().zip(vector).for_each(|(sum, v)| *sum += value * v);
+}
+
+/// What the rows of a block are made in.
+struct Scratch {
+    /// Equations with the row of the block that they are added to, and their factor in it.
+    terms: Vec<(u32, usize, f64)>,
+    /// Of one equation in each row of the block.
+    factors: Vec<f64>,
+    /// Entries of the rows at each equation.
+    sums: Sums,
+    /// The same at the unknowns of each group, one after the other.
+    met: Sums,
 }
 
 impl Constrained {
@@ -63,17 +80,22 @@ impl Constrained {
         group.factors(&group.elimination.left[k * s..(k + 1) * s])
     }
 
-    /// What is left, the matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
-    pub(crate) fn left_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
-        let of_bodies = (0..system.bulk.rows).into_par_iter().with_min_len(1024);
+    /// The largest entry on the diagonal of the bulk, one where all are zero; collective.
+    fn largest_diagonal(&self, system: &System<'_>) -> f64 {
+        let rows = (0..system.bulk.rows).into_par_iter().with_min_len(1024);
         let is_left = |i: &usize| !system.layout.multiplier[*i] && !system.layout.is_held(*i);
-        let diagonal = of_bodies.filter(is_left).map(|i| {
+        let diagonal = rows.filter(is_left).map(|i| {
             system.bulk.prefetch_diagonal(i + ROWS_AHEAD);
             system.bulk.get(i, i).abs()
         });
-        let largest = diagonal.reduce(|| 0.0, f64::max);
-        let largest = self.ghosts.largest(largest);
-        let largest = if largest > 0.0 { largest } else { 1.0 };
+        let largest = self.ghosts.largest(diagonal.reduce(|| 0.0, f64::max));
+        if largest > 0.0 { largest } else { 1.0 }
+    }
+
+    /// What is left, the matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
+    pub(crate) fn left_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
+        let earlier = earlier.filter(|_| self.blocks.processes().is_none());
+        let largest = earlier.map_or_else(|| self.largest_diagonal(system), |earlier| earlier.size);
         let mut loads: Vec<Option<&[(u32, f64)]>> = vec![None; system.equations()];
         self.loads.iter().for_each(|(e, load)| loads[*e as usize] = Some(load));
         let mut plain = vec![true; system.equations()];
@@ -92,10 +114,6 @@ impl Constrained {
                 .filter(|(_, value)| **value != 0.0)
                 .map(|(&j, &value)| (j as usize, value))
         };
-        let add = |row: &mut BlockRow, k: usize, place: u32, value: f64| {
-            let (block, slot) = of_place[place as usize];
-            row.block(block)[slot as usize * w + k] += (value * inverse) as f32;
-        };
         let recovery = |group: &Group| group.multipliers.iter().map(|&m| self.recovery(m)).collect::<Vec<_>>();
         let recoveries: Vec<_> = self.groups.par_iter().map(recovery).collect();
         let recovery = |m: u32| {
@@ -107,12 +125,11 @@ impl Constrained {
             equations.all(|i| plain[i] && self.group_of[i] == NONE && coupled(i).next().is_none())
         };
         let of_bulk: Vec<bool> = (0..self.blocks.own()).map(of_bulk).collect();
-        let earlier = earlier.filter(|earlier| self.blocks.processes().is_none() && earlier.size == largest);
-        let fill = |b: usize, row: &mut BlockRow, scratch: &mut (Sums, Sums)| {
+        let fill = |b: usize, row: &mut BlockRow, scratch: &mut Scratch| {
             let equations = &self.equation[b * w..(b + 1) * w];
             if of_bulk[b] && !equations.contains(&NONE) {
                 let rows: Vec<(&[u32], &[f64])> = equations.iter().map(|&e| system.bulk.row(e as usize)).collect();
-                if rows.iter().all(|(columns, _)| *columns == rows[0].0) {
+                if rows.iter().all(|(columns, _)| are_same(columns, rows[0].0)) {
                     // Unknowns of a node stand side by side.
                     let (mut block, mut start) = (NONE, 0);
                     for (c, (of, slot)) in rows[0].0.iter().map(|&j| at[j as usize]).enumerate() {
@@ -131,15 +148,14 @@ impl Constrained {
             row.block(b as u32);
             // One bit for each unknown that the node does not have or whose motion is prescribed.
             let mut idle = 0_u64;
-            for k in 0..w {
-                let equation = self.equation[b * w + k];
-                if equation == NONE {
-                    idle |= 1 << k;
-                    continue;
-                }
-                let i = equation as usize;
-                if plain[i] && self.group_of[i] == NONE {
-                    let (columns, values) = system.bulk.row(i);
+            let is_plain = |e: u32| e == NONE || (plain[e as usize] && self.group_of[e as usize] == NONE);
+            if equations.iter().all(|&e| is_plain(e)) {
+                for (k, &equation) in equations.iter().enumerate() {
+                    if equation == NONE {
+                        idle |= 1 << k;
+                        continue;
+                    }
+                    let (columns, values) = system.bulk.row(equation as usize);
                     // Unknowns of a node stand side by side.
                     let (mut block, mut start) = (NONE, 0);
                     let filled = columns.iter().zip(values).filter(|(_, value)| **value != 0.0);
@@ -151,39 +167,49 @@ impl Constrained {
                             row.entries()[start + slot as usize * w + k] += (value * inverse) as f32;
                         }
                     }
-                    for (j, value) in coupled(i).filter(|&(j, _)| self.place[j] != NONE) {
-                        add(row, k, self.place[j], value);
+                    for (j, value) in coupled(equation as usize).filter(|&(j, _)| self.place[j] != NONE) {
+                        let (block, slot) = of_place[self.place[j] as usize];
+                        row.block(block)[slot as usize * w + k] += (value * inverse) as f32;
                     }
-                    continue;
                 }
-                let (sums, met) = scratch;
-                let mut spread = |j: u32, value: f64| {
+            } else {
+                let Scratch { terms, factors, sums, met } = scratch;
+                terms.clear();
+                for (k, &equation) in equations.iter().enumerate() {
+                    let load = if equation == NONE { None } else { loads[equation as usize] };
+                    let left = if equation == NONE { Vec::new() } else { self.left(b * w + k, load, recovery) };
+                    idle |= u64::from(left.is_empty()) << k;
+                    terms.extend(left.into_iter().map(|(e, factor)| (e, k, factor)));
+                }
+                // Rows of a node are mostly made of the same equations.
+                terms.sort_by_key(|(e, _, _)| *e);
+                for same in terms.chunk_by(|a, b| a.0 == b.0) {
+                    factors.fill(0.0);
+                    same.iter().for_each(|&(_, k, factor)| factors[k] += factor);
+                    system.row(same[0].0 as usize).for_each(|(j, value)| add_multiple(sums.at(j), value, factors));
+                }
+                sums.drain(|j, values| {
                     let (place, group) = (self.place[j as usize], self.group_of[j as usize]);
                     if place != NONE && group != NONE {
                         let own = &self.groups[group as usize].own;
                         let slot = own.iter().position(|&e| e == j).expect("an own equation");
-                        met.add(group as usize * w + slot, value);
+                        add_multiple(&mut met.at(group as usize)[slot * w..(slot + 1) * w], 1.0, values);
                     } else if place != NONE {
-                        add(row, k, place, value);
+                        let (block, slot) = of_place[place as usize];
+                        let entries = &mut row.block(block)[slot as usize * w..][..w];
+                        entries.iter_mut().zip(values).for_each(|(to, value)| *to += (value * inverse) as f32);
                     }
-                };
-                if self.group_of[i] == NONE && loads[i].is_none() {
-                    system.row(i).for_each(|(j, value)| spread(j as u32, value));
-                } else {
-                    let left = self.left(b * w + k, loads[i], recovery);
-                    idle |= u64::from(left.is_empty()) << k;
-                    for (e, factor) in left {
-                        system.row(e as usize).for_each(|(j, value)| sums.add(j, factor * value));
-                    }
-                    sums.drain(&mut spread);
-                }
+                });
                 // What stands at unknowns of groups goes to what they follow.
-                met.drain(|at, value| {
-                    let (group, slot) = (at as usize / w, at as usize % w);
-                    for (block, factors) in &self.groups[group].followed {
-                        let entries = row.block(*block).iter_mut().skip(k).step_by(w);
-                        let factors = &factors[slot * w..(slot + 1) * w];
-                        entries.zip(factors).for_each(|(to, factor)| *to += (value * factor * inverse) as f32);
+                met.drain(|group, values| {
+                    for (block, factors) in &self.groups[group as usize].followed {
+                        let entries = row.block(*block);
+                        for (values, factors) in values.chunks_exact(w).zip(factors.chunks_exact(w)) {
+                            for (column, factor) in entries.chunks_exact_mut(w).zip(factors) {
+                                let factor = factor * inverse;
+                                column.iter_mut().zip(values).for_each(|(to, v)| *to += (v * factor) as f32);
+                            }
+                        }
                     }
                 });
             }
@@ -194,7 +220,12 @@ impl Constrained {
             }
         };
         let shape = [self.blocks.own(), blocks];
-        let scratch = || (Sums::new(system.equations()), Sums::new(self.groups.len() * w));
+        let scratch = || Scratch {
+            terms: Vec::new(),
+            factors: vec![0.0; w],
+            sums: Sums::new(system.equations(), w),
+            met: Sums::new(self.groups.len(), w * w),
+        };
         let keeps = |earlier: &Blocks, b: usize| of_bulk[b] && earlier.of_bulk[b];
         let kept = earlier.map(|earlier| (&*earlier.matrix, move |b: usize| keeps(earlier, b)));
         let matrix = Arc::new(BlockMatrix::from_rows_with(shape, [w; 2], kept, scratch, fill));
