@@ -202,7 +202,7 @@ impl Session {
     fn column(&self, path: &str, store: &str, name: &str, level: usize) -> PyResult<Buffer> {
         self.with(|lent| {
             let field = fields(root(lent, path)?, store)?.field(name).map_err(wrong)?;
-            Ok(Buffer::real(field.levels.get(level).ok_or_else(past)?.clone(), field.components))
+            Ok(Buffer::real(field.levels.get(level).ok_or_else(past)?.to_vec(), field.components))
         })
     }
 

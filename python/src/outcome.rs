@@ -68,7 +68,7 @@ fn add_fields(out: &Bound<'_, PyDict>, mut fields: Fields) -> PyResult<()> {
     let names: Vec<&str> = fields.iter().map(|(name, _)| name).collect();
     for name in names {
         let field = fields.get_mut(name).expect("it is one of them");
-        out.set_item(name, Buffer::real(std::mem::take(&mut field.levels[0]), field.components))?;
+        out.set_item(name, Buffer::real(std::mem::take(&mut field.levels[0]).into_vec(), field.components))?;
     }
     Ok(())
 }

@@ -76,7 +76,7 @@ fn forces_of_friction_are_tractions_times_areas() {
             Simulation::open(&scratch.path().join("ProjectParameters.json"), &RunOptions::default()).unwrap();
         simulation.run(&mut Silent).unwrap();
         let values = &simulation.part().unwrap().nodes.values;
-        let of = |name: &str| values.get(name).unwrap_or_else(|| panic!("{name}")).levels[0].as_slice();
+        let of = |name: &str| &*values.get(name).unwrap_or_else(|| panic!("{name}")).levels[0];
         let (force, traction) = (of("CONTACT_FORCE"), of("CONTACT_TRACTION"));
         let (area, status) = (of("NODAL_AREA"), of("CONTACT_STATUS"));
         let largest = force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));

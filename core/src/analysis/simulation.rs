@@ -280,13 +280,13 @@ impl Simulation {
     /// Numbers of a field with history at the end of the last step (`components` a node), in the order of `part().nodes`; `None`
     /// when nodes have no such variable.
     pub fn field(&self, name: &str) -> Option<&[f64]> {
-        self.part()?.nodes.history.get(name).map(|field| field.levels[0].as_slice())
+        self.part()?.nodes.history.get(name).map(|field| &*field.levels[0])
     }
 
     /// As [`Simulation::field`], to write.
     pub fn field_mut(&mut self, name: &str) -> Option<&mut [f64]> {
         let field = self.model.parts.get_mut(&self.root)?.nodes.history.get_mut(name)?;
-        field.levels.first_mut().map(Vec::as_mut_slice)
+        field.levels.first_mut().map(|level| &mut **level)
     }
 
     /// The time that is reached in the stage under way.

@@ -152,9 +152,9 @@ impl DofTable {
     pub fn scatter_add(&self, increment: &[f64], nodes: &mut Nodes) {
         for (variable, numbers) in &self.numbers {
             let Some(field) = nodes.history.get_mut(variable.column) else { continue };
-            let (components, offset) = (field.components, variable.offset());
+            let (components, offset, present) = (field.components, variable.offset(), &mut *field.levels[0]);
             for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != NONE) {
-                field.levels[0][node * components + offset] += increment[number as usize];
+                present[node * components + offset] += increment[number as usize];
             }
         }
     }
@@ -179,9 +179,9 @@ impl DofTable {
         for (variable, numbers) in &self.numbers {
             let name = Rates::of(variable.column).and_then(column);
             let Some(field) = name.and_then(|name| fields.get_mut(name)) else { continue };
-            let (components, offset) = (field.components, variable.offset());
+            let (components, offset, column) = (field.components, variable.offset(), &mut *field.levels[level]);
             for (node, &number) in numbers.iter().enumerate().filter(|(_, number)| **number != NONE) {
-                field.levels[level][node * components + offset] = values[number as usize];
+                column[node * components + offset] = values[number as usize];
             }
         }
     }

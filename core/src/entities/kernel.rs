@@ -36,15 +36,15 @@ pub struct Gather<'a, const NODES: usize> {
 impl<const NODES: usize> Gather<'_, NODES> {
     /// Three numbers a node of a vector column.
     pub fn vectors(&self, column: &[f64]) -> [[f64; 3]; NODES] {
-        self.nodes.map(|node| {
-            let at = 3 * node as usize;
+        std::array::from_fn(|i| {
+            let at = 3 * self.nodes[i] as usize;
             [column[at], column[at + 1], column[at + 2]]
         })
     }
 
     /// One number a node of a scalar column.
     pub fn scalars(&self, column: &[f64]) -> [f64; NODES] {
-        self.nodes.map(|node| column[node as usize])
+        std::array::from_fn(|i| column[self.nodes[i] as usize])
     }
 }
 
@@ -219,14 +219,15 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
         }))
     }
 
+    #[inline(always)]
     fn gather<'a>(&'a self, at: usize, view: &StepView<'a>) -> Gather<'a, NODES> {
         let nodes = &self.nodes[at];
         Gather {
             index: self.members[at],
             nodes,
             properties: &view.properties[&self.properties[at]],
-            initial: nodes.map(|n| view.nodes.initial[n as usize]),
-            current: nodes.map(|n| view.nodes.current[n as usize]),
+            initial: std::array::from_fn(|i| view.nodes.initial[nodes[i] as usize]),
+            current: std::array::from_fn(|i| view.nodes.current[nodes[i] as usize]),
         }
     }
 

@@ -75,7 +75,7 @@ fn a_mesh_becomes_a_model_part() {
     let fixed: Vec<bool> = (0..3).map(|node| part.nodes.is_fixed(DISPLACEMENT.component(1), node)).collect();
     assert_eq!(fixed, [false, true, false]);
     assert!(part.nodes.flags.is("SLAVE", 2) && part.nodes.flags.get("SLAVE", 0).is_none());
-    assert_eq!(part.elements.data.get("IO_TEST_MODULUS").unwrap().levels[0], [7.5]);
+    assert_eq!(*part.elements.data.get("IO_TEST_MODULUS").unwrap().levels[0], [7.5]);
     let material = &part.properties[&4];
     assert_eq!((material.number("IO_TEST_MODULUS"), material.law.as_deref()), (Some(5.0), Some("IoTestLaw")));
     assert_eq!(

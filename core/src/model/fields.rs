@@ -3,30 +3,24 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::vector::copied;
 
+use super::level::Level;
 use super::variable::{ColumnType, ScalarVariable, Variable};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::names;
 
 /// One variable over all nodes (or entities): `levels[0]` is the present, `levels[1]` the previous step.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Numbers a value takes: 1 or 3.
     pub components: usize,
     /// `count * components` numbers a time level, newest first.
-    pub levels: Vec<Vec<f64>>,
-}
-
-impl Clone for Field {
-    fn clone(&self) -> Self {
-        Self { components: self.components, levels: self.levels.iter().map(|level| copied(level)).collect() }
-    }
+    pub levels: Vec<Level>,
 }
 
 impl Field {
     fn new(components: usize, levels: usize, count: usize) -> Self {
-        Self { components, levels: vec![vec![0.0; count * components]; levels] }
+        Self { components, levels: vec![Level::zeros(count * components); levels] }
     }
 
     /// The three numbers of `index` at a time level of a vector column.
@@ -70,13 +64,7 @@ impl Fields {
     pub fn grow(&mut self, count: usize) {
         self.count = count;
         for field in self.columns.values_mut() {
-            for level in &mut field.levels {
-                match level.is_empty() {
-                    // Zeros that nothing writes take no memory.
-                    true => *level = vec![0.0; count * field.components],
-                    false => level.resize(count * field.components, 0.0),
-                }
-            }
+            field.levels.iter_mut().for_each(|level| level.grow(count * field.components));
         }
     }
 
@@ -84,9 +72,8 @@ impl Fields {
     pub fn pick(&self, items: &[u32]) -> Self {
         let pick = |field: &Field| {
             let size = field.components;
-            let level = |values: &Vec<f64>| {
-                items.iter().flat_map(|&at| &values[at as usize * size..][..size]).copied().collect()
-            };
+            let level =
+                |values: &Level| items.iter().flat_map(|&at| &values[at as usize * size..][..size]).copied().collect();
             Field { components: size, levels: field.levels.iter().map(level).collect() }
         };
         let columns = self.columns.iter().map(|(name, field)| (*name, pick(field))).collect();
@@ -200,7 +187,7 @@ impl Fields {
         for field in self.columns.values_mut() {
             field.levels.rotate_right(1);
             if let [present, previous, ..] = field.levels.as_mut_slice() {
-                present.copy_from_slice(previous);
+                present.take_over(previous);
             }
         }
     }

@@ -64,7 +64,7 @@ impl AssignToNodes {
             let Some(value) = &component.value else { continue };
             let field = part.nodes.history.field_mut(variable.column).map_err(|e| e.at(&self.target.place))?;
             let stride = field.components;
-            let column = &mut field.levels[0];
+            let column = &mut *field.levels[0];
             let constant = (!value.uses_space()).then(|| value.value(&SpaceTime { time, ..SpaceTime::default() }));
             for &node in nodes {
                 let at = node as usize;

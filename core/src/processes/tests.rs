@@ -216,10 +216,10 @@ fn conditions_see_functions_at_their_present_and_initial_centre() {
     assert!(!part(&mut model).conditions.data.has("TEST_PRESSURE"));
     step(&mut *process, &mut model, 0.25).unwrap();
     let data = |model: &mut Model| part(model).conditions.data.get("TEST_PRESSURE").unwrap().levels[0].clone();
-    assert_eq!(data(&mut model), [0.0, 31.25]);
+    assert_eq!(*data(&mut model), [0.0, 31.25]);
     process.end_step(&mut model, &system()).unwrap();
     step(&mut *process, &mut model, 0.35).unwrap();
-    assert_eq!(data(&mut model), [0.0, 31.25]);
+    assert_eq!(*data(&mut model), [0.0, 31.25]);
 }
 
 #[test]
@@ -455,7 +455,7 @@ fn sites_of_a_file_give_their_series_to_what_is_nearest() {
     for time in [0.25, 3.0] {
         step(&mut *process, &mut model, time).unwrap();
         let field = part(&mut model).conditions.data.get("TEST_PRESSURE").unwrap();
-        assert_eq!(field.levels[0], [1.5, -1.0], "centres at 0.5 and 2; the last value stays");
+        assert_eq!(*field.levels[0], [1.5, -1.0], "centres at 0.5 and 2; the last value stays");
     }
     let wrong = [
         (write("a.txt", "Time\t4\n0.0\n"), "1 numbers for a time and 1 sites"),

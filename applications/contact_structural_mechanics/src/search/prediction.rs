@@ -13,7 +13,7 @@ pub fn predicted_positions(part: &mut ModelPart, dynamic: bool) -> Option<Vec<[f
     let mut shift: Vec<[f64; 3]> = vec![[0.0; 3]; part.nodes.len()];
     let mut add = |variable: &Variable<[f64; 3]>, level: usize, weight: f64| {
         let Some(column) = part.nodes.history.get(variable.name()).and_then(|f| f.levels.get(level)) else { return };
-        for (slot, value) in shift.as_flattened_mut().iter_mut().zip(column) {
+        for (slot, value) in shift.as_flattened_mut().iter_mut().zip(column.iter()) {
             *slot += weight * value;
         }
     };

@@ -339,7 +339,7 @@ fn gauss_values_become_fields_of_the_nodes() {
         run(make(name, &parameters, &mut model, folder.path()).0.unwrap().as_mut(), &mut model, 1, 0.1).unwrap();
         let nodes = &model.parts["Structure"].nodes;
         let field = if history { &nodes.history } else { &nodes.values }.get("OUTPUT_TEST_VECTOR").unwrap();
-        assert_eq!(field.levels[0], [0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 0.0, 1.0, 0.5, 1.5, 1.0, 2.0]);
+        assert_eq!(*field.levels[0], [0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 0.0, 1.0, 0.5, 1.5, 1.0, 2.0]);
     }
 }
 
