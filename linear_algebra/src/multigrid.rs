@@ -263,7 +263,8 @@ impl MultigridSolver {
         let (tolerance, most) = (self.tolerance, self.settings.iterations.min(most));
         let (mut iterations, mut before, mut rate, mut solves_left) = (0, None, 0.0_f64, !hierarchy.is_old);
         let (latest, inner) = (&mut self.left, &mut self.inner);
-        let pays = PAYS[usize::from(latest.has_bulk_of(system))];
+        let knows_most = system.shared.is_none() && latest.has_bulk_of(system);
+        let pays = PAYS[usize::from(knows_most)];
         let precondition = |r: &mut [f64], share: f64| {
             let room = most - iterations;
             if room == 0 {

@@ -25,11 +25,7 @@ impl Level {
     pub(super) fn grow(&mut self, count: usize) {
         match self.is_empty() {
             true => *self = Self::zeros(count),
-            false => {
-                let mut values = self.to_vec();
-                values.resize(count, 0.0);
-                *self = values.into();
-            }
+            false => Arc::make_mut(&mut self.0).resize(count, 0.0),
         }
     }
 
