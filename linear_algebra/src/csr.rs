@@ -94,21 +94,13 @@ impl Csr {
     /// # Panics
     /// When the lengths do not fit, or the columns of a row do not ascend or are out of range.
     pub fn from_sorted_pattern(row_starts: Vec<usize>, columns: Vec<u32>) -> Self {
-        let values = vec![0.0; columns.len()];
-        Self { values, ..Self::without_values(row_starts, columns) }
-    }
-
-    /// As [`Csr::from_sorted_pattern`], without values: for those who keep them elsewhere.
-    ///
-    /// # Panics
-    /// As there.
-    pub fn without_values(row_starts: Vec<usize>, columns: Vec<u32>) -> Self {
         assert_eq!(row_starts.last(), Some(&columns.len()), "row_starts ends with the number of entries");
-        let rows = row_starts.len() - 1;
-        Self { rows, row_starts, columns, ..Self::nothing() }.checked()
+        let (rows, values) = (row_starts.len() - 1, vec![0.0; columns.len()]);
+        Self { rows, row_starts, columns, values, ..Self::nothing() }.checked()
     }
 
-    /// As [`Csr::without_values`] where rows share their columns: those of a row begin at its place of `column_starts`.
+    /// As [`Csr::from_sorted_pattern`] where rows share their columns: those of a row begin at its place of `column_starts`. It has no
+    /// values: for those who keep them elsewhere.
     ///
     /// # Panics
     /// As there.
@@ -133,8 +125,8 @@ impl Csr {
 
     /// The same matrix, each entry with a column of its own.
     pub(crate) fn with_own_columns(&self) -> Self {
-        let columns = (0..self.rows).flat_map(|i| self.columns_of(i)).copied().collect();
-        Self { columns, column_starts: Vec::new(), ..self.clone() }
+        let (row_starts, values) = (self.row_starts.clone(), self.values.clone());
+        Self { rows: self.rows, row_starts, columns: self.columns_of_entries().collect(), values, ..Self::nothing() }
     }
 
     /// The matrix with the sum of all `(row, column, value)` given.
@@ -174,6 +166,11 @@ impl Csr {
     pub fn columns_of(&self, i: usize) -> &[u32] {
         let begin = self.first_column(i);
         &self.columns[begin..begin + (self.row_starts[i + 1] - self.row_starts[i])]
+    }
+
+    /// Column of each entry, row after row.
+    pub fn columns_of_entries(&self) -> impl Iterator<Item = u32> {
+        (0..self.rows).flat_map(|i| self.columns_of(i)).copied()
     }
 
     #[inline]
@@ -366,7 +363,7 @@ impl Csr {
     /// The transposed matrix.
     pub fn transpose(&self) -> Self {
         let mut row_starts = vec![0; self.rows + 1];
-        for &j in (0..self.rows).flat_map(|i| self.columns_of(i)) {
+        for j in self.columns_of_entries() {
             row_starts[j as usize + 1] += 1;
         }
         for i in 0..self.rows {

@@ -9,7 +9,7 @@ const LINE: usize = 64;
 
 /// Asks for what stands so many bytes behind the start of `values`; that may be beyond the end.
 #[inline(always)]
-pub fn prefetch<T>(values: &[T], bytes: usize) {
+pub(crate) fn prefetch<T>(values: &[T], bytes: usize) {
     let address = values.as_ptr().cast::<i8>().wrapping_add(bytes);
     #[cfg(target_arch = "x86_64")]
     // SAFETY: every such processor has the instruction, and it reads nothing that the program could see.

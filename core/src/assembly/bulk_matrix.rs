@@ -119,6 +119,35 @@ impl BulkPattern {
         self.offset(a, node) + (entity.numbers[unknown] - self.first[node as usize]) as usize
     }
 
+    /// Adds the local matrix of an entity with these runs to the `part` of the values that holds some rows, whose first entry is at `base`.
+    fn add_entity(
+        &self,
+        entity: &Entity<'_>,
+        runs: &mut [Run],
+        lhs: &[f64],
+        rows: &Range<usize>,
+        base: usize,
+        part: &mut [f64],
+    ) {
+        let mut of_node = None;
+        let lines = entity.numbers.iter().zip(entity.unknowns).zip(lhs.chunks_exact(entity.numbers.len()));
+        for ((&row, unknown), line) in lines.filter(|((row, _), _)| rows.contains(&(**row as usize))) {
+            let node = entity.nodes[unknown.node as usize];
+            if of_node.replace(node) != Some(node) {
+                runs.iter_mut().for_each(|run| run.place = self.place(node, entity, run.first));
+            }
+            let sums = &mut part[self.matrix.row_starts[row as usize] - base..];
+            for &Run { first, length, place } in &*runs {
+                let (sums, values) = (&mut sums[place..place + length], &line[first..first + length]);
+                // A length that is known makes no loop.
+                match (<&mut [f64; 3]>::try_from(&mut *sums), <&[f64; 3]>::try_from(values)) {
+                    (Ok(sums), Ok(values)) => (0..3).for_each(|i| sums[i] += values[i]),
+                    _ => sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
+                }
+            }
+        }
+    }
+
     /// Adds the local matrices of a block to `values`.
     ///
     /// `compute` writes the local systems of a range. Every entry receives its contributions in the order of the
@@ -144,38 +173,20 @@ impl BulkPattern {
             // Rows of each entity, from the first to the last.
             let reach = |at| numbers_of(at).iter().fold([u32::MAX, 0], |[a, b], &n| [a.min(n), b.max(n)]);
             let reaches: Vec<[u32; 2]> = range.clone().map(reach).collect();
-            let touched = reaches.iter().flatten().copied();
+            // One without unknowns reaches none.
+            let touched = reaches.iter().filter(|[first, last]| first <= last).flatten().copied();
             side_by_side(starts, values, touched, |rows, base, part| {
                 let mut runs = Vec::new();
                 let is_near = |[first, last]: [u32; 2]| rows.start <= last as usize && (first as usize) < rows.end;
                 for at in range.clone().filter(|at| is_near(reaches[at - begin])) {
-                    let lhs = entity_lhs(chunks, at - begin);
-                    let numbers = numbers_of(at);
-                    let entity = Entity { nodes: block.nodes(at), unknowns, numbers };
-                    entity.find_runs(&mut runs);
                     // Rows of the next entity are on their way while this one is added.
                     if at + 1 < range.end {
                         let next = numbers_of(at + 1).iter().map(|row| *row as usize).filter(|row| rows.contains(row));
                         next.for_each(|row| prefetch_as_many(&part[starts[row] - base..starts[row + 1] - base], 0));
                     }
-                    let mut of_node = None;
-                    let here = numbers.iter().enumerate().filter(|(_, row)| rows.contains(&(**row as usize)));
-                    for (i, &row) in here {
-                        let node = entity.nodes[unknowns[i].node as usize];
-                        if of_node.replace(node) != Some(node) {
-                            runs.iter_mut().for_each(|run| run.place = self.place(node, &entity, run.first));
-                        }
-                        let start = starts[row as usize] - base;
-                        let lhs = &lhs[i * size..(i + 1) * size];
-                        for &Run { first, length, place } in &runs {
-                            let (sums, values) = (&mut part[start + place..][..length], &lhs[first..][..length]);
-                            // A length that is known makes no loop.
-                            match (<&mut [f64; 3]>::try_from(&mut *sums), <&[f64; 3]>::try_from(values)) {
-                                (Ok(sums), Ok(values)) => (0..3).for_each(|i| sums[i] += values[i]),
-                                _ => sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
-                            }
-                        }
-                    }
+                    let entity = Entity { nodes: block.nodes(at), unknowns, numbers: numbers_of(at) };
+                    entity.find_runs(&mut runs);
+                    self.add_entity(&entity, &mut runs, entity_lhs(chunks, at - begin), &rows, base, part);
                 }
             });
         }

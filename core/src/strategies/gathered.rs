@@ -197,8 +197,7 @@ impl GatheredMatrix {
             let counts = own.row_starts.windows(2).map(|pair| (pair[1] - pair[0]) as u32);
             let rows = numbering.numbers.iter().zip(counts).filter(|(_, count)| *count > 0);
             let rows: Vec<u32> = rows.flat_map(|(&number, count)| [number, count]).collect();
-            let columns = (0..own.rows).flat_map(|row| own.columns_of(row));
-            let columns: Vec<u32> = columns.map(|&column| numbering.numbers[column as usize]).collect();
+            let columns: Vec<u32> = own.columns_of_entries().map(|column| numbering.numbers[column as usize]).collect();
             let rows = ranks.exchange_indices(&ranks.for_root(rows));
             let columns = ranks.exchange_indices(&ranks.for_root(columns));
             if ranks.is_root() {

@@ -49,7 +49,7 @@ struct Transposed {
 impl Transposed {
     fn new(pattern: &Csr) -> Self {
         let mut starts = vec![0; pattern.rows + 1];
-        for &j in (0..pattern.rows).flat_map(|i| pattern.columns_of(i)) {
+        for j in pattern.columns_of_entries() {
             starts[j as usize + 1] += 1;
         }
         for j in 0..pattern.rows {

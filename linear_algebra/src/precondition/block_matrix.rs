@@ -16,8 +16,9 @@ use crate::csr::Csr;
 /// Block rows of a part; fixed, so that results do not depend on the number of threads.
 const ROWS: usize = 64;
 
-/// Parts of a product of three matrices that are made at a time, at least, and how many times that is done at most.
+/// Parts of a product of three matrices that are made at a time, at least.
 const PANEL: usize = 16;
+/// Panels of many parts, each of which costs two rounds over the threads.
 const PANELS: usize = 16;
 
 /// No block has more rows or columns.
