@@ -10,8 +10,8 @@ use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::parameters::Settings;
 
-/// Bytes of an entry of the matrix over all unknowns and of the one over the equations.
-const ASSEMBLED: u64 = 8 + 12;
+/// Bytes of an entry of the matrix over all unknowns, whose rows share the columns of their node, and of the one over the equations.
+const ASSEMBLED: [u64; 2] = [10, 12];
 const GIGABYTE: f64 = 1e9;
 
 /// The size of a system: unknowns, and entries of its matrix.
@@ -19,11 +19,16 @@ const GIGABYTE: f64 = 1e9;
 pub(super) struct Size {
     pub unknowns: usize,
     pub entries: usize,
+    /// Whether unknowns follow others, so that the equations have a matrix of their own whoever solves.
+    pub reduced: bool,
 }
 
 impl Size {
     fn needed(self, solver: &dyn LinearSolver) -> u64 {
-        self.entries as u64 * ASSEMBLED + solver.needs(self.unknowns, self.entries)
+        let [whole, reduced] = ASSEMBLED;
+        let is_one = !self.reduced && solver.takes_held(self.unknowns, self.entries);
+        let assembled = if is_one { whole } else { whole + reduced };
+        self.entries as u64 * assembled + solver.needs(self.unknowns, self.entries)
     }
 }
 

@@ -161,7 +161,8 @@ impl StrategyRequest<'_> {
     pub fn newton(self) -> Result<NewtonRaphson> {
         let named = self.settings.sub("linear_solver_settings")?;
         let assembler = Assembler::new(self.part, self.system, self.scheme.lumped_mass());
-        let size = Size { unknowns: self.system.dofs.len(), entries: assembler.entries() };
+        let reduced = self.part.constraints.iter().any(|constraint| constraint.active);
+        let size = Size { unknowns: self.system.dofs.len(), entries: assembler.entries(), reduced };
         let (solver, warning) = memory::fitting(&self.part.ranks, self.solver, self.frugal, size, &named)?;
         if let Some(warning) = warning {
             *self.says = format!("linear solver: {} serves, which fits in memory", solver.name());
