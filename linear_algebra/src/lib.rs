@@ -21,6 +21,7 @@ mod columns;
 mod square;
 mod dense_lu;
 
+mod components;
 mod condensation;
 mod solver;
 mod check;
@@ -46,6 +47,7 @@ mod multigrid;
 mod condition;
 mod rank;
 
+pub use components::Components;
 pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;

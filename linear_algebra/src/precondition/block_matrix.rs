@@ -11,10 +11,22 @@ use super::product_row::ProductRow;
 #[cfg(target_arch = "x86_64")]
 use super::row_product::Avx2;
 use super::row_product::{Lanes, Plain, TAIL, row_product};
+use super::workspaces::Workspaces;
 use crate::csr::Csr;
 
 /// Block rows of a part; fixed, so that results do not depend on the number of threads.
 const ROWS: usize = 64;
+
+/// Rows of a piece of one of fewer than [`MANY`] parts that are made at a time.
+const PIECE: usize = 8;
+/// Parts that are no longer made in pieces.
+const MANY: usize = 128;
+
+/// Tasks that a thread takes in one piece: their work differs, and the last thread to end decides.
+const TASKS: usize = 1;
+
+/// The same for products with vectors, which take less.
+const PRODUCTS: usize = 8;
 
 /// Parts of a product of three matrices that are made at a time, at least.
 const PANEL: usize = 16;
@@ -57,19 +69,31 @@ impl Part {
         Self { starts, indices, values }
     }
 
-    /// Rows over `columns` blocks of `size` entries, each of which `fill` writes to an empty `row`.
+    /// Rows over `columns` blocks of `size` entries, each of which `fill` writes to an empty `row`: a piece, see [`Part::joined`].
     fn of_rows(
         rows: Range<usize>,
         columns: usize,
         size: usize,
         row: &mut BlockRow,
         mut fill: impl FnMut(usize, &mut BlockRow),
-    ) -> Arc<Self> {
+    ) -> Self {
         let mut part = Self::with_room(rows.len(), rows.len() * BLOCKS_OF_A_ROW.min(columns), size);
         for i in rows {
             fill(i, row);
             row.take(&mut part.indices, &mut part.values);
             part.end_row();
+        }
+        part
+    }
+
+    /// The part of the rows of pieces that follow each other.
+    fn joined(mut pieces: impl Iterator<Item = Self>) -> Arc<Self> {
+        let mut part = pieces.next().expect("a part has rows");
+        for piece in pieces {
+            let before = part.indices.len() as u32;
+            part.starts.extend(piece.starts[1..].iter().map(|start| before + start));
+            part.indices.extend(piece.indices);
+            part.values.extend(piece.values);
         }
         part.end();
         Arc::new(part)
@@ -141,26 +165,28 @@ impl BlockMatrix {
     }
 
     /// The same with what `fill` works in, made once for many rows; rows that are those of an earlier matrix are taken from it.
-    pub(super) fn from_rows_with<T>(
+    pub(super) fn from_rows_with<T: Send>(
         [rows, columns]: [usize; 2],
         [height, width]: [usize; 2],
         earlier: Option<(&Self, impl Fn(usize) -> bool + Sync)>,
         scratch: impl Fn() -> T + Sync,
         fill: impl Fn(usize, &mut BlockRow, &mut T) + Sync,
     ) -> Self {
-        let make = |(row, scratch): &mut (BlockRow, T), task: usize| {
+        let make = |task: usize, (row, scratch): &mut (BlockRow, T)| {
             let own = task * ROWS..((task + 1) * ROWS).min(rows);
             let kept = |i: usize| earlier.as_ref().filter(|(_, keeps)| keeps(i)).map(|(earlier, _)| *earlier);
             if let Some((earlier, _)) = earlier.as_ref().filter(|_| own.clone().all(|i| kept(i).is_some())) {
                 return earlier.parts[task].clone();
             }
-            Part::of_rows(own, columns, height * width, row, |i, row| match kept(i) {
+            let part = Part::of_rows(own, columns, height * width, row, |i, row| match kept(i) {
                 Some(earlier) => row.copy(earlier.row(i)),
                 None => fill(i, row, scratch),
-            })
+            });
+            Part::joined(std::iter::once(part))
         };
-        let scratch = || (BlockRow::new(columns, height * width), scratch());
-        let parts = (0..rows.div_ceil(ROWS)).into_par_iter().map_init(scratch, make).collect();
+        let workspaces = Workspaces::new(|| (BlockRow::new(columns, height * width), scratch()));
+        let tasks = (0..rows.div_ceil(ROWS)).into_par_iter().with_max_len(TASKS);
+        let parts = tasks.map(|task| workspaces.lend(|own| make(task, own))).collect();
         Self { rows, columns, height, width, parts }
     }
 
@@ -219,7 +245,8 @@ impl BlockMatrix {
         y: &mut [f32],
         each: impl Fn(usize, &[f32], &mut [f32]) + Sync,
     ) {
-        y.par_chunks_mut(ROWS * H).zip(&self.parts).enumerate().for_each(|(task, (out, part))| {
+        let parts = y.par_chunks_mut(ROWS * H).zip(&self.parts).enumerate().with_max_len(PRODUCTS);
+        parts.for_each(|(task, (out, part))| {
             let mut sums = [[0.0; H]; ROWS];
             let sums = &mut sums[..out.len() / H];
             part.products::<H, W>(x, sums);
@@ -229,7 +256,7 @@ impl BlockMatrix {
 
     fn any_parts(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
         let (h, w) = (self.height, self.width);
-        y.par_chunks_mut(ROWS * h).enumerate().for_each(|(task, out)| {
+        y.par_chunks_mut(ROWS * h).enumerate().with_max_len(PRODUCTS).for_each(|(task, out)| {
             let mut sums = vec![0.0_f32; out.len()];
             for (at, sum) in sums.chunks_exact_mut(h).enumerate() {
                 let (columns, values) = self.row(task * ROWS + at);
@@ -350,25 +377,38 @@ impl BlockMatrix {
         Self { rows: self.rows, columns: right.columns, height: self.height, width: right.width, parts }
     }
 
-    /// Parts of `self right`.
+    /// Parts of `self right`; few parts are made in pieces, so that all threads have work to the end: rows of an interface take far more
+    /// than others.
     fn parts_of_times(&self, right: &Self, tasks: &[usize]) -> Vec<Arc<Part>> {
         let (size, of_product) = (self.size(), self.height * right.width);
-        let make = |(row, product): &mut (BlockRow, ProductRow), &task: &usize| {
-            let own = task * ROWS..((task + 1) * ROWS).min(self.rows);
-            Part::of_rows(own, right.columns, of_product, row, |i, row| {
-                let (columns, values) = self.row_and_beside(i);
-                for (at, &k) in columns.iter().enumerate() {
-                    let (columns, blocks) = right.row(k as usize);
-                    product.add(row, columns, &values[at * size..], blocks);
-                }
-                product.write(row);
-            })
+        let rows = match tasks.len() {
+            few if few < PANEL => 1,
+            some if some < MANY => PIECE,
+            _ => ROWS,
         };
-        let scratch = || {
+        let pieces_of = |&task: &usize| {
+            let end = ((task + 1) * ROWS).min(self.rows);
+            (task * ROWS..end).step_by(rows).map(move |begin| begin..(begin + rows).min(end))
+        };
+        let pieces: Vec<Range<usize>> = tasks.iter().flat_map(pieces_of).collect();
+        let workspaces = Workspaces::new(|| {
             let product = ProductRow::new([self.height, self.width, right.width]);
             (BlockRow::new(right.columns, of_product), product)
+        });
+        let make = |piece: &Range<usize>| {
+            workspaces.lend(|(row, product)| {
+                Part::of_rows(piece.clone(), right.columns, of_product, row, |i, row| {
+                    let (columns, values) = self.row_and_beside(i);
+                    for (at, &k) in columns.iter().enumerate() {
+                        let (columns, blocks) = right.row(k as usize);
+                        product.add(row, columns, &values[at * size..], blocks);
+                    }
+                    product.write(row);
+                })
+            })
         };
-        tasks.par_iter().map_init(scratch, make).collect()
+        let mut made = pieces.par_iter().with_max_len(TASKS).map(make).collect::<Vec<Part>>().into_iter();
+        tasks.iter().map(|task| Part::joined(made.by_ref().take(pieces_of(task).count()))).collect()
     }
 
     /// The square matrix by scalar rows.

@@ -27,12 +27,11 @@ impl Sums {
         &mut self.values[begin..begin + self.width]
     }
 
-    /// Hands on the sums by ascending places; none is left then.
+    /// Hands on the sums in the order of their first terms; none is left then.
     pub(super) fn drain(&mut self, mut each: impl FnMut(u32, &[f64])) {
-        self.places.sort_unstable();
-        for &place in &self.places {
-            let at = std::mem::replace(&mut self.at[place as usize], u32::MAX) as usize;
-            each(place, &self.values[at * self.width..(at + 1) * self.width]);
+        for (&place, values) in self.places.iter().zip(self.values.chunks_exact(self.width)) {
+            self.at[place as usize] = u32::MAX;
+            each(place, values);
         }
         self.places.clear();
         self.values.clear();

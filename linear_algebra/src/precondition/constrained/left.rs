@@ -102,12 +102,11 @@ impl Constrained {
         self.beside.iter().for_each(|&e| plain[e as usize] = false);
         self.loads.iter().for_each(|(e, _)| plain[*e as usize] = false);
         let (w, inverse) = (self.width, 1.0 / largest);
-        // Block and slot of each place, and of each equation that has one.
+        // Block and slot of each equation that has one.
         let blocks = self.equation.len() / w;
-        let of_place: Vec<(u32, u32)> =
-            (0..blocks as u32).flat_map(|block| (0..w as u32).map(move |slot| (block, slot))).collect();
-        let of_equation = |&place: &u32| if place == NONE { (NONE, 0) } else { of_place[place as usize] };
-        let at: Vec<(u32, u32)> = self.place.iter().map(of_equation).collect();
+        let of_place = |place: u32| (place / w as u32, place % w as u32);
+        let of_equation = |&place: &u32| if place == NONE { (NONE, 0) } else { of_place(place) };
+        let at: Vec<(u32, u32)> = self.place.par_iter().with_min_len(CHUNK).map(of_equation).collect();
         let coupled = |i: usize| {
             let rows = system.active_coupling().into_iter().map(move |coupling| coupling.row(i));
             rows.flat_map(|(columns, values)| columns.iter().zip(values))
@@ -124,7 +123,7 @@ impl Constrained {
             let mut equations = self.equation[b * w..(b + 1) * w].iter().filter(|&&e| e != NONE).map(|&e| e as usize);
             equations.all(|i| plain[i] && self.group_of[i] == NONE && coupled(i).next().is_none())
         };
-        let of_bulk: Vec<bool> = (0..self.blocks.own()).map(of_bulk).collect();
+        let of_bulk: Vec<bool> = (0..self.blocks.own()).into_par_iter().with_min_len(CHUNK).map(of_bulk).collect();
         let fill = |b: usize, row: &mut BlockRow, scratch: &mut Scratch| {
             let equations = &self.equation[b * w..(b + 1) * w];
             if of_bulk[b] && !equations.contains(&NONE) {
@@ -168,7 +167,7 @@ impl Constrained {
                         }
                     }
                     for (j, value) in coupled(equation as usize).filter(|&(j, _)| self.place[j] != NONE) {
-                        let (block, slot) = of_place[self.place[j] as usize];
+                        let (block, slot) = of_place(self.place[j]);
                         row.block(block)[slot as usize * w + k] += (value * inverse) as f32;
                     }
                 }
@@ -195,7 +194,7 @@ impl Constrained {
                         let slot = own.iter().position(|&e| e == j).expect("an own equation");
                         add_multiple(&mut met.at(group as usize)[slot * w..(slot + 1) * w], 1.0, values);
                     } else if place != NONE {
-                        let (block, slot) = of_place[place as usize];
+                        let (block, slot) = of_place(place);
                         let entries = &mut row.block(block)[slot as usize * w..][..w];
                         entries.iter_mut().zip(values).for_each(|(to, value)| *to += (value * inverse) as f32);
                     }

@@ -21,11 +21,14 @@ use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::multigrid::Multigrid;
+use crate::components::Components;
 use crate::ghosts::{Ghosts, Owned};
 use crate::system::System;
 use group::Group;
 
 const NONE: u32 = u32::MAX;
+/// Blocks that a thread takes at a time, at least.
+const BLOCKS: usize = 1 << 10;
 /// Share of a condition's largest entry from which on its multiplier follows from it.
 const DETERMINES: f64 = 1e-8;
 
@@ -368,23 +371,19 @@ impl Constrained {
             let others = (!is_bulk).then(|| by_equations(block)).into_iter().flatten();
             blocks.iter().copied().chain(others).map(|near| near as usize).filter(|&near| near < own)
         };
+        let components = Components::new(own);
+        (0..own).into_par_iter().with_min_len(BLOCKS).for_each(|block| {
+            near(block).for_each(|next| components.join(block as u32, next as u32));
+        });
         let mut bodies = vec![NONE; own];
-        let (mut count, mut reached) = (0, Vec::new());
-        for start in 0..own {
-            if bodies[start] != NONE {
-                continue;
+        let mut count = 0;
+        for block in 0..own {
+            let first = components.first(block as u32) as usize;
+            if first == block {
+                bodies[block] = count;
+                count += 1;
             }
-            bodies[start] = count;
-            reached.push(start);
-            while let Some(block) = reached.pop() {
-                for next in near(block) {
-                    if bodies[next] == NONE {
-                        bodies[next] = count;
-                        reached.push(next);
-                    }
-                }
-            }
-            count += 1;
+            bodies[block] = bodies[first];
         }
         bodies
     }
