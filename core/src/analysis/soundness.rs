@@ -1,6 +1,7 @@
 //! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values, loads that are given twice.
 
-use rustc_hash::{FxBuildHasher, FxHashMap};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart};
@@ -8,6 +9,9 @@ use crate::processes::{Load, LoadCarrier, Prescription, Process};
 
 /// Difference of two values that are the same, as a share of the larger.
 const SAME: f64 = 1e-12;
+
+/// Entities that a thread takes at a time, at least.
+const ENTITIES: usize = 1 << 12;
 
 /// Warns of solid elements, and of conditions of one kind, on the same nodes as others: their stiffness, mass and loads count
 /// twice.
@@ -46,24 +50,29 @@ fn is_smallest(part: &SubPart, at: &u32) -> bool {
 }
 
 /// Entities with the nodes of an earlier one, conditions of the same kind: the earlier and the later.
-fn twins(table: &EntityTable, wanted: impl Fn(u32) -> bool) -> Vec<[u32; 2]> {
-    let mut first: FxHashMap<(&str, u32, u64), u32> = FxHashMap::with_capacity_and_hasher(table.len(), FxBuildHasher);
-    let mut out = Vec::new();
-    for at in (0..table.len() as u32).filter(|&at| wanted(at)) {
+fn twins(table: &EntityTable, wanted: impl Fn(u32) -> bool + Sync) -> Vec<[u32; 2]> {
+    // What twins have alike, and few others.
+    let key = |at: u32| {
         let nodes = table.nodes(at);
         let kind = if table.kinds[at as usize].role == Role::Element { "" } else { table.kinds[at as usize].name };
         let least = nodes.iter().copied().min().unwrap_or(0);
-        let key = (kind, least, nodes.iter().map(|&node| u64::from(node).pow(2)).sum());
-        let earlier = *first.entry(key).or_insert(at);
-        let sorted = |of: u32| {
-            let mut nodes = table.nodes(of).to_vec();
-            nodes.sort_unstable();
-            nodes
-        };
-        if earlier != at && sorted(earlier) == sorted(at) {
-            out.push([earlier, at]);
-        }
+        (least, nodes.iter().map(|&node| u64::from(node).pow(2)).sum::<u64>(), kind)
+    };
+    let entities = (0..table.len() as u32).into_par_iter().with_min_len(ENTITIES).filter(|&at| wanted(at));
+    let mut keys: Vec<_> = entities.map(|at| (key(at), at)).collect();
+    keys.par_sort_unstable();
+    let sorted = |of: u32| {
+        let mut nodes = table.nodes(of).to_vec();
+        nodes.sort_unstable();
+        nodes
+    };
+    let mut out = Vec::new();
+    for alike in keys.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
+        let (_, earlier) = alike[0];
+        let later = alike[1..].iter().map(|&(_, later)| later);
+        out.extend(later.filter(|&later| sorted(earlier) == sorted(later)).map(|later| [earlier, later]));
     }
+    out.sort_unstable_by_key(|&[_, later]| later);
     out
 }
 

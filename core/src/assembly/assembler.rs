@@ -232,17 +232,17 @@ impl Assembler {
         let changed = part.ranks.any(changed);
         if changed || std::mem::take(&mut self.incomplete) {
             self.equations = equations;
-            let dofs = system.dofs.dofs();
+            let dofs = system.dofs.dofs().par_iter().with_min_len(ROWS);
             let place = |dof: &Dof| (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]));
             self.whole = Layout {
-                node: dofs.iter().map(|dof| dof.node).collect(),
-                multiplier: dofs.iter().map(|dof| dof.multiplier).collect(),
+                node: dofs.clone().map(|dof| dof.node).collect(),
+                multiplier: dofs.clone().map(|dof| dof.multiplier).collect(),
                 // Motions of bodies that several ranks share are found by all of them.
                 near_null_space: match self.distribution {
-                    None => near_null_space(&dofs.iter().map(place).collect::<Vec<Place>>()),
+                    None => near_null_space(&dofs.clone().map(place).collect::<Vec<Place>>()),
                     Some(_) => Vec::new(),
                 },
-                held: (0..dofs.len()).map(|number| !self.equations.is_free(number)).collect(),
+                held: dofs.enumerate().map(|(number, _)| !self.equations.is_free(number)).collect(),
             };
             self.numbering = self.distribution.as_ref().map(|d| Numbering::new(&self.equations, d));
             let follows = part.ranks.any(self.equations.has_slaves());

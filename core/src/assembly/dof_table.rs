@@ -43,6 +43,10 @@ pub struct DofTable {
     dofs: Vec<Dof>,
     /// Which of them move their node.
     moving: Vec<bool>,
+    /// Of each the place of its variable among [`DofTable::variables`].
+    kinds: Vec<u16>,
+    /// Which of the variables are Lagrange multipliers.
+    multipliers: Vec<bool>,
     numbers: BTreeMap<ScalarVariable, Vec<u32>>,
     version: u64,
 }
@@ -62,6 +66,12 @@ impl DofTable {
         }
         self.dofs.clear();
         self.moving.clear();
+        self.kinds.clear();
+        let mut ordered: Vec<(ScalarVariable, bool)> = present.iter().map(|(own, is, _)| (*own, *is)).collect();
+        ordered.sort_unstable();
+        let place = |variable| ordered.iter().position(|(other, _)| *other == variable).expect("it is among them");
+        let kinds: Vec<u16> = present.iter().map(|(variable, ..)| place(*variable) as u16).collect();
+        self.multipliers = ordered.iter().map(|(_, is)| *is).collect();
         let moving: Vec<bool> = present.iter().map(|(variable, ..)| moves_mesh(*variable)).collect();
         let mut numbers = vec![vec![NONE; nodes.len()]; present.len()];
         for node in 0..nodes.len() {
@@ -69,6 +79,7 @@ impl DofTable {
                 if carried[node] {
                     numbers[at][node] = self.dofs.len() as u32;
                     self.moving.push(moving[at]);
+                    self.kinds.push(kinds[at]);
                     self.dofs.push(Dof { node: node as u32, variable: *variable, multiplier: *multiplier });
                 }
             }
@@ -123,6 +134,16 @@ impl DofTable {
     /// Numbers of a variable by node; [`NONE`] where the node does not carry it. Empty when no node does.
     pub fn numbers(&self, variable: ScalarVariable) -> &[u32] {
         self.numbers.get(&variable).map_or(&[], Vec::as_slice)
+    }
+
+    /// Of each unknown the place of its variable among [`DofTable::variables`].
+    pub fn kinds(&self) -> &[u16] {
+        &self.kinds
+    }
+
+    /// Which of [`DofTable::variables`] are Lagrange multipliers.
+    pub fn multipliers(&self) -> &[bool] {
+        &self.multipliers
     }
 
     /// The variables of unknowns, those of other ranks too, in one order on all of them.

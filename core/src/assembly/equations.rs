@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Csr, Layout};
 
-use super::dof_table::{DofTable, NONE};
+use super::dof_table::{Dof, DofTable, NONE};
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{MasterSlaveConstraint, Nodes};
@@ -81,14 +81,15 @@ impl Equations {
                 return Err(Diagnostic::error("constraint-twice", fact).remedy("remove one of them").into());
             }
         }
+        let is_free = |(number, dof): (usize, &Dof)| {
+            !slaves.contains_key(&(number as u32)) && !nodes.is_fixed(dof.variable, dof.node)
+        };
+        let is_free: Vec<bool> = dofs.dofs().par_iter().enumerate().with_min_len(ROWS).map(is_free).collect();
         let mut roles = vec![Role::Fixed; dofs.len()];
         let mut free = Vec::with_capacity(dofs.len());
-        for (number, dof) in dofs.dofs().iter().enumerate() {
-            let is_slave = slaves.contains_key(&(number as u32));
-            if !is_slave && !nodes.is_fixed(dof.variable, dof.node) {
-                roles[number] = Role::Free(free.len() as u32);
-                free.push(number as u32);
-            }
+        for number in (0..dofs.len()).filter(|&number| is_free[number]) {
+            roles[number] = Role::Free(free.len() as u32);
+            free.push(number as u32);
         }
         let mut leaning = Vec::new();
         for &number in slaves.keys() {
@@ -104,8 +105,8 @@ impl Equations {
             roles[number as usize] = Role::Slave(follows);
         }
         let layout = Layout {
-            node: free.iter().map(|&n| dofs.dofs()[n as usize].node).collect(),
-            multiplier: free.iter().map(|&n| dofs.dofs()[n as usize].multiplier).collect(),
+            node: free.par_iter().with_min_len(ROWS).map(|&n| dofs.dofs()[n as usize].node).collect(),
+            multiplier: free.par_iter().with_min_len(ROWS).map(|&n| dofs.dofs()[n as usize].multiplier).collect(),
             ..Layout::default()
         };
         let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());

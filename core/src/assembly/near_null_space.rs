@@ -15,9 +15,9 @@ pub type Place = Option<(ScalarVariable, [f64; 3])>;
 /// one the constant. Entries of multipliers are zero.
 pub fn near_null_space(places: &[Place]) -> Vec<Vec<f64>> {
     let mut variables: Vec<ScalarVariable> = Vec::new();
-    let mut center = [0.0; 3];
+    let (mut center, share) = ([0.0; 3], 1.0 / places.len() as f64);
     for (variable, at) in places.iter().flatten() {
-        (0..3).for_each(|axis| center[axis] += at[axis] / places.len() as f64);
+        (0..3).for_each(|axis| center[axis] += share * at[axis]);
         if !variables.contains(variable) {
             variables.push(*variable);
         }

@@ -51,7 +51,9 @@ impl Neighbours {
             }
             (counts, list)
         };
-        let parts: Vec<(Vec<usize>, Vec<u32>)> = (0..items.div_ceil(ITEMS)).into_par_iter().map(task).collect();
+        // Items that have lists may stand together.
+        let parts: Vec<(Vec<usize>, Vec<u32>)> =
+            (0..items.div_ceil(ITEMS)).into_par_iter().with_max_len(1).map(task).collect();
         let starts = starts(parts.iter().flat_map(|(counts, _)| counts.iter().copied()));
         let mut list = Vec::with_capacity(starts[items]);
         parts.iter().for_each(|(_, part)| list.extend_from_slice(part));

@@ -1,20 +1,32 @@
 //! Bodies: elements that share nodes.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+use zelus_linear_algebra::Components;
+
 use super::model_part::ModelPart;
+
+/// Elements that a thread takes at a time, at least.
+const ELEMENTS: usize = 1 << 10;
 
 /// The body that each node is of, by the id of its first node; `None` for nodes of no element. Collective.
 pub fn bodies_of_nodes(part: &ModelPart) -> Vec<Option<usize>> {
-    let mut parents: Vec<u32> = (0..part.nodes.len() as u32).collect();
-    let mut used = vec![false; part.nodes.len()];
-    for nodes in (0..part.elements.len() as u32).map(|at| part.elements.nodes(at)).filter(|nodes| nodes.len() > 1) {
-        let first = root(&mut parents, nodes[0]);
-        for &node in nodes {
-            used[node as usize] = true;
-            let other = root(&mut parents, node);
-            parents[other as usize] = first;
+    let (nodes, elements) = (part.nodes.len(), &part.elements);
+    let components = Components::new(nodes);
+    let used: Vec<AtomicBool> = (0..nodes).map(|_| AtomicBool::new(false)).collect();
+    (0..elements.len() as u32).into_par_iter().with_min_len(ELEMENTS).for_each(|at| {
+        let [first, others @ ..] = elements.nodes(at) else { return };
+        for &other in others {
+            components.join(*first, other);
+            used[other as usize].store(true, Ordering::Relaxed);
         }
-    }
-    let roots: Vec<usize> = (0..parents.len() as u32).map(|node| root(&mut parents, node) as usize).collect();
+        if !others.is_empty() {
+            used[*first as usize].store(true, Ordering::Relaxed);
+        }
+    });
+    let used: Vec<bool> = used.into_iter().map(AtomicBool::into_inner).collect();
+    let roots: Vec<usize> = (0..nodes as u32).map(|node| components.first(node) as usize).collect();
     let id = |node: usize| if used[node] { part.nodes.ids[node] as f64 } else { f64::MAX };
     let mut first: Vec<f64> = (0..used.len()).map(id).collect();
     // Ranks tell each other of what is connected elsewhere, until nothing changes any more.
@@ -32,12 +44,4 @@ pub fn bodies_of_nodes(part: &ModelPart) -> Vec<Option<usize>> {
         }
     }
     first.into_iter().map(|id| (id < f64::MAX).then_some(id as usize)).collect()
-}
-
-fn root(parents: &mut [u32], mut node: u32) -> u32 {
-    while parents[node as usize] != node {
-        parents[node as usize] = parents[parents[node as usize] as usize];
-        node = parents[node as usize];
-    }
-    node
 }

@@ -5,7 +5,7 @@ use std::cell::LazyCell;
 use crate::assembly::{Distribution, Dof, DofTable, Equations};
 use crate::communication::Ranks;
 use crate::diagnostics::{Report, Result};
-use crate::model::Nodes;
+use crate::model::{Nodes, ScalarVariable};
 use crate::names::{self, Name};
 use crate::parameters::{Node, Settings};
 use crate::registered_kind;
@@ -24,10 +24,14 @@ pub enum Block {
 impl Block {
     /// Whether an unknown belongs to the block.
     pub fn holds(self, dof: &Dof) -> bool {
+        self.has(dof.multiplier)
+    }
+
+    fn has(self, multiplier: bool) -> bool {
         match self {
             Self::All => true,
-            Self::Primary => !dof.multiplier,
-            Self::Multiplier => dof.multiplier,
+            Self::Primary => !multiplier,
+            Self::Multiplier => multiplier,
         }
     }
 }
@@ -75,11 +79,10 @@ impl Measures<'_> {
 
     /// Norms over a block: of each variable where they are measured `apart`, else of all together; collective.
     pub fn norms(&self, vector: &[f64], block: Block, apart: bool) -> Vec<Norm> {
-        let dofs = self.dofs.dofs();
-        let counts = |n: &usize| block.holds(&dofs[*n]) && self.distribution.is_none_or(|d| d.is_own(*n));
+        let counts = |n: &usize| self.distribution.is_none_or(|d| d.is_own(*n));
         let own = self.equations.unknowns().iter().map(|&n| n as usize).filter(counts);
         let ranks = self.distribution.map(Distribution::ranks);
-        norms(self.dofs, own, vector, apart, ranks).into_iter().filter(|norm| norm.count > 0).collect()
+        norms(self.dofs, own, block, vector, apart, ranks).into_iter().filter(|norm| norm.count > 0).collect()
     }
 }
 
@@ -92,10 +95,12 @@ pub struct Norm {
     pub count: usize,
 }
 
-/// Norms of the entries `own` of a vector by variable, those of other ranks too, or of all together; collective over `ranks`.
+/// Norms of those entries `own` of a vector that are of a block, by variable or of all together, with those of other ranks; collective
+/// over `ranks`.
 pub(super) fn norms(
     dofs: &DofTable,
     own: impl Iterator<Item = usize>,
+    block: Block,
     vector: &[f64],
     apart: bool,
     ranks: Option<&Ranks>,
@@ -105,18 +110,20 @@ pub(super) fn norms(
     if !apart {
         columns.truncate(1);
     }
-    let mut sums = vec![0.0; 2 * columns.len()];
-    // The components of a vector stand side by side.
-    let (mut known, mut at) = ("", 0);
+    // Of each variable the place of its norm, behind all of them where it is not of the block.
+    let place = |(variable, &multiplier): (ScalarVariable, &bool)| match block.has(multiplier) {
+        true => columns.iter().position(|own| *own == variable.column).unwrap_or(0),
+        false => columns.len(),
+    };
+    let places: Vec<usize> = dofs.variables().zip(dofs.multipliers()).map(place).collect();
+    let kinds = dofs.kinds();
+    let mut sums = vec![0.0; 2 * (columns.len() + 1)];
     for n in own {
-        let column = dofs.dofs()[n].variable.column;
-        if !std::ptr::eq(column, known) {
-            at = columns.iter().position(|own| *own == column).unwrap_or(0);
-            known = column;
-        }
+        let at = places[kinds[n] as usize];
         sums[2 * at] += vector[n] * vector[n];
         sums[2 * at + 1] += 1.0;
     }
+    sums.truncate(2 * columns.len());
     if let Some(ranks) = ranks {
         ranks.sum(&mut sums);
     }

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeSet;
 
+use rayon::iter::Either;
+use rayon::prelude::*;
 use zelus_core::Result;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::nodal_sums::NodalSums;
-use super::pairing::{Pairing, integrals, searching};
+use super::pairing::{PAIRS, Pairing, integrals, searching};
 use super::setup::Setup;
 use crate::interface::Facet;
 use crate::pairs::{Pair, PairKey};
@@ -71,13 +73,16 @@ pub(super) fn late_pairs(
     let near = pairing.candidates(part, settings).into_iter();
     let near = near.filter_map(|(key, within_reach)| (within_reach && !known.contains(&key)).then_some(key));
     let near: Vec<PairKey> = near.collect();
-    let pairs_of = |keys: &mut dyn Iterator<Item = PairKey>| -> (Vec<Pair>, Vec<Pair>) {
-        let pairs = keys.map(|key| pairing.pair(part, key));
-        pairs.partition(|pair| have_crossed(part, pairing.slave(pair.key), pairing.master(pair.key)))
+    let pairs_of = |keys: &[PairKey]| -> (Vec<Pair>, Vec<Pair>) {
+        keys.par_iter().with_min_len(PAIRS).partition_map(|&key| {
+            let pair = pairing.pair(part, key);
+            let has_crossed = have_crossed(part, pairing.slave(key), pairing.master(key));
+            if has_crossed { Either::Left(pair) } else { Either::Right(pair) }
+        })
     };
     // All ranks know what is near; each makes pairs of what it evaluates.
     let is_own = |key: &PairKey| part.evaluates_pair(&pairing.slave(*key).nodes);
-    let (crossed, rest) = pairs_of(&mut near.iter().copied().filter(is_own));
+    let (crossed, rest) = pairs_of(&near.iter().copied().filter(is_own).collect::<Vec<_>>());
     let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;
     blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, setup.limit()))?);
     let slaves = states.slaves();
@@ -121,7 +126,7 @@ pub(super) fn late_pairs(
         part.ranks.any_of(&mut missed);
     }
     let missed = near.into_iter().zip(missed).filter(|(_, missed)| *missed).map(|(key, _)| key);
-    let (crossed, rest) = pairs_of(&mut { missed });
+    let (crossed, rest) = pairs_of(&missed.collect::<Vec<_>>());
     Ok(Late { missed: [crossed, rest].concat(), nodes: nodes.into_iter().collect() })
 }
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::{EntityBlock, require_kind};
@@ -29,6 +30,9 @@ use crate::solver::AVERAGED_EDGES;
 
 /// Cosine of the angle between normals beyond which facets do not face each other, 84°.
 const FACING: f64 = 0.1;
+
+/// Pairs that a thread takes at a time, at least.
+pub(super) const PAIRS: usize = 64;
 
 /// Pairs of facets and the blocks that evaluate them.
 pub(super) struct Pairing {
@@ -229,17 +233,17 @@ impl Pairing {
 
     /// Pairs that are near each other, and whether their centres are within reach.
     pub(super) fn candidates(&self, part: &ModelPart, settings: &ContactSettings) -> Vec<(PairKey, bool)> {
-        let mut all = Vec::new();
-        for (at, interface) in self.interfaces.iter().enumerate() {
+        let of_interface = |(at, interface): (usize, &Interface)| {
             let found = candidates(part, interface, &settings.search).into_iter();
-            all.extend(found.map(|Candidate { slave, master, within_reach }| {
+            found.map(move |Candidate { slave, master, within_reach }| {
                 (PairKey { interface: at as u32, slave, master }, within_reach)
-            }));
+            })
+        };
+        let all: Vec<(PairKey, bool)> = self.interfaces.iter().enumerate().flat_map(of_interface).collect();
+        if part.info.is(AVERAGED_EDGES) {
+            return all;
         }
-        if !part.info.is(AVERAGED_EDGES) {
-            all.retain(|(key, _)| self.meet(part, *key));
-        }
-        all
+        all.into_par_iter().with_min_len(PAIRS).filter(|(key, _)| self.meet(part, *key)).collect()
     }
 
     /// Whether the facets face each other. A facet across an edge of the slave is at right angles to the master: its overlap is

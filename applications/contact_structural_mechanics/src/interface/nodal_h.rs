@@ -1,28 +1,43 @@
 //! The mesh size at a node.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, sub};
 
 use crate::variables::NODAL_H;
 
+/// Elements that a thread takes at a time.
+const CHUNK: usize = 1 << 12;
+
 /// Writes NODAL_H: the distance to the nearest other node of any element of the node, initial configuration (length);
 /// collective.
 pub fn find_nodal_h(part: &mut ModelPart) {
-    let mut squares = vec![f64::MAX; part.nodes.len()];
-    for element in 0..part.elements.len() as u32 {
-        let nodes = part.elements.nodes(element);
+    // Numbers that are not negative are in the order of their bits.
+    let squares: Vec<AtomicU64> = (0..part.nodes.len()).map(|_| AtomicU64::new(f64::MAX.to_bits())).collect();
+    let lower = |node: u32, square: f64| {
+        let (least, square) = (&squares[node as usize], square.to_bits());
+        if square < least.load(Ordering::Relaxed) {
+            least.fetch_min(square, Ordering::Relaxed);
+        }
+    };
+    let (elements, initial) = (&part.elements, &part.nodes.initial);
+    (0..elements.len() as u32).into_par_iter().with_min_len(CHUNK).for_each(|element| {
+        let nodes = elements.nodes(element);
         for (i, &a) in nodes.iter().enumerate() {
-            let (x, mut nearest) = (part.nodes.initial[a as usize], f64::MAX);
+            let (x, mut nearest) = (initial[a as usize], f64::MAX);
             for &b in &nodes[i + 1..] {
-                let apart = sub(x, part.nodes.initial[b as usize]);
+                let apart = sub(x, initial[b as usize]);
                 let square = dot(apart, apart);
                 nearest = nearest.min(square);
-                squares[b as usize] = squares[b as usize].min(square);
+                lower(b, square);
             }
-            squares[a as usize] = squares[a as usize].min(nearest);
+            lower(a, nearest);
         }
-    }
-    let mut sizes: Vec<f64> = squares.into_iter().map(|s| if s < f64::MAX { s.sqrt() } else { s }).collect();
+    });
+    let squares = squares.into_iter().map(|bits| f64::from_bits(bits.into_inner()));
+    let mut sizes: Vec<f64> = squares.map(|s| if s < f64::MAX { s.sqrt() } else { s }).collect();
     if let Some(share) = &part.share {
         share.halo.least(&mut sizes);
     }

@@ -2,10 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use zelus_core::geometry::Shape;
 
 use super::pair::PairKey;
 use crate::interface::{Interface, NormalPatches};
+
+/// Numbers of nodes around pairs are multiples of this.
+const PLACES: usize = 2;
+/// Pairs that a thread takes at a time, at least.
+const PAIRS: usize = 64;
 
 /// Pairs of the same shapes (slave, master), and their node indices: master nodes, then slave nodes.
 pub type Groups<T> = BTreeMap<(Shape, Shape), (Vec<T>, Vec<u32>)>;
@@ -33,18 +39,17 @@ pub fn group_by_shapes<T>(
 ///
 /// Around a pair are the nodes, beside its own, that turn the normals of its slave nodes, none without `patches`, and those
 /// `behind` it. Numbers are rounded up to few: a node that fills a place is one of the pair.
-pub fn group_by_surroundings<T>(
+pub fn group_by_surroundings<T: Sync>(
     patches: Option<&NormalPatches>,
-    behind: impl Fn(&T) -> Vec<u32>,
+    behind: impl Fn(&T) -> Vec<u32> + Sync,
     slaves: usize,
     pairs: Vec<T>,
     nodes: &[u32],
 ) -> BTreeMap<usize, (Vec<T>, Vec<u32>)> {
     let size = nodes.len() / pairs.len().max(1);
-    let mut groups: BTreeMap<usize, (Vec<T>, Vec<u32>)> = BTreeMap::new();
-    for (pair, own) in pairs.into_iter().zip(nodes.chunks_exact(size.max(1))) {
+    let surroundings = |(pair, own): (&T, &[u32])| {
         let turned = &own[size - slaves..];
-        let mut around = behind(&pair);
+        let mut around = behind(pair);
         if let Some(patches) = patches {
             around.extend(turned.iter().flat_map(|&node| patches.neighbours(node)));
         }
@@ -52,12 +57,15 @@ pub fn group_by_surroundings<T>(
         around.sort_unstable();
         around.dedup();
         around.resize(around.len().next_multiple_of(PLACES), own[0]);
+        around
+    };
+    let of_pairs = pairs.par_iter().zip(nodes.par_chunks_exact(size.max(1))).with_min_len(PAIRS);
+    let surroundings: Vec<Vec<u32>> = of_pairs.map(surroundings).collect();
+    let mut groups: BTreeMap<usize, (Vec<T>, Vec<u32>)> = BTreeMap::new();
+    for ((pair, own), around) in pairs.into_iter().zip(nodes.chunks_exact(size.max(1))).zip(surroundings) {
         let (group, nodes) = groups.entry(around.len()).or_default();
         nodes.extend(around.iter().chain(own));
         group.push(pair);
     }
     groups
 }
-
-/// Numbers of nodes around pairs are multiples of this.
-const PLACES: usize = 2;

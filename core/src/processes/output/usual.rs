@@ -2,12 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::gauss::is_known;
 use super::quantity::{GaussQuantity, Quantity};
 use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::io::results::Column;
 use crate::model::{ModelPart, Rates, Role, SubPart, UsualResults};
+
+/// Rows of a column that a thread takes at a time, at least.
+const ROWS: usize = 1 << 12;
 
 /// Unknowns and their reactions.
 pub(super) fn history(part: &ModelPart) -> Vec<Quantity> {
@@ -31,10 +36,14 @@ pub(super) fn gauss(part: &ModelPart, system: &System) -> Vec<GaussQuantity> {
 /// The largest size at a node of each of them, by name, over all ranks; collective.
 pub fn largest_results(part: &ModelPart) -> BTreeMap<String, f64> {
     let nodes: Vec<u32> = (0..part.nodes.len() as u32).collect();
-    let size = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     let largest = |column: Column| {
-        let values: Vec<f64> = (0..column.values.len()).map(|at| column.values.get(at)).collect();
-        let own = values.chunks_exact(column.components.max(1)).map(size).fold(0.0, f64::max);
+        let components = column.components.max(1);
+        let size = |row: usize| {
+            let entries = (row * components..(row + 1) * components).map(|at| column.values.get(at));
+            entries.map(|x| x * x).sum::<f64>().sqrt()
+        };
+        let rows = (0..column.values.len() / components).into_par_iter().with_min_len(ROWS);
+        let own = rows.map(size).reduce(|| 0.0, f64::max);
         let all = part.ranks.gather_counted(&[own], &vec![1; part.ranks.size()]);
         (column.name, all.into_iter().fold(0.0, f64::max))
     };

@@ -1,6 +1,6 @@
 //! What the residuals of a step are measured by: those at its start, as far as forces of its size explain them.
 
-use super::super::criterion::norms;
+use super::super::criterion::{Block, norms};
 use super::NewtonRaphson;
 use crate::assembly::{Distribution, System};
 use crate::diagnostics::Result;
@@ -56,8 +56,8 @@ impl NewtonRaphson {
 
     /// Euclidean norm over all unknowns of each variable, zero for multipliers; collective.
     pub(super) fn sizes_of_forces(&self, system: &System, of: &[f64]) -> Vec<f64> {
-        let own = system.dofs.dofs().iter().enumerate().filter(|(n, dof)| !dof.multiplier && self.assembler.counts(*n));
+        let own = (0..system.dofs.len()).filter(|n| self.assembler.counts(*n));
         let ranks = self.assembler.distribution().map(Distribution::ranks);
-        norms(&system.dofs, own.map(|(n, _)| n), of, true, ranks).into_iter().map(|norm| norm.size).collect()
+        norms(&system.dofs, own, Block::Primary, of, true, ranks).into_iter().map(|norm| norm.size).collect()
     }
 }
