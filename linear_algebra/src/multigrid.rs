@@ -425,10 +425,6 @@ impl LinearSolver for MultigridSolver {
         self.tolerance = tolerance.clamp(tightest, loosest.max(tightest));
     }
 
-    fn is_coarse(&self) -> bool {
-        self.tolerance > self.settings.tolerance
-    }
-
     fn needs(&self, equations: usize, entries: usize) -> u64 {
         if self.is_large(equations, entries) {
             memory::multigrid(equations, entries)

@@ -106,11 +106,6 @@ pub trait LinearSolver: Send {
     /// Says what relative residual is enough for the next solves; engines ask no more of themselves than their settings do.
     fn aim(&mut self, _: f64) {}
 
-    /// Whether solves end earlier than its settings say, as it was told by [`LinearSolver::aim`].
-    fn is_coarse(&self) -> bool {
-        false
-    }
-
     /// Bytes that it takes beside the matrix, about, for systems of this size; 0 where that is not known.
     fn needs(&self, _equations: usize, _entries: usize) -> u64 {
         0

@@ -202,33 +202,6 @@ fn multigrid_has_the_answer_of_the_direct_engine() {
     }
 }
 
-/// The first solve of a step leaves a residual of 1e-4, and is taken on where nothing but that is left: contact that is linear as a
-/// whole ends in its first iteration all the same, and no step takes more iterations than with exact solves. Answers differ by no
-/// more than the criteria of these decks let them.
-#[test]
-fn coarse_first_solves_cost_no_iteration() {
-    for case in [
-        "contact_2d/nonmatching",
-        "contact_2d/opening",
-        "contact_2d/slope",
-        "contact_2d/friction_stick",
-        "contact_3d/hexahedra_nonmatching",
-        "contact_3d/hexahedra_on_tetrahedra",
-        "contact_3d/friction_stick",
-        "contact_3d/nitsche",
-        "self_contact/slit_components",
-    ] {
-        let direct = Run::converged(case, DIRECT, as_it_is);
-        let multigrid = Run::converged(case, "amgcl", |deck| {
-            deck["solver_settings"]["linear_solver_settings"] = json!({"solver_type": "amgcl", "direct_below": 0});
-        });
-        assert!(multigrid.is_solved_by("multigrid"), "{case}: {:?}", multigrid.engines);
-        assert_eq!(direct.engines.len(), multigrid.engines.len(), "{case}: {}", multigrid.said);
-        let (difference, field) = direct.difference(&multigrid);
-        assert!(difference < 1e-5, "{case}: {field} differs by {difference:e}");
-    }
-}
-
 /// The limit stands for the memory of the machine: 1.6 megabytes hold the levels of multigrid, and no factors.
 #[test]
 fn a_run_that_does_not_fit_takes_multigrid_or_ends_before_it_starts() {

@@ -26,8 +26,6 @@ const STATES: &str = "interactions: states";
 
 /// Share of the tolerances that a linear solve may leave.
 const LEFT: f64 = 0.01;
-/// Multiple of what the first solve leaves up to which the residual after it counts as left by it.
-const MOSTLY: f64 = 10.0;
 
 /// What the iterations of a step hand on to each other.
 struct Step {
@@ -37,8 +35,6 @@ struct Step {
     begin: Vec<f64>,
     /// Increments that the next solve takes on through the tangent; zero where unknowns are free.
     prescribed: Vec<f64>,
-    /// The relative residual that the first solve may leave; 0 where it leaves what the solver's settings say.
-    first_leaves: f64,
     /// Out of balance in the present state, a number an unknown.
     residual: Vec<f64>,
     references: References,
@@ -54,13 +50,14 @@ struct Step {
 }
 
 impl Step {
-    /// The relative residual a linear solve may leave, so that what it leaves counts nothing beside the tolerances.
+    /// The relative residual a linear solve may leave, so that what it leaves counts nothing beside the tolerances; none in
+    /// the first iteration, which may be the last.
     fn needed(&self) -> f64 {
         let missing = |check: &Check| {
             (check.ratio_tolerance / check.ratio).max(check.absolute_tolerance / check.absolute).min(1.0)
         };
         let last = self.records.last();
-        last.map_or(self.first_leaves, |record| LEFT * record.checks.iter().map(missing).fold(1.0, f64::min))
+        last.map_or(0.0, |record| LEFT * record.checks.iter().map(missing).fold(1.0, f64::min))
     }
 }
 
@@ -130,7 +127,6 @@ impl NewtonRaphson {
         }
         let begin = self.assembler.values(part, system);
         let moved_first = self.moved_first(part, system);
-        let first_leaves = self.first_may_leave(system, moved_first.is_some());
         let prescribed = self.start(part, system, moved_first.as_deref())?;
         let start = Instant::now();
         after_prediction(part, &mut system.interactions)?;
@@ -145,7 +141,6 @@ impl NewtonRaphson {
             moved_first,
             begin,
             prescribed,
-            first_leaves,
             residual: residual?,
             references: References::default(),
             records: Vec::new(),
@@ -171,11 +166,13 @@ impl NewtonRaphson {
         let solved = self
             .solve_tangent(iteration, step, part, system, monitor)
             .and_then(|solved| self.with_follower(solved, &step.prescribed, part, system));
-        let mut solved = match solved {
+        let solved = match solved {
             Ok(solved) => solved,
             Err(failed) => return self.give_up(failed, iteration, &step.residual, part, system),
         };
-        tell_of_fallback(monitor, &solved);
+        if let Some(why) = &solved.fallback {
+            monitor.note(&format!("linear solver: {why}"));
+        }
         let condition =
             if part.info.is(super::CONDITION_NUMBER) { self.condition_number(part, system, monitor) } else { None };
         monitor.phase("states and residual");
@@ -189,18 +186,7 @@ impl NewtonRaphson {
         // serves for what the interactions take from it and nothing else.
         let restart =
             step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
-        let versions = versions_of(&system.interactions);
-        let mut change =
-            self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
-        let changes = change.count() > 0 || versions != versions_of(&system.interactions);
-        if iteration == 1 && !part.ranks.any(changes) && self.is_left_by(&solved, step) {
-            solved = match self.solve_on(&solved, &step.references.start[0], &mut increment, part, system) {
-                Ok(whole) => whole,
-                Err(failed) => return self.give_up(failed, iteration, &step.residual, part, system),
-            };
-            tell_of_fallback(monitor, &solved);
-            change = self.decide(iteration, restart, step, part, system, None)?;
-        }
+        let change = self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
         if let Some(why) = self.follow(part, system, &mut step.residual)? {
             return Ok(Turn::Failed(why));
         }
@@ -313,40 +299,6 @@ impl NewtonRaphson {
         self.solve(part, system, &rhs)
     }
 
-    /// Whether the residual after the first iteration is what its linear solve left, but for little: contact acts as that solve
-    /// took it, and a tighter solve may end the step. Collective.
-    fn is_left_by(&self, solved: &Solved, step: &Step) -> bool {
-        if step.first_leaves == 0.0 || !self.solver.is_coarse() {
-            return false;
-        }
-        let equations = self.assembler.equations();
-        let size = |residual: &[f64]| {
-            let own = equations.expand(&equations.reduce(residual));
-            self.assembler.dot(&own, &own).sqrt()
-        };
-        size(&step.residual) <= MOSTLY * solved.relative_residual * size(&step.references.start[0])
-    }
-
-    /// Takes the first iteration on to where a solve by the settings leads, of the same matrix and the right-hand side that was at the
-    /// `start`; `increment` grows by what that adds to `coarse`.
-    fn solve_on(
-        &mut self,
-        coarse: &Solved,
-        start: &[f64],
-        increment: &mut [f64],
-        part: &mut ModelPart,
-        system: &System,
-    ) -> Result<Solved, Failed> {
-        self.solver.aim(0.0);
-        let rhs = self.assembler.equations().reduce(start);
-        let solved = self.solve(part, system, &rhs)?;
-        let rest: Vec<f64> = solved.increment.iter().zip(&coarse.increment).map(|(all, own)| all - own).collect();
-        let rest = self.assembler.equations().expand(&rest);
-        self.move_by(part, system, &rest);
-        increment.iter_mut().zip(&rest).for_each(|(sum, d)| *sum += d);
-        Ok(Solved { iterations: coarse.iterations + solved.iterations, ..solved })
-    }
-
     /// What a solve without a result means for the step.
     ///
     /// # Errors
@@ -415,7 +367,7 @@ impl NewtonRaphson {
             let residual = self.residual(part, system)?;
             write_reactions(part, &system.dofs, &residual, None);
         }
-        let [constraints, graph] = versions_of(&system.interactions);
+        let (constraints, graph) = (constraints_version(&system.interactions), graph_version(&system.interactions));
         let start = Instant::now();
         let change = if restart {
             system.interactions.iter_mut().filter_map(|i| i.first_iterate()).for_each(|first| first.keep(part));
@@ -533,13 +485,6 @@ impl NewtonRaphson {
     }
 }
 
-/// Says why another engine than the one asked for solved, if one did.
-fn tell_of_fallback(monitor: &mut dyn Monitor, solved: &Solved) {
-    if let Some(why) = &solved.fallback {
-        monitor.note(&format!("linear solver: {why}"));
-    }
-}
-
 /// Whether an unknown of any rank moves by prescription; collective.
 fn has_motion(ranks: &Ranks, prescribed: &[f64]) -> bool {
     ranks.any(prescribed.iter().any(|d| *d != 0.0))
@@ -569,11 +514,6 @@ fn restrain_free_bodies(interactions: &mut [Box<dyn Interaction>], part: &mut Mo
         any |= interaction.active_set().is_some_and(|set| set.restrain_free_bodies(part));
     }
     any
-}
-
-/// Those of what they constrain and of what they couple.
-fn versions_of(interactions: &[Box<dyn Interaction>]) -> [u64; 2] {
-    [constraints_version(interactions), graph_version(interactions)]
 }
 
 fn graph_version(interactions: &[Box<dyn Interaction>]) -> u64 {

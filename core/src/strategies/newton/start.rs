@@ -7,9 +7,6 @@ use crate::entities::{EntityBlock, MasslessNodes};
 use crate::model::{MasterSlaveConstraint, ModelPart};
 use crate::strategies::strategy::after_prediction;
 
-/// Relative residual that the first solve of a step may leave where its state is not the step's last anyway.
-const FIRST: f64 = 1e-4;
-
 impl NewtonRaphson {
     /// Takes the mass off the nodes that interactions name.
     ///
@@ -99,21 +96,6 @@ impl NewtonRaphson {
             return None;
         }
         system.interactions.iter_mut().filter_map(|i| i.first_iterate()).find_map(|first| first.moved_first())
-    }
-
-    /// The relative residual that the first solve of a step may leave, 0 where nothing speaks for any: contact leaves more as it
-    /// closes. Not so where the answer, a line search or a follower counts on what is solved for, or where PETSc solves.
-    pub(super) fn first_may_leave(&self, system: &mut System, moved_first: bool) -> f64 {
-        let counts_on_it = moved_first || self.failed || self.settings.linear || self.settings.line_search.is_some();
-        let interactions = &mut system.interactions;
-        if counts_on_it
-            || self.gathered.has_petsc()
-            || interactions.iter_mut().any(|interaction| interaction.follower().is_some())
-        {
-            return 0.0;
-        }
-        let has_contact = interactions.iter_mut().any(|interaction| interaction.first_iterate().is_some());
-        if has_contact { FIRST } else { 0.0 }
     }
 
     fn is_multiplier(&self, system: &System, constraint: &MasterSlaveConstraint) -> bool {
