@@ -3,6 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use zelus_core::geometry::mapping;
 use zelus_core::vector3::{dot, norm, scale, sub};
+use zelus_linear_algebra::Components;
 
 use super::faces::{FaceCells, face_nodes, faces};
 use super::mesh::{Mesh, Pair};
@@ -26,23 +27,12 @@ struct Side {
 
 /// Bodies: for each node the smallest node that elements join it with.
 fn bodies(mesh: &Mesh) -> Vec<u32> {
-    fn root(of: &mut [u32], mut node: u32) -> u32 {
-        while of[node as usize] != node {
-            of[node as usize] = of[of[node as usize] as usize];
-            node = of[node as usize];
-        }
-        node
-    }
-    let mut of: Vec<u32> = (0..mesh.points.len() as u32).collect();
+    let components = Components::new(mesh.points.len());
     let dimension = mesh.dimension();
     for cell in (0..mesh.cells.len()).filter(|&cell| mesh.cells.shapes[cell].dim() == dimension) {
-        let nodes = mesh.cells.nodes(cell);
-        for two in nodes.windows(2) {
-            let (a, b) = (root(&mut of, two[0]), root(&mut of, two[1]));
-            of[a.max(b) as usize] = a.min(b);
-        }
+        mesh.cells.nodes(cell).windows(2).for_each(|two| components.join(two[0], two[1]));
     }
-    (0..of.len() as u32).map(|node| root(&mut of, node)).collect()
+    (0..mesh.points.len() as u32).map(|node| components.first(node)).collect()
 }
 
 fn sides(mesh: &Mesh) -> Vec<Side> {

@@ -10,10 +10,10 @@ use zelus_core::vector3::{add, dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::nodal_sums::NodalSums;
-use super::pairing::{PAIRS, Pairing, integrals, searching};
+use super::pairing::{Pairing, integrals, searching};
 use super::setup::Setup;
 use crate::interface::Facet;
-use crate::pairs::{Pair, PairKey};
+use crate::pairs::{PAIRS, Pair, PairKey};
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;

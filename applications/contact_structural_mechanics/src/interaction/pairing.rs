@@ -21,7 +21,7 @@ use super::step_parameters::{NormalVariation, StepParameters};
 use crate::interface::{Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, set_sides, sides, slave_nodes};
 use crate::mortar::{Choices, MOST_NODES, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Integral, Pair, PairKey, PairRequest, Present, check_pairs, condition_name, group_by_shapes,
+    ContactBlock, Integral, PAIRS, Pair, PairKey, PairRequest, Present, check_pairs, condition_name, group_by_shapes,
     group_by_surroundings,
 };
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
@@ -30,9 +30,6 @@ use crate::solver::AVERAGED_EDGES;
 
 /// Cosine of the angle between normals beyond which facets do not face each other, 84°.
 const FACING: f64 = 0.1;
-
-/// Pairs that a thread takes at a time, at least.
-pub(super) const PAIRS: usize = 64;
 
 /// Pairs of facets and the blocks that evaluate them.
 pub(super) struct Pairing {

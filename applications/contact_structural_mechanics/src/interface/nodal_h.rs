@@ -8,7 +8,7 @@ use zelus_core::vector3::{dot, sub};
 
 use crate::variables::NODAL_H;
 
-/// Elements that a thread takes at a time.
+/// Elements that a thread takes at a time, at least.
 const CHUNK: usize = 1 << 12;
 
 /// Writes NODAL_H: the distance to the nearest other node of any element of the node, initial configuration (length);

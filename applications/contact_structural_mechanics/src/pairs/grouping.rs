@@ -11,7 +11,7 @@ use crate::interface::{Interface, NormalPatches};
 /// Numbers of nodes around pairs are multiples of this.
 const PLACES: usize = 2;
 /// Pairs that a thread takes at a time, at least.
-const PAIRS: usize = 64;
+pub const PAIRS: usize = 64;
 
 /// Pairs of the same shapes (slave, master), and their node indices: master nodes, then slave nodes.
 pub type Groups<T> = BTreeMap<(Shape, Shape), (Vec<T>, Vec<u32>)>;

@@ -21,7 +21,7 @@ pub use family::{
     ByNode, Family, FamilyEntry, Friction, PairRequest, TyingFamily, TyingFamilyEntry, find_family, find_tying_family,
     variables_of,
 };
-pub use grouping::{Groups, group_by_shapes, group_by_surroundings};
+pub use grouping::{Groups, PAIRS, group_by_shapes, group_by_surroundings};
 pub use nitsche_block::nitsche_block;
 pub use pair::{Integral, Pair, PairKey, Previous, check_pairs};
 pub use pair_block::PairBlock;
