@@ -1,7 +1,7 @@
 //! Contact by Nitsche's method, without friction and with it; its forces are stated in [`crate::formulations::nitsche`].
 
 use crate::active_set;
-use crate::formulations::Nitsche;
+use crate::formulations::Multiplier;
 use crate::pairs::{Family, Friction, nitsche_block};
 use crate::register_contact_family;
 
@@ -11,8 +11,12 @@ register_contact_family! { "NitscheContactFrictionless",
     conditions: ["NitscheFrictionlessMortarContactCondition", "NitscheFrictionlessAxisymMortarContactCondition"],
     build: Family {
         decide: |node, _| active_set::of_points(node),
-        block: |slave, master, request| nitsche_block(slave, master, request, false),
-        ..Family::of::<Nitsche>("NitscheFrictionlessMortarContactCondition", &[("NORMAL", 3), ("WEIGHTED_GAP", 1)])
+        ..Family::with_blocks(
+            "NitscheFrictionlessMortarContactCondition",
+            &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
+            Multiplier::Body,
+            |slave, master, request| nitsche_block(slave, master, request, false),
+        )
     },
 }
 register_contact_family! { "NitscheContactFrictional",
@@ -22,10 +26,11 @@ register_contact_family! { "NitscheContactFrictional",
     build: Family {
         friction: Friction::Coulomb,
         decide: |node, _| active_set::of_points(node),
-        block: |slave, master, request| nitsche_block(slave, master, request, true),
-        ..Family::of::<Nitsche>(
+        ..Family::with_blocks(
             "NitscheFrictionalMortarContactCondition",
             &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3), ("CARRIED_TRACTION", 3)],
+            Multiplier::Body,
+            |slave, master, request| nitsche_block(slave, master, request, true),
         )
     },
 }

@@ -18,8 +18,7 @@
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
 
-use super::StepParameters;
-use super::{Formulation, Kinematics, LastState, Multiplier, PairResidual, SlaveNode};
+use super::LastState;
 use crate::friction_law::Bound;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
@@ -239,32 +238,5 @@ fn limited<T: Real>(trial: [T; 3], pressure: T, bound: Bound, sticks: bool) -> [
         [T::zero(); 3]
     } else {
         scale(trial, limit / norm(trial))
-    }
-}
-
-/// By operators there is nothing: forces are those of points.
-impl Formulation for Nitsche {
-    const MULTIPLIER: Multiplier = Multiplier::Body;
-    type History<S: FacetShape, M: FacetShape> = LastState<S, M>;
-
-    fn new(parameters: &StepParameters) -> Self {
-        parameters.nitsche
-    }
-
-    fn residual<T: Real, S: FacetShape, M: FacetShape>(
-        &self,
-        _pair: &Kinematics<T, S, M>,
-        _nodes: &S::Nodal<SlaveNode>,
-        _last: &LastState<S, M>,
-    ) -> PairResidual<T, S, M> {
-        PairResidual::zero()
-    }
-
-    fn weighted_slip<S: FacetShape, M: FacetShape>(
-        &self,
-        pair: &Kinematics<f64, S, M>,
-        last: &LastState<S, M>,
-    ) -> S::Nodal<[f64; 3]> {
-        if self.friction.is_some() { last.slip(pair) } else { S::nodal(|_| [0.0; 3]) }
     }
 }

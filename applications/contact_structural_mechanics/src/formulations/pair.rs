@@ -1,10 +1,11 @@
 //! What a formulation sees of a pair, and what it returns.
 
 use crate::friction_law::Bound;
-use crate::mortar::{Operators, weighted_gap};
+use crate::mortar::{Operators, PairGeometry, weighted_gap};
 use crate::node_state::{Held, NodeState, Turning};
 use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
+use zelus_core::vector3::constant;
 
 /// Constants of a slave node during an assembly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +56,16 @@ pub struct Kinematics<T: Real, S: FacetShape, M: FacetShape> {
 }
 
 impl<T: Real, S: FacetShape, M: FacetShape> Kinematics<T, S, M> {
+    /// Of a pair that stands like this, with these operators; multipliers are constants.
+    pub fn new(
+        geometry: &PairGeometry<T, S, M>,
+        operators: Operators<T, S, M>,
+        multipliers: &S::Nodal<[f64; 3]>,
+    ) -> Self {
+        let PairGeometry { slave, master, nodal_normals: normals, .. } = *geometry;
+        Self { operators, slave, master, normals, multipliers: S::map(multipliers, constant) }
+    }
+
     /// Weighted gaps g̃ of this pair alone.
     #[inline]
     pub fn gap(&self) -> S::Nodal<T> {

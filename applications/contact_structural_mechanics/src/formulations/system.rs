@@ -7,7 +7,6 @@ use crate::kratos::FirstIterateTangent;
 use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, operators_by_normals};
 use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::{Differentiated, Dual, Real};
-use zelus_core::vector3::constant;
 
 /// Number of local unknowns of a pair.
 pub const fn local_size<F: Formulation, S: FacetShape, M: FacetShape>() -> usize {
@@ -30,7 +29,7 @@ pub fn residual<F: Formulation, S: FacetShape, M: FacetShape>(
     assert_eq!(rhs.len(), local_size::<F, S, M>(), "one entry per local unknown");
     rhs.fill(0.0);
     if let Overlap::Cells(operators) = found {
-        let out = stated(formulation, &kinematics(geometry, operators, multipliers), nodes, history);
+        let out = stated(formulation, &Kinematics::new(geometry, operators, multipliers), nodes, history);
         for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, value| rhs[row] = value);
     }
 }
@@ -62,7 +61,7 @@ pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usize>
     for first in (0..unknowns).step_by(LANES) {
         let geometry = seeded(first);
         let Some(dual) = knows.operators(&geometry, settings) else { return };
-        let out = stated(formulation, &kinematics(&geometry, dual, multipliers), nodes, history);
+        let out = stated(formulation, &Kinematics::new(&geometry, dual, multipliers), nodes, history);
         for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b: Dual<LANES>| {
             rhs[row] = b.value;
             for lane in 0..LANES.min(unknowns - first) {
@@ -77,7 +76,7 @@ pub fn tangent<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usize>
     let count = F::MULTIPLIER.count(S::SPACE);
     for c in 0..count {
         let mut pair: Kinematics<S::ByNode, S, M> =
-            kinematics(&values.as_constants(), plain.as_constants(), multipliers);
+            Kinematics::new(&values.as_constants(), plain.as_constants(), multipliers);
         for j in 0..S::NODES {
             pair.multipliers[j][c] = S::ByNode::of_variable(multipliers[j][c], j);
         }
@@ -105,7 +104,7 @@ pub fn by_normals<F: Formulation, S: FacetShape, M: FacetShape, const LANES: usi
     for first in (0..count).step_by(LANES) {
         let Some(operators) = operators_by_normals(geometry, settings, first).cells() else { return };
         let seeded: PairGeometry<Dual<LANES>, S, M> = geometry.seeded_by_normals(first);
-        let out = stated(formulation, &kinematics(&seeded, operators, multipliers), nodes, history);
+        let out = stated(formulation, &Kinematics::new(&seeded, operators, multipliers), nodes, history);
         let known = LANES.min(count - first);
         for_each_row::<_, S, M>(&out, F::MULTIPLIER, |row, b| visit(row, first, &b.gradient[..known]));
     }
@@ -123,20 +122,6 @@ fn stated<F: Formulation, T: Real, S: FacetShape, M: FacetShape>(
     out
 }
 
-fn kinematics<T: Real, S: FacetShape, M: FacetShape>(
-    geometry: &PairGeometry<T, S, M>,
-    operators: Operators<T, S, M>,
-    multipliers: &S::Nodal<[f64; 3]>,
-) -> Kinematics<T, S, M> {
-    Kinematics {
-        operators,
-        slave: geometry.slave,
-        master: geometry.master,
-        normals: geometry.nodal_normals,
-        multipliers: S::map(multipliers, constant),
-    }
-}
-
 /// Visits the entries of a residual in the order of the local unknowns.
 #[inline]
 fn for_each_row<T: Real, S: FacetShape, M: FacetShape>(
@@ -145,7 +130,14 @@ fn for_each_row<T: Real, S: FacetShape, M: FacetShape>(
     mut visit: impl FnMut(usize, T),
 ) {
     let dim = S::SPACE;
-    let displacements = out.master.iter().chain(out.slave.iter()).flat_map(|b| &b[..dim]);
-    let conditions = out.multipliers.iter().flat_map(|b| &b[..multipliers.count(dim)]);
-    displacements.chain(conditions).enumerate().for_each(|(row, &b)| visit(row, b));
+    let mut row = 0;
+    let mut visit_all = |nodes: &[[T; 3]], count: usize| {
+        for &b in nodes.iter().flat_map(|node| &node[..count]) {
+            visit(row, b);
+            row += 1;
+        }
+    };
+    visit_all(out.master.as_slice(), dim);
+    visit_all(out.slave.as_slice(), dim);
+    visit_all(out.multipliers.as_slice(), multipliers.count(dim));
 }

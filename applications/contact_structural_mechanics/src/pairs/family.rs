@@ -100,9 +100,19 @@ pub struct Family {
 impl Family {
     /// A family without friction whose forces are those of a formulation, and whose conditions begin with a name.
     pub const fn of<F: Formulation>(condition: &'static str, variables: &'static [NodalVariable]) -> Self {
+        Self::with_blocks(condition, variables, F::MULTIPLIER, pair_block::<F>)
+    }
+
+    /// A family without friction with blocks of its own, whose conditions begin with a name.
+    pub const fn with_blocks(
+        condition: &'static str,
+        variables: &'static [NodalVariable],
+        multiplier: Multiplier,
+        block: fn(Shape, Shape, PairRequest) -> Option<Box<dyn ContactBlock>>,
+    ) -> Self {
         Self {
             condition,
-            multiplier: F::MULTIPLIER,
+            multiplier,
             variables,
             friction: Friction::None,
             decide: |node, _| active_set::frictionless(node),
@@ -110,7 +120,7 @@ impl Family {
             compliant: false,
             updated: false,
             by_node: None,
-            block: pair_block::<F>,
+            block,
         }
     }
 

@@ -10,6 +10,7 @@ mod known_operators;
 mod nitsche_block;
 mod pair;
 mod pair_block;
+mod pairs_of_shapes;
 mod tying_block;
 
 pub use crate::formulations::Multiplier;
@@ -24,5 +25,4 @@ pub use family::{
 pub use grouping::{Groups, PAIRS, group_by_shapes, group_by_surroundings};
 pub use nitsche_block::nitsche_block;
 pub use pair::{Integral, Pair, PairKey, Previous, check_pairs};
-pub use pair_block::PairBlock;
 pub use tying_block::{TyingRequest, tying_block};

@@ -11,10 +11,9 @@ use zelus_core::vector3::dot;
 
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
-use super::in_parallel::in_parallel;
 use super::pair::{Integral, Pair};
-use super::pair_block::PairBlock;
-use crate::formulations::{LastState, Nitsche, NodeOfPoints, PointForces};
+use super::pairs_of_shapes::PairsOfShapes;
+use crate::formulations::{Kinematics, LastState, Multiplier, Nitsche, NodeOfPoints, PointForces};
 use crate::interface::{Bodies, Tractions};
 use crate::mortar::shapes::for_shapes;
 use crate::mortar::{PairGeometry, lanes, variables_from};
@@ -46,8 +45,8 @@ const fn variables<S: FacetShape, M: FacetShape>() -> usize {
 ///
 /// Other nodes of the slave's element are among those around the pair.
 struct NitscheBlock<S: FacetShape, M: FacetShape, const LANES: usize> {
-    /// By operators it has no forces, so that its own derivatives are not asked for.
-    pairs: PairBlock<Nitsche, S, M, 1, 1>,
+    formulation: Nitsche,
+    pairs: PairsOfShapes<S, M>,
     bodies: Arc<Bodies>,
 }
 
@@ -57,12 +56,17 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
         let (bodies, parameters) = (request.bodies.clone(), request.parameters.clone());
         let friction = friction.then_some(parameters.tangent_factor);
         let formulation = Nitsche { friction, ..parameters.nitsche };
-        Box::new(Self { pairs: PairBlock::new(request, formulation), bodies })
+        Box::new(Self { formulation, pairs: PairsOfShapes::new(request, Multiplier::Body), bodies })
     }
 
     fn key(&self, at: usize) -> [u32; 2] {
-        let key = self.pairs.pairs()[at].key;
+        let key = self.pairs.pairs[at].key;
         [key.interface, key.slave]
+    }
+
+    fn last(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> LastState<S, M> {
+        let PairGeometry { slave, master, .. } = self.pairs.previous(at, view, states);
+        LastState { slave, master }
     }
 
     fn nodes_of_points(&self, at: usize, states: &SlaveStates) -> S::Nodal<NodeOfPoints> {
@@ -82,18 +86,17 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
     ) -> Option<PointForces<T, S, M>> {
         let face = self.bodies.slave_face(self.key(at));
         let nodes = self.nodes_of_points(at, states);
-        let previous = self.pairs.previous(at, view, states);
-        let last = LastState { slave: previous.slave, master: previous.master };
-        let settings = &self.pairs.parameters().segmentation;
-        self.pairs.formulation().forces(geometry, tractions, (&face, &nodes), &last, settings)
+        let last = self.last(at, view, states);
+        let settings = &self.pairs.parameters.segmentation;
+        self.formulation.forces(geometry, tractions, (&face, &nodes), &last, settings)
     }
 
     /// The right-hand side alone.
     fn residual(&self, at: usize, view: &StepView<'_>, rhs: &mut [f64]) -> Result<(), EntityError> {
         let key = self.key(at);
-        let consistent = self.pairs.formulation().theta != 0.0;
+        let consistent = self.formulation.theta != 0.0;
         let tractions = self.bodies.tractions::<S>(key, view, consistent)?;
-        let states = self.pairs.states();
+        let states = &self.pairs.states;
         let geometry = self.pairs.geometry(at, view, states);
         let Some(out) = self.forces(at, (view, states), &geometry, &tractions.values) else { return Ok(()) };
         let dim = S::SPACE;
@@ -119,14 +122,14 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
     ) -> Result<(), EntityError> {
         let (key, dim) = (self.key(at), S::SPACE);
         let Tractions { values, by } = self.bodies.tractions::<S>(key, view, true)?;
-        let states = self.pairs.states();
+        let states = &self.pairs.states;
         let plain = self.pairs.geometry(at, view, states);
         let (displacements, normals) = (PairGeometry::<f64, S, M>::UNKNOWNS, PairGeometry::<f64, S, M>::NORMALS);
         let all = variables::<S, M>();
         let unknowns = self.bodies.unknowns(key);
         let size = unknowns.len();
         let places: Vec<usize> = unknowns.iter().map(|&(node, c)| self.pairs.first_row(at, node) + c).collect();
-        let turns = self.pairs.parameters().normal_variation.knows_nodes();
+        let turns = self.pairs.parameters.normal_variation.knows_nodes();
         // The rows of all local unknowns by the variables of the formula, and what works on changes of the tractions.
         let mut rows = vec![0.0; width * all];
         let mut weights = S::nodal(|_| [0.0; 3]);
@@ -170,7 +173,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
                 rows.chunks_exact(all).flat_map(|row| row[of_normals.clone()].to_vec()).collect();
             self.pairs.spread_turning(at, view, &by_normals, (lhs, width));
         }
-        if self.pairs.formulation().theta != 0.0 {
+        if self.formulation.theta != 0.0 {
             self.bodies
                 .add_second_derivative::<S>(key, view, &weights, |r, s, d| lhs[places[r] * width + places[s]] -= d)?;
         }
@@ -180,7 +183,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
 
 impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBlock<S, M, LANES> {
     fn entry(&self) -> &'static EntityKind {
-        self.pairs.entry()
+        self.pairs.entry
     }
 
     fn members(&self) -> &[u32] {
@@ -188,7 +191,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBl
     }
 
     fn len(&self) -> usize {
-        self.pairs.len()
+        self.pairs.pairs.len()
     }
 
     fn nodes(&self, at: usize) -> &[u32] {
@@ -196,15 +199,15 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBl
     }
 
     fn unknowns(&self) -> &[LocalUnknown] {
-        self.pairs.unknowns()
+        &self.pairs.unknowns
     }
 
     fn tangent(&self) -> Tangent {
         Tangent::General
     }
 
-    fn is_active(&self, at: usize, view: &StepView<'_>) -> bool {
-        self.pairs.is_active(at, view)
+    fn is_active(&self, at: usize, _view: &StepView<'_>) -> bool {
+        self.pairs.pairs[at].overlapping
     }
 
     fn local_systems(
@@ -215,7 +218,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBl
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         for (slot, at) in range.enumerate() {
-            if !self.pairs.is_active(at, view) {
+            if !self.is_active(at, view) {
                 continue;
             }
             let width = out.size;
@@ -232,11 +235,11 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBl
 
 impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheBlock<S, M, LANES> {
     fn pairs(&self) -> &[Pair] {
-        self.pairs.pairs()
+        &self.pairs.pairs
     }
 
     fn pairs_mut(&mut self) -> &mut [Pair] {
-        self.pairs.pairs_mut()
+        &mut self.pairs.pairs
     }
 
     fn slave_nodes(&self, at: usize) -> &[u32] {
@@ -244,7 +247,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheB
     }
 
     fn set_states(&mut self, states: Arc<SlaveStates>) {
-        self.pairs.set_states(states);
+        self.pairs.states = states;
     }
 
     fn find_operators(&mut self, present: Present<'_>) {
@@ -255,19 +258,16 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheB
     /// meets the same element, says so.
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
         let Present { view, states, .. } = present;
-        let integrals = self.pairs.integrate(present);
-        in_parallel(integrals.len(), &|at| {
-            let mut found = integrals[at];
-            if !found.overlapping {
-                return found;
+        self.pairs.integrate(present, &|at, geometry, operators, out| {
+            if self.formulation.friction.is_some() {
+                let pair = Kinematics::new(geometry, operators, &S::nodal(|_| [0.0; 3]));
+                out.slip[..S::NODES].copy_from_slice(self.last(at, view, states).slip(&pair).as_slice());
             }
-            let Ok(tractions) = self.bodies.tractions::<S>(self.key(at), view, false) else { return found };
-            let geometry = self.pairs.geometry(at, view, states);
-            if let Some(forces) = self.forces(at, (view, states), &geometry, &tractions.values) {
-                found.trial[..S::NODES].copy_from_slice(forces.traction.as_slice());
-                found.carried[..S::NODES].copy_from_slice(forces.carried.as_slice());
+            let Ok(tractions) = self.bodies.tractions::<S>(self.key(at), view, false) else { return };
+            if let Some(forces) = self.forces(at, (view, states), geometry, &tractions.values) {
+                out.trial[..S::NODES].copy_from_slice(forces.traction.as_slice());
+                out.carried[..S::NODES].copy_from_slice(forces.carried.as_slice());
             }
-            found
         })
     }
 
