@@ -64,8 +64,8 @@ pub fn outcome(folder: &Path, before: &[std::path::PathBuf]) -> (BTreeMap<String
     (found, steps.map(|step| step["iterations"].as_array().map_or(0, Vec::len)).collect())
 }
 
-/// What is left of a weighted gap that is closed: the round-off of positions in blocks of unit size, of which the processor
-/// decides by the width of its sums.
+/// What is left of a weighted gap that is closed: the round-off of positions in blocks of unit size, which differs between
+/// machines.
 const CLOSED_GAP: f64 = 1e-15;
 
 /// Holds `found` to what is expected, within `tolerance` of the largest value of each quantity; gaps within [`CLOSED_GAP`], too.
