@@ -75,17 +75,13 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
         }
     }
 
-    fn master_nodes(&self, at: usize) -> &[u32] {
-        &self.nodes(at)[self.around..self.around + M::NODES]
-    }
-
     /// Node indices on the slave side of the `at`-th pair.
     pub(super) fn slave_nodes(&self, at: usize) -> &[u32] {
         &self.nodes(at)[self.around + M::NODES..]
     }
 
     fn masters(&self, at: usize) -> M::Nodal<u32> {
-        let nodes = self.master_nodes(at);
+        let nodes = &self.nodes(at)[self.around..];
         M::nodal(|n| nodes[n])
     }
 
@@ -164,13 +160,9 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
 
     /// The `at`-th pair as it stood in the last accepted state.
     pub(super) fn previous(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, S, M> {
-        let displacement = &view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns").levels;
-        let back = &displacement[self.parameters.levels_back.min(displacement.len() - 1)];
-        let position = |n: u32| {
-            let u = vector(back, n);
-            let initial = view.nodes.initial[n as usize];
-            std::array::from_fn(|c| initial[c] + u[c])
-        };
+        let displacement = view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns");
+        let back = self.parameters.levels_back.min(displacement.levels.len() - 1);
+        let position = |n: u32| add(view.nodes.initial[n as usize], displacement.vector(back, n as usize));
         PairGeometry {
             slave: S::map(&self.slaves(at), position),
             master: M::map(&self.masters(at), position),
@@ -288,9 +280,4 @@ fn local_unknowns(
     }
     unknowns.extend(displacements(0..around));
     unknowns
-}
-
-fn vector(column: &[f64], node: u32) -> [f64; 3] {
-    let at = 3 * node as usize;
-    [column[at], column[at + 1], column[at + 2]]
 }
