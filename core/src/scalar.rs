@@ -220,27 +220,6 @@ impl<const N: usize> Dual<N> {
     }
 }
 
-/// Numbers with derivatives by variables, for code that knows their number as that of another type.
-pub trait Differentiated: Real {
-    /// Variable `index`: its gradient is the unit vector `index`.
-    fn of_variable(value: f64, index: usize) -> Self;
-
-    /// The derivatives.
-    fn derivatives(&self) -> &[f64];
-}
-
-impl<const N: usize> Differentiated for Dual<N> {
-    #[inline]
-    fn of_variable(value: f64, index: usize) -> Self {
-        Self::variable(value, index)
-    }
-
-    #[inline]
-    fn derivatives(&self) -> &[f64] {
-        &self.gradient
-    }
-}
-
 impl<const N: usize> Default for Dual<N> {
     fn default() -> Self {
         Self::zero()

@@ -4,12 +4,12 @@
 use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
-use zelus::contact_structural_mechanics::formulations::{
-    Augmentation, Nitsche, NitscheVariant, NormalVariation, StepParameters,
-};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles,
+};
+use zelus::contact_structural_mechanics::law::{
+    Augmentation, Nitsche, NitscheVariant, NormalVariation, StepParameters,
 };
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::flags::SLIP;
-use zelus::contact_structural_mechanics::formulations::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
+use zelus::contact_structural_mechanics::law::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use zelus::contact_structural_mechanics::mortar::{
     IntegrationOrder, MOST_NODES, OperatorThreshold, SegmentationSettings,
 };
@@ -17,7 +17,7 @@ use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
-use zelus_core::entities::{EntityBlock, LocalSystems, Want, block_kinds, find_kind};
+use zelus_core::entities::{EntityBlock, LocalSystems, Want, find_kind};
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::ACTIVE;
@@ -156,7 +156,7 @@ impl Setting {
     fn build(&self, family: &Family) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
         let [slave, master] = self.shapes;
         let name = condition_name(family.condition, slave, master);
-        let entry = find_kind(Role::Condition, &name);
+        let entry = find_kind(Role::Condition, &name)?;
         let masters = self.master.len();
         let current: Vec<Vec3> = self.master.iter().chain(&self.slave).copied().collect();
         let count = current.len();
@@ -208,7 +208,9 @@ impl Setting {
         let key = PairKey { interface: 0, slave: 0, master: 0 };
         let pair = Pair { area: [0.6; MOST_NODES], ..Pair::new(key, [self.slave_normal, self.master_normal]) };
         let request = PairRequest {
-            entry: entry.unwrap_or(block_kinds()[0]),
+            entry,
+            slave,
+            master,
             pairs: vec![pair],
             nodes: (0..count as u32).collect(),
             around: 0,
@@ -217,9 +219,7 @@ impl Setting {
             parameters: Arc::new(parameters),
             states: Arc::new(states.clone()),
         };
-        let block = (family.block)(slave, master, request);
-        assert_eq!(block.is_some(), entry.is_some(), "{name}: the name is registered for the shapes with a block");
-        let mut block = block?;
+        let mut block = (family.block)(request);
         part.nodes.move_all();
         let here = part.nodes.current.clone();
         part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));

@@ -1,11 +1,11 @@
 //! The walk over families of ties: their block for every two shapes, with operators as a pair might have them.
 
 use zelus::contact_structural_mechanics::pairs::{
-    FacetOperators, FacetPair, Multiplier, PairKey, TyingFamily, TyingFamilyEntry, TyingRequest, condition_name,
-    tying_block,
+    FacetOperators, FacetPair, Multiplier, PairKey, TyingBlock, TyingFamily, TyingFamilyEntry, TyingRequest,
+    condition_name,
 };
 use zelus::structural_mechanics::variables::DISPLACEMENT;
-use zelus_core::entities::{EntityBlock, Want, block_kinds, find_kind};
+use zelus_core::entities::{EntityBlock, Want, find_kind};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::registry::all;
@@ -39,22 +39,20 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
     for &(name, components) in family.variables {
         part.nodes.history.add_named(name, components);
     }
-    let entry = find_kind(Role::Condition, &condition_name("MeshTyingMortarCondition", slave, master));
+    let entry = find_kind(Role::Condition, &condition_name("MeshTyingMortarCondition", slave, master))?;
     let pair = FacetPair {
         key: PairKey { interface: 0, slave: 0, master: 0 },
         operators: operators(slave.nodes(), master.nodes(), &mut Random(3)),
     };
     let request = TyingRequest {
-        entry: entry.unwrap_or(block_kinds()[0]),
+        entry,
         pairs: vec![pair],
         nodes: (0..count as u32).collect(),
         tied,
         multipliers,
         scale_factor: 1.7,
     };
-    let made = tying_block(slave, master, request);
-    assert_eq!(made.is_some(), entry.is_some(), "{slave:?} on {master:?}: registered for the shapes with a block");
-    made.map(|block| (part, block))
+    Some((part, Box::new(TyingBlock::new(slave, master, request))))
 }
 
 #[test]

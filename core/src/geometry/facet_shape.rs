@@ -1,160 +1,196 @@
-//! Facets as types: lines in the plane and surfaces in space, for code that is compiled for their shape and any scalar.
+//! Shapes of facets: lines in the plane and surfaces in space, with shape functions in any scalar.
 //!
-//! A line a → b has the normal (t_y, −t_x), a surface t_1 × t_2. Local coordinates are `[ξ, η]`; a line has no η.
+//! The number of nodes is known at run time, so that code over facets is compiled once for each scalar. A line a → b has the
+//! normal (t_y, −t_x), a surface t_1 × t_2. Local coordinates are `[ξ, η]`; a line has no η.
 
-use std::fmt::Debug;
-use std::ops::{Index, IndexMut};
+use std::fmt;
 
 use super::Shape;
+use super::nodal::Nodal;
 use super::pieces::pieces;
 use super::shape_functions::{barycentric, linear, product, quadratic, quadratic_simplex, serendipity};
-use crate::scalar::{Differentiated, Dual, Real};
+use crate::scalar::{Dual, Real};
 use crate::vector3::{cross, dot, norm, normalised, sub, value};
 
 /// Newton steps of the closest-point search; it is quadratic, three or four are the rule.
 const MAX_STEPS: usize = 25;
 
-/// What can stand at the nodes of a facet.
-pub trait NodeValue: Copy + Debug + Send + Sync + 'static {}
-impl<V: Copy + Debug + Send + Sync + 'static> NodeValue for V {}
-
-/// An array of one value a node.
-pub trait NodeArray<V>: NodeValue + Index<usize, Output = V> + IndexMut<usize> + IntoIterator<Item = V> {
-    /// The values.
-    fn as_slice(&self) -> &[V];
-
-    /// The values, to change.
-    fn as_mut_slice(&mut self) -> &mut [V];
-
-    /// Visits the values.
-    fn iter<'a>(&'a self) -> std::slice::Iter<'a, V>
-    where
-        V: 'a,
-    {
-        self.as_slice().iter()
-    }
-
-    /// Visits the values, to change them.
-    fn iter_mut<'a>(&'a mut self) -> std::slice::IterMut<'a, V>
-    where
-        V: 'a,
-    {
-        self.as_mut_slice().iter_mut()
-    }
-}
-
-impl<V: NodeValue, const N: usize> NodeArray<V> for [V; N] {
-    #[inline]
-    fn as_slice(&self) -> &[V] {
-        self
-    }
-
-    #[inline]
-    fn as_mut_slice(&mut self) -> &mut [V] {
-        self
-    }
-}
-
-/// A shape of facets. Adding one to what facets carry is adding its type here and, for contact, a line to the list of pairs.
-pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
+/// A shape of facets: the constant facts of its reference cell.
+pub struct FacetShape {
     /// Its name among the reference cells.
-    const SHAPE: Shape;
+    pub shape: Shape,
     /// Number of nodes.
-    const NODES: usize = Self::SHAPE.nodes();
+    pub nodes: usize,
     /// Number of corners, which are the first of its nodes and follow each other along the rim.
-    const CORNERS: usize = Self::SHAPE.cell().corners();
+    pub corners: usize,
     /// Dimensions of the space that it bounds a body in: 2 or 3.
-    const SPACE: usize = Self::SHAPE.dim() + 1;
+    pub space: usize,
     /// Whether its map is affine, so that it is flat and its tangents are constant.
-    const AFFINE: bool = Self::NODES == Self::SPACE;
+    pub affine: bool,
     /// Whether it is of second order, with nodes beside its corners.
-    const CURVED: bool = Self::NODES > Self::CORNERS;
-    /// Its linear pieces, each by its nodes.
-    const PIECES: &'static [&'static [usize]] = pieces(Self::SHAPE);
+    pub curved: bool,
+    /// Its linear sub-facets, each by its nodes.
+    pub pieces: &'static [&'static [usize]],
     /// Local coordinates of its centre.
-    const CENTRE: [f64; 2] = [Self::SHAPE.cell().centre[0], Self::SHAPE.cell().centre[1]];
+    pub centre: [f64; 2],
+    /// Length or area of the reference cell.
+    pub cell_size: f64,
+    /// Local coordinates of its nodes.
+    points: &'static [[f64; 3]],
+}
 
-    /// Numbers with derivatives by one variable a node.
-    type ByNode: Differentiated;
+/// Line with two nodes, ξ ∈ [−1, 1].
+pub static LINE_2: FacetShape = FacetShape::new(Shape::Line2);
+/// Line with a node in the middle.
+pub static LINE_3: FacetShape = FacetShape::new(Shape::Line3);
+/// Triangle with corners (0,0), (1,0), (0,1).
+pub static TRIANGLE_3: FacetShape = FacetShape::new(Shape::Tri3);
+/// Triangle with nodes in the middle of its edges.
+pub static TRIANGLE_6: FacetShape = FacetShape::new(Shape::Tri6);
+/// Quadrilateral, ξ, η ∈ [−1, 1].
+pub static QUADRILATERAL_4: FacetShape = FacetShape::new(Shape::Quad4);
+/// Quadrilateral with nodes in the middle of its edges.
+pub static QUADRILATERAL_8: FacetShape = FacetShape::new(Shape::Quad8);
+/// Quadrilateral with nodes in the middle of its edges and at its centre.
+pub static QUADRILATERAL_9: FacetShape = FacetShape::new(Shape::Quad9);
 
-    /// An array of one value a node.
-    type Nodal<V: NodeValue>: NodeArray<V>;
+impl fmt::Debug for FacetShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.shape)
+    }
+}
 
-    /// The array of the values of a function of the node.
-    fn nodal<V: NodeValue>(of: impl FnMut(usize) -> V) -> Self::Nodal<V>;
+impl PartialEq for FacetShape {
+    fn eq(&self, other: &Self) -> bool {
+        self.shape == other.shape
+    }
+}
+
+impl Eq for FacetShape {}
+
+/// The combination Σ Nᵢ vᵢ of nodal vectors.
+#[inline]
+pub fn interpolate<T: Real, const C: usize>(shape_functions: &[T], nodal: &[[T; C]]) -> [T; C] {
+    let mut sum = [T::zero(); C];
+    for (shape, vector) in shape_functions.iter().zip(nodal) {
+        for c in 0..C {
+            sum[c].add_product(*shape, vector[c]);
+        }
+    }
+    sum
+}
+
+/// The combination Σ wᵢ vᵢ of nodal vectors with plain weights.
+#[inline]
+pub fn combine<T: Real, const C: usize>(weights: &[f64], nodal: &[[T; C]]) -> [T; C] {
+    let mut sum = [T::zero(); C];
+    for (&weight, vector) in weights.iter().zip(nodal) {
+        for c in 0..C {
+            sum[c].add_scaled(vector[c], weight);
+        }
+    }
+    sum
+}
+
+impl FacetShape {
+    const fn new(shape: Shape) -> Self {
+        let cell = shape.cell();
+        let (nodes, corners, space) = (shape.nodes(), cell.corners(), shape.dim() + 1);
+        Self {
+            shape,
+            nodes,
+            corners,
+            space,
+            affine: nodes == space,
+            curved: nodes > corners,
+            pieces: pieces(shape),
+            centre: [cell.centre[0], cell.centre[1]],
+            cell_size: cell.size(),
+            points: cell.points,
+        }
+    }
+
+    /// The facts of a shape; `None` where it is no facet.
+    pub fn of(shape: Shape) -> Option<&'static Self> {
+        Some(match shape {
+            Shape::Line2 => &LINE_2,
+            Shape::Line3 => &LINE_3,
+            Shape::Tri3 => &TRIANGLE_3,
+            Shape::Tri6 => &TRIANGLE_6,
+            Shape::Quad4 => &QUADRILATERAL_4,
+            Shape::Quad8 => &QUADRILATERAL_8,
+            Shape::Quad9 => &QUADRILATERAL_9,
+            _ => return None,
+        })
+    }
+
+    /// All shapes of facets.
+    pub fn all() -> [&'static Self; 7] {
+        [&LINE_2, &LINE_3, &TRIANGLE_3, &TRIANGLE_6, &QUADRILATERAL_4, &QUADRILATERAL_8, &QUADRILATERAL_9]
+    }
+
+    /// The values of a function of the node.
+    #[inline(always)]
+    pub fn nodal<V: Copy>(&self, of: impl FnMut(usize) -> V) -> Nodal<V> {
+        Nodal::new(self.nodes, of)
+    }
 
     /// Shape functions at a local point.
-    fn values<T: Real>(xi: [T; 2]) -> Self::Nodal<T>;
-
-    /// The array of a function of the values of another.
-    #[inline]
-    fn map<V: NodeValue, W: NodeValue>(values: &Self::Nodal<V>, mut of: impl FnMut(V) -> W) -> Self::Nodal<W> {
-        Self::nodal(|n| of(values[n]))
+    pub fn values<T: Real>(&self, xi: [T; 2]) -> Nodal<T> {
+        let points = self.points;
+        match self.shape {
+            Shape::Line2 => Nodal::new(2, |i| product(&points[i], &xi[..1], linear)),
+            Shape::Line3 => Nodal::new(3, |i| product(&points[i], &xi[..1], quadratic)),
+            Shape::Tri3 => Nodal::new(3, |i| barycentric(&xi, i)),
+            Shape::Tri6 => Nodal::new(6, |i| quadratic_simplex(self.shape.cell(), &xi, i)),
+            Shape::Quad4 => Nodal::new(4, |i| product(&points[i], &xi, linear)),
+            Shape::Quad8 => Nodal::new(8, |i| serendipity(&points[i], &xi)),
+            _ => Nodal::new(9, |i| product(&points[i], &xi, quadratic)),
+        }
     }
 
     /// Derivatives of the shape functions by ξ and η at a local point.
     #[inline]
-    fn gradients(xi: [f64; 2]) -> Self::Nodal<[f64; 2]> {
-        let at = Self::values([Dual::<2>::variable(xi[0], 0), Dual::variable(xi[1], 1)]);
-        Self::map(&at, |n| n.gradient)
+    pub fn gradients(&self, xi: [f64; 2]) -> Nodal<[f64; 2]> {
+        self.values([Dual::<2>::variable(xi[0], 0), Dual::variable(xi[1], 1)]).map(|n| n.gradient)
     }
 
     /// Local coordinates of a node.
     #[inline]
-    fn corner(n: usize) -> [f64; 2] {
-        let [xi, eta, _] = Self::SHAPE.cell().points[n];
+    pub fn corner(&self, n: usize) -> [f64; 2] {
+        let [xi, eta, _] = self.points[n];
         [xi, eta]
-    }
-
-    /// The combination Σ Nᵢ vᵢ of nodal vectors.
-    #[inline]
-    fn interpolate<T: Real, const C: usize>(shape: &Self::Nodal<T>, nodal: &Self::Nodal<[T; C]>) -> [T; C] {
-        let mut sum = [T::zero(); C];
-        for n in 0..Self::NODES {
-            for c in 0..C {
-                sum[c].add_product(shape[n], nodal[n][c]);
-            }
-        }
-        sum
-    }
-
-    /// The combination Σ wᵢ vᵢ of nodal vectors with plain weights.
-    #[inline]
-    fn combine<T: Real, const C: usize>(weights: &Self::Nodal<f64>, nodal: &Self::Nodal<[T; C]>) -> [T; C] {
-        let mut sum = [T::zero(); C];
-        for n in 0..Self::NODES {
-            for c in 0..C {
-                sum[c].add_scaled(nodal[n][c], weights[n]);
-            }
-        }
-        sum
     }
 
     /// Tangents ∂x/∂ξ and ∂x/∂η at a local point; that of a line by η is zero.
     #[inline]
-    fn tangents<T: Real>(nodes: &Self::Nodal<[T; 3]>, xi: [f64; 2]) -> [[T; 3]; 2] {
-        let gradients = Self::gradients(xi);
-        [0, 1].map(|a| Self::combine(&Self::map(&gradients, |g| g[a]), nodes))
+    pub fn tangents<T: Real>(&self, nodes: &[[T; 3]], xi: [f64; 2]) -> [[T; 3]; 2] {
+        let gradients = self.gradients(xi);
+        [0, 1].map(|a| combine(&gradients.map(|g| g[a]), nodes))
     }
 
     /// Normal whose length is that of a line, or the area of a surface, by the local coordinates.
     #[inline]
-    fn area_normal<T: Real>(nodes: &Self::Nodal<[T; 3]>, xi: [f64; 2]) -> [T; 3] {
-        let [t, s] = Self::tangents(nodes, xi);
-        if Self::SPACE == 2 { [t[1], -t[0], T::zero()] } else { cross(t, s) }
+    pub fn area_normal<T: Real>(&self, nodes: &[[T; 3]], xi: [f64; 2]) -> [T; 3] {
+        self.across(self.tangents(nodes, xi))
+    }
+
+    #[inline]
+    fn across<T: Real>(&self, [t, s]: [[T; 3]; 2]) -> [T; 3] {
+        if self.space == 2 { [t[1], -t[0], T::zero()] } else { cross(t, s) }
     }
 
     /// Unit normal at a local point.
     #[inline]
-    fn unit_normal<T: Real>(nodes: &Self::Nodal<[T; 3]>, xi: [f64; 2]) -> [T; 3] {
-        normalised(Self::area_normal(nodes, xi))
+    pub fn unit_normal<T: Real>(&self, nodes: &[[T; 3]], xi: [f64; 2]) -> [T; 3] {
+        normalised(self.area_normal(nodes, xi))
     }
 
     /// [`FacetShape::area_normal`] at a local point that moves.
-    fn area_normal_at<T: Real>(nodes: &Self::Nodal<[T; 3]>, xi: [T; 2]) -> [T; 3] {
+    pub fn area_normal_at<T: Real>(&self, nodes: &[[T; 3]], xi: [T; 2]) -> [T; 3] {
         let at = xi.map(T::value);
-        let [mut t, mut s] = Self::tangents(nodes, at);
-        let [first, mixed, last] = bend_at::<Self>(&Self::map(nodes, value), at);
+        let [mut t, mut s] = self.tangents(nodes, at);
+        let [first, mixed, last] = self.bend_at(&Nodal::of(nodes).map(value), at);
         for a in 0..2 {
             let (moved, [by_t, by_s]) = (xi[a] - at[a], [[first, mixed], [mixed, last]][a]);
             for c in 0..3 {
@@ -162,28 +198,29 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
                 s[c].add_scaled(moved, by_s[c]);
             }
         }
-        if Self::SPACE == 2 { [t[1], -t[0], T::zero()] } else { cross(t, s) }
+        self.across([t, s])
     }
 
     /// Local coordinates of the point in which the straight line through `point` along `direction` meets the facet, extended
     /// beyond its edges; `None` where the search for it does not settle.
     ///
     /// As in [`FacetShape::closest_point`] it runs on values, and one correction gives the derivative.
-    fn point_along<T: Real>(
-        nodes: &Self::Nodal<[T; 3]>,
+    pub fn point_along<T: Real>(
+        &self,
+        nodes: &[[T; 3]],
         point: [T; 3],
         direction: [T; 3],
         guess: [f64; 2],
     ) -> Option<[T; 2]> {
-        let (x, p, n) = (Self::map(nodes, value), value(point), value(direction));
+        let (x, p, n) = (Nodal::of(nodes).map(value), value(point), value(direction));
         let (mut xi, mut distance) = (guess, 0.0);
         let mut settled = false;
         let columns = |xi: [f64; 2]| {
-            let [t, s] = Self::tangents(&x, xi);
-            [t, if Self::SPACE == 2 { [0.0, 0.0, 1.0] } else { s }, n.map(|n| -n)]
+            let [t, s] = self.tangents(&x, xi);
+            [t, if self.space == 2 { [0.0, 0.0, 1.0] } else { s }, n.map(|n| -n)]
         };
         for _ in 0..MAX_STEPS {
-            let on = Self::combine(&Self::values(xi), &x);
+            let on = combine(&self.values(xi), &x);
             let apart: [f64; 3] = std::array::from_fn(|c| on[c] - p[c] - distance * n[c]);
             let [a, b, d] = solve(&columns(xi), apart);
             xi = [xi[0] - a, xi[1] - b];
@@ -196,14 +233,14 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
         if !settled {
             return None;
         }
-        let on = Self::combine(&Self::values(xi), nodes);
+        let on = combine(&self.values(xi), nodes);
         let apart: [T; 3] = std::array::from_fn(|c| on[c] - point[c] - direction[c] * distance);
         let inverse = [0, 1, 2].map(|c| {
             let unit: [f64; 3] = std::array::from_fn(|k| f64::from(u8::from(k == c)));
             solve(&columns(xi), unit)
         });
         let mut local = xi.map(T::constant);
-        for a in 0..Self::SPACE - 1 {
+        for a in 0..self.space - 1 {
             (0..3).for_each(|c| local[a].add_scaled(apart[c], -inverse[c][a]));
         }
         Some(local)
@@ -211,40 +248,26 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
 
     /// Length of a line, or area of a surface, as it is at the centre.
     #[inline]
-    fn measure(nodes: &Self::Nodal<[f64; 3]>) -> f64 {
-        norm(Self::area_normal(nodes, Self::CENTRE)) * Self::SHAPE.cell().size()
+    pub fn measure(&self, nodes: &[[f64; 3]]) -> f64 {
+        norm(self.area_normal(nodes, self.centre)) * self.cell_size
     }
 
     /// Local coordinates of the point of a facet closest to `point`, which need not lie on it.
     ///
     /// The search runs on values; one correction with the inverse Hessian at the solution then gives the exact derivative
     /// (implicit function theorem on `∂ₐx·(x(ξ) − p) = 0`).
-    fn closest_point<T: Real>(nodes: &Self::Nodal<[T; 3]>, point: [T; 3], guess: [f64; 2]) -> [T; 2] {
-        let x = Self::map(nodes, value);
+    pub fn closest_point<T: Real>(&self, nodes: &[[T; 3]], point: [T; 3], guess: [f64; 2]) -> [T; 2] {
+        let x = Nodal::of(nodes).map(value);
         let p = value(point);
-        let mut xi = guess;
-        let mut bend = bend_at::<Self>(&x, xi);
-        let mut state = HalfSquare::new::<Self>(&x, p, xi, &bend);
-        for _ in 0..MAX_STEPS {
-            let step = state.solve([dot(state.tangent[0], state.gap), dot(state.tangent[1], state.gap)]);
-            xi = [xi[0] - step[0], xi[1] - step[1]];
-            // So short a step changes no derivative.
-            if step[0].abs().max(step[1].abs()) < 1e-13 {
-                break;
-            }
-            if Self::CURVED {
-                bend = bend_at::<Self>(&x, xi);
-            }
-            state = HalfSquare::new::<Self>(&x, p, xi, &bend);
-        }
+        let (xi, state) = self.closest(&x, p, guess);
         if !T::DIFFERENTIATES {
             return xi.map(T::constant);
         }
         // d(∂ₐx·(x − p)) at a fixed ξ: the motion of the gap along the tangents, and that of the tangents along the gap.
-        let (shape, gradient) = (Self::values(xi), Self::gradients(xi));
+        let (shape, gradient) = (self.values(xi), self.gradients(xi));
         let mut residual = [T::zero(); 2];
         for c in 0..3 {
-            for n in 0..Self::NODES {
+            for n in 0..self.nodes {
                 let moved = nodes[n][c] - x[n][c];
                 for a in 0..2 {
                     residual[a].add_scaled(moved, shape[n] * state.tangent[a][c] + gradient[n][a] * state.gap[c]);
@@ -260,26 +283,46 @@ pub trait FacetShape: Copy + Debug + Send + Sync + 'static {
         }
         local
     }
-}
 
-/// ∂²x/∂ξ², ∂²x/∂ξ∂η and ∂²x/∂η². No shape function is of higher degree than two in one coordinate, where central differences
-/// are exact; of bilinear ones, the mixed derivative is that of their values at the corners.
-#[inline]
-fn bend_at<S: FacetShape>(x: &S::Nodal<[f64; 3]>, [xi, eta]: [f64; 2]) -> [[f64; 3]; 3] {
-    if S::AFFINE {
-        return [[0.0; 3]; 3];
+    /// The search of [`FacetShape::closest_point`]: local coordinates and the derivatives there.
+    fn closest(&self, x: &[[f64; 3]], p: [f64; 3], guess: [f64; 2]) -> ([f64; 2], HalfSquare) {
+        let mut xi = guess;
+        let mut bend = self.bend_at(x, xi);
+        let mut state = HalfSquare::new(self, x, p, xi, &bend);
+        for _ in 0..MAX_STEPS {
+            let step = state.solve([dot(state.tangent[0], state.gap), dot(state.tangent[1], state.gap)]);
+            xi = [xi[0] - step[0], xi[1] - step[1]];
+            // So short a step changes no derivative.
+            if step[0].abs().max(step[1].abs()) < 1e-13 {
+                break;
+            }
+            if self.curved {
+                bend = self.bend_at(x, xi);
+            }
+            state = HalfSquare::new(self, x, p, xi, &bend);
+        }
+        (xi, state)
     }
-    if S::NODES == S::CORNERS {
-        let mixed = S::combine(&S::nodal(|n| 0.25 * S::corner(n)[0] * S::corner(n)[1]), x);
-        return [[0.0; 3], mixed, [0.0; 3]];
+
+    /// ∂²x/∂ξ², ∂²x/∂ξ∂η and ∂²x/∂η². No shape function is of higher degree than two in one coordinate, where central
+    /// differences are exact; of bilinear ones, the mixed derivative is that of their values at the corners.
+    #[inline]
+    fn bend_at(&self, x: &[[f64; 3]], [xi, eta]: [f64; 2]) -> [[f64; 3]; 3] {
+        if self.affine {
+            return [[0.0; 3]; 3];
+        }
+        if self.nodes == self.corners {
+            let mixed = combine(&self.nodal(|n| 0.25 * self.corner(n)[0] * self.corner(n)[1]), x);
+            return [[0.0; 3], mixed, [0.0; 3]];
+        }
+        let difference = |after: [f64; 2], before: [f64; 2]| {
+            let (after, before) = (self.tangents(x, after), self.tangents(x, before));
+            [0, 1].map(|a| sub(after[a], before[a]).map(|d| 0.5 * d))
+        };
+        let [first, mixed] = difference([xi + 1.0, eta], [xi - 1.0, eta]);
+        let [_, last] = difference([xi, eta + 1.0], [xi, eta - 1.0]);
+        [first, mixed, last]
     }
-    let difference = |after: [f64; 2], before: [f64; 2]| {
-        let (after, before) = (S::tangents(x, after), S::tangents(x, before));
-        [0, 1].map(|a| sub(after[a], before[a]).map(|d| 0.5 * d))
-    };
-    let [first, mixed] = difference([xi + 1.0, eta], [xi - 1.0, eta]);
-    let [_, last] = difference([xi, eta + 1.0], [xi, eta - 1.0]);
-    [first, mixed, last]
 }
 
 /// The factors of three vectors that add up to another, by Cramer's rule.
@@ -296,20 +339,19 @@ struct HalfSquare {
 }
 
 impl HalfSquare {
-    #[inline]
-    fn new<S: FacetShape>(x: &S::Nodal<[f64; 3]>, p: [f64; 3], xi: [f64; 2], bend: &[[f64; 3]; 3]) -> Self {
-        let at = S::values([Dual::<2>::variable(xi[0], 0), Dual::variable(xi[1], 1)]);
+    fn new(facet: &FacetShape, x: &[[f64; 3]], p: [f64; 3], xi: [f64; 2], bend: &[[f64; 3]; 3]) -> Self {
+        let at = facet.values([Dual::<2>::variable(xi[0], 0), Dual::variable(xi[1], 1)]);
         let (mut gap, mut tangent) = (p.map(|p| -p), [[0.0; 3]; 2]);
-        for n in 0..S::NODES {
+        for (n, x) in at.iter().zip(x) {
             for c in 0..3 {
-                gap[c] += at[n].value * x[n][c];
-                tangent[0][c] += at[n].gradient[0] * x[n][c];
-                tangent[1][c] += at[n].gradient[1] * x[n][c];
+                gap[c] += n.value * x[c];
+                tangent[0][c] += n.gradient[0] * x[c];
+                tangent[1][c] += n.gradient[1] * x[c];
             }
         }
         let [t, s] = tangent;
-        let mut hessian = [dot(t, t), dot(t, s), if S::SPACE == 2 { dot(t, t) } else { dot(s, s) }];
-        if !S::AFFINE {
+        let mut hessian = [dot(t, t), dot(t, s), if facet.space == 2 { dot(t, t) } else { dot(s, s) }];
+        if !facet.affine {
             let determinant = |[a, b, c]: [f64; 3]| a * c - b * b;
             let full: [f64; 3] = std::array::from_fn(|k| hessian[k] + dot(gap, bend[k]));
             // Far off a bent facet the distance need not be convex; then the Gauss–Newton matrix leads back.
@@ -328,81 +370,34 @@ impl HalfSquare {
     }
 }
 
-/// Facets with their number of nodes and their shape functions: of node `i`, at `xi`.
-macro_rules! facet_shapes {
-    ($($(#[$doc:meta])* $name:ident, $shape:ident, $nodes:literal: |$i:ident, $xi:ident| $function:expr;)*) => {$(
-        $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub struct $name;
-
-        impl FacetShape for $name {
-            const SHAPE: Shape = Shape::$shape;
-            type ByNode = Dual<$nodes>;
-            type Nodal<V: NodeValue> = [V; $nodes];
-
-            #[inline(always)]
-            fn nodal<V: NodeValue>(mut of: impl FnMut(usize) -> V) -> [V; $nodes] {
-                // What `array::from_fn` makes of large values is slower.
-                let mut out = [of(0); $nodes];
-                for n in 1..$nodes {
-                    out[n] = of(n);
-                }
-                out
-            }
-
-            #[inline(always)]
-            fn values<T: Real>(xi: [T; 2]) -> [T; $nodes] {
-                let $xi = &xi[..Self::SPACE - 1];
-                Self::nodal(|$i| $function)
-            }
-        }
-    )*};
-}
-
-facet_shapes! {
-    /// Line with two nodes, ξ ∈ [−1, 1].
-    Line2, Line2, 2: |i, xi| product(&Self::SHAPE.cell().points[i], xi, linear);
-    /// Line with a node in the middle.
-    Line3, Line3, 3: |i, xi| product(&Self::SHAPE.cell().points[i], xi, quadratic);
-    /// Triangle with corners (0,0), (1,0), (0,1).
-    Triangle3, Tri3, 3: |i, xi| barycentric(xi, i);
-    /// Triangle with nodes in the middle of its edges.
-    Triangle6, Tri6, 6: |i, xi| quadratic_simplex(Self::SHAPE.cell(), xi, i);
-    /// Quadrilateral, ξ, η ∈ [−1, 1].
-    Quadrilateral4, Quad4, 4: |i, xi| product(&Self::SHAPE.cell().points[i], xi, linear);
-    /// Quadrilateral with nodes in the middle of its edges.
-    Quadrilateral8, Quad8, 8: |i, xi| serendipity(&Self::SHAPE.cell().points[i], xi);
-    /// Quadrilateral with nodes in the middle of its edges and at its centre.
-    Quadrilateral9, Quad9, 9: |i, xi| product(&Self::SHAPE.cell().points[i], xi, quadratic);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::shape_functions;
 
-    fn check<S: FacetShape>(mut noise: impl FnMut() -> f64) {
+    fn check(shape: &FacetShape, mut noise: impl FnMut() -> f64) {
         // Nodes of the reference cell, bent a little; local points inside it.
-        let nodes: S::Nodal<[f64; 3]> = S::nodal(|n| {
-            let [x, y] = S::corner(n);
-            [x + 0.05 * noise(), y + 0.05 * noise(), if S::SPACE == 3 { 0.05 * noise() } else { 0.0 }]
+        let nodes: Nodal<[f64; 3]> = shape.nodal(|n| {
+            let [x, y] = shape.corner(n);
+            [x + 0.05 * noise(), y + 0.05 * noise(), if shape.space == 3 { 0.05 * noise() } else { 0.0 }]
         });
-        let inside =
-            std::array::from_fn(|c| 0.6 * S::CENTRE[c] + if S::SPACE - 1 > c { 0.15 * (1.0 + noise()) } else { 0.0 });
-        let mut values = vec![0.0; S::NODES];
-        shape_functions(S::SHAPE, [inside[0], inside[1], 0.0], &mut values);
-        let typed: S::Nodal<f64> = S::values(inside);
-        assert!((0..S::NODES).all(|n| (typed[n] - values[n]).abs() < 1e-15), "{typed:?} {values:?}");
-        let on = S::combine(&typed, &nodes);
-        let found = S::closest_point(&nodes, on, S::CENTRE);
+        let inside = std::array::from_fn(|c| {
+            0.6 * shape.centre[c] + if shape.space - 1 > c { 0.15 * (1.0 + noise()) } else { 0.0 }
+        });
+        let mut values = vec![0.0; shape.nodes];
+        shape_functions(shape.shape, [inside[0], inside[1], 0.0], &mut values);
+        let typed: Nodal<f64> = shape.values(inside);
+        assert!((0..shape.nodes).all(|n| (typed[n] - values[n]).abs() < 1e-15), "{typed:?} {values:?}");
+        let on = combine(&typed, &nodes);
+        let found = shape.closest_point(&nodes, on, shape.centre);
         assert!(
-            (0..S::SPACE - 1).all(|c| (found[c] - inside[c]).abs() < 1e-13),
+            (0..shape.space - 1).all(|c| (found[c] - inside[c]).abs() < 1e-13),
             "{:?}: {found:?} {inside:?}",
-            S::SHAPE
+            shape.shape
         );
 
         // The derivative of a point off the facet, by the motion of a node and by its own.
-        let normal = S::unit_normal(&nodes, inside);
+        let normal = shape.unit_normal(&nodes, inside);
         let off: [f64; 3] = std::array::from_fn(|c| on[c] + 0.2 * normal[c]);
         for variable in 0..6 {
             let at = |h: f64| {
@@ -412,18 +407,19 @@ mod tests {
                 } else {
                     off[variable - 3] += h
                 }
-                S::closest_point(&nodes, off, S::CENTRE)
+                shape.closest_point(&nodes, off, shape.centre)
             };
-            let mut moving = S::map(&nodes, |x| x.map(Dual::<6>::constant));
+            let mut moving = nodes.map(|x| x.map(Dual::<6>::constant));
             (0..3).for_each(|c| moving[1][c].gradient[c] = 1.0);
-            let dual = S::closest_point(&moving, std::array::from_fn(|c| Dual::variable(off[c], 3 + c)), S::CENTRE);
+            let dual =
+                shape.closest_point(&moving, std::array::from_fn(|c| Dual::variable(off[c], 3 + c)), shape.centre);
             let (plus, minus) = (at(1e-6), at(-1e-6));
-            for a in 0..S::SPACE - 1 {
+            for a in 0..shape.space - 1 {
                 let slope = (plus[a] - minus[a]) / 2e-6;
                 assert!(
                     (slope - dual[a].gradient[variable]).abs() < 1e-8,
                     "{:?}: {slope} {}",
-                    S::SHAPE,
+                    shape.shape,
                     dual[a].gradient[variable]
                 );
             }
@@ -431,21 +427,22 @@ mod tests {
 
         // The point along a slanted line, the normal there, and how both move with a node.
         let slanted: [f64; 3] =
-            std::array::from_fn(|c| normal[c] + if S::SPACE > c { 0.2 * (c as f64 - 0.5) } else { 0.0 });
+            std::array::from_fn(|c| normal[c] + if shape.space > c { 0.2 * (c as f64 - 0.5) } else { 0.0 });
         let off: [f64; 3] = std::array::from_fn(|c| on[c] - 0.3 * slanted[c]);
-        let at = |nodes: &S::Nodal<[f64; 3]>| {
-            let xi = S::point_along(nodes, off, slanted, S::CENTRE).unwrap();
-            let [x, y, z] = S::area_normal(nodes, xi);
-            assert_eq!(S::area_normal_at(nodes, xi), [x, y, z]);
+        let at = |nodes: &Nodal<[f64; 3]>| {
+            let xi = shape.point_along(nodes, off, slanted, shape.centre).unwrap();
+            let [x, y, z] = shape.area_normal(nodes, xi);
+            assert_eq!(shape.area_normal_at(nodes, xi), [x, y, z]);
             [xi[0], xi[1], x, y, z]
         };
         let found = at(&nodes);
-        assert!((0..S::SPACE - 1).all(|c| (found[c] - inside[c]).abs() < 1e-12), "{:?}: {found:?}", S::SHAPE);
-        for c in 0..S::SPACE {
-            let mut moving = S::map(&nodes, |x| x.map(Dual::<1>::constant));
+        assert!((0..shape.space - 1).all(|c| (found[c] - inside[c]).abs() < 1e-12), "{:?}: {found:?}", shape.shape);
+        for c in 0..shape.space {
+            let mut moving = nodes.map(|x| x.map(Dual::<1>::constant));
             moving[1][c].gradient[0] = 1.0;
-            let xi = S::point_along(&moving, off.map(Dual::constant), slanted.map(Dual::constant), S::CENTRE).unwrap();
-            let normal = S::area_normal_at(&moving, xi);
+            let xi =
+                shape.point_along(&moving, off.map(Dual::constant), slanted.map(Dual::constant), shape.centre).unwrap();
+            let normal = shape.area_normal_at(&moving, xi);
             let dual = [xi[0], xi[1], normal[0], normal[1], normal[2]].map(|d| d.gradient[0]);
             let moved = |h: f64| {
                 let mut nodes = nodes;
@@ -453,9 +450,9 @@ mod tests {
                 at(&nodes)
             };
             let (plus, minus) = (moved(1e-6), moved(-1e-6));
-            for k in (0..5).filter(|&k| S::SPACE == 3 || k != 1) {
+            for k in (0..5).filter(|&k| shape.space == 3 || k != 1) {
                 let slope = (plus[k] - minus[k]) / 2e-6;
-                assert!((slope - dual[k]).abs() < 1e-8, "{:?} {k}: {slope} {}", S::SHAPE, dual[k]);
+                assert!((slope - dual[k]).abs() < 1e-8, "{:?} {k}: {slope} {}", shape.shape, dual[k]);
             }
         }
     }
@@ -468,13 +465,7 @@ mod tests {
             (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
         };
         for _ in 0..5 {
-            check::<Line2>(&mut noise);
-            check::<Line3>(&mut noise);
-            check::<Triangle3>(&mut noise);
-            check::<Triangle6>(&mut noise);
-            check::<Quadrilateral4>(&mut noise);
-            check::<Quadrilateral8>(&mut noise);
-            check::<Quadrilateral9>(&mut noise);
+            FacetShape::all().into_iter().for_each(|shape| check(shape, &mut noise));
         }
     }
 }

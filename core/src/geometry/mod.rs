@@ -2,10 +2,11 @@
 //!
 //! A [`Shape`] names a cell; its [`ReferenceCell`] holds the constant facts (node order, faces, edges, names in other
 //! programs); a [`ShapeTable`] holds shape functions and local gradients at the points of one quadrature rule, ready
-//! for kernels; a [`FacetShape`] is a line or surface as a type, for code compiled for it and for any
-//! scalar; [`mapping`] works on a cell with given node coordinates. Coordinates are always `[x, y, z]`; planar
+//! for kernels; a [`FacetShape`] has the facts of a line or surface for code over facets in any
+//! scalar, and [`Nodal`] one value a node of it; [`mapping`] works on a cell with given node coordinates. Coordinates are always `[x, y, z]`; planar
 //! models leave `z` alone.
 mod cells;
+mod nodal;
 mod facet_shape;
 pub mod mapping;
 mod pieces;
@@ -18,9 +19,10 @@ mod shape_table;
 mod tests;
 
 pub use facet_shape::{
-    FacetShape, Line2, Line3, NodeArray, NodeValue, Quadrilateral4, Quadrilateral8, Quadrilateral9, Triangle3,
-    Triangle6,
+    FacetShape, LINE_2, LINE_3, QUADRILATERAL_4, QUADRILATERAL_8, QUADRILATERAL_9, TRIANGLE_3, TRIANGLE_6, combine,
+    interpolate,
 };
+pub use nodal::{MOST_FACET_NODES, Nodal};
 pub use pieces::{parts, pieces, reversed};
 pub use quadrature::{MAX_ORDER, QuadraturePoint, quadrature};
 pub use reference_cell::{Facet, ReferenceCell};

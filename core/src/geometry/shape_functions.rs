@@ -1,8 +1,6 @@
 //! Shape functions N_i(ξ), each formula once; gradients by forward differentiation of the same formula.
 
-use super::facet_shape::{
-    FacetShape, Line2, Line3, Quadrilateral4, Quadrilateral8, Quadrilateral9, Triangle3, Triangle6,
-};
+use super::facet_shape::FacetShape;
 use super::{ReferenceCell, Shape};
 use crate::scalar::{Dual, Real};
 
@@ -17,13 +15,6 @@ pub fn shape_functions<T: Real>(shape: Shape, xi: [T; 3], n: &mut [T]) {
     let down = -c + 1.0;
     match shape {
         Shape::Point1 => n[0] = T::one(),
-        Shape::Line2 => n.copy_from_slice(&Line2::values([a, b])),
-        Shape::Line3 => n.copy_from_slice(&Line3::values([a, b])),
-        Shape::Tri3 => n.copy_from_slice(&Triangle3::values([a, b])),
-        Shape::Tri6 => n.copy_from_slice(&Triangle6::values([a, b])),
-        Shape::Quad4 => n.copy_from_slice(&Quadrilateral4::values([a, b])),
-        Shape::Quad8 => n.copy_from_slice(&Quadrilateral8::values([a, b])),
-        Shape::Quad9 => n.copy_from_slice(&Quadrilateral9::values([a, b])),
         Shape::Tet4 => fill(n, |i| barycentric(&xi, i)),
         Shape::Tet10 => fill(n, |i| quadratic_simplex(cell, &xi, i)),
         Shape::Prism6 => fill(n, |i| barycentric(&[a, b], i % 3) * if i < 3 { down } else { c }),
@@ -31,6 +22,7 @@ pub fn shape_functions<T: Real>(shape: Shape, xi: [T; 3], n: &mut [T]) {
         Shape::Hex8 => fill(n, |i| product(&cell.points[i], &xi, linear)),
         Shape::Hex20 => fill(n, |i| serendipity(&cell.points[i], &xi)),
         Shape::Hex27 => fill(n, |i| product(&cell.points[i], &xi, quadratic)),
+        _ => n.copy_from_slice(&FacetShape::of(shape).expect("lines and surfaces are facets").values([a, b])),
     }
 }
 

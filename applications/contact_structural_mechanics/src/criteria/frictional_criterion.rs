@@ -14,8 +14,8 @@ use zelus_core::strategies::{
 use zelus_core::vector3::{dot, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use crate::formulations::NodeState;
 use crate::friction_law::smooth_nodes;
+use crate::law::NodeState;
 use crate::mortar::tangential;
 use crate::variables::MULTIPLIER_WEIGHT;
 

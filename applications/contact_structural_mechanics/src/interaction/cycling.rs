@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 
 use crate::active_set::Decision;
-use crate::formulations::NodeState;
+use crate::law::NodeState;
 
 /// Longest cycle that is looked for, in iterations.
 const LONGEST: usize = 6;

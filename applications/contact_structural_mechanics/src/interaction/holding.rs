@@ -12,11 +12,11 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
-use crate::formulations::Held;
-use crate::formulations::held::free_normal;
 use crate::interface::{
     Facet, Fixed, Interface, NodalNormals, NormalPatches, check_nodes, fixed_components, symmetry_planes,
 };
+use crate::law::Held;
+use crate::law::constrained_multiplier::free_normal;
 use crate::mortar::MOST_NODES;
 use crate::pairs::{Family, Multiplier};
 use crate::slave_states::SlaveStates;

@@ -7,7 +7,7 @@ use super::decision::resolution;
 use super::nodal_sums::NodalSums;
 use super::pairing::Pairing;
 use super::setup::Setup;
-use crate::formulations::held::along_free_tangents;
+use crate::law::constrained_multiplier::along_free_tangents;
 use crate::slave_states::SlaveStates;
 
 /// Integrates all pairs, and finds what is too small to decide on.

@@ -43,7 +43,7 @@ mod unseen;
 mod uzawa;
 mod work;
 
-use crate::formulations::step_parameters;
+use crate::law::step_parameters;
 pub use adaptation::{AdaptationSettings, ExplicitPenalty};
 pub use contact_interaction::ContactInteraction;
 pub use contact_settings::ContactSettings;

@@ -276,11 +276,18 @@ impl Pairing {
             for (around, (pairs, nodes)) in group_by_surroundings(patches, behind, slave.nodes(), pairs, &nodes) {
                 let (bodies, patches, parameters) = (self.bodies.clone(), self.patches.clone(), parameters.clone());
                 let states = self.states.clone();
-                let request = PairRequest { entry, pairs, nodes, around, bodies, patches, parameters, states };
-                let block = (settings.family.block)(slave, master, request).ok_or_else(|| {
-                    Diagnostic::error("contact-shapes", format!("{name}: no pairs of {slave:?} on {master:?}"))
-                })?;
-                blocks.push(block);
+                blocks.push((settings.family.block)(PairRequest {
+                    entry,
+                    slave,
+                    master,
+                    pairs,
+                    nodes,
+                    around,
+                    bodies,
+                    patches,
+                    parameters,
+                    states,
+                }));
             }
         }
         Ok(blocks)

@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 use zelus_core::vector3::{dot, norm};
 
 use crate::active_set::Decision;
-use crate::formulations::NodeState;
 use crate::interface::{Interface, Roles};
+use crate::law::NodeState;
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
 

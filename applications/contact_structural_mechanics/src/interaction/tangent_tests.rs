@@ -14,9 +14,9 @@ use super::decision::Rules;
 use super::sliding::find_tangents;
 use crate::active_set::{Margin, SlipRule};
 use crate::flags::SLIP;
-use crate::formulations::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use crate::friction_law::COULOMB;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles};
+use crate::law::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::{
@@ -170,8 +170,18 @@ impl Contact {
             {
                 let (patches, parameters) = (self.patches.clone(), self.parameters.clone());
                 let (bodies, states) = (Arc::default(), Arc::default());
-                let request = PairRequest { entry, pairs, nodes, around, bodies, patches, parameters, states };
-                self.blocks.push((family.block)(slave, master, request).unwrap());
+                self.blocks.push((family.block)(PairRequest {
+                    entry,
+                    slave,
+                    master,
+                    pairs,
+                    nodes,
+                    around,
+                    bodies,
+                    patches,
+                    parameters,
+                    states,
+                }));
             }
         }
         self.follow();

@@ -21,8 +21,8 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
-    FacetOperators, FacetPair, PairKey, TyingFamily, TyingRequest, check_pairs, condition_name, group_by_shapes,
-    overlapping_pairs, tying_block,
+    FacetOperators, FacetPair, PairKey, TyingBlock, TyingFamily, TyingRequest, check_pairs, condition_name,
+    group_by_shapes, overlapping_pairs,
 };
 use crate::search::SearchSettings;
 
@@ -143,9 +143,7 @@ impl TyingInteraction {
                 multipliers: multipliers.clone(),
                 scale_factor: self.scale_factor,
             };
-            self.blocks.push(tying_block(slave, master, request).ok_or_else(|| {
-                Diagnostic::error("contact-shapes", format!("{name}: no ties of {slave:?} to {master:?}"))
-            })?);
+            self.blocks.push(Box::new(TyingBlock::new(slave, master, request)));
         }
         self.graph += 1;
         Ok(())

@@ -5,16 +5,15 @@ use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{BlockRequest, EntityBlock, EntityError, FacePoint, StepView, Tangent, block_factory};
 use zelus_core::geometry::mapping::domain_size;
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::{FacetShape, Nodal, combine};
 use zelus_core::model::{EntityKind, ModelPart};
 use zelus_core::vector3::{dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::facet::{Facet, Roles};
 use super::facets::Interface;
-use crate::formulations::SlaveFace;
+use crate::law::SlaveFace;
 use crate::mortar::inner_point;
-use crate::mortar::shapes::for_shapes;
 
 /// Share of the size of an element by which it is moved for second derivatives.
 const STEP: f64 = 1e-5;
@@ -40,9 +39,9 @@ struct Face {
 }
 
 /// Tractions of the initial area at the inner points of a facet (force per area).
-pub struct Tractions<S: FacetShape> {
+pub struct Tractions {
     /// The tractions.
-    pub values: S::Nodal<[f64; 3]>,
+    pub values: Nodal<[f64; 3]>,
     /// Their derivatives by the unknowns of the element, inner point by inner point.
     pub by: Vec<[f64; 3]>,
 }
@@ -106,9 +105,9 @@ impl Bodies {
     }
 
     /// The face behind a facet.
-    pub fn slave_face<S: FacetShape>(&self, key: [u32; 2]) -> SlaveFace<S> {
+    pub fn slave_face(&self, key: [u32; 2]) -> SlaveFace {
         let (face, _) = self.face(key);
-        let densities = S::nodal(|g| face.densities[g]);
+        let densities = Nodal::of(&face.densities);
         SlaveFace { densities, stiffness: face.stiffness, thickness: self.thickness }
     }
 
@@ -116,27 +115,23 @@ impl Bodies {
     ///
     /// # Errors
     /// An inverted element.
-    pub fn tractions<S: FacetShape>(
-        &self,
-        key: [u32; 2],
-        view: &StepView<'_>,
-        wanted: bool,
-    ) -> Result<Tractions<S>, EntityError> {
+    pub fn tractions(&self, key: [u32; 2], view: &StepView<'_>, wanted: bool) -> Result<Tractions, EntityError> {
         let (face, block) = self.face(key);
         self.tractions_at(face, block, view, &displacements(block.nodes(face.at), view), wanted)
     }
 
-    fn tractions_at<S: FacetShape>(
+    fn tractions_at(
         &self,
         face: &Face,
         block: &dyn EntityBlock,
         view: &StepView<'_>,
         u: &[[f64; 3]],
         wanted: bool,
-    ) -> Result<Tractions<S>, EntityError> {
+    ) -> Result<Tractions, EntityError> {
         let size = block.unknowns().len();
-        let mut values = S::nodal(|_| [0.0; 3]);
-        let mut by = vec![[0.0; 3]; if wanted { S::NODES * size } else { 0 }];
+        let count = face.points.len();
+        let mut values = Nodal::new(count, |_| [0.0; 3]);
+        let mut by = vec![[0.0; 3]; if wanted { count * size } else { 0 }];
         for (g, point) in face.points.iter().enumerate() {
             let by = wanted.then(|| &mut by[g * size..(g + 1) * size]);
             values[g] = block.traction(view, face.at, point, u, by)?;
@@ -149,11 +144,11 @@ impl Bodies {
     ///
     /// # Errors
     /// An inverted element.
-    pub fn add_second_derivative<S: FacetShape>(
+    pub fn add_second_derivative(
         &self,
         key: [u32; 2],
         view: &StepView<'_>,
-        weights: &S::Nodal<[f64; 3]>,
+        weights: &[[f64; 3]],
         mut add: impl FnMut(usize, usize, f64),
     ) -> Result<(), EntityError> {
         let (face, block) = self.face(key);
@@ -168,9 +163,9 @@ impl Bodies {
             let here = u[node][c];
             for sign in [1.0, -1.0] {
                 u[node][c] = here + sign * face.step;
-                let moved = self.tractions_at::<S>(face, block, view, &u, true)?;
+                let moved = self.tractions_at(face, block, view, &u, true)?;
                 for row in 0..size {
-                    let work: f64 = (0..S::NODES).map(|g| dot(weights[g], moved.by[g * size + row])).sum();
+                    let work: f64 = (0..weights.len()).map(|g| dot(weights[g], moved.by[g * size + row])).sum();
                     add(row, column, sign * work / (2.0 * face.step));
                 }
             }
@@ -195,39 +190,25 @@ impl Face {
         (of_block, at): (usize, usize),
         axisymmetric: bool,
     ) -> Result<Self> {
-        macro_rules! make {
-            ($slave:ty, $master:ty, $end:literal) => {
-                Self::of_shape::<$slave>(part, facet, block, (of_block, at), axisymmetric)
-            };
-        }
-        for_shapes!(facet.shape, facet.shape, make).expect("facets carry contact with their like")
-    }
-
-    fn of_shape<S: FacetShape>(
-        part: &ModelPart,
-        facet: &Facet,
-        block: &dyn EntityBlock,
-        (of_block, at): (usize, usize),
-        axisymmetric: bool,
-    ) -> Result<Self> {
+        let shape = FacetShape::of(facet.shape).expect("facets of contact are lines and surfaces");
         let nodes = block.nodes(at);
         let cell = kind(part, facet.element).cell.expect("elements with faces have a cell").cell();
-        let corners: S::Nodal<[f64; 3]> = S::nodal(|j| {
+        let corners = shape.nodal(|j| {
             let place = nodes.iter().position(|node| *node == facet.nodes[j]).expect("a face of the element");
             cell.points[place]
         });
-        let x: S::Nodal<[f64; 3]> = S::nodal(|j| part.nodes.initial[facet.nodes[j] as usize]);
-        let (mut points, mut densities) = (Vec::with_capacity(S::NODES), Vec::with_capacity(S::NODES));
-        for g in 0..S::NODES {
-            let xi = inner_point::<S>(g);
-            let n = S::values(xi);
-            let local = S::combine(&n, &corners);
-            points.push(FacePoint { local, normal: S::unit_normal(&x, xi) });
-            let radius = if axisymmetric { S::combine(&n, &x)[0] } else { 1.0 };
-            densities.push(norm(S::area_normal(&x, xi)) * radius);
+        let x = shape.nodal(|j| part.nodes.initial[facet.nodes[j] as usize]);
+        let (mut points, mut densities) = (Vec::with_capacity(shape.nodes), Vec::with_capacity(shape.nodes));
+        for g in 0..shape.nodes {
+            let xi = inner_point(shape, g);
+            let n = shape.values(xi);
+            let local = combine(&n, &corners);
+            points.push(FacePoint { local, normal: shape.unit_normal(&x, xi) });
+            let radius = if axisymmetric { combine(&n, &x)[0] } else { 1.0 };
+            densities.push(norm(shape.area_normal(&x, xi)) * radius);
         }
         let places: Vec<[f64; 3]> = nodes.iter().map(|&node| part.nodes.initial[node as usize]).collect();
-        let by_depth = domain_size(S::SHAPE, x.as_slice()) / domain_size(cell.shape, &places);
+        let by_depth = domain_size(facet.shape, &x) / domain_size(cell.shape, &places);
         let mut by = vec![[0.0; 3]; block.unknowns().len()];
         let rest = vec![[0.0; 3]; nodes.len()];
         let mut across = 0.0_f64;
@@ -241,8 +222,8 @@ impl Face {
             across = across.max(stretched.sum());
         }
         // What the trace inequality of linear stress asks beyond that of constant stress.
-        let space = S::SPACE as f64;
-        let by_degree = if S::CURVED { 2.0 * (space + 1.0) / space } else { 1.0 };
+        let space = shape.space as f64;
+        let by_degree = if shape.curved { 2.0 * (space + 1.0) / space } else { 1.0 };
         let size = places.iter().flat_map(|a| places.iter().map(|b| norm(sub(*a, *b))));
         let step = STEP * size.fold(0.0, f64::max);
         Ok(Self { block: of_block, at, points, densities, stiffness: across * by_depth * by_degree, step })

@@ -14,7 +14,7 @@ use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use super::facet::{Facet, FacetSource, Roles};
 use crate::flags::{MASTER, SLAVE};
-use crate::mortar::{carries_contact, makes_pairs};
+use crate::mortar::carries_contact;
 
 /// Share of its longest edge, squared in space, below which a facet has no area.
 const LEAST_AREA: f64 = 1e-13;
@@ -188,32 +188,7 @@ pub fn interfaces(
         out.push(Interface { key: key.clone(), facets: found, nodes, open: false });
     }
     assign_roles(part, parts, slaves, &mut out)?;
-    out.iter().try_for_each(check_shapes)?;
     Ok(out)
-}
-
-/// Refuses facets whose shapes make no pairs with each other.
-fn check_shapes(interface: &Interface) -> Result<()> {
-    let of_role = |wanted: Roles| {
-        let own = interface.facets.iter().filter(move |facet| facet.role == wanted || interface.open);
-        let mut shapes: Vec<Shape> = own.map(|facet| facet.shape).collect();
-        shapes.sort_unstable();
-        shapes.dedup();
-        shapes
-    };
-    let [slaves, masters] = [Roles::Slave, Roles::Master].map(of_role);
-    for (slave, master) in slaves.iter().flat_map(|&s| masters.iter().map(move |&m| (s, m))) {
-        if !makes_pairs(slave, master) {
-            let fact = format!(
-                "contact pair \"{}\" has slaves of shape {slave:?} and masters of shape {master:?}",
-                interface.key
-            );
-            let remedy =
-                "faces of 9 nodes go with each other and with those of 4: take hexahedra of 20 nodes on one side";
-            return Err(Diagnostic::error("contact-facet", fact).remedy(remedy).into());
-        }
-    }
-    Ok(())
 }
 
 /// Refuses parts that are not there.

@@ -2,28 +2,17 @@
 //!
 //! Kratos keeps, for a whole step, the normals there are after its first iteration (`normal_variation`). What the tangent of that
 //! iteration leaves out changes these normals and with them the answer, so the same is left out: in space D and M move as
-//! [`operators_on_flat_master`] says; in the plane constant operators are nearest to Kratos'.
-
-use std::marker::PhantomData;
+//! [`FlatMaster`] says; in the plane constant operators are nearest to Kratos'.
 
 use zelus_core::entities::{NORMALS_OF_FIRST_ITERATION, StepView};
-use zelus_core::geometry::FacetShape;
 use zelus_core::model::ModelPart;
-use zelus_core::scalar::Dual;
 
-use super::flat_master::operators_on_flat_master;
-use crate::mortar::{Operators, Overlap, PairGeometry, SegmentationSettings, operators};
+use super::flat_master::FlatMaster;
+use crate::mortar::{
+    Active, EXACT_MOTION, Operators, Overlap, PairGeometry, SegmentationSettings, find_operators, operators,
+};
 
-/// The operators on a flat master where both facets are of first order; a constant, so that nothing else is compiled.
-struct FlatOfFirstOrder<const NU: usize, S, M>(PhantomData<(S, M)>);
-
-impl<const NU: usize, S: FacetShape, M: FacetShape> FlatOfFirstOrder<NU, S, M> {
-    /// Kratos has no others.
-    const OPERATORS: fn(&PairGeometry<Dual<NU>, S, M>, &SegmentationSettings) -> Overlap<Operators<Dual<NU>, S, M>> =
-        if S::CURVED || M::CURVED { operators } else { operators_on_flat_master };
-}
-
-/// What a tangent knows of the operators D and M.
+/// The knowledge that a tangent has of the motion of the operators D and M.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FirstIterateTangent {
     /// Their exact derivative: in every iteration but the first, and in that one unless it decides the normals.
@@ -49,16 +38,18 @@ impl FirstIterateTangent {
         }
     }
 
-    /// D and M of a pair with the derivatives that the tangent knows; `None` without overlap.
-    pub fn operators<S: FacetShape, M: FacetShape, const NU: usize>(
+    /// Writes D and M of a pair to `out`, whose entries are zero, with the derivatives that the tangent knows.
+    pub fn find_operators(
         self,
-        pair: &PairGeometry<Dual<NU>, S, M>,
+        pair: &PairGeometry<Active>,
         settings: &SegmentationSettings,
-    ) -> Option<Operators<Dual<NU>, S, M>> {
+        out: &mut Operators<Active>,
+    ) -> Overlap<()> {
         match self {
-            Self::Exact => operators(pair, settings).cells(),
-            Self::FlatMaster => FlatOfFirstOrder::<NU, S, M>::OPERATORS(pair, settings).cells(),
-            Self::Constant => operators(&pair.values(), settings).cells().map(|plain| plain.as_constants()),
+            // Kratos has no facets of second order.
+            Self::FlatMaster if !pair.is_curved() => find_operators(pair, settings, &FlatMaster::new(pair), out),
+            Self::Exact | Self::FlatMaster => find_operators(pair, settings, &EXACT_MOTION, out),
+            Self::Constant => operators(&pair.values(), settings).map(|plain| *out = plain.as_constants()),
         }
     }
 }

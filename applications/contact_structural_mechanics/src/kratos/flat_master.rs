@@ -6,53 +6,46 @@
 //! δξ = (GᵀG)⁻¹ Gᵀ (P δx + n δl − Σ N²_l P δx²_l), with G the tangents of the master and P = I − n⊗n. Its vertices keep
 //! a share of the normal motion of the slave nodes they lie on, as the centre of the slave moves with them: the lift l.
 
-use crate::mortar::{MasterMotion, Operators, Overlap, PairGeometry, SegmentationSettings, operators_by};
-use zelus_core::geometry::FacetShape;
+use crate::mortar::{MasterMotion, PairGeometry};
+use zelus_core::geometry::{FacetShape, Nodal};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, value};
 
-/// D and M with this derivative; their values are those of [`operators`](crate::mortar::operators()).
-pub fn operators_on_flat_master<T: Real, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
-    settings: &SegmentationSettings,
-) -> Overlap<Operators<T, S, M>> {
-    operators_by(pair, settings, &FlatMaster::new(pair))
-}
-
 /// The slave's plane, as the reference program lets it carry points of the master.
-struct FlatMaster<T: Real, S: FacetShape> {
+///
+/// The values of D and M are those of the exact motion.
+pub struct FlatMaster<T: Real> {
     normal: [f64; 3],
     /// Share of the heights of the slave nodes by which vertices on them are lifted (length).
-    lift: S::Nodal<T>,
+    lift: Nodal<T>,
 }
 
-impl<T: Real, S: FacetShape> FlatMaster<T, S> {
-    /// That of a pair.
-    fn new<M: FacetShape>(pair: &PairGeometry<T, S, M>) -> Self {
-        let normal = value(pair.slave_normal);
-        let lift = S::map(&pair.slave, |x| {
+impl<T: Real> FlatMaster<T> {
+    /// That of a pair of facets of first order.
+    pub fn new(pair: &PairGeometry<T>) -> Self {
+        let (normal, count) = (value(pair.slave_normal), pair.slave.len() as f64);
+        let lift = pair.slave.map(|x| {
             let mut height = T::zero();
-            (0..3).for_each(|c| height.add_scaled(x[c], normal[c] / S::NODES as f64));
+            (0..3).for_each(|c| height.add_scaled(x[c], normal[c] / count));
             height
         });
         Self { normal, lift }
     }
 }
 
-impl<T: Real, S: FacetShape> MasterMotion<T, S> for FlatMaster<T, S> {
-    fn lift(&self) -> Option<&S::Nodal<T>> {
+impl<T: Real> MasterMotion<T> for FlatMaster<T> {
+    fn lift(&self) -> Option<&[T]> {
         Some(&self.lift)
     }
 
-    /// Local coordinates on `master` of its point at `place`, moving as the slave's point `x` lifted by `lift`.
-    fn local<M: FacetShape>(&self, master: &M::Nodal<[T; 3]>, place: [T; 3], x: [T; 3], lift: T) -> [T; 2] {
-        let nodes = M::map(master, value);
-        let at = M::closest_point(&nodes, value(place), M::CENTRE);
-        let weights = M::values(at);
-        let tangent = M::tangents(&nodes, at);
+    fn local(&self, shape: &FacetShape, master: &[[T; 3]], place: [T; 3], x: [T; 3], lift: T) -> [T; 2] {
+        let nodes = Nodal::of(master).map(value);
+        let at = shape.closest_point(&nodes, value(place), shape.centre);
+        let weights = shape.values(at);
+        let tangent = shape.tangents(&nodes, at);
         let mut motion: [T; 3] = std::array::from_fn(|c| {
             let mut sum = x[c];
-            (0..M::NODES).for_each(|l| sum.add_scaled(master[l][c], -weights[l]));
+            (0..master.len()).for_each(|l| sum.add_scaled(master[l][c], -weights[l]));
             sum - sum.value()
         });
         let mut height = T::zero();
@@ -79,17 +72,19 @@ impl<T: Real, S: FacetShape> MasterMotion<T, S> for FlatMaster<T, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mortar::{Choices, operators};
-    use zelus_core::geometry::Quadrilateral4;
+    use crate::mortar::{Active, Choices, LANES, Operators, SegmentationSettings, find_operators, operators};
+    use zelus_core::geometry::QUADRILATERAL_4;
 
     /// A unit square below one shifted aside whose far side is higher by `rise`.
-    fn pair(rise: f64) -> PairGeometry<f64, Quadrilateral4, Quadrilateral4> {
+    fn pair(rise: f64) -> PairGeometry<f64> {
         let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let place = |[x, y]: [f64; 2]| [x + 0.3, y + 0.2, x * rise];
         PairGeometry {
-            slave: [a, b, c, d].map(|[x, y]| [x, y, 0.0]),
-            master: [d, c, b, a].map(place),
-            nodal_normals: [[0.0, 0.0, 1.0]; 4],
+            slave_shape: &QUADRILATERAL_4,
+            master_shape: &QUADRILATERAL_4,
+            slave: [a, b, c, d].map(|[x, y]| [x, y, 0.0]).into(),
+            master: [d, c, b, a].map(place).into(),
+            nodal_normals: [[0.0, 0.0, 1.0]; 4].into(),
             slave_normal: [0.0, 0.0, 1.0],
             master_normal: zelus_core::vector3::normalised([rise, 0.0, -1.0]),
             choices: Choices::default(),
@@ -98,15 +93,21 @@ mod tests {
 
     /// The largest differences of D, M and of their derivatives, exact against those on a flat master.
     fn differences(rise: f64) -> [f64; 2] {
-        let (seeded, settings) = (pair(rise).seeded::<24>(), SegmentationSettings::default());
-        let both = [operators(&seeded, &settings), operators_on_flat_master(&seeded, &settings)];
-        let [Overlap::Cells(exact), Overlap::Cells(flat)] = both else { panic!("they overlap") };
-        let entries = exact.m.iter().flatten().zip(flat.m.iter().flatten());
-        let entries = entries.chain(exact.d.iter().flatten().zip(flat.d.iter().flatten()));
-        entries.fold([0.0; 2], |[value, gradient], (a, b)| {
-            let apart = a.gradient.iter().zip(&b.gradient).map(|(a, b)| (a - b).abs()).fold(gradient, f64::max);
-            [value.max((a.value - b.value).abs()), apart]
-        })
+        let (plain, settings) = (pair(rise), SegmentationSettings::default());
+        let mut most = [0.0; 2];
+        for first in (0..plain.unknowns()).step_by(LANES) {
+            let seeded = plain.seeded_from(first);
+            let exact = operators(&seeded, &settings).cells().expect("they overlap");
+            let mut flat = Operators::<Active>::zero(&QUADRILATERAL_4, &QUADRILATERAL_4);
+            find_operators(&seeded, &settings, &FlatMaster::new(&seeded), &mut flat).cells().expect("they overlap");
+            let rows = exact.m.iter().zip(flat.m.iter()).chain(exact.d.iter().zip(flat.d.iter()));
+            let entries = rows.flat_map(|(a, b)| a.iter().copied().zip(b.iter().copied()).collect::<Vec<_>>());
+            most = entries.fold(most, |[value, gradient], (a, b)| {
+                let apart = a.gradient.iter().zip(&b.gradient).map(|(a, b)| (a - b).abs()).fold(gradient, f64::max);
+                [value.max((a.value - b.value).abs()), apart]
+            });
+        }
+        most
     }
 
     #[test]

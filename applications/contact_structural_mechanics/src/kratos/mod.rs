@@ -1,7 +1,7 @@
 //! What contact does only because Kratos does it, behind the settings that `--like kratos` lays under a deck.
 //!
 //! [`DEVIATIONS`] names each with its source; `tests/contact/like_kratos.rs` switches each off and says what changes. Where one is a
-//! formula of its own it stands here ([`flat_master`](operators_on_flat_master), [`FirstIterateTangent`], [`PenaltyUnit`]);
+//! formula of its own it stands here ([`FlatMaster`], [`FirstIterateTangent`], [`PenaltyUnit`]);
 //! the others are values of settings whose other value is the default.
 
 mod deviations;
@@ -11,5 +11,5 @@ mod penalty_unit;
 
 pub use deviations::{DEVIATIONS, Deviation};
 pub use first_iterate::FirstIterateTangent;
-pub use flat_master::operators_on_flat_master;
+pub use flat_master::FlatMaster;
 pub use penalty_unit::PenaltyUnit;

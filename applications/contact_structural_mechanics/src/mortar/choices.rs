@@ -21,15 +21,17 @@ pub struct Choices {
 mod tests {
     use super::super::{Overlap, PairGeometry, SegmentationSettings, choices_of, operators};
     use super::*;
-    use zelus_core::geometry::Quadrilateral4;
+    use zelus_core::geometry::QUADRILATERAL_4;
 
     /// Two trapezoids; moved by `x`, a master node leaves the slave across its lower edge.
-    fn pair(x: f64, choices: Choices) -> PairGeometry<f64, Quadrilateral4, Quadrilateral4> {
+    fn pair(x: f64, choices: Choices) -> PairGeometry<f64> {
         let place = |[px, py]: [f64; 2]| [px + 0.4, py + x, 0.1];
         PairGeometry {
-            slave: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 1.0, 0.0], [0.0, 1.3, 0.0]],
-            master: [[0.0, 0.0], [0.1, 1.1], [0.9, 1.0], [1.0, 0.1]].map(place),
-            nodal_normals: [[0.0, 0.0, 1.0]; 4],
+            slave_shape: &QUADRILATERAL_4,
+            master_shape: &QUADRILATERAL_4,
+            slave: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 1.0, 0.0], [0.0, 1.3, 0.0]].into(),
+            master: [[0.0, 0.0], [0.1, 1.1], [0.9, 1.0], [1.0, 0.1]].map(place).into(),
+            nodal_normals: [[0.0, 0.0, 1.0]; 4].into(),
             slave_normal: [0.0, 0.0, 1.0],
             master_normal: [0.0, 0.0, -1.0],
             choices,
@@ -42,7 +44,7 @@ mod tests {
             _ => panic!("they overlap"),
         };
         let change = at(1e-9).minus(&at(-1e-9));
-        change.m.iter().flatten().fold(0.0_f64, |most, m| most.max(m.abs()))
+        change.m.iter().flat_map(|row| row.iter()).fold(0.0_f64, |most, m| most.max(m.abs()))
     }
 
     #[test]

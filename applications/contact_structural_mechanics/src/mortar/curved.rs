@@ -17,135 +17,132 @@ use super::points::Point;
 use super::segmentation_2d;
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
-use zelus_core::geometry::{FacetShape, Line2, Quadrilateral4, ShapeTable, Triangle3};
+use zelus_core::geometry::{FacetShape, LINE_2, Nodal, ShapeTable, TRIANGLE_3, combine, interpolate};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, norm, normalised, value};
 
 /// Gauss rule of cells: exact for functions of the fourth degree, as those of quadrilaterals with nine nodes are.
 const RULE: usize = 4;
-/// Nodes of the largest piece.
+/// Nodes of the largest sub-facet.
 const PIECE: usize = 4;
 /// Share of a triangle's area below which a cell is skipped.
 const LEAST_CELL: f64 = 1e-13;
 
-/// A visitor of points, each with the number of the slave's piece that it lies on.
-type Visitor<'v, T, S, M> = &'v mut dyn FnMut(usize, &Point<T, S, M>);
+/// A visitor of points, each with the number of the slave's sub-facet that it lies on.
+type Visitor<'v, T> = &'v mut dyn FnMut(usize, &Point<T>);
 
-/// Visits the points of the overlap; gives its length or area, without the turn about an axis.
-pub(super) fn for_each_point<T: Real, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
+/// Visits the points of the overlap; gives its length or area, without the factor of a revolution.
+pub(super) fn for_each_point<T: Real>(
+    pair: &PairGeometry<T>,
     settings: &SegmentationSettings,
-    visit: Visitor<'_, T, S, M>,
+    visit: Visitor<'_, T>,
 ) -> f64 {
-    Curved::<T, S, M>::WALK(&Curved { pair, settings }, visit)
+    let (curved, mut covered) = (Curved { pair, settings }, 0.0);
+    for piece in 0..pair.slave_shape.pieces.len() {
+        curved.of_piece(piece, &mut covered, &mut |point| visit(piece, point));
+    }
+    covered
 }
 
 /// A pair that is walked.
-struct Curved<'a, T: Real, S: FacetShape, M: FacetShape> {
-    pair: &'a PairGeometry<T, S, M>,
+struct Curved<'a, T: Real> {
+    pair: &'a PairGeometry<T>,
     settings: &'a SegmentationSettings,
 }
 
-/// The triangles that a surface is cut by, with the number of their piece: local coordinates of their corners.
+/// The triangles that a sub-facet is cut by: local coordinates of their corners.
 ///
-/// Of a piece with four nodes they are those around its centre, so that nothing depends on where its nodes begin.
-fn triangles<F: FacetShape>() -> impl Iterator<Item = (usize, [[f64; 2]; 3])> {
-    F::PIECES.iter().enumerate().flat_map(|(at, piece)| {
-        let corner = move |n: usize| F::corner(piece[n % piece.len()]);
-        let centre: [f64; 2] = std::array::from_fn(|c| piece.iter().map(|&n| 0.25 * F::corner(n)[c]).sum());
-        let count = if piece.len() == 3 { 1 } else { 4 };
-        let third = move || if count == 1 { corner(2) } else { centre };
-        (0..count).map(move |n| (at, [corner(n), corner(n + 1), third()]))
-    })
+/// Of a sub-facet with four nodes they are those around its centre, so that nothing depends on where its nodes begin.
+fn triangles(shape: &'static FacetShape, piece: &'static [usize]) -> impl Iterator<Item = [[f64; 2]; 3]> {
+    let corner = move |n: usize| shape.corner(piece[n % piece.len()]);
+    let centre: [f64; 2] = std::array::from_fn(|c| piece.iter().map(|&n| 0.25 * shape.corner(n)[c]).sum());
+    let count = if piece.len() == 3 { 1 } else { 4 };
+    (0..count).map(move |n| [corner(n), corner(n + 1), if count == 1 { corner(2) } else { centre }])
 }
 
-/// The point of a facet at plain local coordinates.
-fn at<T: Real, F: FacetShape>(nodes: &F::Nodal<[T; 3]>, xi: [f64; 2]) -> [T; 3] {
-    F::combine(&F::values(xi), nodes)
-}
+impl<T: Real> Curved<'_, T> {
+    /// Points of a sub-facet of the slave; adds their length or area.
+    fn of_piece(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&Point<T>)) {
+        if self.pair.space() == 2 {
+            self.along_line(piece, covered, visit);
+        } else {
+            self.over_surface(piece, covered, visit);
+        }
+    }
 
-impl<T: Real, S: FacetShape, M: FacetShape> Curved<'_, T, S, M> {
-    /// A constant, so that only what the space needs is compiled.
-    const WALK: fn(&Self, Visitor<'_, T, S, M>) -> f64 =
-        if S::SPACE == 2 { Self::along_lines } else { Self::over_surfaces };
-
-    /// Points of two lines.
-    fn along_lines(&self, visit: Visitor<'_, T, S, M>) -> f64 {
+    /// Points of a chord of the slave before those of the master.
+    fn along_line(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&Point<T>)) {
         let pair = self.pair;
-        let mut covered = 0.0;
-        for (piece, own) in S::PIECES.iter().enumerate() {
-            for other in M::PIECES {
-                let slave = Line2::nodal(|n| pair.slave[own[n]]);
-                let master = Line2::nodal(|n| pair.master[other[n]]);
-                let chords = PairGeometry::<T, Line2, Line2> {
-                    slave,
-                    master,
-                    nodal_normals: Line2::nodal(|n| pair.nodal_normals[own[n]]),
-                    slave_normal: Line2::unit_normal(&slave, Line2::CENTRE),
-                    master_normal: Line2::unit_normal(&master, Line2::CENTRE),
-                    choices: Choices::default(),
-                };
-                if let Some(ends) = segmentation_2d::interval(&chords, self.settings) {
-                    let [a, b] = [0, 1].map(|n| S::corner(own[n])[0]);
-                    let ends = ends.map(|xi| (xi + 1.0) * (0.5 * (b - a)) + a);
-                    covered += self.of_interval(ends, &mut |point| visit(piece, point));
-                }
+        let own = pair.slave_shape.pieces[piece];
+        for other in pair.master_shape.pieces {
+            let slave = LINE_2.nodal(|n| pair.slave[own[n]]);
+            let master = LINE_2.nodal(|n| pair.master[other[n]]);
+            let chords = PairGeometry {
+                slave_shape: &LINE_2,
+                master_shape: &LINE_2,
+                slave,
+                master,
+                nodal_normals: LINE_2.nodal(|n| pair.nodal_normals[own[n]]),
+                slave_normal: LINE_2.unit_normal(&slave, LINE_2.centre),
+                master_normal: LINE_2.unit_normal(&master, LINE_2.centre),
+                choices: Choices::default(),
+            };
+            if let Some(ends) = segmentation_2d::interval(&chords, self.settings) {
+                let [a, b] = [0, 1].map(|n| pair.slave_shape.corner(own[n])[0]);
+                let ends = ends.map(|xi| (xi + 1.0) * (0.5 * (b - a)) + a);
+                *covered += self.of_interval(ends, visit);
             }
         }
-        covered
     }
 
     /// Points between two local coordinates of the slave; gives the length.
-    fn of_interval(&self, ends: [T; 2], visit: &mut dyn FnMut(&Point<T, S, M>)) -> f64 {
-        let share = (ends[1] - ends[0]) * (1.0 / Line2::SHAPE.cell().size());
+    fn of_interval(&self, ends: [T; 2], visit: &mut dyn FnMut(&Point<T>)) -> f64 {
+        let share = (ends[1] - ends[0]) * (1.0 / LINE_2.cell_size);
         let mut covered = 0.0;
-        let rule = ShapeTable::get(Line2::SHAPE, self.settings.integration_order.get().max(RULE));
-        for (weights, point) in rule.n::<{ Line2::NODES }>().iter().zip(rule.points()) {
+        let rule = ShapeTable::get(LINE_2.shape, self.settings.integration_order.get().max(RULE));
+        for (weights, point) in rule.n::<2>().iter().zip(rule.points()) {
             let local = [ends[0] * weights[0] + ends[1] * weights[1], T::zero()];
-            let length = norm(S::area_normal_at(&self.pair.slave, local)) * share * point.weight;
+            let normal = self.pair.slave_shape.area_normal_at(&self.pair.slave, local);
+            let length = norm(normal) * share * point.weight;
             covered += length.value();
             self.visit(local, length, visit);
         }
         covered
     }
 
-    /// Points of two surfaces.
-    fn over_surfaces(&self, visit: Visitor<'_, T, S, M>) -> f64 {
+    /// Points of a sub-facet of the slave before those of the master.
+    fn over_surface(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&Point<T>)) {
         let pair = self.pair;
-        let mut covered = 0.0;
-        for (piece, own) in triangles::<S>() {
-            for (_, other) in triangles::<M>() {
-                let linear = PairGeometry::<T, Triangle3, Triangle3> {
-                    slave: own.map(|xi| at::<T, S>(&pair.slave, xi)),
-                    master: other.map(|xi| at::<T, M>(&pair.master, xi)),
-                    nodal_normals: [pair.slave_normal; 3],
+        let (slave_shape, master_shape) = (pair.slave_shape, pair.master_shape);
+        for own in triangles(slave_shape, slave_shape.pieces[piece]) {
+            let corners = Nodal::from(own.map(|xi| combine(&slave_shape.values(xi), &pair.slave)));
+            for other in master_shape.pieces.iter().flat_map(|piece| triangles(master_shape, piece)) {
+                let linear = PairGeometry {
+                    slave_shape: &TRIANGLE_3,
+                    master_shape: &TRIANGLE_3,
+                    slave: corners,
+                    master: Nodal::from(other.map(|xi| combine(&master_shape.values(xi), &pair.master))),
+                    nodal_normals: TRIANGLE_3.nodal(|_| pair.slave_normal),
                     slave_normal: pair.slave_normal,
                     master_normal: pair.master_normal,
-                    choices: Choices { origin: Some(Triangle3::corner(0)), ..Choices::default() },
+                    choices: Choices { origin: Some(TRIANGLE_3.corner(0)), ..Choices::default() },
                 };
                 if let Some(polygon) = Polygon::new(&linear, self.settings) {
-                    let centre = Triangle3::combine(&[1.0 / 3.0; 3], &own);
-                    let whole = Triangle3::measure(&linear.slave.map(value));
-                    covered += self.of_polygon(&polygon, centre, whole, &mut |point| visit(piece, point));
+                    let centre = combine(&[1.0 / 3.0; 3], &own);
+                    let whole = TRIANGLE_3.measure(&linear.slave.map(value));
+                    *covered += self.of_polygon(&polygon, centre, whole, visit);
                 }
             }
         }
-        covered
     }
 
-    /// Points of a polygon, whose local coordinates on the slave are near `centre`; gives the area. `whole` is that of what
-    /// has been cut.
-    fn of_polygon(
-        &self,
-        polygon: &Polygon<T, Triangle3, Triangle3>,
-        centre: [f64; 2],
-        whole: f64,
-        visit: &mut dyn FnMut(&Point<T, S, M>),
-    ) -> f64 {
-        let slave = &self.pair.slave;
-        let flat = S::map(slave, |x| polygon.flattened(x));
+    /// Points of a polygon, whose local coordinates on the slave are near `centre`; gives the area. `whole` is that of the
+    /// triangle that has been cut.
+    fn of_polygon(&self, polygon: &Polygon<T>, centre: [f64; 2], whole: f64, visit: &mut dyn FnMut(&Point<T>)) -> f64 {
+        let (shape, slave) = (self.pair.slave_shape, &self.pair.slave);
+        let flat = slave.map(|x| polygon.flattened(x));
         let vertices = polygon.vertices();
-        let rule = ShapeTable::get(Triangle3::SHAPE, self.settings.integration_order.get().max(RULE));
+        let rule = ShapeTable::get(TRIANGLE_3.shape, self.settings.integration_order.get().max(RULE));
         let mut covered = 0.0;
         for ends in vertices[1..].windows(2) {
             let [a, b, c] = [vertices[0], ends[0], ends[1]].map(|vertex| polygon.place(vertex));
@@ -153,11 +150,11 @@ impl<T: Real, S: FacetShape, M: FacetShape> Curved<'_, T, S, M> {
             if area.value() <= LEAST_CELL * whole {
                 continue;
             }
-            let area = area * (1.0 / Triangle3::SHAPE.cell().size());
-            for (barycentric, point) in rule.n::<{ Triangle3::NODES }>().iter().zip(rule.points()) {
-                let place = Triangle3::combine(barycentric, &[a, b, c]);
-                let local = S::closest_point(&flat, [place[0], place[1], T::zero()], centre);
-                let normal = normalised(S::area_normal_at(slave, local));
+            let area = area * (1.0 / TRIANGLE_3.cell_size);
+            for (barycentric, point) in rule.n::<3>().iter().zip(rule.points()) {
+                let place = combine(barycentric, &[a, b, c]);
+                let local = shape.closest_point(&flat, [place[0], place[1], T::zero()], centre);
+                let normal = normalised(shape.area_normal_at(slave, local));
                 let own = area * point.weight / dot(normal, self.pair.slave_normal).abs();
                 covered += own.value();
                 self.visit(local, own, visit);
@@ -167,53 +164,58 @@ impl<T: Real, S: FacetShape, M: FacetShape> Curved<'_, T, S, M> {
     }
 
     /// The point at local coordinates of the slave that stands for `measure`.
-    fn visit(&self, local: [T; 2], measure: T, visit: &mut dyn FnMut(&Point<T, S, M>)) {
-        let pair = self.pair;
-        let slave = S::values(local);
-        let x = S::interpolate(&slave, &pair.slave);
+    fn visit(&self, local: [T; 2], measure: T, visit: &mut dyn FnMut(&Point<T>)) {
+        let (pair, master) = (self.pair, self.pair.master_shape);
+        let slave = pair.slave_shape.values(local);
+        let x = interpolate(&slave, &pair.slave);
         let weight = self.settings.revolution().map_or(measure, |per_radius| measure * x[0] * per_radius);
-        let direction = S::interpolate(&slave, &pair.nodal_normals);
-        let along = M::point_along(&pair.master, x, direction, M::CENTRE);
-        let master = M::values(along.unwrap_or_else(|| M::closest_point(&pair.master, x, M::CENTRE)));
-        visit(&Point { local, slave, master, weight });
+        let direction = interpolate(&slave, &pair.nodal_normals);
+        let along = master.point_along(&pair.master, x, direction, master.centre);
+        let found = along.unwrap_or_else(|| master.closest_point(&pair.master, x, master.centre));
+        visit(&Point { local, slave, master: master.values(found), weight });
     }
 }
 
-/// Integrals over the overlap of a piece of the slave: Me, ∫ L⊗N¹ and ∫ L⊗N².
-struct Sums<T: Real, S: FacetShape, M: FacetShape> {
+/// Integrals over the overlap of a sub-facet of the slave: Me, ∫ L⊗N¹ and ∫ L⊗N².
+struct Sums<T: Real> {
+    nodes: &'static [usize],
     me: [[T; PIECE]; PIECE],
-    slave: [S::Nodal<T>; PIECE],
-    master: [M::Nodal<T>; PIECE],
+    slave: [Nodal<T>; PIECE],
+    master: [Nodal<T>; PIECE],
 }
 
-/// Integrals over the pieces of the slave, and the length or area covered.
-fn sums<T: Real, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
-    settings: &SegmentationSettings,
-) -> (Vec<Sums<T, S, M>>, f64) {
-    let zero = T::zero();
-    let none =
-        || Sums { me: [[zero; PIECE]; PIECE], slave: [S::nodal(|_| zero); PIECE], master: [M::nodal(|_| zero); PIECE] };
-    let mut sums: Vec<Sums<T, S, M>> = S::PIECES.iter().map(|_| none()).collect();
-    let covered = for_each_point(pair, settings, &mut |piece, point| {
-        let (count, sums) = (S::PIECES[piece].len(), &mut sums[piece]);
-        let linear = linear_functions::<T, S>(S::PIECES[piece], point.local);
-        for i in 0..count {
-            let weighted = linear[i] * point.weight;
-            (0..count).for_each(|j| sums.me[i][j].add_product(weighted, linear[j]));
-            // Of a slave of first order these are Me.
-            if S::CURVED {
-                (0..S::NODES).for_each(|k| sums.slave[i][k].add_product(weighted, point.slave[k]));
+impl<T: Real> Sums<T> {
+    /// Integrals over a sub-facet of the slave, whose length or area is added to `covered`.
+    fn of(pair: &PairGeometry<T>, settings: &SegmentationSettings, piece: usize, covered: &mut f64) -> Self {
+        let (zero, nodes) = (T::zero(), pair.slave_shape.pieces[piece]);
+        let mut sums = Self {
+            nodes,
+            me: [[zero; PIECE]; PIECE],
+            slave: [pair.slave_shape.nodal(|_| zero); PIECE],
+            master: [pair.master_shape.nodal(|_| zero); PIECE],
+        };
+        let count = nodes.len();
+        Curved { pair, settings }.of_piece(piece, covered, &mut |point| {
+            let linear = linear_functions(pair.slave_shape, nodes, point.local);
+            for i in 0..count {
+                let weighted = linear[i] * point.weight;
+                (0..count).for_each(|j| sums.me[i][j].add_product(weighted, linear[j]));
+                let own = sums.slave[i].iter_mut().zip(point.slave.iter());
+                // Of a slave of first order these are Me.
+                if pair.slave_shape.curved {
+                    own.for_each(|(sum, shape)| sum.add_product(weighted, *shape));
+                }
+                let others = sums.master[i].iter_mut().zip(point.master.iter());
+                others.for_each(|(sum, shape)| sum.add_product(weighted, *shape));
             }
-            (0..M::NODES).for_each(|l| sums.master[i][l].add_product(weighted, point.master[l]));
-        }
-    });
-    (sums, covered)
+        });
+        sums
+    }
 }
 
-/// L at local coordinates of the facet. Pieces are parallelograms and triangles there.
-fn linear_functions<T: Real, S: FacetShape>(piece: &[usize], xi: [T; 2]) -> [T; PIECE] {
-    let corner = |n: usize| S::corner(piece[n]);
+/// L at local coordinates of the facet. Sub-facets are parallelograms and triangles there.
+fn linear_functions<T: Real>(shape: &FacetShape, piece: &[usize], xi: [T; 2]) -> [T; PIECE] {
+    let corner = |n: usize| shape.corner(piece[n]);
     let apart = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], b[1] - a[1]];
     let (first, from) = (apart(corner(0), corner(1)), corner(0).map(T::constant));
     let way = [xi[0] - from[0], xi[1] - from[1]];
@@ -235,99 +237,103 @@ fn linear_functions<T: Real, S: FacetShape>(piece: &[usize], xi: [T; 2]) -> [T; 
     }
 }
 
-/// L of all nodes of the slave at a point: what its nodes have of it. Of a slave of first order its shape functions.
-pub fn nodal_shares<T: Real, S: FacetShape, M: FacetShape>(point: &Point<T, S, M>) -> S::Nodal<T> {
-    if !S::CURVED {
+/// L of all nodes of a slave at one of its points: the share of the point that each node has. Of a slave of first order its
+/// shape functions.
+pub fn nodal_shares<T: Real>(shape: &FacetShape, point: &Point<T>) -> Nodal<T> {
+    if !shape.curved {
         return point.slave;
     }
-    // The piece that the point is in, or least outside.
+    // The sub-facet that the point is in, or least outside.
     let least = |functions: &[T]| functions.iter().map(|f| f.value()).fold(f64::INFINITY, f64::min);
-    let of_piece = |piece: &'static [usize]| (piece, linear_functions::<T, S>(piece, point.local));
-    let pieces = S::PIECES.iter().map(|piece| of_piece(piece));
+    let of_piece = |piece: &'static [usize]| (piece, linear_functions(shape, piece, point.local));
+    let pieces = shape.pieces.iter().map(|piece| of_piece(piece));
     let found = pieces.max_by(|(a, of_a), (b, of_b)| least(&of_a[..a.len()]).total_cmp(&least(&of_b[..b.len()])));
-    let mut out = S::nodal(|_| T::zero());
-    if let Some((piece, functions)) = found {
-        piece.iter().zip(functions).for_each(|(&node, function)| out[node] = function);
-    }
+    let mut out = shape.nodal(|_| T::zero());
+    let (piece, functions) = found.expect("a facet has sub-facets");
+    piece.iter().zip(functions).for_each(|(&node, own)| out[node] = own);
     out
 }
 
-/// D and M of a pair, and the length or area that it covers.
-pub(super) fn operators<T: Real, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
+/// Adds D and M of a pair to `out`; gives the length or area that is covered.
+pub(super) fn find_operators<T: Real>(
+    pair: &PairGeometry<T>,
     settings: &SegmentationSettings,
-) -> (Operators<T, S, M>, f64) {
-    let (sums, covered) = sums(pair, settings);
-    let mut operators = Operators::zero();
-    for (at, (piece, sums)) in S::PIECES.iter().zip(sums).enumerate() {
-        let plain = pair.choices.plain & (1 << at) != 0;
-        match Some(&sums).filter(|_| !plain).and_then(|sums| sums.inverse(piece.len())) {
-            Some(inverse) => sums.add_dual(piece, &inverse, &mut operators),
-            None => sums.add_plain(piece, &mut operators),
+    out: &mut Operators<T>,
+) -> f64 {
+    let mut covered = 0.0;
+    for at in 0..pair.slave_shape.pieces.len() {
+        let sums = Sums::of(pair, settings, at, &mut covered);
+        let standard = pair.choices.plain & (1 << at) != 0;
+        match Some(&sums).filter(|_| !standard).and_then(Sums::inverse) {
+            Some(inverse) => sums.add_dual(pair.slave_shape, &inverse, out),
+            None => sums.add_standard(pair.slave_shape, out),
         }
     }
-    (operators, covered)
+    covered
 }
 
-/// The pieces of the slave, as bits, on which plain functions stand in for dual ones.
-pub(super) fn plain_pieces<S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<f64, S, M>,
-    settings: &SegmentationSettings,
-) -> u8 {
-    let (sums, _) = sums(pair, settings);
-    let plain = |(at, sums): (usize, &Sums<f64, S, M>)| {
+/// The sub-facets of the slave, as bits, on which standard functions stand in for dual ones.
+pub(super) fn standard_pieces(pair: &PairGeometry<f64>, settings: &SegmentationSettings) -> u8 {
+    let standard = |at: usize| {
+        let sums = Sums::of(pair, settings, at, &mut 0.0);
         let covered = sums.me[0][0] > 0.0;
-        u8::from(covered && sums.inverse(S::PIECES[at].len()).is_none()) << at
+        u8::from(covered && sums.inverse().is_none()) << at
     };
-    sums.iter().enumerate().map(plain).fold(pair.choices.plain, |all, own| all | own)
+    (0..pair.slave_shape.pieces.len()).map(standard).fold(pair.choices.plain, |all, own| all | own)
 }
 
-impl<T: Real, S: FacetShape, M: FacetShape> Sums<T, S, M> {
-    /// Me⁻¹ of a piece with `count` nodes.
-    fn inverse(&self, count: usize) -> Option<[[f64; PIECE]; PIECE]> {
-        // The diagonal of nodes that the piece has not keeps the matrix regular and its condition as it is.
-        let filler = self.me[0][0].value();
-        let me = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
+impl<T: Real> Sums<T> {
+    /// Me⁻¹.
+    fn inverse(&self) -> Option<[[f64; PIECE]; PIECE]> {
+        // The diagonal of nodes that the sub-facet has not keeps the matrix regular and its condition as it is.
+        let (count, filler) = (self.nodes.len(), self.me[0][0].value());
+        let me = Nodal::new(PIECE, |i| {
+            Nodal::new(PIECE, |j| {
                 let missing = i >= count || j >= count;
                 if missing { if i == j { filler } else { 0.0 } } else { self.me[i][j].value() }
             })
         });
-        inverse::<Quadrilateral4>(&me)
+        let inverse = inverse(&me)?;
+        Some(std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j])))
     }
 
-    fn add_plain(&self, piece: &[usize], out: &mut Operators<T, S, M>) {
-        for (i, &node) in piece.iter().enumerate() {
-            (0..S::NODES).for_each(|k| out.d[node][k] += if S::CURVED { self.slave[i][k] } else { self.me[i][k] });
-            (0..M::NODES).for_each(|l| out.m[node][l] += self.master[i][l]);
+    fn add_standard(&self, slave: &FacetShape, out: &mut Operators<T>) {
+        for (i, &node) in self.nodes.iter().enumerate() {
+            for k in 0..slave.nodes {
+                // A slave of first order is its only sub-facet.
+                out.d[node][k] += if slave.curved { self.slave[i][k] } else { self.me[i][k] };
+            }
+            out.m[node].iter_mut().zip(self.master[i].iter()).for_each(|(sum, own)| *sum += *own);
         }
     }
 
-    fn add_dual(&self, piece: &[usize], inverse: &[[f64; PIECE]; PIECE], out: &mut Operators<T, S, M>) {
-        let count = piece.len();
+    fn add_dual(&self, slave: &FacetShape, inverse: &[[f64; PIECE]; PIECE], out: &mut Operators<T>) {
+        let count = self.nodes.len();
         let de: [T; PIECE] = std::array::from_fn(|i| (0..count).fold(T::zero(), |sum, j| sum + self.me[i][j]));
-        if !S::CURVED {
-            piece.iter().enumerate().for_each(|(i, &node)| out.d[node][node] += de[i]);
+        if !slave.curved {
+            self.nodes.iter().enumerate().for_each(|(i, &node)| out.d[node][node] += de[i]);
         }
-        let mut add = |of: &dyn Fn(usize) -> T, at: &mut dyn FnMut(&mut Operators<T, S, M>, usize) -> &mut T| {
-            // Me⁻¹ ∫ L N on values, then one correction, which brings the derivative.
+        // De Me⁻¹ ∫ L N: on values, then one correction, which brings the derivative.
+        let times_dual = |of: &dyn Fn(usize) -> T| -> [T; PIECE] {
             let values: [f64; PIECE] = std::array::from_fn(|i| (0..count).map(|j| inverse[i][j] * of(j).value()).sum());
             let residual: [T; PIECE] = std::array::from_fn(|i| {
                 let mut rest = if i < count { of(i) } else { T::zero() };
                 (0..count).for_each(|j| rest.add_scaled(self.me[i][j], -values[j]));
                 rest
             });
-            for (i, &node) in piece.iter().enumerate() {
+            std::array::from_fn(|i| {
                 let mut x = T::constant(values[i]);
                 (0..count).for_each(|j| x.add_scaled(residual[j], inverse[i][j]));
-                *at(out, node) += de[i] * x;
-            }
+                de[i] * x
+            })
         };
-        for k in 0..if S::CURVED { S::NODES } else { 0 } {
-            add(&|i| self.slave[i][k], &mut |out, node| &mut out.d[node][k]);
+        for k in 0..if slave.curved { slave.nodes } else { 0 } {
+            let found = times_dual(&|i| self.slave[i][k]);
+            self.nodes.iter().zip(found).for_each(|(&node, own)| out.d[node][k] += own);
         }
-        for l in 0..M::NODES {
-            add(&|i| self.master[i][l], &mut |out, node| &mut out.m[node][l]);
+        for l in 0..self.master[0].len() {
+            let found = times_dual(&|i| self.master[i][l]);
+            self.nodes.iter().zip(found).for_each(|(&node, own)| out.m[node][l] += own);
         }
     }
 }

@@ -1,20 +1,33 @@
 //! The two facets of a contact pair as they stand, and the normals that go with them.
 
 use super::choices::Choices;
-use zelus_core::geometry::FacetShape;
+use zelus_core::geometry::{FacetShape, Nodal};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, value};
+
+/// Number of variables that a pair is differentiated by at once.
+///
+/// One number serves all shapes: mortar code is compiled for plain numbers and for [`Active`] ones, and pairs with more
+/// variables are evaluated in several passes.
+pub const LANES: usize = 12;
+
+/// The scalar of derivatives.
+pub type Active = Dual<LANES>;
 
 /// Coordinates and normals of a slave facet and a master facet.
 /// Current configuration; unit normals point out of their bodies. Planar problems have lines and z = 0.
 #[derive(Debug, Clone, Copy)]
-pub struct PairGeometry<T: Real, S: FacetShape, M: FacetShape> {
+pub struct PairGeometry<T: Real> {
+    /// Shape of the slave facet.
+    pub slave_shape: &'static FacetShape,
+    /// Shape of the master facet.
+    pub master_shape: &'static FacetShape,
     /// Slave nodes.
-    pub slave: S::Nodal<[T; 3]>,
+    pub slave: Nodal<[T; 3]>,
     /// Master nodes.
-    pub master: M::Nodal<[T; 3]>,
+    pub master: Nodal<[T; 3]>,
     /// Averaged unit normals at the slave nodes.
-    pub nodal_normals: S::Nodal<[T; 3]>,
+    pub nodal_normals: Nodal<[T; 3]>,
     /// Unit normal of the plane on which the overlap is cut; it may lag behind the slave facet.
     pub slave_normal: [T; 3],
     /// Unit normal of the plane of the master onto which points are projected; it may lag behind the master facet.
@@ -25,7 +38,7 @@ pub struct PairGeometry<T: Real, S: FacetShape, M: FacetShape> {
 
 /// Variable `number` where it is among those from `first` on, else a constant.
 #[inline]
-fn variable_from<const LANES: usize>(first: usize, number: usize, value: f64) -> Dual<LANES> {
+fn variable_from(first: usize, number: usize, value: f64) -> Active {
     match number.checked_sub(first) {
         Some(lane) if lane < LANES => Dual::variable(value, lane),
         _ => Dual::constant(value),
@@ -34,12 +47,7 @@ fn variable_from<const LANES: usize>(first: usize, number: usize, value: f64) ->
 
 /// The first `dim` components of a vector as the variables from `number` on, of which those from `first` on are differentiated by.
 #[inline]
-pub fn variables_from<const LANES: usize>(
-    first: usize,
-    number: usize,
-    vector: [f64; 3],
-    dim: usize,
-) -> [Dual<LANES>; 3] {
+pub fn variables_from(first: usize, number: usize, vector: [f64; 3], dim: usize) -> [Active; 3] {
     std::array::from_fn(
         |c| {
             if c < dim { variable_from(first, number + c, vector[c]) } else { Dual::constant(vector[c]) }
@@ -47,47 +55,35 @@ pub fn variables_from<const LANES: usize>(
     )
 }
 
-impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
-    /// Number of displacement unknowns: those of the master nodes, then those of the slave nodes.
-    pub const UNKNOWNS: usize = S::SPACE * (S::NODES + M::NODES);
-
-    /// Number of components of nodal normals.
-    pub const NORMALS: usize = S::SPACE * S::NODES;
-
-    /// The same pair with its coordinates as variables in the order master, slave, node by node; normals are constant.
-    /// Replace a normal by one with a gradient to include its variation.
-    #[inline]
-    pub fn seeded<const NU: usize>(&self) -> PairGeometry<Dual<NU>, S, M> {
-        const { assert!(NU >= Self::UNKNOWNS, "one variable per displacement component of the pair") };
-        self.seeded_from(0)
-    }
-
-    /// The same with `LANES` of the variables only, from the one numbered `first` on.
-    #[inline]
-    pub fn seeded_from<const LANES: usize>(&self, first: usize) -> PairGeometry<Dual<LANES>, S, M> {
-        let dim = S::SPACE;
+impl PairGeometry<f64> {
+    /// The same pair with [`LANES`] of its coordinates as variables, from the one numbered `first` on: those of master nodes,
+    /// then those of slave nodes, node by node. Normals are constant; replace one by a normal with a gradient to include its
+    /// variation.
+    pub fn seeded_from(&self, first: usize) -> PairGeometry<Active> {
+        let (dim, masters) = (self.space(), self.master.len());
         PairGeometry {
-            slave: S::nodal(|n| variables_from(first, dim * (M::NODES + n), self.slave[n], dim)),
-            master: M::nodal(|n| variables_from(first, dim * n, self.master[n], dim)),
+            slave: Nodal::new(self.slave.len(), |n| variables_from(first, dim * (masters + n), self.slave[n], dim)),
+            master: Nodal::new(masters, |n| variables_from(first, dim * n, self.master[n], dim)),
             ..self.as_constants()
         }
     }
 
-    /// The same pair with `LANES` components of its nodal normals as variables, from the one numbered `first` on, node by node.
-    #[inline]
-    pub fn seeded_by_normals<const LANES: usize>(&self, first: usize) -> PairGeometry<Dual<LANES>, S, M> {
-        let dim = S::SPACE;
-        let nodal_normals = S::nodal(|j| variables_from(first, dim * j, self.nodal_normals[j], dim));
-        PairGeometry { nodal_normals, ..self.as_constants() }
+    /// The same pair with [`LANES`] components of its nodal normals as variables, from the one numbered `first` on, node by node.
+    pub fn seeded_by_normals(&self, first: usize) -> PairGeometry<Active> {
+        let dim = self.space();
+        let normal = |j: usize| variables_from(first, dim * j, self.nodal_normals[j], dim);
+        PairGeometry { nodal_normals: Nodal::new(self.slave.len(), normal), ..self.as_constants() }
     }
 
     /// The same pair in another scalar, without derivatives.
     #[inline]
-    pub fn as_constants<T: Real>(&self) -> PairGeometry<T, S, M> {
+    pub fn as_constants<T: Real>(&self) -> PairGeometry<T> {
         PairGeometry {
-            slave: S::map(&self.slave, constant),
-            master: M::map(&self.master, constant),
-            nodal_normals: S::map(&self.nodal_normals, constant),
+            slave_shape: self.slave_shape,
+            master_shape: self.master_shape,
+            slave: self.slave.map(constant),
+            master: self.master.map(constant),
+            nodal_normals: self.nodal_normals.map(constant),
             slave_normal: constant(self.slave_normal),
             master_normal: constant(self.master_normal),
             choices: self.choices,
@@ -95,14 +91,40 @@ impl<S: FacetShape, M: FacetShape> PairGeometry<f64, S, M> {
     }
 }
 
-impl<T: Real, S: FacetShape, M: FacetShape> PairGeometry<T, S, M> {
+impl<T: Real> PairGeometry<T> {
+    /// Dimensions of space, 2 or 3.
+    #[inline]
+    pub fn space(&self) -> usize {
+        self.slave_shape.space
+    }
+
+    /// Whether a facet is of second order.
+    #[inline]
+    pub fn is_curved(&self) -> bool {
+        self.slave_shape.curved || self.master_shape.curved
+    }
+
+    /// Number of displacement unknowns: those of the master nodes, then those of the slave nodes.
+    #[inline]
+    pub fn unknowns(&self) -> usize {
+        self.space() * (self.slave.len() + self.master.len())
+    }
+
+    /// Number of components of nodal normals.
+    #[inline]
+    pub fn normal_components(&self) -> usize {
+        self.space() * self.slave.len()
+    }
+
     /// The same pair without derivatives.
     #[inline]
-    pub fn values(&self) -> PairGeometry<f64, S, M> {
+    pub fn values(&self) -> PairGeometry<f64> {
         PairGeometry {
-            slave: S::map(&self.slave, value),
-            master: M::map(&self.master, value),
-            nodal_normals: S::map(&self.nodal_normals, value),
+            slave_shape: self.slave_shape,
+            master_shape: self.master_shape,
+            slave: self.slave.map(value),
+            master: self.master.map(value),
+            nodal_normals: self.nodal_normals.map(value),
             slave_normal: value(self.slave_normal),
             master_normal: value(self.master_normal),
             choices: self.choices,

@@ -11,7 +11,7 @@
 //! 5. [mod@operators]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
 //! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration;
 //! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments;
-//! 8. [`turn`]: how a facet has turned since, with what it carries along.
+//! 8. [`rotation`]: the rotation of a facet since the last accepted state.
 //!
 //! Facets of second order are cut into linear pieces first: `curved`.
 //!
@@ -38,19 +38,19 @@ pub mod settings;
 mod inner;
 pub(crate) mod shapes;
 pub mod slip;
-pub mod turn;
+pub mod rotation;
 
 pub use choices::Choices;
 pub use curved::nodal_shares;
 pub use gap::{weighted_gap, weighted_jump};
-pub use geometry::{PairGeometry, variables_from};
+pub use geometry::{Active, LANES, PairGeometry, variables_from};
 pub use inner::{inner_point, inner_values};
-pub use operators::{Operators, Overlap, choices_of, operators, operators_by, operators_by_normals};
-pub use points::MasterMotion;
+pub use operators::{Operators, Overlap, choices_of, find_operators, find_operators_by_normals, operators};
+pub use points::{EXACT_MOTION, MasterMotion};
+pub use rotation::FacetRotation;
 pub use settings::{IntegrationOrder, SegmentationSettings};
-pub use shapes::{MOST_NODES, carries_contact, condition_name, lanes, makes_pairs};
-pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, tangent, tangential, turned_slip};
-pub use turn::Turn;
+pub use shapes::{MOST_NODES, carries_contact, condition_name};
+pub use slip::{OperatorThreshold, incremental_slip, is_objective, objective_slip, rotated_slip, tangent, tangential};
 
 #[cfg(test)]
 mod degenerate;

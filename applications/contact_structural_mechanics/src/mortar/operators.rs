@@ -6,31 +6,29 @@
 //! Where Me cannot be inverted, Φ = N¹ and D = Me is full. With the usual three points a triangle this is so for every
 //! quadrilateral slave whose overlap is a single triangle: three points cannot tell four functions apart.
 
-use std::marker::PhantomData;
-
 use super::choices::Choices;
 use super::curved;
-use super::geometry::PairGeometry;
-use super::points::{ExactMotion, MasterMotion, Point, Points};
+use super::geometry::{Active, LANES, PairGeometry};
+use super::points::{EXACT_MOTION, MasterMotion, Point, Points};
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::{FacetShape, Nodal, interpolate};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::value;
 
 /// Share of the slave's measure below which an overlap is a sliver.
 pub(crate) const SLIVER: f64 = 1e-5;
-/// Condition number (Frobenius) of Me beyond which the plain shape functions serve as Φ.
+/// Condition number (Frobenius) of Me beyond which the standard shape functions serve as Φ.
 const WORST_CONDITION: f64 = 1e-4 / f64::EPSILON;
 
 /// The operators of a pair.
 /// Row j belongs to the multiplier of slave node j; entries have the unit of a length (lines) or an area (surfaces).
 #[derive(Debug, Clone, Copy)]
-pub struct Operators<T: Real, S: FacetShape, M: FacetShape> {
+pub struct Operators<T: Real> {
     /// D_jk = ∫ Φ_j N¹_k; diagonal whenever the dual functions exist.
-    pub d: S::Nodal<S::Nodal<T>>,
+    pub d: Nodal<Nodal<T>>,
     /// M_jl = ∫ Φ_j N²_l.
-    pub m: S::Nodal<M::Nodal<T>>,
+    pub m: Nodal<Nodal<T>>,
 }
 
 /// Whether the facets of a pair face each other.
@@ -45,24 +43,20 @@ pub enum Overlap<O> {
 }
 
 impl<O> Overlap<O> {
-    /// That of a pair whose cells have this length or area.
-    fn of<T: Real, S: FacetShape, M: FacetShape>(
-        covered: f64,
-        pair: &PairGeometry<T, S, M>,
-        operators: impl FnOnce() -> O,
-    ) -> Self {
-        match covered {
-            covered if covered > least_overlap(pair) => Self::Cells(operators()),
-            covered if covered > 0.0 => Self::Sliver,
-            _ => Self::None,
-        }
-    }
-
     /// The operators, if any.
     pub fn cells(self) -> Option<O> {
         match self {
             Self::Cells(operators) => Some(operators),
             Self::Sliver | Self::None => None,
+        }
+    }
+
+    /// The same kind of overlap with a function of the operators.
+    pub fn map<P>(self, of: impl FnOnce(O) -> P) -> Overlap<P> {
+        match self {
+            Self::Cells(operators) => Overlap::Cells(of(operators)),
+            Self::Sliver => Overlap::Sliver,
+            Self::None => Overlap::None,
         }
     }
 }
@@ -71,314 +65,262 @@ impl<O> Overlap<O> {
 ///
 /// With dual numbers the gradients are exact derivatives of the values, through cells, points and dual functions, as
 /// long as the kinds of the overlap's vertices do not change.
-pub fn operators<T: Real, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
-    settings: &SegmentationSettings,
-) -> Overlap<Operators<T, S, M>> {
-    operators_by(pair, settings, &ExactMotion)
+pub fn operators<T: Real>(pair: &PairGeometry<T>, settings: &SegmentationSettings) -> Overlap<Operators<T>> {
+    let mut out = Operators::zero(pair.slave_shape, pair.master_shape);
+    find_operators(pair, settings, &EXACT_MOTION, &mut out).map(|()| out)
 }
 
-/// The same with the derivatives of another motion of points on the master.
-pub fn operators_by<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
+/// Writes D and M of a pair to `out`, whose entries are zero; `motion` is that of points on the master.
+///
+/// Large numbers with derivatives are not moved about: the caller gives the memory.
+pub fn find_operators<T: Real>(
+    pair: &PairGeometry<T>,
     settings: &SegmentationSettings,
-    motion: &P,
-) -> Overlap<Operators<T, S, M>> {
-    ByOrder::<T, P, S, M>::OPERATORS(pair, settings, motion)
+    motion: &dyn MasterMotion<T>,
+    out: &mut Operators<T>,
+) -> Overlap<()> {
+    if pair.is_curved() {
+        let covered = curved::find_operators(pair, settings, out);
+        return if out.is_finite() { overlap_of(covered, pair) } else { Overlap::None };
+    }
+    let covered = Points { pair, motion }.visit(settings, &mut |point| out.add_point(point));
+    out.finish(covered, pair)
 }
 
-/// The same with derivatives by components of the nodal normals, `LANES` of them from the one numbered `first` on, node by node.
-pub fn operators_by_normals<S: FacetShape, M: FacetShape, const LANES: usize>(
-    pair: &PairGeometry<f64, S, M>,
+/// Writes D and M to `out`, whose entries are zero, with derivatives by components of the nodal normals, [`LANES`] of them from the
+/// one numbered `first` on, node by node.
+///
+/// In space the overlap of facets of first order is cut along the slave's normal: those of nodes say where points meet the master
+/// and nothing else, each point by the one interpolated there. That has three components, whatever the number of nodes.
+pub fn find_operators_by_normals(
+    pair: &PairGeometry<f64>,
     settings: &SegmentationSettings,
     first: usize,
-) -> Overlap<Operators<Dual<LANES>, S, M>> {
-    ByNormals::<S, M, LANES>::OPERATORS(pair, settings, first)
-}
-
-/// How derivatives by normals are found, by the dimension and the order of the shapes.
-struct ByNormals<S: FacetShape, M: FacetShape, const LANES: usize>(PhantomData<(S, M)>);
-
-impl<S: FacetShape, M: FacetShape, const LANES: usize> ByNormals<S, M, LANES> {
-    const OPERATORS: fn(
-        &PairGeometry<f64, S, M>,
-        &SegmentationSettings,
-        usize,
-    ) -> Overlap<Operators<Dual<LANES>, S, M>> =
-        if S::SPACE == 2 || S::CURVED || M::CURVED { Self::of_any } else { Self::in_space };
-
-    /// In space the overlap is cut along the slave's normal: those of nodes say where points meet the master and nothing else, each point
-    /// by the one interpolated there. That has three components, whatever the number of nodes.
-    fn in_space(
-        pair: &PairGeometry<f64, S, M>,
-        settings: &SegmentationSettings,
-        first: usize,
-    ) -> Overlap<Operators<Dual<LANES>, S, M>> {
-        let still: PairGeometry<Dual<3>, S, M> = pair.as_constants();
-        let mut sums = Sums::<Dual<LANES>, S, M>::new();
-        let covered = Points { pair, motion: &ExactMotion }.visit(settings, |point| {
-            let normal = S::interpolate(&point.slave, &pair.nodal_normals);
-            let normal = std::array::from_fn(|c| Dual::variable(normal[c], c));
-            let x = S::interpolate(&point.slave, &pair.slave).map(Dual::constant);
-            let master = Points { pair: &still, motion: &ExactMotion }.along(normal, x, Dual::zero());
-            sums.add_point_by_normals(point, &master, first);
-        });
-        sums.found(covered, pair)
+    out: &mut Operators<Active>,
+) -> Overlap<()> {
+    if pair.space() == 2 || pair.is_curved() {
+        return find_operators(&pair.seeded_by_normals(first), settings, &EXACT_MOTION, out);
     }
-
-    fn of_any(
-        pair: &PairGeometry<f64, S, M>,
-        settings: &SegmentationSettings,
-        first: usize,
-    ) -> Overlap<Operators<Dual<LANES>, S, M>> {
-        operators(&pair.seeded_by_normals(first), settings)
-    }
-}
-
-/// What differs by the order of the shapes. As constants, so that only what a pair of shapes needs is compiled for it.
-struct ByOrder<T: Real, P, S: FacetShape, M: FacetShape>(PhantomData<(T, P, S, M)>);
-
-impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> ByOrder<T, P, S, M> {
-    const OPERATORS: fn(&PairGeometry<T, S, M>, &SegmentationSettings, &P) -> Overlap<Operators<T, S, M>> =
-        if S::CURVED || M::CURVED { Self::curved } else { Self::straight };
-
-    fn straight(
-        pair: &PairGeometry<T, S, M>,
-        settings: &SegmentationSettings,
-        motion: &P,
-    ) -> Overlap<Operators<T, S, M>> {
-        let mut sums = Sums::new();
-        let covered = Points { pair, motion }.visit(settings, |point| sums.add_point(point));
-        sums.found(covered, pair)
-    }
-
-    fn curved(pair: &PairGeometry<T, S, M>, settings: &SegmentationSettings, _: &P) -> Overlap<Operators<T, S, M>> {
-        let (found, covered) = curved::operators(pair, settings);
-        if found.is_finite() { Overlap::of(covered, pair, || found) } else { Overlap::None }
-    }
-}
-
-/// The choices that gave operators, by the order of the shapes.
-struct ChoicesByOrder<S: FacetShape, M: FacetShape>(PhantomData<(S, M)>);
-
-impl<S: FacetShape, M: FacetShape> ChoicesByOrder<S, M> {
-    const OF: fn(&PairGeometry<f64, S, M>, &SegmentationSettings, &Operators<f64, S, M>) -> Choices =
-        if S::CURVED || M::CURVED { Self::curved } else { Self::straight };
-
-    fn straight(
-        pair: &PairGeometry<f64, S, M>,
-        settings: &SegmentationSettings,
-        found: &Operators<f64, S, M>,
-    ) -> Choices {
-        let origin = || {
-            // Intervals of the plane have no such choice.
-            let polygon = if S::SPACE == 2 { None } else { Polygon::new(pair, settings) }?;
-            Some(polygon.local(polygon.vertices()[0]))
-        };
-        Choices {
-            origin: pair.choices.origin.or_else(origin),
-            plain: pair.choices.plain | u8::from(!found.is_diagonal()),
-            slivers: true,
-        }
-    }
-
-    fn curved(pair: &PairGeometry<f64, S, M>, settings: &SegmentationSettings, _: &Operators<f64, S, M>) -> Choices {
-        Choices { plain: curved::plain_pieces(pair, settings), slivers: true, ..pair.choices }
-    }
+    let still: PairGeometry<Active> = pair.as_constants();
+    let still = Points { pair: &still, motion: &EXACT_MOTION };
+    let covered = Points { pair, motion: &EXACT_MOTION }.visit(settings, &mut |point| {
+        let normal = interpolate(&point.slave, &pair.nodal_normals);
+        let normal = std::array::from_fn(|c| Dual::variable(normal[c], c));
+        let x = interpolate(&point.slave, &pair.slave).map(Dual::constant);
+        out.add_point_by_normals(point, &still.along(normal, x, Dual::zero()), first);
+    });
+    out.finish(covered, pair)
 }
 
 /// The choices that gave the operators `found` of a pair.
-pub fn choices_of<S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<f64, S, M>,
-    settings: &SegmentationSettings,
-    found: &Operators<f64, S, M>,
-) -> Choices {
-    ChoicesByOrder::<S, M>::OF(pair, settings, found)
+pub fn choices_of(pair: &PairGeometry<f64>, settings: &SegmentationSettings, found: &Operators<f64>) -> Choices {
+    if pair.is_curved() {
+        let plain = curved::standard_pieces(pair, settings);
+        return Choices { plain, slivers: true, ..pair.choices };
+    }
+    let origin = || {
+        // Intervals of the plane have no such choice.
+        let polygon = if pair.space() == 2 { None } else { Polygon::new(pair, settings) }?;
+        Some(polygon.local(polygon.vertices()[0]))
+    };
+    Choices {
+        origin: pair.choices.origin.or_else(origin),
+        plain: pair.choices.plain | u8::from(!found.is_diagonal()),
+        slivers: true,
+    }
 }
 
 /// Length or area above which an overlap counts.
-pub(crate) fn least_overlap<T: Real, S: FacetShape, M: FacetShape>(pair: &PairGeometry<T, S, M>) -> f64 {
-    if pair.choices.slivers { 0.0 } else { SLIVER * S::measure(&S::map(&pair.slave, value)) }
+pub(crate) fn least_overlap<T: Real>(pair: &PairGeometry<T>) -> f64 {
+    if pair.choices.slivers { 0.0 } else { SLIVER * pair.slave_shape.measure(&pair.slave.map(value)) }
 }
 
-impl<T: Real, S: FacetShape, M: FacetShape> Operators<T, S, M> {
+/// The kind of overlap of a pair whose cells have this length or area.
+fn overlap_of<T: Real>(covered: f64, pair: &PairGeometry<T>) -> Overlap<()> {
+    match covered {
+        covered if covered > least_overlap(pair) => Overlap::Cells(()),
+        covered if covered > 0.0 => Overlap::Sliver,
+        _ => Overlap::None,
+    }
+}
+
+impl<T: Real> Operators<T> {
     /// No overlap at all.
-    pub fn zero() -> Self {
-        Self { d: S::nodal(|_| S::nodal(|_| T::zero())), m: S::nodal(|_| M::nodal(|_| T::zero())) }
+    pub fn zero(slave: &FacetShape, master: &FacetShape) -> Self {
+        let (d, m) = (slave.nodal(|_| T::zero()), master.nodal(|_| T::zero()));
+        Self { d: slave.nodal(|_| d), m: slave.nodal(|_| m) }
+    }
+
+    /// Sets all entries to zero.
+    pub fn clear(&mut self) {
+        self.d.iter_mut().chain(self.m.iter_mut()).for_each(|row| row.fill(T::zero()));
     }
 
     /// The same operators in another scalar, without derivatives.
-    pub fn as_constants<C: Real>(&self) -> Operators<C, S, M> {
-        Operators {
-            d: S::map(&self.d, |row| S::map(&row, |x| C::constant(x.value()))),
-            m: S::map(&self.m, |row| M::map(&row, |x| C::constant(x.value()))),
-        }
+    pub fn as_constants<C: Real>(&self) -> Operators<C> {
+        let constants = |row: Nodal<T>| row.map(|x| C::constant(x.value()));
+        Operators { d: self.d.map(constants), m: self.m.map(constants) }
     }
 
     /// The same operators without derivatives.
-    pub fn values(&self) -> Operators<f64, S, M> {
+    pub fn values(&self) -> Operators<f64> {
         self.as_constants()
     }
 
     /// Frobenius norms of D and M.
     pub fn norms(&self) -> [f64; 2] {
         let values = self.values();
-        [frobenius(values.d.as_slice()), frobenius(values.m.as_slice())]
+        [frobenius(&values.d), frobenius(&values.m)]
     }
 
     /// The change since the operators `previous`.
-    pub fn minus(&self, previous: &Operators<f64, S, M>) -> Self {
-        Self {
-            d: S::nodal(|j| S::nodal(|k| self.d[j][k] - previous.d[j][k])),
-            m: S::nodal(|j| M::nodal(|l| self.m[j][l] - previous.m[j][l])),
+    pub fn minus(&self, previous: &Operators<f64>) -> Self {
+        let mut out = *self;
+        for (rows, before) in [(&mut out.d, &previous.d), (&mut out.m, &previous.m)] {
+            rows.iter_mut().zip(before.iter()).for_each(|(row, before)| {
+                row.iter_mut().zip(before.iter()).for_each(|(x, before)| *x = *x - *before);
+            });
         }
+        out
     }
 
     /// Whether all entries are numbers.
     fn is_finite(&self) -> bool {
-        let d = self.d.iter().flat_map(|row| row.iter());
-        d.chain(self.m.iter().flat_map(|row| row.iter())).all(|x| x.value().is_finite())
+        self.d.iter().chain(self.m.iter()).flat_map(|row| row.iter()).all(|x| x.value().is_finite())
     }
 
     /// Whether D is diagonal, so that dual functions were in use.
     pub fn is_diagonal(&self) -> bool {
-        (0..S::NODES).all(|j| (0..S::NODES).all(|k| j == k || self.d[j][k].value() == 0.0))
+        self.d.iter().enumerate().all(|(j, row)| row.iter().enumerate().all(|(k, x)| j == k || x.value() == 0.0))
     }
 
     /// (D v¹ − M v²)_j, the weighted jump of a nodal vector field across the pair.
-    #[inline]
-    pub fn jump(&self, slave: &S::Nodal<[T; 3]>, master: &M::Nodal<[T; 3]>) -> S::Nodal<[T; 3]> {
-        S::nodal(|j| {
+    pub fn jump(&self, slave: &[[T; 3]], master: &[[T; 3]]) -> Nodal<[T; 3]> {
+        Nodal::new(self.d.len(), |j| {
             let mut sum = [T::zero(); 3];
             for c in 0..3 {
-                for k in 0..S::NODES {
-                    sum[c].add_product(self.d[j][k], slave[k][c]);
+                for (d, v) in self.d[j].iter().zip(slave) {
+                    sum[c].add_product(*d, v[c]);
                 }
-                for l in 0..M::NODES {
-                    sum[c].add_product(-self.m[j][l], master[l][c]);
+                for (m, v) in self.m[j].iter().zip(master) {
+                    sum[c].add_product(-*m, v[c]);
                 }
             }
             sum
         })
     }
-}
 
-/// Integrals gathered over the cells: Me (upper triangle) and ∫ N¹⊗N².
-struct Sums<T: Real, S: FacetShape, M: FacetShape> {
-    me: S::Nodal<S::Nodal<T>>,
-    mixed: S::Nodal<M::Nodal<T>>,
-}
-
-impl<T: Real, S: FacetShape, M: FacetShape> Sums<T, S, M> {
-    fn new() -> Self {
-        Self { me: S::nodal(|_| S::nodal(|_| T::zero())), mixed: S::nodal(|_| M::nodal(|_| T::zero())) }
-    }
-
-    #[inline]
-    fn add_point(&mut self, point: &Point<T, S, M>) {
-        for j in 0..S::NODES {
+    /// Adds a point to the integrals Me (upper triangle, in place of D) and ∫ N¹⊗N² (in place of M).
+    fn add_point(&mut self, point: &Point<T>) {
+        let nodes = point.slave.len();
+        for j in 0..nodes {
             let weighted = point.slave[j] * point.weight;
-            for k in j..S::NODES {
-                self.me[j][k].add_product(weighted, point.slave[k]);
+            for k in j..nodes {
+                self.d[j][k].add_product(weighted, point.slave[k]);
             }
-            for l in 0..M::NODES {
-                self.mixed[j][l].add_product(weighted, point.master[l]);
+            for (sum, shape) in self.m[j].iter_mut().zip(point.master.iter()) {
+                sum.add_product(weighted, *shape);
             }
         }
     }
 
-    /// The operators of a pair whose cells have this length or area.
-    fn found<R: Real>(self, covered: f64, pair: &PairGeometry<R, S, M>) -> Overlap<Operators<T, S, M>> {
+    /// Makes D and M of the integrals of a pair whose cells have this length or area.
+    fn finish<R: Real>(&mut self, covered: f64, pair: &PairGeometry<R>) -> Overlap<()> {
         // Points have no place on a master that is folded.
-        if self.is_finite() { Overlap::of(covered, pair, || self.finish(pair.choices)) } else { Overlap::None }
+        if !self.m.iter().flat_map(|row| row.iter()).all(|x| x.value().is_finite()) {
+            return Overlap::None;
+        }
+        let found = overlap_of(covered, pair);
+        if matches!(found, Overlap::Cells(())) {
+            self.take_dual_functions(pair.choices);
+        }
+        found
     }
 
-    fn is_finite(&self) -> bool {
-        self.mixed.iter().flat_map(|row| row.iter()).all(|x| x.value().is_finite())
-    }
-
-    /// D and M from the integrals.
-    fn finish(mut self, choices: Choices) -> Operators<T, S, M> {
-        for j in 0..S::NODES {
+    /// Takes the integrals with dual functions in place of the standard ones, where there are any.
+    fn take_dual_functions(&mut self, choices: Choices) {
+        let (slaves, masters) = (self.d.len(), self.m[0].len());
+        for j in 0..slaves {
             for k in 0..j {
-                self.me[j][k] = self.me[k][j];
+                self.d[j][k] = self.d[k][j];
             }
         }
-        let inverse = inverse::<S>(&S::map(&self.me, |row| S::map(&row, T::value))).filter(|_| choices.plain == 0);
-        let Some(inverse) = inverse else {
-            return Operators { d: self.me, m: self.mixed };
-        };
+        let values = self.d.map(|row| row.map(T::value));
+        let Some(inverse) = inverse(&values).filter(|_| choices.plain == 0) else { return };
         // X = Me⁻¹ ∫ N¹⊗N² on values, then one correction, which brings the derivative.
-        let mut solution = S::nodal(|_| M::nodal(|_| 0.0));
-        for j in 0..S::NODES {
-            for l in 0..M::NODES {
-                solution[j][l] = (0..S::NODES).map(|k| inverse[j][k] * self.mixed[k][l].value()).sum();
+        let zero = Nodal::new(masters, |_| 0.0);
+        let mut solution = Nodal::new(slaves, |_| zero);
+        for j in 0..slaves {
+            for l in 0..masters {
+                solution[j][l] = (0..slaves).map(|k| inverse[j][k] * self.m[k][l].value()).sum();
             }
         }
-        let mut residual = self.mixed;
-        for j in 0..S::NODES {
-            for l in 0..M::NODES {
-                for k in 0..S::NODES {
-                    residual[j][l].add_scaled(self.me[j][k], -solution[k][l]);
+        for j in 0..slaves {
+            for l in 0..masters {
+                for k in 0..slaves {
+                    self.m[j][l].add_scaled(self.d[j][k], -solution[k][l]);
                 }
             }
         }
-        let mut operators = Operators::<T, S, M>::zero();
-        for j in 0..S::NODES {
+        for j in 0..slaves {
             // The shape functions add up to one, so De is the row sum of Me.
-            let mut de = self.me[j][0];
-            (1..S::NODES).for_each(|k| de += self.me[j][k]);
-            operators.d[j][j] = de;
-            for l in 0..M::NODES {
+            let mut de = self.d[j][0];
+            (1..slaves).for_each(|k| de += self.d[j][k]);
+            self.d[j].fill(T::zero());
+            self.d[j][j] = de;
+        }
+        for l in 0..masters {
+            let residual = Nodal::new(slaves, |k| self.m[k][l]);
+            for j in 0..slaves {
                 let mut x = T::constant(solution[j][l]);
-                (0..S::NODES).for_each(|k| x.add_scaled(residual[k][l], inverse[j][k]));
-                operators.m[j][l] = de * x;
+                (0..slaves).for_each(|k| x.add_scaled(residual[k], inverse[j][k]));
+                self.m[j][l] = self.d[j][j] * x;
             }
         }
-        operators
     }
 }
 
-impl<S: FacetShape, M: FacetShape, const LANES: usize> Sums<Dual<LANES>, S, M> {
+impl Operators<Active> {
     /// Adds a point whose shape functions on the master have derivatives by the normal that is interpolated there.
-    #[inline]
-    fn add_point_by_normals(&mut self, point: &Point<f64, S, M>, master: &M::Nodal<Dual<3>>, first: usize) {
-        let weighted = S::map(&point.slave, |shape| shape * point.weight);
-        for j in 0..S::NODES {
-            (j..S::NODES).for_each(|k| self.me[j][k].value += weighted[j] * point.slave[k]);
+    fn add_point_by_normals(&mut self, point: &Point<f64>, master: &[Active], first: usize) {
+        let (nodes, dim) = (point.slave.len(), 3);
+        let weighted = point.slave.map(|shape| shape * point.weight);
+        for j in 0..nodes {
+            (j..nodes).for_each(|k| self.d[j][k].value += weighted[j] * point.slave[k]);
         }
-        let known = LANES.min(PairGeometry::<f64, S, M>::NORMALS - first);
-        for l in 0..M::NODES {
-            let mut moved = Dual::constant(master[l].value);
+        let known = LANES.min(dim * nodes - first);
+        for (l, shape) in master.iter().enumerate() {
+            let mut moved = Dual::constant(shape.value);
             for lane in 0..known {
-                let (node, c) = ((first + lane) / S::SPACE, (first + lane) % S::SPACE);
-                moved.gradient[lane] = point.slave[node] * master[l].gradient[c];
+                let (node, c) = ((first + lane) / dim, (first + lane) % dim);
+                moved.gradient[lane] = point.slave[node] * shape.gradient[c];
             }
-            (0..S::NODES).for_each(|j| self.mixed[j][l].add_scaled(moved, weighted[j]));
+            (0..nodes).for_each(|j| self.m[j][l].add_scaled(moved, weighted[j]));
         }
     }
 }
 
 /// Square root of the sum of the squares of a matrix.
-fn frobenius<R: NodeArray<f64>>(rows: &[R]) -> f64 {
+fn frobenius(rows: &[Nodal<f64>]) -> f64 {
     rows.iter().flat_map(|row| row.iter()).map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Inverse by elimination with row exchanges; `None` if the matrix is too badly conditioned to trust it.
-pub(super) fn inverse<S: FacetShape>(matrix: &S::Nodal<S::Nodal<f64>>) -> Option<S::Nodal<S::Nodal<f64>>> {
+pub(super) fn inverse(matrix: &Nodal<Nodal<f64>>) -> Option<Nodal<Nodal<f64>>> {
+    let count = matrix.len();
     let mut work = *matrix;
-    let mut inverse = S::nodal(|j| S::nodal(|k| f64::from(u8::from(j == k))));
-    for pivot in 0..S::NODES {
-        let best = (pivot..S::NODES).max_by(|&a, &b| work[a][pivot].abs().total_cmp(&work[b][pivot].abs()))?;
-        work.as_mut_slice().swap(pivot, best);
-        inverse.as_mut_slice().swap(pivot, best);
+    let mut inverse = Nodal::new(count, |j| Nodal::new(count, |k| f64::from(u8::from(j == k))));
+    for pivot in 0..count {
+        let best = (pivot..count).max_by(|&a, &b| work[a][pivot].abs().total_cmp(&work[b][pivot].abs()))?;
+        work.swap(pivot, best);
+        inverse.swap(pivot, best);
         let scale = 1.0 / work[pivot][pivot];
-        work[pivot] = S::map(&work[pivot], |x| x * scale);
-        inverse[pivot] = S::map(&inverse[pivot], |x| x * scale);
-        for row in 0..S::NODES {
+        work[pivot] = work[pivot].map(|x| x * scale);
+        inverse[pivot] = inverse[pivot].map(|x| x * scale);
+        for row in 0..count {
             let factor = work[row][pivot];
             if row != pivot && factor != 0.0 {
-                for c in 0..S::NODES {
+                for c in 0..count {
                     work[row][c] -= factor * work[pivot][c];
                     inverse[row][c] -= factor * inverse[pivot][c];
                 }
@@ -386,5 +328,5 @@ pub(super) fn inverse<S: FacetShape>(matrix: &S::Nodal<S::Nodal<f64>>) -> Option
         }
     }
     // Written so that NaN counts as bad.
-    (frobenius(matrix.as_slice()) * frobenius(inverse.as_slice()) < WORST_CONDITION).then_some(inverse)
+    (frobenius(matrix) * frobenius(&inverse) < WORST_CONDITION).then_some(inverse)
 }

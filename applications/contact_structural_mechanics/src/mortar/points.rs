@@ -1,13 +1,11 @@
 //! The integration points of the overlap of a pair: Gauss points on its cells, and where they go on the master.
 
-use std::marker::PhantomData;
-
 use super::curved;
 use super::geometry::PairGeometry;
 use super::segmentation_2d;
 use super::segmentation_3d::{Polygon, Vertex};
 use super::settings::SegmentationSettings;
-use zelus_core::geometry::{FacetShape, Line2, ShapeTable, Triangle3};
+use zelus_core::geometry::{FacetShape, LINE_2, Nodal, ShapeTable, TRIANGLE_3, combine, interpolate};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{cross, dot, norm, sub, value};
 
@@ -17,87 +15,69 @@ const LEAST_CELL: f64 = 1e-13;
 
 /// A point of the slave that faces a point of the master.
 #[derive(Debug, Clone, Copy)]
-pub struct Point<T: Real, S: FacetShape, M: FacetShape> {
+pub struct Point<T: Real> {
     /// Local coordinates on the slave.
     pub local: [T; 2],
     /// Shape functions of the slave.
-    pub slave: S::Nodal<T>,
+    pub slave: Nodal<T>,
     /// Shape functions of the master.
-    pub master: M::Nodal<T>,
+    pub master: Nodal<T>,
     /// Length or area that it stands for; about an axis also 2π r by the thickness.
     pub weight: T,
 }
 
 /// Visits the points of the overlap; gives its length or area, without the turn about an axis.
-pub fn for_each_point<T: Real, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
+pub fn for_each_point<T: Real>(
+    pair: &PairGeometry<T>,
     settings: &SegmentationSettings,
-    mut visit: impl FnMut(&Point<T, S, M>),
+    visit: &mut dyn FnMut(&Point<T>),
 ) -> f64 {
-    ByOrder::<T, S, M>::VISIT(pair, settings, &mut visit)
-}
-
-/// The walk over points by the order of the shapes. A constant, so that only what a pair of shapes needs is compiled for it.
-struct ByOrder<T: Real, S: FacetShape, M: FacetShape>(PhantomData<(T, S, M)>);
-
-impl<T: Real, S: FacetShape, M: FacetShape> ByOrder<T, S, M> {
-    const VISIT: fn(&PairGeometry<T, S, M>, &SegmentationSettings, &mut dyn FnMut(&Point<T, S, M>)) -> f64 =
-        if S::CURVED || M::CURVED { Self::curved } else { Self::straight };
-
-    fn straight(
-        pair: &PairGeometry<T, S, M>,
-        settings: &SegmentationSettings,
-        visit: &mut dyn FnMut(&Point<T, S, M>),
-    ) -> f64 {
-        Points { pair, motion: &ExactMotion }.visit(settings, visit)
-    }
-
-    fn curved(
-        pair: &PairGeometry<T, S, M>,
-        settings: &SegmentationSettings,
-        visit: &mut dyn FnMut(&Point<T, S, M>),
-    ) -> f64 {
+    if pair.is_curved() {
         curved::for_each_point(pair, settings, &mut |_, point| visit(point))
+    } else {
+        Points { pair, motion: &EXACT_MOTION }.visit(settings, visit)
     }
 }
 
-/// How points of the slave move on the master: where they are is the same for all.
-pub trait MasterMotion<T: Real, S: FacetShape> {
+/// The motion of points of the slave on the master: where they are is the same for all.
+pub trait MasterMotion<T: Real> {
     /// Lengths at the slave nodes by which vertices on them are lifted, for motions that know of it.
-    fn lift(&self) -> Option<&S::Nodal<T>>;
+    fn lift(&self) -> Option<&[T]>;
 
-    /// Local coordinates on `master` of its point at `place`, which belongs to the slave's point `x` lifted by `lift`.
-    fn local<M: FacetShape>(&self, master: &M::Nodal<[T; 3]>, place: [T; 3], x: [T; 3], lift: T) -> [T; 2];
+    /// Local coordinates on a master of this shape and with these nodes of its point at `place`, which belongs to the slave's
+    /// point `x` lifted by `lift`.
+    fn local(&self, shape: &FacetShape, master: &[[T; 3]], place: [T; 3], x: [T; 3], lift: T) -> [T; 2];
 }
 
 /// Points that stay on the projection along the interpolated normal.
-pub(super) struct ExactMotion;
+pub struct ExactMotion;
 
-impl<T: Real, S: FacetShape> MasterMotion<T, S> for ExactMotion {
-    fn lift(&self) -> Option<&S::Nodal<T>> {
+/// The one there is.
+pub const EXACT_MOTION: ExactMotion = ExactMotion;
+
+impl<T: Real> MasterMotion<T> for ExactMotion {
+    fn lift(&self) -> Option<&[T]> {
         None
     }
 
-    #[inline]
-    fn local<M: FacetShape>(&self, master: &M::Nodal<[T; 3]>, place: [T; 3], _: [T; 3], _: T) -> [T; 2] {
-        M::closest_point(master, place, M::CENTRE)
+    fn local(&self, shape: &FacetShape, master: &[[T; 3]], place: [T; 3], _: [T; 3], _: T) -> [T; 2] {
+        shape.closest_point(master, place, shape.centre)
     }
 }
 
 /// A pair whose overlap is walked.
-pub(super) struct Points<'a, T: Real, P, S: FacetShape, M: FacetShape> {
-    pub(super) pair: &'a PairGeometry<T, S, M>,
-    pub(super) motion: &'a P,
+pub(super) struct Points<'a, T: Real> {
+    pub(super) pair: &'a PairGeometry<T>,
+    pub(super) motion: &'a dyn MasterMotion<T>,
 }
 
-impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> Points<'_, T, P, S, M> {
-    /// As [`for_each_point`].
-    #[inline]
-    pub(super) fn visit(&self, settings: &SegmentationSettings, visit: impl FnMut(&Point<T, S, M>)) -> f64 {
+impl<T: Real> Points<'_, T> {
+    /// As [`for_each_point`], for facets of first order.
+    pub(super) fn visit(&self, settings: &SegmentationSettings, visit: &mut dyn FnMut(&Point<T>)) -> f64 {
         if !self.master_has_area() {
             return 0.0;
         }
-        if S::SPACE == 2 {
+        if self.pair.space() == 2 {
             segmentation_2d::interval(self.pair, settings).map_or(0.0, |ends| self.of_interval(ends, settings, visit))
         } else {
             Polygon::new(self.pair, settings).map_or(0.0, |polygon| self.of_polygon(&polygon, settings, visit))
@@ -106,33 +86,30 @@ impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> Points<'_, T,
 
     /// Whether local coordinates on the master mean anything: its length counts beside the slave's, its area beside its edges.
     fn master_has_area(&self) -> bool {
-        let master = M::map(&self.pair.master, value);
-        let measure = M::measure(&master);
-        if M::SPACE == 2 {
-            return measure > LEAST_CELL * S::measure(&S::map(&self.pair.slave, value));
+        let pair = self.pair;
+        let master = pair.master.map(value);
+        let measure = pair.master_shape.measure(&master);
+        if pair.space() == 2 {
+            return measure > LEAST_CELL * pair.slave_shape.measure(&pair.slave.map(value));
         }
-        let edge = |n: usize| sub(master[(n + 1) % M::CORNERS], master[n]);
-        let longest = (0..M::CORNERS).map(|n| dot(edge(n), edge(n))).fold(0.0, f64::max);
+        let corners = pair.master_shape.corners;
+        let edge = |n: usize| sub(master[(n + 1) % corners], master[n]);
+        let longest = (0..corners).map(|n| dot(edge(n), edge(n))).fold(0.0, f64::max);
         measure > LEAST_CELL * longest
     }
 
     /// Points of a segment of the slave line; gives its length.
-    #[inline]
-    fn of_interval(
-        &self,
-        ends: [T; 2],
-        settings: &SegmentationSettings,
-        mut visit: impl FnMut(&Point<T, S, M>),
-    ) -> f64 {
+    fn of_interval(&self, ends: [T; 2], settings: &SegmentationSettings, visit: &mut dyn FnMut(&Point<T>)) -> f64 {
+        let pair = self.pair;
         let share = (ends[1] - ends[0]) * 0.5;
-        let det_j = norm(sub(self.pair.slave[1], self.pair.slave[0])) * share;
+        let det_j = norm(sub(pair.slave[1], pair.slave[0])) * share;
         let revolution = settings.revolution();
-        let rule = ShapeTable::get(Line2::SHAPE, settings.integration_order.get());
-        for (weights, point) in rule.n::<{ Line2::NODES }>().iter().zip(rule.points()) {
+        let rule = ShapeTable::get(LINE_2.shape, settings.integration_order.get());
+        for (weights, point) in rule.n::<2>().iter().zip(rule.points()) {
             let local = [ends[0] * weights[0] + ends[1] * weights[1], T::zero()];
-            let slave = S::values(local);
-            let x = S::interpolate(&slave, &self.pair.slave);
-            let mut weight = det_j * (point.weight / Line2::SHAPE.cell().size());
+            let slave = pair.slave_shape.values(local);
+            let x = interpolate(&slave, &pair.slave);
+            let mut weight = det_j * (point.weight / LINE_2.cell_size);
             if let Some(per_radius) = revolution {
                 weight *= x[0] * per_radius;
             }
@@ -143,16 +120,17 @@ impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> Points<'_, T,
     }
 
     /// Points of the fan of triangles of a polygon; gives their area.
-    #[inline]
     fn of_polygon(
         &self,
-        polygon: &Polygon<T, S, M>,
+        polygon: &Polygon<T>,
         settings: &SegmentationSettings,
-        mut visit: impl FnMut(&Point<T, S, M>),
+        visit: &mut dyn FnMut(&Point<T>),
     ) -> f64 {
-        let whole = S::measure(&S::map(&self.pair.slave, value));
-        let place = |xi: [T; 2]| S::interpolate(&S::values(xi), &self.pair.slave);
-        let rule = ShapeTable::get(Triangle3::SHAPE, settings.integration_order.get());
+        let pair = self.pair;
+        let shape = pair.slave_shape;
+        let whole = shape.measure(&pair.slave.map(value));
+        let place = |xi: [T; 2]| interpolate(&shape.values(xi), &pair.slave);
+        let rule = ShapeTable::get(TRIANGLE_3.shape, settings.integration_order.get());
         let mut covered = 0.0;
         let vertices = polygon.vertices();
         let mut local = [polygon.local(vertices[0]), [T::zero(); 2], polygon.local(vertices[1])];
@@ -162,54 +140,47 @@ impl<T: Real, P: MasterMotion<T, S>, S: FacetShape, M: FacetShape> Points<'_, T,
             (lifts[1], lifts[2]) = (lifts[2], self.lift(polygon, vertex));
             let xi = polygon.local(vertex);
             (local[1], local[2]) = (local[2], xi);
-            (x[1], x[2]) = (x[2], S::interpolate(&S::values(xi), &self.pair.slave));
+            (x[1], x[2]) = (x[2], place(xi));
             let normal = cross(sub(x[1], x[0]), sub(x[2], x[0]));
             if norm(value(normal)) <= 2.0 * LEAST_CELL * whole {
                 continue;
             }
             let area = norm(normal) * 0.5;
             covered += area.value();
-            for (barycentric, point) in rule.n::<{ Triangle3::NODES }>().iter().zip(rule.points()) {
-                let mut x = Triangle3::combine(barycentric, &x);
-                let mut xi = Triangle3::combine(barycentric, &local);
-                let mut slave = S::values(xi);
-                if !S::AFFINE {
+            for (barycentric, point) in rule.n::<3>().iter().zip(rule.points()) {
+                let mut x = combine(barycentric, &x);
+                let mut xi = combine(barycentric, &local);
+                let mut slave = shape.values(xi);
+                if !shape.affine {
                     // Cells are flat and straight in space, a warped quadrilateral and its local coordinates are not.
-                    xi = S::closest_point(&self.pair.slave, x, xi.map(T::value));
-                    slave = S::values(xi);
-                    x = S::interpolate(&slave, &self.pair.slave);
+                    xi = shape.closest_point(&pair.slave, x, xi.map(T::value));
+                    slave = shape.values(xi);
+                    x = interpolate(&slave, &pair.slave);
                 }
                 let lift = (0..3).fold(T::zero(), |sum, n| sum + lifts[n] * barycentric[n]);
                 let master = self.on_master(&slave, x, lift);
-                visit(&Point {
-                    local: xi,
-                    slave,
-                    master,
-                    weight: area * (point.weight / Triangle3::SHAPE.cell().size()),
-                });
+                visit(&Point { local: xi, slave, master, weight: area * (point.weight / TRIANGLE_3.cell_size) });
             }
         }
         covered
     }
 
-    fn lift(&self, polygon: &Polygon<T, S, M>, vertex: Vertex) -> T {
+    fn lift(&self, polygon: &Polygon<T>, vertex: Vertex) -> T {
         self.motion.lift().map_or(T::zero(), |lift| polygon.weigh(vertex, lift))
     }
 
     /// Shape functions of the master where a point of the slave goes along the interpolated normal; `lift` is that of
     /// [`MasterMotion`].
-    #[inline]
-    fn on_master(&self, slave: &S::Nodal<T>, x: [T; 3], lift: T) -> M::Nodal<T> {
-        self.along(S::interpolate(slave, &self.pair.nodal_normals), x, lift)
+    fn on_master(&self, slave: &[T], x: [T; 3], lift: T) -> Nodal<T> {
+        self.along(interpolate(slave, &self.pair.nodal_normals), x, lift)
     }
 
     /// Shape functions of the master where a point `x` of the slave goes along `normal`.
-    #[inline]
-    pub(super) fn along(&self, normal: [T; 3], x: [T; 3], lift: T) -> M::Nodal<T> {
+    pub(super) fn along(&self, normal: [T; 3], x: [T; 3], lift: T) -> Nodal<T> {
         let pair = self.pair;
         let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
         let mut projected = x;
         (0..3).for_each(|c| projected[c].add_product(normal[c], distance));
-        M::values(self.motion.local::<M>(&pair.master, projected, x, lift))
+        pair.master_shape.values(self.motion.local(pair.master_shape, &pair.master, projected, x, lift))
     }
 }

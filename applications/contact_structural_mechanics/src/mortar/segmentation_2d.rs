@@ -6,7 +6,7 @@
 
 use super::geometry::PairGeometry;
 use super::settings::SegmentationSettings;
-use zelus_core::geometry::FacetShape;
+use zelus_core::geometry::{combine, interpolate};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{cross, dot, scale, sub};
 
@@ -16,10 +16,7 @@ const MAX_STEPS: usize = 20;
 const ON_LINE: f64 = 1e-7;
 
 /// The overlap as an interval of the slave's ξ, increasing; `None` if there is none.
-pub(super) fn interval<T: Real, S: FacetShape, M: FacetShape>(
-    pair: &PairGeometry<T, S, M>,
-    settings: &SegmentationSettings,
-) -> Option<[T; 2]> {
+pub(super) fn interval<T: Real>(pair: &PairGeometry<T>, settings: &SegmentationSettings) -> Option<[T; 2]> {
     let tolerance = 1e3 * settings.zero_tolerance_factor * f64::EPSILON;
     let values = pair.values();
     let mut covered = [false; 2];
@@ -68,7 +65,7 @@ pub(super) fn interval<T: Real, S: FacetShape, M: FacetShape>(
 /// Distance of the master line behind slave node `i` along its normal, ξ of the projection on the master, and whether
 /// that point is on the master itself: with a lagging master normal it is only near.
 /// A master line parallel to the normal is never met.
-fn project_slave_node<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, M>, i: usize) -> (f64, f64, bool) {
+fn project_slave_node(pair: &PairGeometry<f64>, i: usize) -> (f64, f64, bool) {
     let normal = pair.nodal_normals[i];
     let slope = -dot(normal, pair.master_normal);
     if slope.abs() < f64::EPSILON {
@@ -76,14 +73,14 @@ fn project_slave_node<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, 
     }
     let distance = dot(sub(pair.master[0], pair.slave[i]), pair.master_normal) / slope;
     let point = sub(pair.slave[i], scale(normal, distance));
-    let [xi, _] = M::closest_point(&pair.master, point, [0.0; 2]);
+    let [xi, _] = pair.master_shape.closest_point(&pair.master, point, [0.0; 2]);
     let along = sub(pair.master[1], pair.master[0]);
     let across = cross(along, sub(point, pair.master[0]))[2];
     (distance, xi, across.abs() < ON_LINE * dot(along, along))
 }
 
 /// ξ ∈ [−1, 1] of the projection of master node `j` on the slave, and the slope of [`mismatch`] there.
-fn project_master_node<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S, M>, j: usize) -> Option<(f64, f64)> {
+fn project_master_node(pair: &PairGeometry<f64>, j: usize) -> Option<(f64, f64)> {
     let constant = pair.as_constants();
     let mut xi: f64 = if j == 0 { -1.0 } else { 1.0 };
     for _ in 0..MAX_STEPS {
@@ -104,10 +101,10 @@ fn project_master_node<S: FacetShape, M: FacetShape>(pair: &PairGeometry<f64, S,
 }
 
 /// Distance in ξ between x(ξ) and the projection of a master point on the slave line along n(ξ).
-fn mismatch<T: Real, S: FacetShape, M: FacetShape>(pair: &PairGeometry<T, S, M>, point: [T; 3], xi: T) -> T {
-    let shape = S::values([xi, T::zero()]);
-    let normal = S::interpolate(&shape, &pair.nodal_normals);
-    let centre = S::combine(&S::values(S::CENTRE), &pair.slave);
+fn mismatch<T: Real>(pair: &PairGeometry<T>, point: [T; 3], xi: T) -> T {
+    let facet = pair.slave_shape;
+    let normal = interpolate(&facet.values([xi, T::zero()]), &pair.nodal_normals);
+    let centre = combine(&facet.values(facet.centre), &pair.slave);
     let half = scale(sub(pair.slave[1], pair.slave[0]), T::constant(0.5));
     let along = dot(sub(centre, point), pair.slave_normal) / dot(normal, pair.slave_normal);
     let from_centre = sub(sub(point, centre), scale(normal, -along));

@@ -6,7 +6,7 @@
 
 use super::geometry::PairGeometry;
 use super::settings::SegmentationSettings;
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::{FacetShape, Nodal, combine};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{cross, dot, normalised, sub, value};
 
@@ -30,34 +30,37 @@ pub(super) enum Vertex {
 }
 
 /// The vertices of an overlap, anticlockwise about the slave's normal.
-pub(super) struct Polygon<T: Real, S: FacetShape, M: FacetShape> {
+pub(super) struct Polygon<T: Real> {
+    slave_shape: &'static FacetShape,
     plane: Plane<T>,
-    slave: S::Nodal<[T; 2]>,
-    master: M::Nodal<[T; 2]>,
+    slave: Nodal<[T; 2]>,
+    master: Nodal<[T; 2]>,
     vertices: [Vertex; CAPACITY],
     len: usize,
 }
 
-impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
+impl<T: Real> Polygon<T> {
     /// Intersects the flattened facets; `None` if they are too far apart or share no area.
-    pub(super) fn new(pair: &PairGeometry<T, S, M>, settings: &SegmentationSettings) -> Option<Self> {
+    pub(super) fn new(pair: &PairGeometry<T>, settings: &SegmentationSettings) -> Option<Self> {
         let plane = Plane::new(pair);
         let height = |x: [T; 3]| dot(sub(value(x), plane.origin), value(pair.slave_normal));
         if pair.master.iter().any(|&x| height(x) > settings.distance_threshold) {
             return None;
         }
-        let slave = S::map(&pair.slave, |x| plane.coordinates(x));
-        let master = M::map(&pair.master, |x| plane.coordinates(x));
+        let slave = pair.slave.map(|x| plane.coordinates(x));
+        let master = pair.master.map(|x| plane.coordinates(x));
 
+        let slave_shape = pair.slave_shape;
+        let corners = |nodes: &[[T; 2]], count: usize| Nodal::new(count, |n| nodes[n].map(T::value));
         let mut list =
-            PointList::<S, M>::new(S::map(&slave, |p| p.map(T::value)), M::map(&master, |p| p.map(T::value)));
+            PointList::new(corners(&slave, slave_shape.corners), corners(&master, pair.master_shape.corners));
         list.tolerance *= (settings.zero_tolerance_factor * f64::EPSILON / TOLERANCE).max(1.0);
         list.collect();
         if list.len < 3 {
             return None;
         }
         list.sort();
-        let mut polygon = Self { plane, slave, master, vertices: list.vertices, len: list.len };
+        let mut polygon = Self { slave_shape, plane, slave, master, vertices: list.vertices, len: list.len };
         if let Some(origin) = pair.choices.origin {
             polygon.begin_near(origin);
         }
@@ -79,8 +82,8 @@ impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
     /// Where on the slave's edge it crosses the master's, from 0 to 1.
     #[inline]
     fn crossing(&self, slave: usize, master: usize) -> T {
-        let (a, b) = (self.slave[slave], self.slave[(slave + 1) % S::CORNERS]);
-        let (c, d) = (self.master[master], self.master[(master + 1) % M::CORNERS]);
+        let (a, b) = (self.slave[slave], self.slave[(slave + 1) % self.slave.len()]);
+        let (c, d) = (self.master[master], self.master[(master + 1) % self.master.len()]);
         let (along, across) = (minus(b, a), minus(d, c));
         let denominator = cross2(along, across);
         let t = cross2(minus(c, a), across) / denominator;
@@ -89,12 +92,12 @@ impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
     }
 
     /// Mean of numbers at the slave nodes that a vertex lies on or between; zero at nodes of the master.
-    pub(super) fn weigh(&self, vertex: Vertex, numbers: &S::Nodal<T>) -> T {
+    pub(super) fn weigh(&self, vertex: Vertex, numbers: &[T]) -> T {
         match vertex {
             Vertex::Slave(n) => numbers[n],
             Vertex::Crossing { slave, master } => {
                 let t = self.crossing(slave, master).value();
-                numbers[slave] * (1.0 - t) + numbers[(slave + 1) % S::CORNERS] * t
+                numbers[slave] * (1.0 - t) + numbers[(slave + 1) % self.slave_shape.corners] * t
             }
             Vertex::Master(_) => T::zero(),
         }
@@ -113,7 +116,7 @@ impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
             Vertex::Master(n) => self.master[n],
             Vertex::Crossing { slave, master } => {
                 let t = self.crossing(slave, master);
-                let (start, end) = (self.slave[slave], self.slave[(slave + 1) % S::CORNERS]);
+                let (start, end) = (self.slave[slave], self.slave[(slave + 1) % self.slave.len()]);
                 std::array::from_fn(|c| start[c] + (end[c] - start[c]) * t)
             }
         }
@@ -123,15 +126,16 @@ impl<T: Real, S: FacetShape, M: FacetShape> Polygon<T, S, M> {
     #[inline]
     pub(super) fn local(&self, vertex: Vertex) -> [T; 2] {
         match vertex {
-            Vertex::Slave(n) => S::corner(n).map(T::constant),
+            Vertex::Slave(n) => self.slave_shape.corner(n).map(T::constant),
             Vertex::Crossing { slave, master } => {
                 let t = self.crossing(slave, master);
-                let (start, end) = (S::corner(slave), S::corner((slave + 1) % S::CORNERS));
+                let (start, end) =
+                    (self.slave_shape.corner(slave), self.slave_shape.corner((slave + 1) % self.slave_shape.corners));
                 std::array::from_fn(|c| t * (end[c] - start[c]) + start[c])
             }
             Vertex::Master(n) => {
                 let lift = |p: [T; 2]| [p[0], p[1], T::zero()];
-                S::closest_point(&S::map(&self.slave, lift), lift(self.master[n]), S::CENTRE)
+                self.slave_shape.closest_point(&self.slave.map(lift), lift(self.master[n]), self.slave_shape.centre)
             }
         }
     }
@@ -146,9 +150,10 @@ struct Plane<T> {
 }
 
 impl<T: Real> Plane<T> {
-    fn new<S: FacetShape, M: FacetShape>(pair: &PairGeometry<T, S, M>) -> Self {
+    fn new(pair: &PairGeometry<T>) -> Self {
         let values = pair.values();
-        let origin = S::combine(&S::nodal(|_| 1.0 / S::NODES as f64), &values.slave);
+        let share = 1.0 / values.slave.len() as f64;
+        let origin = combine(&values.slave.map(|_| share), &values.slave);
         let normal = normalised(values.slave_normal);
         // Project the longest of two edges, so that the axis is never degenerate.
         let in_plane = |a: [f64; 3]| std::array::from_fn(|c| a[c] - dot(a, normal) * normal[c]);
@@ -177,22 +182,24 @@ impl<T: Real> Plane<T> {
     }
 }
 
-/// Vertices under construction, with their places in the plane.
-struct PointList<S: FacetShape, M: FacetShape> {
-    slave: S::Nodal<[f64; 2]>,
-    master: M::Nodal<[f64; 2]>,
+/// Vertices under construction, with their places in the plane. Edges between corners count as straight.
+struct PointList {
+    /// Corners of the slave.
+    slave: Nodal<[f64; 2]>,
+    /// Corners of the master.
+    master: Nodal<[f64; 2]>,
     tolerance: f64,
     points: [[f64; 2]; CAPACITY],
     vertices: [Vertex; CAPACITY],
     len: usize,
 }
 
-impl<S: FacetShape, M: FacetShape> PointList<S, M> {
-    fn new(slave: S::Nodal<[f64; 2]>, master: M::Nodal<[f64; 2]>) -> Self {
+impl PointList {
+    fn new(slave: Nodal<[f64; 2]>, master: Nodal<[f64; 2]>) -> Self {
         Self {
             slave,
             master,
-            tolerance: TOLERANCE * area(corners::<S>(&slave)).abs().sqrt(),
+            tolerance: TOLERANCE * area(&slave).abs().sqrt(),
             points: [[0.0; 2]; CAPACITY],
             vertices: [Vertex::Slave(0); CAPACITY],
             len: 0,
@@ -202,16 +209,16 @@ impl<S: FacetShape, M: FacetShape> PointList<S, M> {
     /// Lists master nodes inside the slave, then slave nodes inside the master, then crossings of edges.
     fn collect(&mut self) {
         let (slave, master) = (self.slave, self.master);
-        for n in 0..M::CORNERS {
-            if inside(master[n], corners::<S>(&slave), self.tolerance) {
+        for n in 0..master.len() {
+            if inside(master[n], &slave, self.tolerance) {
                 self.push(master[n], Vertex::Master(n), self.tolerance);
             }
         }
-        if self.len == M::CORNERS {
+        if self.len == master.len() {
             return;
         }
-        for n in 0..S::CORNERS {
-            if inside(slave[n], corners::<M>(&master), self.tolerance) {
+        for n in 0..slave.len() {
+            if inside(slave[n], &master, self.tolerance) {
                 self.push(slave[n], Vertex::Slave(n), self.tolerance);
             }
         }
@@ -224,11 +231,11 @@ impl<S: FacetShape, M: FacetShape> PointList<S, M> {
     /// Lists the crossings of edges, those of nearly parallel ones or the others.
     fn collect_crossings(&mut self, grazing: bool) {
         let (slave, master) = (self.slave, self.master);
-        for i in 0..S::CORNERS {
-            let (a, b) = (slave[i], slave[(i + 1) % S::CORNERS]);
+        for i in 0..slave.len() {
+            let (a, b) = (slave[i], slave[(i + 1) % slave.len()]);
             let along = minus(b, a);
-            for j in 0..M::CORNERS {
-                let (c, d) = (master[j], master[(j + 1) % M::CORNERS]);
+            for j in 0..master.len() {
+                let (c, d) = (master[j], master[(j + 1) % master.len()]);
                 let across = minus(d, c);
                 let denominator = cross2(along, across);
                 let sine = denominator.abs() / (length(along) * length(across));
@@ -294,12 +301,6 @@ fn length(a: [f64; 2]) -> f64 {
     (a[0] * a[0] + a[1] * a[1]).sqrt()
 }
 
-/// The corners of a facet, which span what is cut: edges count as straight.
-#[inline]
-fn corners<S: FacetShape>(nodes: &S::Nodal<[f64; 2]>) -> &[[f64; 2]] {
-    &nodes.as_slice()[..S::CORNERS]
-}
-
 /// Signed area, positive if the nodes run anticlockwise.
 fn area(polygon: &[[f64; 2]]) -> f64 {
     let count = polygon.len();
@@ -319,10 +320,9 @@ fn inside(point: [f64; 2], polygon: &[[f64; 2]], tolerance: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zelus_core::geometry::{Quadrilateral4, Triangle3};
 
     fn vertices(slave: [[f64; 2]; 4], master: [[f64; 2]; 4]) -> Vec<Vertex> {
-        let mut list = PointList::<Quadrilateral4, Quadrilateral4>::new(slave, master);
+        let mut list = PointList::new(slave.into(), master.into());
         list.collect();
         list.sort();
         list.vertices[..list.len].to_vec()
@@ -357,7 +357,7 @@ mod tests {
             let moved = |x: [f64; 2]| x.map(|x| x + 0.0137 * f64::from(n));
             let slave = [low, high, [low[0], high[1]]].map(moved);
             let master = [[0.0, 0.0], [0.0, 0.4], [0.5, 0.4]].map(moved);
-            let mut list = PointList::<Triangle3, Triangle3>::new(slave, master);
+            let mut list = PointList::new(slave.into(), master.into());
             list.collect();
             let corners = [low, [0.5, 0.4], [low[0], 0.4]].map(moved);
             for point in &list.points[..list.len] {

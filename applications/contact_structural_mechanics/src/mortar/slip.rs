@@ -2,8 +2,8 @@
 
 use super::gap::weighted_jump;
 use super::operators::Operators;
-use super::turn::Turn;
-use zelus_core::geometry::FacetShape;
+use super::rotation::FacetRotation;
+use zelus_core::geometry::Nodal;
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, cross, dot, norm, normalised, scale, sub};
 
@@ -16,41 +16,41 @@ pub fn tangential<T: Real>(vector: [T; 3], normal: [T; 3]) -> [T; 3] {
 /// Objective weighted slip s_j = P [(D − D°) x¹ − (M − M°) x²]_j since the operators D°, M° were taken.
 /// Unaffected by rigid motions; a length times the measure of the facet. It holds the change of P (D x¹ − M x²), too, which is not
 /// small where facets stand open beside the node, as at a corner that rolls: tractions do no work on that.
-pub fn objective_slip<T: Real, S: FacetShape, M: FacetShape>(
-    operators: &Operators<T, S, M>,
-    previous: &Operators<f64, S, M>,
-    slave: &S::Nodal<[T; 3]>,
-    master: &M::Nodal<[T; 3]>,
-    normals: &S::Nodal<[T; 3]>,
-) -> S::Nodal<[T; 3]> {
+pub fn objective_slip<T: Real>(
+    operators: &Operators<T>,
+    previous: &Operators<f64>,
+    slave: &[[T; 3]],
+    master: &[[T; 3]],
+    normals: &[[T; 3]],
+) -> Nodal<[T; 3]> {
     let jump = weighted_jump(&operators.minus(previous), slave, master);
-    S::nodal(|j| tangential(jump[j], normals[j]))
+    Nodal::new(slave.len(), |j| tangential(jump[j], normals[j]))
 }
 
 /// Weighted slip s_j = −P [D δ¹ − M δ²]_j from displacement increments δ.
 /// For pairs whose operators hardly change, where the objective form would measure nothing but noise.
-pub fn incremental_slip<T: Real, S: FacetShape, M: FacetShape>(
-    operators: &Operators<T, S, M>,
-    delta_slave: &S::Nodal<[T; 3]>,
-    delta_master: &M::Nodal<[T; 3]>,
-    normals: &S::Nodal<[T; 3]>,
-) -> S::Nodal<[T; 3]> {
+pub fn incremental_slip<T: Real>(
+    operators: &Operators<T>,
+    delta_slave: &[[T; 3]],
+    delta_master: &[[T; 3]],
+    normals: &[[T; 3]],
+) -> Nodal<[T; 3]> {
     let jump = operators.jump(delta_slave, delta_master);
-    S::nodal(|j| tangential(jump[j].map(|x| -x), normals[j]))
+    Nodal::new(normals.len(), |j| tangential(jump[j].map(|x| -x), normals[j]))
 }
 
 /// Weighted slip s_j = P [R (D x° − M x°) − (D x − M x)]_j since nodes were at x°, with the rotation R of the slave facet since
 /// then and the present operators. `slave` and `master` are positions now and before.
-pub fn turned_slip<T: Real, S: FacetShape, M: FacetShape>(
-    operators: &Operators<T, S, M>,
-    slave: (&S::Nodal<[T; 3]>, &S::Nodal<[f64; 3]>),
-    master: (&M::Nodal<[T; 3]>, &M::Nodal<[f64; 3]>),
-    normals: &S::Nodal<[T; 3]>,
-) -> S::Nodal<[T; 3]> {
-    let turn = Turn::of_facet::<S>(slave.0, slave.1);
-    let before = weighted_jump(operators, &S::map(slave.1, constant), &M::map(master.1, constant));
+pub fn rotated_slip<T: Real>(
+    rotation: &FacetRotation<T>,
+    operators: &Operators<T>,
+    slave: (&[[T; 3]], &[[f64; 3]]),
+    master: (&[[T; 3]], &[[f64; 3]]),
+    normals: &[[T; 3]],
+) -> Nodal<[T; 3]> {
+    let before = weighted_jump(operators, &Nodal::of(slave.1).map(constant), &Nodal::of(master.1).map(constant));
     let now = weighted_jump(operators, slave.0, master.0);
-    S::nodal(|j| tangential(sub(turn.apply(before[j]), now[j]), normals[j]))
+    Nodal::new(normals.len(), |j| tangential(sub(rotation.apply(before[j]), now[j]), normals[j]))
 }
 
 /// Change of an operator beyond which slip is measured objectively (Frobenius norm): `share` of its norm and `area`.
@@ -63,9 +63,9 @@ pub struct OperatorThreshold {
 }
 
 /// Whether the objective slip is to be used: both operators changed by more than `threshold`.
-pub fn is_objective<T: Real, S: FacetShape, M: FacetShape>(
-    operators: &Operators<T, S, M>,
-    previous: &Operators<f64, S, M>,
+pub fn is_objective<T: Real>(
+    operators: &Operators<T>,
+    previous: &Operators<f64>,
     threshold: OperatorThreshold,
 ) -> bool {
     let change = operators.values().minus(previous);

@@ -4,14 +4,13 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::FacetShape;
 use zelus_core::model::ModelPart;
 use zelus_structural_mechanics::variables::NORMAL;
 
 use super::pair::PairKey;
 use crate::interface::{Facet, Interface};
 use crate::mortar::operators::SLIVER;
-use crate::mortar::shapes::for_shapes;
 use crate::mortar::{Choices, MOST_NODES, Overlap, PairGeometry, SegmentationSettings, operators};
 use crate::search::{Candidate, SearchSettings, candidates};
 
@@ -71,27 +70,16 @@ pub fn facet_operators(
     master: &Facet,
     settings: &SegmentationSettings,
 ) -> Option<FacetOperators> {
-    macro_rules! make {
-        ($slave:ty, $master:ty, $end:literal) => {
-            of_shapes::<$slave, $master>(part, slave, master, settings)
-        };
-    }
-    for_shapes!(slave.shape, master.shape, make)?
-}
-
-fn of_shapes<S: FacetShape, M: FacetShape>(
-    part: &ModelPart,
-    slave: &Facet,
-    master: &Facet,
-    settings: &SegmentationSettings,
-) -> Option<FacetOperators> {
     let normals = part.nodes.history.values(&NORMAL, 0);
     let normal = |facet: &Facet| Some(facet.normal(part)).filter(|normal| *normal != [0.0; 3]);
     let position = |facet: &Facet, at: usize| part.nodes.current[facet.nodes[at] as usize];
-    let geometry = PairGeometry::<f64, S, M> {
-        slave: S::nodal(|j| position(slave, j)),
-        master: M::nodal(|l| position(master, l)),
-        nodal_normals: S::nodal(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
+    let (slave_shape, master_shape) = (FacetShape::of(slave.shape)?, FacetShape::of(master.shape)?);
+    let geometry = PairGeometry {
+        slave_shape,
+        master_shape,
+        slave: slave_shape.nodal(|j| position(slave, j)),
+        master: master_shape.nodal(|l| position(master, l)),
+        nodal_normals: slave_shape.nodal(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
         slave_normal: normal(slave)?,
         master_normal: normal(master)?,
         choices: Choices { slivers: settings.slivers, ..Choices::default() },
@@ -101,12 +89,12 @@ fn of_shapes<S: FacetShape, M: FacetShape>(
         Overlap::Sliver | Overlap::None => return None,
     };
     let mut out = FacetOperators::default();
-    for j in 0..S::NODES {
-        out.d[j][..S::NODES].copy_from_slice(found.d[j].as_slice());
-        out.m[j][..M::NODES].copy_from_slice(found.m[j].as_slice());
+    for j in 0..slave_shape.nodes {
+        out.d[j][..slave_shape.nodes].copy_from_slice(&found.d[j]);
+        out.m[j][..master_shape.nodes].copy_from_slice(&found.m[j]);
     }
     let covered: f64 = found.d.iter().flat_map(|row| row.iter()).sum();
-    out.sliver = covered < SLIVER * S::measure(&geometry.slave);
+    out.sliver = covered < SLIVER * slave_shape.measure(&geometry.slave);
     Some(out)
 }
 

@@ -1,12 +1,11 @@
 //! The points at which two facets face each other, for what acts between them without multipliers.
 
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::{FacetShape, interpolate};
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, sub};
 
 use crate::interface::Facet;
 use crate::mortar::points::for_each_point;
-use crate::mortar::shapes::for_shapes;
 use crate::mortar::{Choices, MOST_NODES, PairGeometry, SegmentationSettings};
 
 /// A point of the slave and the one of the master before it.
@@ -33,35 +32,33 @@ pub fn facing_points(
     normal: &dyn Fn(u32) -> [f64; 3],
     settings: &SegmentationSettings,
 ) -> Vec<FacingPoint> {
-    macro_rules! make {
-        ($slave:ty, $master:ty, $end:literal) => {
-            of_shapes::<$slave, $master>(part, slave, master, normal, settings)
-        };
-    }
-    for_shapes!(slave.shape, master.shape, make).flatten().unwrap_or_default()
+    points_of(part, slave, master, normal, settings).unwrap_or_default()
 }
 
-fn of_shapes<S: FacetShape, M: FacetShape>(
+fn points_of(
     part: &ModelPart,
     slave: &Facet,
     master: &Facet,
     normal: &dyn Fn(u32) -> [f64; 3],
     settings: &SegmentationSettings,
 ) -> Option<Vec<FacingPoint>> {
+    let (slave_shape, master_shape) = (FacetShape::of(slave.shape)?, FacetShape::of(master.shape)?);
     let of = |facet: &Facet| Some(facet.normal(part)).filter(|normal| *normal != [0.0; 3]);
     let position = |facet: &Facet, at: usize| part.nodes.current[facet.nodes[at] as usize];
-    let geometry = PairGeometry::<f64, S, M> {
-        slave: S::nodal(|j| position(slave, j)),
-        master: M::nodal(|l| position(master, l)),
-        nodal_normals: S::nodal(|j| normal(slave.nodes[j])),
+    let geometry = PairGeometry {
+        slave_shape,
+        master_shape,
+        slave: slave_shape.nodal(|j| position(slave, j)),
+        master: master_shape.nodal(|l| position(master, l)),
+        nodal_normals: slave_shape.nodal(|j| normal(slave.nodes[j])),
         slave_normal: of(slave)?,
         master_normal: of(master)?,
         choices: Choices { slivers: settings.slivers, ..Choices::default() },
     };
     let mut out = Vec::new();
-    for_each_point(&geometry, settings, |point| {
-        let x = S::interpolate(&point.slave, &geometry.slave);
-        let y = M::interpolate(&point.master, &geometry.master);
+    for_each_point(&geometry, settings, &mut |point| {
+        let x = interpolate(&point.slave, &geometry.slave);
+        let y = interpolate(&point.master, &geometry.master);
         let mut found = FacingPoint {
             slave: [0.0; MOST_NODES],
             master: [0.0; MOST_NODES],
@@ -69,8 +66,8 @@ fn of_shapes<S: FacetShape, M: FacetShape>(
             weight: point.weight,
             gap: dot(sub(y, x), geometry.slave_normal),
         };
-        found.slave[..S::NODES].copy_from_slice(point.slave.as_slice());
-        found.master[..M::NODES].copy_from_slice(point.master.as_slice());
+        found.slave[..slave_shape.nodes].copy_from_slice(&point.slave);
+        found.master[..master_shape.nodes].copy_from_slice(&point.master);
         out.push(found);
     });
     Some(out)

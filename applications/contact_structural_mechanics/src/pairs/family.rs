@@ -12,10 +12,10 @@ use zelus_core::registry;
 
 use super::contact_block::ContactBlock;
 use super::pair::Pair;
-use super::pair_block::pair_block;
-use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
-use crate::formulations::{Formulation, Multiplier, StepParameters};
+use super::pair_block::PairBlock;
+use crate::active_set::{Decision, SlaveNumbers, SlipRule};
 use crate::interface::{Bodies, NormalPatches};
+use crate::law::{ContactLaw, Multiplier, NodeLaw, StepParameters};
 use crate::slave_states::{Columns, SlaveStates};
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
 
@@ -30,8 +30,12 @@ pub enum Friction {
     PureSlip,
 }
 
-/// What a block of pairs is made from.
+/// Pairs of two shapes of facets, to make a block of.
 pub struct PairRequest {
+    /// Shape of the slave facets.
+    pub slave: Shape,
+    /// Shape of the master facets.
+    pub master: Shape,
     /// The registered condition of this shape.
     pub entry: &'static EntityKind,
     /// The pairs.
@@ -93,29 +97,34 @@ pub struct Family {
     pub updated: bool,
     /// The families that take its place where its penalty is that of whole nodes.
     pub by_node: Option<ByNode>,
-    /// Makes the block of one pair of shapes (slave, master).
-    pub block: fn(Shape, Shape, PairRequest) -> Option<Box<dyn ContactBlock>>,
+    /// Makes a block of pairs.
+    pub block: fn(PairRequest) -> Box<dyn ContactBlock>,
 }
 
 impl Family {
-    /// A family without friction whose forces are those of a formulation, and whose conditions begin with a name.
-    pub const fn of<F: Formulation>(condition: &'static str, variables: &'static [NodalVariable]) -> Self {
-        Self::with_blocks(condition, variables, F::MULTIPLIER, pair_block::<F>)
+    /// A formulation without friction whose forces are those of a law, and whose conditions begin with a name.
+    pub const fn of<L: NodeLaw>(condition: &'static str, variables: &'static [NodalVariable]) -> Self {
+        let block = |request: PairRequest| -> Box<dyn ContactBlock> {
+            let law: Box<dyn ContactLaw> = Box::new(L::new(&request.parameters));
+            Box::new(PairBlock::new(law, request))
+        };
+        Self::with_blocks(condition, variables, L::MULTIPLIER, L::decide, block)
     }
 
-    /// A family without friction with blocks of its own, whose conditions begin with a name.
+    /// A formulation without friction with blocks of its own, whose conditions begin with a name.
     pub const fn with_blocks(
         condition: &'static str,
         variables: &'static [NodalVariable],
         multiplier: Multiplier,
-        block: fn(Shape, Shape, PairRequest) -> Option<Box<dyn ContactBlock>>,
+        decide: fn(&SlaveNumbers, SlipRule) -> Decision,
+        block: fn(PairRequest) -> Box<dyn ContactBlock>,
     ) -> Self {
         Self {
             condition,
             multiplier,
             variables,
             friction: Friction::None,
-            decide: |node, _| active_set::frictionless(node),
+            decide,
             weighted_gaps: false,
             compliant: false,
             updated: false,

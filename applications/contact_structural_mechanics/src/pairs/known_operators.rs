@@ -1,77 +1,105 @@
-//! The operators that a pair was found to have, and where it stood then.
+//! Operators of a pair that were computed last, and the geometry they belong to.
 
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::Nodal;
 
 use crate::mortar::{Choices, Operators, Overlap, PairGeometry};
 
 /// Operators of a pair as it stood; they serve every question that is asked of the same state.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct KnownOperators<S: FacetShape, M: FacetShape> {
-    /// As it stood.
-    pub geometry: PairGeometry<f64, S, M>,
-    /// What it had.
-    pub found: Overlap<Operators<f64, S, M>>,
+///
+/// Numbers lie side by side in one piece: a model has many pairs.
+#[derive(Debug, Clone)]
+pub(super) struct KnownOperators {
+    /// Positions and normals, then D and M where there are any.
+    numbers: Box<[f64]>,
+    choices: Choices,
+    found: Overlap<()>,
 }
 
-impl<S: FacetShape, M: FacetShape> KnownOperators<S, M> {
+/// The numbers of a pair that its operators depend on.
+fn numbers_of(pair: &PairGeometry<f64>) -> impl Iterator<Item = f64> + '_ {
+    let nodal = pair.slave.iter().chain(pair.master.iter()).chain(pair.nodal_normals.iter());
+    nodal.chain([&pair.slave_normal, &pair.master_normal]).flatten().copied()
+}
+
+impl KnownOperators {
+    /// The operators that a pair was found to have.
+    pub(super) fn new(pair: &PairGeometry<f64>, found: &Overlap<Operators<f64>>) -> Self {
+        let operators = match found {
+            Overlap::Cells(operators) => Some(operators),
+            Overlap::Sliver | Overlap::None => None,
+        };
+        let entries = operators.into_iter().flat_map(|own| own.d.iter().chain(own.m.iter())).flat_map(|row| row.iter());
+        let numbers: Vec<f64> = numbers_of(pair).chain(entries.copied()).collect();
+        let found = match found {
+            Overlap::Cells(_) => Overlap::Cells(()),
+            Overlap::Sliver => Overlap::Sliver,
+            Overlap::None => Overlap::None,
+        };
+        Self { numbers: numbers.into(), choices: pair.choices, found }
+    }
+
     /// The operators of a pair that stands as this one did.
-    pub(super) fn of(&self, pair: &PairGeometry<f64, S, M>) -> Option<Overlap<Operators<f64, S, M>>> {
-        if !stand_alike(&self.geometry, pair) {
+    pub(super) fn of(&self, pair: &PairGeometry<f64>) -> Option<Overlap<Operators<f64>>> {
+        if !numbers_of(pair).zip(&self.numbers).all(|(a, b)| a == *b) {
             return None;
         }
-        let (before, now) = (self.geometry.choices, pair.choices);
-        // What counts where slivers do not, counts where they do.
-        let is_cells = matches!(self.found, Overlap::Cells(_));
+        let (before, now) = (self.choices, pair.choices);
+        // Cells that count where slivers do not, count where they do.
+        let is_cells = matches!(self.found, Overlap::Cells(()));
         let same = before == now || is_cells && before == (Choices { slivers: false, ..now });
-        same.then_some(self.found)
+        same.then(|| self.found.map(|()| self.operators(pair.slave.len(), pair.master.len())))
     }
-}
 
-/// Whether nodes and normals are the same numbers.
-fn stand_alike<S: FacetShape, M: FacetShape>(a: &PairGeometry<f64, S, M>, b: &PairGeometry<f64, S, M>) -> bool {
-    a.slave.as_slice() == b.slave.as_slice()
-        && a.master.as_slice() == b.master.as_slice()
-        && a.nodal_normals.as_slice() == b.nodal_normals.as_slice()
-        && (a.slave_normal, a.master_normal) == (b.slave_normal, b.master_normal)
+    fn operators(&self, slaves: usize, masters: usize) -> Operators<f64> {
+        let (d, m) = self.numbers[self.numbers.len() - slaves * (slaves + masters)..].split_at(slaves * slaves);
+        Operators {
+            d: Nodal::new(slaves, |j| Nodal::of(&d[j * slaves..(j + 1) * slaves])),
+            m: Nodal::new(slaves, |j| Nodal::of(&m[j * masters..(j + 1) * masters])),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::mortar::{SegmentationSettings, operators};
-    use zelus_core::geometry::Triangle3;
+    use zelus_core::geometry::TRIANGLE_3;
 
     /// A triangle below another one of which `share` lies above it, along either edge.
-    fn pair(share: f64, slivers: bool) -> PairGeometry<f64, Triangle3, Triangle3> {
+    fn pair(share: f64, slivers: bool) -> PairGeometry<f64> {
         PairGeometry {
-            slave: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            master: [[share, 0.0, 0.0], [share - 1.0, 0.0, 0.0], [share, 1.0, 0.0]],
-            nodal_normals: [[0.0, 0.0, 1.0]; 3],
+            slave_shape: &TRIANGLE_3,
+            master_shape: &TRIANGLE_3,
+            slave: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].into(),
+            master: [[share, 0.0, 0.0], [share - 1.0, 0.0, 0.0], [share, 1.0, 0.0]].into(),
+            nodal_normals: [[0.0, 0.0, 1.0]; 3].into(),
             slave_normal: [0.0, 0.0, 1.0],
             master_normal: [0.0, 0.0, -1.0],
             choices: Choices { slivers, ..Choices::default() },
         }
     }
 
-    fn known(pair: PairGeometry<f64, Triangle3, Triangle3>) -> KnownOperators<Triangle3, Triangle3> {
-        KnownOperators { geometry: pair, found: operators(&pair, &SegmentationSettings::default()) }
+    fn known(pair: PairGeometry<f64>) -> KnownOperators {
+        KnownOperators::new(&pair, &operators(&pair, &SegmentationSettings::default()))
     }
 
     #[test]
     fn they_serve_the_same_state_alone() {
         let kept = known(pair(0.5, false));
-        assert!(kept.of(&pair(0.5, false)).and_then(Overlap::cells).is_some());
+        let found = kept.of(&pair(0.5, false)).and_then(Overlap::cells).unwrap();
+        let exact = operators(&pair(0.5, false), &SegmentationSettings::default()).cells().unwrap();
+        assert_eq!((found.d, found.m), (exact.d, exact.m));
         assert!(kept.of(&pair(0.5 + 1e-15, false)).is_none());
-        let mut turned = pair(0.5, false);
-        turned.nodal_normals[2] = [1e-12, 0.0, 1.0];
-        assert!(kept.of(&turned).is_none());
-        turned = pair(0.5, false);
-        turned.choices.origin = Some([0.0; 2]);
-        assert!(kept.of(&turned).is_none());
+        let mut rotated = pair(0.5, false);
+        rotated.nodal_normals[2] = [1e-12, 0.0, 1.0];
+        assert!(kept.of(&rotated).is_none());
+        rotated = pair(0.5, false);
+        rotated.choices.origin = Some([0.0; 2]);
+        assert!(kept.of(&rotated).is_none());
     }
 
     #[test]
-    fn what_was_a_sliver_is_looked_at_again_where_slivers_count() {
+    fn a_sliver_is_looked_at_again_where_slivers_count() {
         let [whole, sliver] = [0.5, 1e-7].map(|share| known(pair(share, false)));
         assert!(whole.of(&pair(0.5, true)).and_then(Overlap::cells).is_some());
         assert!(matches!(sliver.found, Overlap::Sliver));

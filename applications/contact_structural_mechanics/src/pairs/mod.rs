@@ -6,14 +6,16 @@ mod facing_points;
 mod family;
 mod grouping;
 mod in_parallel;
+mod kinematics;
 mod known_operators;
+mod local_system;
 mod nitsche_block;
 mod pair;
 mod pair_block;
 mod pairs_of_shapes;
 mod tying_block;
 
-pub use crate::formulations::Multiplier;
+pub use crate::law::Multiplier;
 pub use crate::mortar::condition_name;
 pub use contact_block::{ContactBlock, Present};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
@@ -23,6 +25,11 @@ pub use family::{
     variables_of,
 };
 pub use grouping::{Groups, PAIRS, group_by_shapes, group_by_surroundings};
+pub use kinematics::{PairHistory, PairKinematics};
+pub use local_system::PairSystem;
 pub use nitsche_block::nitsche_block;
 pub use pair::{Integral, Pair, PairKey, Previous, check_pairs};
-pub use tying_block::{TyingRequest, tying_block};
+pub use tying_block::{TyingBlock, TyingRequest};
+
+#[cfg(test)]
+mod tests;

@@ -5,73 +5,47 @@ use std::sync::Arc;
 use zelus_core::model::EntityKind;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::{FacetShape, NodeArray, Shape};
-use zelus_core::scalar::{Dual, Real};
+use zelus_core::geometry::Nodal;
+use zelus_core::scalar::Real;
 use zelus_core::vector3::dot;
 
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
 use super::pair::{Integral, Pair};
 use super::pairs_of_shapes::PairsOfShapes;
-use crate::formulations::{Kinematics, LastState, Multiplier, Nitsche, NodeOfPoints, PointForces};
 use crate::interface::{Bodies, Tractions};
-use crate::mortar::shapes::for_shapes;
-use crate::mortar::{PairGeometry, lanes, variables_from};
+use crate::law::{Multiplier, Nitsche, NodeOfPoints, PointForces};
+use crate::mortar::{Active, LANES, PairGeometry, rotated_slip, variables_from};
 use crate::slave_states::SlaveStates;
 
-/// The block of Nitsche's method for a pair of shapes (slave, master); `None` for shapes that carry no contact.
-pub fn nitsche_block(
-    slave: Shape,
-    master: Shape,
-    request: PairRequest,
-    friction: bool,
-) -> Option<Box<dyn ContactBlock>> {
-    macro_rules! make {
-        ($slave:ty, $master:ty, $end:literal) => {{
-            const ALL: usize = variables::<$slave, $master>();
-            const LANES: usize = lanes::<$slave, $master>(ALL);
-            NitscheBlock::<$slave, $master, LANES>::boxed(request, friction)
-        }};
-    }
-    for_shapes!(slave, master, make)
+/// The block of Nitsche's method, with friction or without.
+pub fn nitsche_block(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
+    let (bodies, parameters) = (request.bodies.clone(), request.parameters.clone());
+    let friction = friction.then_some(parameters.tangent_factor);
+    let formulation = Nitsche { friction, ..parameters.nitsche };
+    Box::new(NitscheBlock { formulation, pairs: PairsOfShapes::new(request, Multiplier::Body), bodies })
 }
 
-/// Variables of the formula of a pair: its displacements, components of nodal normals, and tractions at the inner points of the slave.
-const fn variables<S: FacetShape, M: FacetShape>() -> usize {
-    PairGeometry::<f64, S, M>::UNKNOWNS + 2 * PairGeometry::<f64, S, M>::NORMALS
-}
-
-/// Pairs of two shapes, differentiated by `LANES` variables at once.
+/// Pairs of two shapes.
 ///
-/// Other nodes of the slave's element are among those around the pair.
-struct NitscheBlock<S: FacetShape, M: FacetShape, const LANES: usize> {
+/// Variables of the formula of a pair are its displacements, the components of nodal normals, and the tractions at the inner
+/// points of the slave. Other nodes of the slave's element are among those around the pair.
+struct NitscheBlock {
     formulation: Nitsche,
-    pairs: PairsOfShapes<S, M>,
+    pairs: PairsOfShapes,
     bodies: Arc<Bodies>,
 }
 
-impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES> {
-    /// The block of a request, with friction or without.
-    fn boxed(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
-        let (bodies, parameters) = (request.bodies.clone(), request.parameters.clone());
-        let friction = friction.then_some(parameters.tangent_factor);
-        let formulation = Nitsche { friction, ..parameters.nitsche };
-        Box::new(Self { formulation, pairs: PairsOfShapes::new(request, Multiplier::Body), bodies })
-    }
-
+impl NitscheBlock {
     fn key(&self, at: usize) -> [u32; 2] {
         let key = self.pairs.pairs[at].key;
         [key.interface, key.slave]
     }
 
-    fn last(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> LastState<S, M> {
-        let PairGeometry { slave, master, .. } = self.pairs.previous(at, view, states);
-        LastState { slave, master }
-    }
-
-    fn nodes_of_points(&self, at: usize, states: &SlaveStates) -> S::Nodal<NodeOfPoints> {
-        S::map(&self.pairs.slaves(at), |node| {
-            let own = &states[node];
+    fn nodes_of_points(&self, at: usize, states: &SlaveStates) -> Nodal<NodeOfPoints> {
+        let slaves = self.pairs.slave_nodes(at);
+        Nodal::new(slaves.len(), |j| {
+            let own = &states[slaves[j]];
             let (held, stuck) = (f64::from(u8::from(own.pressed)), f64::from(u8::from(own.stuck)));
             NodeOfPoints { carried: own.last.carried, friction: own.friction, held, stuck }
         })
@@ -81,32 +55,32 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
         &self,
         at: usize,
         (view, states): (&StepView<'_>, &SlaveStates),
-        geometry: &PairGeometry<T, S, M>,
-        tractions: &S::Nodal<[T; 3]>,
-    ) -> Option<PointForces<T, S, M>> {
+        geometry: &PairGeometry<T>,
+        tractions: &[[T; 3]],
+    ) -> Option<PointForces<T>> {
         let face = self.bodies.slave_face(self.key(at));
         let nodes = self.nodes_of_points(at, states);
-        let last = self.last(at, view, states);
+        let last = self.pairs.history(at, view, false);
         let settings = &self.pairs.parameters.segmentation;
-        self.formulation.forces(geometry, tractions, (&face, &nodes), &last, settings)
+        self.formulation.forces(geometry, tractions, (&face, &nodes), (&last.slave, &last.master), settings)
     }
 
     /// The right-hand side alone.
     fn residual(&self, at: usize, view: &StepView<'_>, rhs: &mut [f64]) -> Result<(), EntityError> {
         let key = self.key(at);
         let consistent = self.formulation.theta != 0.0;
-        let tractions = self.bodies.tractions::<S>(key, view, consistent)?;
+        let tractions = self.bodies.tractions(key, view, consistent)?;
         let states = &self.pairs.states;
         let geometry = self.pairs.geometry(at, view, states);
         let Some(out) = self.forces(at, (view, states), &geometry, &tractions.values) else { return Ok(()) };
-        let dim = S::SPACE;
+        let dim = geometry.space();
         let facets = out.master.iter().chain(out.slave.iter()).flat_map(|force| &force[..dim]);
         rhs.iter_mut().zip(facets).for_each(|(row, force)| *row += force);
         if consistent {
             let unknowns = self.bodies.unknowns(key);
             for (r, &(node, c)) in unknowns.iter().enumerate() {
                 let work = |g: usize| dot(out.by_traction[g], tractions.by[g * unknowns.len() + r]);
-                rhs[self.pairs.first_row(at, node) + c] += (0..S::NODES).map(work).sum::<f64>();
+                rhs[self.pairs.first_row(at, node) + c] += (0..geometry.slave.len()).map(work).sum::<f64>();
             }
         }
         Ok(())
@@ -120,28 +94,30 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
         (lhs, width): (&mut [f64], usize),
         rhs: &mut [f64],
     ) -> Result<(), EntityError> {
-        let (key, dim) = (self.key(at), S::SPACE);
-        let Tractions { values, by } = self.bodies.tractions::<S>(key, view, true)?;
+        let key = self.key(at);
+        let Tractions { values, by } = self.bodies.tractions(key, view, true)?;
         let states = &self.pairs.states;
         let plain = self.pairs.geometry(at, view, states);
-        let (displacements, normals) = (PairGeometry::<f64, S, M>::UNKNOWNS, PairGeometry::<f64, S, M>::NORMALS);
-        let all = variables::<S, M>();
+        let (dim, slaves) = (plain.space(), plain.slave.len());
+        let (displacements, normals) = (plain.unknowns(), plain.normal_components());
+        let all = displacements + 2 * normals;
         let unknowns = self.bodies.unknowns(key);
         let size = unknowns.len();
         let places: Vec<usize> = unknowns.iter().map(|&(node, c)| self.pairs.first_row(at, node) + c).collect();
         let turns = self.pairs.parameters.normal_variation.knows_nodes();
         // The rows of all local unknowns by the variables of the formula, and what works on changes of the tractions.
         let mut rows = vec![0.0; width * all];
-        let mut weights = S::nodal(|_| [0.0; 3]);
+        let mut weights = Nodal::new(slaves, |_| [0.0; 3]);
         for first in (0..all).step_by(LANES) {
-            let mut geometry = self.pairs.seeded::<LANES>(&plain, first);
+            let mut geometry = self.pairs.seeded(&plain, first);
             if turns {
                 geometry.nodal_normals =
-                    S::nodal(|j| variables_from(first, displacements + dim * j, plain.nodal_normals[j], dim));
+                    Nodal::new(slaves, |j| variables_from(first, displacements + dim * j, plain.nodal_normals[j], dim));
             }
-            let tractions = S::nodal(|g| variables_from(first, displacements + normals + dim * g, values[g], dim));
+            let tractions =
+                Nodal::new(slaves, |g| variables_from(first, displacements + normals + dim * g, values[g], dim));
             let Some(out) = self.forces(at, (view, states), &geometry, &tractions) else { return Ok(()) };
-            let mut add = |row: usize, factor: f64, force: Dual<LANES>| {
+            let mut add = |row: usize, factor: f64, force: Active| {
                 if first == 0 {
                     rhs[row] += factor * force.value;
                 }
@@ -151,11 +127,11 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
             let facets = out.master.iter().chain(out.slave.iter()).flat_map(|force| &force[..dim]);
             facets.enumerate().for_each(|(row, force)| add(row, 1.0, *force));
             for (r, &row) in places.iter().enumerate() {
-                for g in 0..S::NODES {
+                for g in 0..slaves {
                     (0..dim).for_each(|c| add(row, by[g * size + r][c], out.by_traction[g][c]));
                 }
             }
-            weights = S::map(&out.by_traction, |work| work.map(|w| w.value));
+            weights = out.by_traction.map(|work| work.map(|w| w.value));
         }
 
         for (row, derivatives) in rows.chunks_exact(all).enumerate() {
@@ -164,7 +140,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
             for (r, &column) in places.iter().enumerate() {
                 let (by_traction, by) = (&derivatives[displacements + normals..], &by);
                 let slope = |g: usize| (0..dim).map(move |c| by_traction[dim * g + c] * by[g * size + r][c]);
-                lhs[column] -= (0..S::NODES).flat_map(slope).sum::<f64>();
+                lhs[column] -= (0..slaves).flat_map(slope).sum::<f64>();
             }
         }
         if turns {
@@ -175,13 +151,13 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> NitscheBlock<S, M, LANES>
         }
         if self.formulation.theta != 0.0 {
             self.bodies
-                .add_second_derivative::<S>(key, view, &weights, |r, s, d| lhs[places[r] * width + places[s]] -= d)?;
+                .add_second_derivative(key, view, &weights, |r, s, d| lhs[places[r] * width + places[s]] -= d)?;
         }
         Ok(())
     }
 }
 
-impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBlock<S, M, LANES> {
+impl EntityBlock for NitscheBlock {
     fn entry(&self) -> &'static EntityKind {
         self.pairs.entry
     }
@@ -233,7 +209,7 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> EntityBlock for NitscheBl
     }
 }
 
-impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheBlock<S, M, LANES> {
+impl ContactBlock for NitscheBlock {
     fn pairs(&self) -> &[Pair] {
         &self.pairs.pairs
     }
@@ -259,14 +235,17 @@ impl<S: FacetShape, M: FacetShape, const LANES: usize> ContactBlock for NitscheB
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
         let Present { view, states, .. } = present;
         self.pairs.integrate(present, &|at, geometry, operators, out| {
+            let count = geometry.slave.len();
             if self.formulation.friction.is_some() {
-                let pair = Kinematics::new(geometry, operators, &S::nodal(|_| [0.0; 3]));
-                out.slip[..S::NODES].copy_from_slice(self.last(at, view, states).slip(&pair).as_slice());
+                let last = self.pairs.history(at, view, false);
+                let (slave, master) = ((&*geometry.slave, &*last.slave), (&*geometry.master, &*last.master));
+                let slip = rotated_slip(&last.rotation(geometry), operators, slave, master, &geometry.nodal_normals);
+                out.slip[..count].copy_from_slice(&slip);
             }
-            let Ok(tractions) = self.bodies.tractions::<S>(self.key(at), view, false) else { return };
+            let Ok(tractions) = self.bodies.tractions(self.key(at), view, false) else { return };
             if let Some(forces) = self.forces(at, (view, states), geometry, &tractions.values) {
-                out.trial[..S::NODES].copy_from_slice(forces.traction.as_slice());
-                out.carried[..S::NODES].copy_from_slice(forces.carried.as_slice());
+                out.trial[..count].copy_from_slice(&forces.traction);
+                out.carried[..count].copy_from_slice(&forces.carried);
             }
         })
     }

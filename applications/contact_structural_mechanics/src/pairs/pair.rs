@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::unfit;
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::FacetShape;
 
 use crate::interface::{Interface, Roles};
 use crate::mortar::{Choices, MOST_NODES, Operators};
@@ -42,22 +42,22 @@ pub struct Previous {
 }
 
 impl Previous {
-    /// What a pair is to remember.
-    pub fn of<S: FacetShape, M: FacetShape>(operators: &Operators<f64, S, M>) -> Self {
+    /// The operators of a pair, to be kept.
+    pub fn of(operators: &Operators<f64>) -> Self {
         Self {
             d: operators.d.iter().flat_map(|row| row.iter().copied()).collect(),
             m: operators.m.iter().flat_map(|row| row.iter().copied()).collect(),
         }
     }
 
-    /// D and M of the pair.
-    pub fn operators<S: FacetShape, M: FacetShape>(&self) -> Operators<f64, S, M> {
+    /// D and M of a pair of these shapes.
+    pub fn operators(&self, slave: &FacetShape, master: &FacetShape) -> Operators<f64> {
         if self.d.is_empty() {
-            return Operators::zero();
+            return Operators::zero(slave, master);
         }
         Operators {
-            d: S::nodal(|j| S::nodal(|k| self.d[j * S::NODES + k])),
-            m: S::nodal(|j| M::nodal(|l| self.m[j * M::NODES + l])),
+            d: slave.nodal(|j| slave.nodal(|k| self.d[j * slave.nodes + k])),
+            m: slave.nodal(|j| master.nodal(|l| self.m[j * master.nodes + l])),
         }
     }
 }
@@ -89,7 +89,7 @@ impl Pair {
     }
 }
 
-/// What a pair adds to its slave nodes.
+/// Contribution of a pair to the sums of its slave nodes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Integral {
     /// Whether the facets overlap by more than a sliver.

@@ -1,92 +1,52 @@
-//! A block of pairs of one family and one pair of shapes.
+//! A block of pairs of two shapes under one law.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::{FacetShape, NodeArray, Shape};
+use zelus_core::geometry::Nodal;
 use zelus_core::model::EntityKind;
 
 use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
+use super::kinematics::PairHistory;
+use super::local_system::{PairSystem, multipliers_of};
 use super::pair::{Integral, Pair};
 use super::pairs_of_shapes::PairsOfShapes;
-use crate::formulations::{self, Formulation, Kinematics, PairHistory, SlaveNode};
 use crate::kratos::FirstIterateTangent;
-use crate::mortar::shapes::for_shapes;
-use crate::mortar::{PairGeometry, lanes};
+use crate::law::{ContactLaw, SlipMeasure};
 use crate::slave_states::SlaveStates;
 
-/// The block of a formulation for a pair of shapes (slave, master); `None` for shapes that carry no contact.
-pub(super) fn pair_block<F: Formulation>(
-    slave: Shape,
-    master: Shape,
-    request: PairRequest,
-) -> Option<Box<dyn ContactBlock>> {
-    macro_rules! make {
-        ($slave:ty, $master:ty, $end:literal) => {{
-            const NU: usize = lanes::<$slave, $master>(PairGeometry::<f64, $slave, $master>::UNKNOWNS);
-            const NN: usize = lanes::<$slave, $master>(PairGeometry::<f64, $slave, $master>::NORMALS);
-            PairBlock::<F, $slave, $master, NU, NN>::boxed(request)
-        }};
-    }
-    for_shapes!(slave, master, make)
+/// Pairs of two shapes under one law.
+pub(super) struct PairBlock {
+    law: Box<dyn ContactLaw>,
+    pairs: PairsOfShapes,
 }
 
-/// Pairs of two shapes, differentiated by `NU` displacement unknowns and by `NN` components of nodal normals at once.
-struct PairBlock<F, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> {
-    formulation: F,
-    pairs: PairsOfShapes<S, M>,
-}
-
-impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> PairBlock<F, S, M, NU, NN> {
+impl PairBlock {
     /// The block of a request.
-    fn boxed(request: PairRequest) -> Box<dyn ContactBlock> {
-        let formulation = F::new(&request.parameters);
-        Box::new(Self { formulation, pairs: PairsOfShapes::new(request, F::MULTIPLIER) })
+    pub(super) fn new(law: Box<dyn ContactLaw>, request: PairRequest) -> Self {
+        let pairs = PairsOfShapes::new(request, law.multiplier());
+        Self { law, pairs }
     }
 
-    fn history(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> F::History<S, M> {
-        F::History::of(self.pairs.pairs[at].previous.operators(), &self.pairs.previous(at, view, states))
+    fn history(&self, at: usize, view: &StepView<'_>) -> PairHistory {
+        self.pairs.history(at, view, matches!(self.law.slip(), SlipMeasure::OfOperators(_)))
     }
 
-    fn multipliers(&self, at: usize, view: &StepView<'_>) -> S::Nodal<[f64; 3]> {
-        S::map(&self.pairs.slaves(at), |n| F::MULTIPLIER.value(view.nodes, n))
-    }
-
-    /// Adds to the tangent of a pair what the turning of its nodal normals does: −∂b/∂n ∂n/∂x.
-    fn add_turning(
-        &self,
-        at: usize,
-        view: &StepView<'_>,
-        geometry: &PairGeometry<f64, S, M>,
-        nodes: &S::Nodal<SlaveNode>,
-        multipliers: &S::Nodal<[f64; 3]>,
-        history: &F::History<S, M>,
-        (lhs, width): (&mut [f64], usize),
-    ) {
-        let (rows, count) = (self.pairs.equations(), PairGeometry::<f64, S, M>::NORMALS);
+    /// Adds to the tangent of a pair the effect of the rotation of its nodal normals: −∂b/∂n ∂n/∂x.
+    fn add_turning(&self, at: usize, view: &StepView<'_>, system: &PairSystem<'_>, (lhs, width): (&mut [f64], usize)) {
+        let (rows, count) = (self.pairs.equations(), system.geometry.normal_components());
         let mut by_normals = vec![0.0; rows * count];
-        let keep = |row: usize, first: usize, derivatives: &[f64]| {
+        system.by_normals(&mut |row, first, derivatives| {
             let at = row * count + first;
             by_normals[at..at + derivatives.len()].copy_from_slice(derivatives);
-        };
-        formulations::by_normals::<_, _, _, NN>(
-            &self.formulation,
-            geometry,
-            &self.pairs.parameters.segmentation,
-            nodes,
-            multipliers,
-            history,
-            keep,
-        );
+        });
         self.pairs.spread_turning(at, view, &by_normals, (lhs, width));
     }
 }
 
-impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> EntityBlock
-    for PairBlock<F, S, M, NU, NN>
-{
+impl EntityBlock for PairBlock {
     fn entry(&self) -> &'static EntityKind {
         self.pairs.entry
     }
@@ -126,48 +86,43 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
         want: Want,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
-        let Self { formulation, pairs } = self;
+        let Self { law, pairs } = self;
         for (slot, at) in range.enumerate() {
             if !pairs.pairs[at].overlapping {
                 continue;
             }
             let geometry = pairs.geometry(at, view, &pairs.states);
             let nodes = pairs.slave_constants(at, &pairs.states);
-            let multipliers = self.multipliers(at, view);
-            let history = self.history(at, view, &pairs.states);
-            let settings = &pairs.parameters.segmentation;
+            let multipliers = multipliers_of(law.multiplier(), pairs.slave_nodes(at), view.nodes);
+            let history = self.history(at, view);
+            let system = PairSystem {
+                law: law.as_ref(),
+                geometry: &geometry,
+                settings: &pairs.parameters.segmentation,
+                nodes: &nodes,
+                multipliers: &multipliers,
+                history: &history,
+            };
             let (width, rows) = (out.size, self.equations());
             let (lhs, rhs) = out.entity(slot);
             let rhs = &mut rhs[..rows];
             if want == Want::Both {
                 let lhs = &mut lhs[..rows * width];
-                formulations::tangent(
-                    formulation,
-                    |first| pairs.seeded::<NU>(&geometry, first),
-                    settings,
-                    FirstIterateTangent::of(view, S::SPACE),
-                    &nodes,
-                    &multipliers,
-                    &history,
-                    (lhs, width),
-                    rhs,
-                );
+                let knows = FirstIterateTangent::of(view, geometry.space());
+                system.tangent(&|first| pairs.seeded(&geometry, first), knows, (lhs, width), rhs);
                 let acts = nodes.iter().any(|node| node.state.is_active());
                 if acts && pairs.parameters.normal_variation.knows_nodes() {
-                    self.add_turning(at, view, &geometry, &nodes, &multipliers, &history, (lhs, width));
+                    self.add_turning(at, view, &system, (lhs, width));
                 }
             } else {
-                let found = pairs.operators_of(at, &geometry);
-                formulations::residual(formulation, &geometry, found, &nodes, &multipliers, &history, rhs);
+                system.residual(&pairs.operators_of(at, &geometry), rhs);
             }
         }
         Ok(())
     }
 }
 
-impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: usize> ContactBlock
-    for PairBlock<F, S, M, NU, NN>
-{
+impl ContactBlock for PairBlock {
     fn pairs(&self) -> &[Pair] {
         &self.pairs.pairs
     }
@@ -191,14 +146,18 @@ impl<F: Formulation, S: FacetShape, M: FacetShape, const NU: usize, const NN: us
     fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
         let Present { view, states, .. } = present;
         self.pairs.integrate(present, &|at, geometry, operators, out| {
-            let history = self.history(at, view, states);
-            let pair = Kinematics::new(geometry, operators, &S::nodal(|_| [0.0; 3]));
-            let slip = self.formulation.weighted_slip(&pair, &history);
-            let trial = self.formulation.weighted_trial(&pair, &self.pairs.slave_constants(at, states), &history);
-            out.slip[..S::NODES].copy_from_slice(slip.as_slice());
-            if let Some(trial) = trial {
-                out.trial[..S::NODES].copy_from_slice(trial.as_slice());
-            }
+            let system = PairSystem {
+                law: self.law.as_ref(),
+                geometry,
+                settings: &self.pairs.parameters.segmentation,
+                nodes: &self.pairs.slave_constants(at, states),
+                multipliers: &Nodal::new(geometry.slave.len(), |_| [0.0; 3]),
+                history: &self.history(at, view),
+            };
+            system.slip_and_trial(operators, &mut |j, slip, trial| {
+                out.slip[j] = slip;
+                out.trial[j] = trial.unwrap_or(out.trial[j]);
+            });
         })
     }
 

@@ -1,32 +1,36 @@
-//! What a block has of its pairs, whatever their family: nodes, positions, operators.
+//! Nodes, positions and operators of the pairs of a block, whatever their law.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use zelus_core::entities::{LocalUnknown, StepView};
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::{FacetShape, Nodal};
 use zelus_core::model::{EntityKind, ScalarVariable};
-use zelus_core::scalar::Dual;
 use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_block::Present;
 use super::family::PairRequest;
 use super::in_parallel::in_parallel;
+use super::kinematics::PairHistory;
 use super::known_operators::KnownOperators;
 use super::pair::{Integral, Pair, Previous};
-use crate::formulations::{Augmentation, Multiplier, NormalVariation, SlaveNode, StepParameters};
 use crate::interface::{Corner, NormalPatches};
-use crate::mortar::{Operators, Overlap, PairGeometry, choices_of, operators, weighted_gap};
+use crate::law::{Augmentation, Multiplier, NormalVariation, SlaveNode, StepParameters};
+use crate::mortar::{Active, Operators, Overlap, PairGeometry, choices_of, operators, weighted_gap};
 use crate::slave_states::SlaveStates;
 
 /// Pairs of two shapes.
 ///
-/// It knows no formulation: blocks of all families share its code, which is compiled once for two shapes. The local unknowns
-/// of a pair are those that [`formulations`](crate::formulations) state; nodes around it follow as columns, for they turn its normals.
-pub(super) struct PairsOfShapes<S: FacetShape, M: FacetShape> {
+/// It knows no law: blocks of all formulations share its code. The local unknowns of a pair are those of
+/// [`PairSystem`](super::PairSystem); nodes around it follow as columns, for they rotate its normals.
+pub(super) struct PairsOfShapes {
     /// The registered condition.
     pub entry: &'static EntityKind,
+    /// Shape of the slave facets.
+    pub slave: &'static FacetShape,
+    /// Shape of the master facets.
+    pub master: &'static FacetShape,
     /// The pairs.
     pub pairs: Vec<Pair>,
     /// Settings and numbers of the step.
@@ -35,39 +39,43 @@ pub(super) struct PairsOfShapes<S: FacetShape, M: FacetShape> {
     pub states: Arc<SlaveStates>,
     /// Unknowns of a pair.
     pub unknowns: Vec<LocalUnknown>,
-    /// Of each pair what was computed last; none for any before that.
-    known: Vec<Option<KnownOperators<S, M>>>,
+    /// Cached operators of each pair; `None` before the first evaluation.
+    known: Vec<Option<KnownOperators>>,
     nodes: Vec<u32>,
     around: usize,
     patches: Arc<NormalPatches>,
 }
 
-/// What a formulation adds to the integral of a pair that overlaps, as it stands with these operators.
-pub(super) type Addition<'a, S, M> =
-    &'a (dyn Fn(usize, &PairGeometry<f64, S, M>, Operators<f64, S, M>, &mut Integral) + Sync);
+/// Contribution of a law to the integral of a pair that overlaps, as it stands with these operators.
+pub(super) type Addition<'a> = &'a (dyn Fn(usize, &PairGeometry<f64>, &Operators<f64>, &mut Integral) + Sync);
 
-impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
+impl PairsOfShapes {
     /// The pairs of a request, with these multipliers.
+    ///
+    /// # Panics
+    /// If the shapes are not those of facets.
     pub(super) fn new(request: PairRequest, multiplier: Multiplier) -> Self {
-        let PairRequest { entry, pairs, nodes, around, patches, parameters, states, .. } = request;
-        let unknowns = local_unknowns(around, [M::NODES, S::NODES], S::SPACE, &multiplier.unknowns(S::SPACE));
-        Self { entry, pairs, parameters, states, unknowns, known: Vec::new(), nodes, around, patches }
+        let PairRequest { entry, slave, master, pairs, nodes, around, patches, parameters, states, .. } = request;
+        let [slave, master] = [slave, master].map(|shape| FacetShape::of(shape).expect("pairs are made of facets"));
+        let counts = [master.nodes, slave.nodes];
+        let unknowns = local_unknowns(around, counts, slave.space, &multiplier.unknowns(slave.space));
+        Self { entry, slave, master, pairs, parameters, states, unknowns, known: Vec::new(), nodes, around, patches }
     }
 
     /// Nodes of the `at`-th pair: those around it, master nodes, slave nodes.
     pub(super) fn nodes(&self, at: usize) -> &[u32] {
-        let size = self.around + M::NODES + S::NODES;
+        let size = self.around + self.master.nodes + self.slave.nodes;
         &self.nodes[at * size..(at + 1) * size]
     }
 
     /// Rows of a pair. Nodes around it turn its normals; it pushes none of them.
     pub(super) fn equations(&self) -> usize {
-        self.unknowns.len() - S::SPACE * self.around
+        self.unknowns.len() - self.slave.space * self.around
     }
 
     /// Row of the first displacement of a node of the `at`-th pair.
     pub(super) fn first_row(&self, at: usize, node: u32) -> usize {
-        let dim = S::SPACE;
+        let dim = self.slave.space;
         let place = self.nodes(at).iter().rposition(|&n| n == node).expect("the node belongs to the pair");
         match place.checked_sub(self.around) {
             Some(place) => dim * place,
@@ -77,27 +85,22 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
 
     /// Node indices on the slave side of the `at`-th pair.
     pub(super) fn slave_nodes(&self, at: usize) -> &[u32] {
-        &self.nodes(at)[self.around + M::NODES..]
+        &self.nodes(at)[self.around + self.master.nodes..]
     }
 
-    fn masters(&self, at: usize) -> M::Nodal<u32> {
-        let nodes = &self.nodes(at)[self.around..];
-        M::nodal(|n| nodes[n])
-    }
-
-    /// As [`PairsOfShapes::slave_nodes`].
-    pub(super) fn slaves(&self, at: usize) -> S::Nodal<u32> {
-        let nodes = self.slave_nodes(at);
-        S::nodal(|n| nodes[n])
+    fn master_nodes(&self, at: usize) -> &[u32] {
+        &self.nodes(at)[self.around..self.around + self.master.nodes]
     }
 
     /// The `at`-th pair as it stands.
-    pub(super) fn geometry(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, S, M> {
-        let pair = &self.pairs[at];
+    pub(super) fn geometry(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64> {
+        let (pair, slaves, masters) = (&self.pairs[at], self.slave_nodes(at), self.master_nodes(at));
         PairGeometry {
-            slave: S::map(&self.slaves(at), |n| view.nodes.current[n as usize]),
-            master: M::map(&self.masters(at), |n| view.nodes.current[n as usize]),
-            nodal_normals: S::map(&self.slaves(at), |n| states[n].normal),
+            slave_shape: self.slave,
+            master_shape: self.master,
+            slave: Nodal::new(slaves.len(), |j| view.nodes.current[slaves[j] as usize]),
+            master: Nodal::new(masters.len(), |l| view.nodes.current[masters[l] as usize]),
+            nodal_normals: Nodal::new(slaves.len(), |j| states[slaves[j]].normal),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
             choices: pair.choices,
@@ -106,15 +109,11 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
 
     /// The pair with displacements from the one numbered `first` on as variables, and normals of facets too where the settings
     /// ask for it.
-    pub(super) fn seeded<const LANES: usize>(
-        &self,
-        geometry: &PairGeometry<f64, S, M>,
-        first: usize,
-    ) -> PairGeometry<Dual<LANES>, S, M> {
-        let mut seeded = geometry.seeded_from::<LANES>(first);
+    pub(super) fn seeded(&self, geometry: &PairGeometry<f64>, first: usize) -> PairGeometry<Active> {
+        let mut seeded = geometry.seeded_from(first);
         if self.parameters.normal_variation.knows_facets() {
-            seeded.slave_normal = S::unit_normal(&seeded.slave, S::CENTRE);
-            seeded.master_normal = M::unit_normal(&seeded.master, M::CENTRE);
+            seeded.slave_normal = self.slave.unit_normal(&seeded.slave, self.slave.centre);
+            seeded.master_normal = self.master.unit_normal(&seeded.master, self.master.centre);
         }
         seeded
     }
@@ -127,13 +126,13 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
         by_normals: &[f64],
         (lhs, width): (&mut [f64], usize),
     ) {
-        let dim = S::SPACE;
+        let dim = self.slave.space;
         let own = self.pairs[at].key;
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
         // By column, how the normal of a node turns: several facets tell of the same neighbour.
         let mut turning: Vec<(usize, [[f64; 3]; 3])> = Vec::with_capacity(self.nodes(at).len());
-        for (j, node) in self.slaves(at).into_iter().enumerate() {
+        for (j, &node) in self.slave_nodes(at).iter().enumerate() {
             if self.states[node].normal_of_master {
                 continue;
             }
@@ -145,7 +144,7 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
                     None => turning.push((column, matrix)),
                 }
             });
-            for (row, derivatives) in by_normals.chunks_exact(PairGeometry::<f64, S, M>::NORMALS).enumerate() {
+            for (row, derivatives) in by_normals.chunks_exact(dim * self.slave.nodes).enumerate() {
                 let by_normal: [f64; 3] = std::array::from_fn(|r| if r < dim { derivatives[dim * j + r] } else { 0.0 });
                 let lhs = &mut lhs[row * width..(row + 1) * width];
                 for (column, matrix) in &turning {
@@ -158,27 +157,28 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
         }
     }
 
-    /// The `at`-th pair as it stood in the last accepted state.
-    pub(super) fn previous(&self, at: usize, view: &StepView<'_>, states: &SlaveStates) -> PairGeometry<f64, S, M> {
+    /// The past of the `at`-th pair: its last accepted state, and its operators at the start of the step where they are `wanted`.
+    pub(super) fn history(&self, at: usize, view: &StepView<'_>, wanted: bool) -> PairHistory {
         let displacement = view.nodes.history.get(DISPLACEMENT.name()).expect("displacements are unknowns");
         let back = self.parameters.levels_back.min(displacement.levels.len() - 1);
         let position = |n: u32| add(view.nodes.initial[n as usize], displacement.vector(back, n as usize));
-        PairGeometry {
-            slave: S::map(&self.slaves(at), position),
-            master: M::map(&self.masters(at), position),
-            ..self.geometry(at, view, states)
+        let (slaves, masters) = (self.slave_nodes(at), self.master_nodes(at));
+        PairHistory {
+            previous: wanted.then(|| self.pairs[at].previous.operators(self.slave, self.master)),
+            slave: Nodal::new(slaves.len(), |j| position(slaves[j])),
+            master: Nodal::new(masters.len(), |l| position(masters[l])),
         }
     }
 
     /// Constants of the slave nodes of the `at`-th pair.
-    pub(super) fn slave_constants(&self, at: usize, states: &SlaveStates) -> S::Nodal<SlaveNode> {
+    pub(super) fn slave_constants(&self, at: usize, states: &SlaveStates) -> Nodal<SlaveNode> {
         let positive = |area: f64| if area > 0.0 { area } else { 1.0 };
         // The bounds of pairs that augment have gaps of their own, which add up to zero if all count alike.
         let by_pair = self.parameters.augmentation == Augmentation::Pair;
         let own = self.pairs[at].area;
         let k = self.parameters.scale_factor;
-        let slaves = self.slaves(at);
-        S::nodal(|j| {
+        let slaves = self.slave_nodes(at);
+        self.slave.nodal(|j| {
             let node = &states[slaves[j]];
             let area = positive(node.area);
             // On a part of a facet of second order the share of a corner may be below zero; over all pairs they add up to the area.
@@ -204,36 +204,38 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
     }
 
     /// The operators of a pair that stands like this; known ones, or else new ones.
-    pub(super) fn operators_of(&self, at: usize, geometry: &PairGeometry<f64, S, M>) -> Overlap<Operators<f64, S, M>> {
+    pub(super) fn operators_of(&self, at: usize, geometry: &PairGeometry<f64>) -> Overlap<Operators<f64>> {
         let known = self.known.get(at).and_then(|known| known.as_ref()?.of(geometry));
         known.unwrap_or_else(|| operators(geometry, &self.parameters.segmentation))
     }
 
     /// The pair in the present state with its operators, if it is this rank's.
-    fn operators_now(&self, at: usize, present: Present<'_>) -> Option<KnownOperators<S, M>> {
+    fn operators_now(&self, at: usize, present: Present<'_>) -> Option<(PairGeometry<f64>, Overlap<Operators<f64>>)> {
         let geometry = (present.own)(self.nodes(at)).then(|| self.geometry(at, present.view, present.states))?;
-        Some(KnownOperators { geometry, found: self.operators_of(at, &geometry) })
+        Some((geometry, self.operators_of(at, &geometry)))
     }
 
     /// Computes the operators of this rank's pairs in the present state.
     pub(super) fn find_operators(&mut self, present: Present<'_>) {
-        self.known = in_parallel(self.pairs.len(), &|at| self.operators_now(at, present));
+        self.known = in_parallel(self.pairs.len(), &|at| {
+            self.operators_now(at, present).map(|(geometry, found)| KnownOperators::new(&geometry, &found))
+        });
     }
 
-    /// Gap and area of every pair, and what a formulation adds to those that overlap.
-    pub(super) fn integrate(&self, present: Present<'_>, add: Addition<'_, S, M>) -> Vec<Integral> {
+    /// Gap and area of every pair, and the contribution of a law to those that overlap.
+    pub(super) fn integrate(&self, present: Present<'_>, add: Addition<'_>) -> Vec<Integral> {
         in_parallel(self.pairs.len(), &|at| {
             let mut out = Integral::default();
-            let Some(KnownOperators { geometry, found }) = self.operators_now(at, present) else { return out };
+            let Some((geometry, found)) = self.operators_now(at, present) else { return out };
             out.facing = !matches!(found, Overlap::None);
             if let Overlap::Cells(operators) = found {
                 out.overlapping = true;
                 let gaps = weighted_gap(&operators, &geometry.slave, &geometry.master, &geometry.nodal_normals);
-                for j in 0..S::NODES {
+                for j in 0..geometry.slave.len() {
                     out.area[j] = operators.d[j].iter().sum();
                     out.gap[j] = gaps[j];
                 }
-                add(at, &geometry, operators, &mut out);
+                add(at, &geometry, &operators, &mut out);
             }
             out
         })
@@ -242,7 +244,7 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
     /// Keeps the operators of the pairs of this rank against which slip is measured.
     pub(super) fn keep_operators(&mut self, present: Present<'_>) {
         let kept = |at: usize| {
-            let found = self.operators_now(at, present).and_then(|now| now.found.cells());
+            let found = self.operators_now(at, present).and_then(|(_, found)| found.cells());
             found.map_or_else(Previous::default, |found| Previous::of(&found))
         };
         let kept = in_parallel(self.pairs.len(), &kept);
@@ -252,7 +254,7 @@ impl<S: FacetShape, M: FacetShape> PairsOfShapes<S, M> {
     /// Freezes the choices of the integration of this rank's pairs.
     pub(super) fn freeze_choices(&mut self, present: Present<'_>) {
         let choices = |at: usize| {
-            let KnownOperators { geometry, found } = self.operators_now(at, present)?;
+            let (geometry, found) = self.operators_now(at, present)?;
             Some(choices_of(&geometry, &self.parameters.segmentation, &found.cells()?))
         };
         let choices = |at: usize| choices(at).unwrap_or(self.pairs[at].choices);

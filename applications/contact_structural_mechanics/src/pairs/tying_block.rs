@@ -3,15 +3,14 @@
 use std::ops::Range;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
-use zelus_core::geometry::{FacetShape, Shape};
+use zelus_core::geometry::{Nodal, Shape};
 use zelus_core::model::{EntityKind, ScalarVariable};
 
 use super::facet_operators::FacetPair;
-use crate::formulations::MeshTying;
+use crate::law::MeshTying;
 use crate::mortar::Operators;
-use crate::mortar::shapes::for_shapes;
 
-/// What a block of ties is made from.
+/// Tied pairs of two shapes, to make a block of.
 pub struct TyingRequest {
     /// The registered condition of this shape.
     pub entry: &'static EntityKind,
@@ -19,7 +18,7 @@ pub struct TyingRequest {
     pub pairs: Vec<FacetPair>,
     /// Node indices of each pair: master nodes, then slave nodes.
     pub nodes: Vec<u32>,
-    /// What is tied.
+    /// The tied numbers.
     pub tied: Vec<ScalarVariable>,
     /// The multiplier of each tied number.
     pub multipliers: Vec<ScalarVariable>,
@@ -27,52 +26,38 @@ pub struct TyingRequest {
     pub scale_factor: f64,
 }
 
-/// The block of a pair of shapes (slave, master) and any number of tied components; `None` for shapes without ties.
-pub fn tying_block(slave: Shape, master: Shape, request: TyingRequest) -> Option<Box<dyn EntityBlock>> {
-    macro_rules! make {
-        ($slave:ty, $master:ty, $end:literal) => {
-            match request.tied.len() {
-                1 => Some(TyingBlock::<$slave, $master, 1>::boxed(request)),
-                count if count == <$slave>::SPACE => {
-                    Some(TyingBlock::<$slave, $master, { <$slave>::SPACE }>::boxed(request))
-                }
-                _ => None,
-            }
-        };
-    }
-    for_shapes!(slave, master, make)?
-}
-
-/// Pairs of shapes with `C` tied numbers a node.
-struct TyingBlock<S: FacetShape, M: FacetShape, const C: usize> {
+/// Tied pairs of two shapes.
+pub struct TyingBlock {
     request: TyingRequest,
-    operators: Vec<Operators<f64, S, M>>,
+    formulation: MeshTying,
+    slaves: usize,
+    masters: usize,
+    operators: Vec<Operators<f64>>,
     unknowns: Vec<LocalUnknown>,
 }
 
-impl<S: FacetShape, M: FacetShape, const C: usize> TyingBlock<S, M, C> {
-    fn boxed(request: TyingRequest) -> Box<dyn EntityBlock> {
+impl TyingBlock {
+    /// The block of pairs of two shapes (slave, master) with any number of tied components.
+    pub fn new(slave: Shape, master: Shape, request: TyingRequest) -> Self {
+        let (slaves, masters) = (slave.nodes(), master.nodes());
         let row = |node: usize, variable: ScalarVariable| LocalUnknown { node: node as u8, variable };
-        let mut unknowns = Vec::with_capacity(MeshTying::size::<S, M, C>());
-        for node in 0..M::NODES + S::NODES {
+        let mut unknowns = Vec::new();
+        for node in 0..masters + slaves {
             unknowns.extend(request.tied.iter().map(|&variable| row(node, variable)));
         }
-        for node in M::NODES..M::NODES + S::NODES {
+        for node in masters..masters + slaves {
             unknowns.extend(request.multipliers.iter().map(|&variable| row(node, variable)));
         }
         let operators = request.pairs.iter().map(|pair| Operators {
-            d: S::nodal(|j| S::nodal(|k| pair.operators.d[j][k])),
-            m: S::nodal(|j| M::nodal(|l| pair.operators.m[j][l])),
+            d: Nodal::new(slaves, |j| Nodal::new(slaves, |k| pair.operators.d[j][k])),
+            m: Nodal::new(slaves, |j| Nodal::new(masters, |l| pair.operators.m[j][l])),
         });
-        Box::new(Self { operators: operators.collect(), unknowns, request })
-    }
-
-    fn values<N: FacetShape>(view: &StepView<'_>, nodes: &[u32], variables: &[ScalarVariable]) -> N::Nodal<[f64; C]> {
-        N::nodal(|n| std::array::from_fn(|c| view.nodes.history.scalar(variables[c], nodes[n] as usize).unwrap_or(0.0)))
+        let formulation = MeshTying { scale_factor: request.scale_factor, components: request.tied.len() };
+        Self { operators: operators.collect(), formulation, slaves, masters, unknowns, request }
     }
 }
 
-impl<S: FacetShape, M: FacetShape, const C: usize> EntityBlock for TyingBlock<S, M, C> {
+impl EntityBlock for TyingBlock {
     fn entry(&self) -> &'static EntityKind {
         self.request.entry
     }
@@ -86,7 +71,8 @@ impl<S: FacetShape, M: FacetShape, const C: usize> EntityBlock for TyingBlock<S,
     }
 
     fn nodes(&self, at: usize) -> &[u32] {
-        &self.request.nodes[at * (M::NODES + S::NODES)..(at + 1) * (M::NODES + S::NODES)]
+        let size = self.masters + self.slaves;
+        &self.request.nodes[at * size..(at + 1) * size]
     }
 
     fn unknowns(&self) -> &[LocalUnknown] {
@@ -108,19 +94,18 @@ impl<S: FacetShape, M: FacetShape, const C: usize> EntityBlock for TyingBlock<S,
         want: Want,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
-        let formulation = MeshTying { scale_factor: self.request.scale_factor };
+        let mut values = Vec::with_capacity(self.unknowns.len());
         for (slot, at) in range.enumerate() {
-            let (master, slave) = self.nodes(at).split_at(M::NODES);
+            let nodes = self.nodes(at);
+            values.clear();
+            values.extend(self.unknowns.iter().map(|unknown| {
+                let node = nodes[unknown.node as usize] as usize;
+                view.nodes.history.scalar(unknown.variable, node).unwrap_or(0.0)
+            }));
             let (lhs, rhs) = out.entity(slot);
-            formulation.residual::<S, M, C>(
-                &self.operators[at],
-                &Self::values::<M>(view, master, &self.request.tied),
-                &Self::values::<S>(view, slave, &self.request.tied),
-                &Self::values::<S>(view, slave, &self.request.multipliers),
-                rhs,
-            );
+            self.formulation.residual(&self.operators[at], &values, rhs);
             if want == Want::Both {
-                formulation.tangent::<S, M, C>(&self.operators[at], lhs);
+                self.formulation.tangent(&self.operators[at], lhs);
             }
         }
         Ok(())

@@ -17,11 +17,11 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search, segmentation, without_computing_part};
 use crate::active_set::Margin;
 use crate::compatibility::{Refusal, Use, refusal};
-use crate::formulations::{Augmentation, Nitsche, NitscheVariant, NormalVariation};
 use crate::interaction::{
     AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, UzawaSettings,
 };
 use crate::interface::{AlmParameters, NodalNormals, check_parts};
+use crate::law::{Augmentation, Nitsche, NitscheVariant, NormalVariation};
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Family, find_family};
 use crate::penalty_adaptation::PenaltyRule;

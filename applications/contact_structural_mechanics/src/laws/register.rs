@@ -17,25 +17,31 @@ macro_rules! register_contact_family {
         $crate::register_contact_family! { $name, about: $about, source: $source, build: $family }
         $crate::register_pair_conditions! { $stem, concat!("pair of the family ", $name) }
         $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the family ", $name),
-            (Line2, Line2, "2D2N") (Line2, Line3, "2D2N3N") (Line3, Line2, "2D3N2N") (Line3, Line3, "2D3N")
+            (Line2, 2, "2D2N") (Line2, 2, "2D2N3N") (Line3, 2, "2D3N2N") (Line3, 2, "2D3N")
         }
     };
 }
 
-/// Registers conditions that pairs are named by, one a pair of shapes.
+/// Registers conditions that pairs are named by, one for each two shapes of facets: slave, master and the end of the name.
 #[macro_export]
 macro_rules! register_pair_conditions {
     ($stem:literal, $about:expr) => {
-        $crate::with_pairs_of_shapes! { [$crate::register_pair_conditions] @ $stem, $about, }
+        $crate::register_pair_conditions! { @ $stem, $about,
+            (Line2, 2, "2D2N") (Line2, 2, "2D2N3N") (Line3, 2, "2D3N2N") (Line3, 2, "2D3N")
+            (Tri3, 3, "3D3N") (Tri3, 3, "3D3N4N") (Tri3, 3, "3D3N6N") (Tri3, 3, "3D3N8N") (Tri3, 3, "3D3N9N")
+            (Quad4, 3, "3D4N3N") (Quad4, 3, "3D4N") (Quad4, 3, "3D4N6N") (Quad4, 3, "3D4N8N") (Quad4, 3, "3D4N9N")
+            (Tri6, 3, "3D6N3N") (Tri6, 3, "3D6N4N") (Tri6, 3, "3D6N") (Tri6, 3, "3D6N8N") (Tri6, 3, "3D6N9N")
+            (Quad8, 3, "3D8N3N") (Quad8, 3, "3D8N4N") (Quad8, 3, "3D8N6N") (Quad8, 3, "3D8N") (Quad8, 3, "3D8N9N")
+            (Quad9, 3, "3D9N3N") (Quad9, 3, "3D9N4N") (Quad9, 3, "3D9N6N") (Quad9, 3, "3D9N8N") (Quad9, 3, "3D9N")
+        }
     };
-    (@ $stem:literal, $about:expr, $(($slave:ident, $master:ident, $end:literal))*) => {$(
+    (@ $stem:literal, $about:expr, $(($slave:ident, $space:literal, $end:literal))*) => {$(
         const _: () = {
             use zelus_core::entities::ConditionEntry;
-            use zelus_core::geometry::{self, FacetShape};
             zelus_core::register! { ConditionEntry concat!($stem, $end),
                 about: $about,
-                cell: Some(geometry::$slave::SHAPE),
-                space: geometry::$slave::SPACE,
+                cell: Some(zelus_core::geometry::Shape::$slave),
+                space: $space,
                 build: zelus_core::entities::Build::Pairs,
             }
         };

@@ -8,9 +8,8 @@
 //! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
 //!   vectors, and e is at right angles to m and n.
 
-use super::{Kinematics, Multiplier, PairResidual, SlaveNode};
+use super::{Multiplier, SlaveNode};
 use crate::node_state::{Held, NodeState};
-use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, normalised, scale, sub};
 
@@ -36,41 +35,42 @@ fn free<T: Real>(vector: [T; 3], held: [Held; 3]) -> [T; 3] {
 /// Share with which a multiplier whose facet has no free node is kept, beside facets that it can follow.
 const NO_ONE_TO_FOLLOW: f64 = 1e-6;
 
-/// Replaces equations of held nodes, each with the weight k² A/c of its node.
-pub fn restate<T: Real, S: FacetShape, M: FacetShape>(
-    out: &mut PairResidual<T, S, M>,
+/// Replaces equations of constrained components, each with the weight k² A/c of its node. `rows` are those of the law.
+pub fn constrain<T: Real>(
+    rows: &mut [[T; 3]],
     kind: Multiplier,
-    pair: &Kinematics<T, S, M>,
-    nodes: &S::Nodal<SlaveNode>,
+    normals: &[[T; 3]],
+    multipliers: &[[T; 3]],
+    nodes: &[SlaveNode],
 ) {
     for (j, node) in nodes.iter().enumerate() {
         let held = node.held;
         if held == [Held::Free; 3] || !node.state.is_active() {
             continue;
         }
-        let row = out.multipliers[j];
+        let row = rows[j];
         if matches!(kind, Multiplier::Vector(_))
             && node.state == NodeState::Slip
             && held.iter().any(|held| held.is_still())
         {
-            let (n, m) = (pair.normals[j], free_normal(pair.normals[j], held));
+            let (n, m) = (normals[j], free_normal(normals[j], held));
             let tangent = along_free_tangents(row, n, held);
             let gap = dot(n, row);
-            out.multipliers[j] = std::array::from_fn(|c| tangent[c] + m[c] * gap);
+            rows[j] = std::array::from_fn(|c| tangent[c] + m[c] * gap);
         }
         for c in 0..3 {
-            let own = pair.multipliers[j][c];
-            out.multipliers[j][c] = match held[c] {
+            let own = multipliers[j][c];
+            rows[j][c] = match held[c] {
                 Held::Free => continue,
                 Held::KeptInStick if node.state == NodeState::Slip => continue,
                 Held::Kept | Held::KeptInStick => (T::constant(own.value()) - own) * node.held_weight,
                 Held::Follows => {
-                    let free = (0..S::NODES).filter(|&k| nodes[k].held[c] == Held::Free);
+                    let free = (0..nodes.len()).filter(|&k| nodes[k].held[c] == Held::Free);
                     let (mut sum, mut count, mut any) = (T::zero(), 0.0, false);
                     for k in free {
                         any = true;
                         if nodes[k].state.is_active() {
-                            sum += pair.multipliers[k][c];
+                            sum += multipliers[k][c];
                             count += 1.0;
                         }
                     }

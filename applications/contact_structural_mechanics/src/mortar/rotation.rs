@@ -1,34 +1,34 @@
-//! How a facet has turned since an earlier state.
+//! The rotation of a facet since an earlier state.
 
-use zelus_core::geometry::{FacetShape, NodeArray};
+use zelus_core::geometry::FacetShape;
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{constant, cross, dot, normalised, sub};
 
 /// Rotation R that takes a facet from an earlier state to the present one: the shortest that takes its normal along, and one
 /// about the normal by the mean angle of its nodes about its centre, whichever of them is the first.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn<T> {
+pub struct FacetRotation<T> {
     normal: [T; 3],
     before: [f64; 3],
     cosine: T,
     sine: T,
 }
 
-impl<T: Real> Turn<T> {
+impl<T: Real> FacetRotation<T> {
     /// From the nodes of a facet now and before.
-    pub fn of_facet<S: FacetShape>(now: &S::Nodal<[T; 3]>, before: &S::Nodal<[f64; 3]>) -> Self {
-        let mut turn =
-            Self { normal: normal::<T, S>(now), before: normal::<f64, S>(before), cosine: T::one(), sine: T::zero() };
-        let (centre, centre_before) = (centre::<T, S>(now), centre::<f64, S>(before));
+    pub fn of_facet(shape: &FacetShape, now: &[[T; 3]], before: &[[f64; 3]]) -> Self {
+        let mut rotation =
+            Self { normal: normal(shape, now), before: normal(shape, before), cosine: T::one(), sine: T::zero() };
+        let (centre, centre_before) = (centre(now), centre(before));
         let (mut along, mut across) = (T::zero(), T::zero());
-        for (x, x_before) in now.iter().zip(before.iter()) {
-            let arm = turn.tilt(constant(sub(*x_before, centre_before)));
+        for (x, x_before) in now.iter().zip(before) {
+            let arm = rotation.tilt(constant(sub(*x_before, centre_before)));
             let arm_now = sub(*x, centre);
-            along += dot(arm, arm_now) - dot(turn.normal, arm) * dot(turn.normal, arm_now);
-            across += dot(turn.normal, cross(arm, arm_now));
+            along += dot(arm, arm_now) - dot(rotation.normal, arm) * dot(rotation.normal, arm_now);
+            across += dot(rotation.normal, cross(arm, arm_now));
         }
-        [turn.cosine, turn.sine, _] = normalised([along, across, T::zero()]);
-        turn
+        [rotation.cosine, rotation.sine, _] = normalised([along, across, T::zero()]);
+        rotation
     }
 
     /// R v for a vector of the earlier state.
@@ -49,25 +49,25 @@ impl<T: Real> Turn<T> {
     }
 }
 
-fn centre<T: Real, S: FacetShape>(x: &S::Nodal<[T; 3]>) -> [T; 3] {
+fn centre<T: Real>(x: &[[T; 3]]) -> [T; 3] {
     let mut sum = [T::zero(); 3];
-    x.iter().for_each(|x| (0..3).for_each(|c| sum[c] += x[c] * (1.0 / S::NODES as f64)));
+    x.iter().for_each(|v| (0..3).for_each(|c| sum[c] += v[c] * (1.0 / x.len() as f64)));
     sum
 }
 
 /// Unit normal: by the diagonals of a quadrilateral, two edges of a triangle; of a line that of its plane.
-fn normal<T: Real, S: FacetShape>(x: &S::Nodal<[T; 3]>) -> [T; 3] {
-    if S::SPACE == 2 {
+fn normal<T: Real>(shape: &FacetShape, x: &[[T; 3]]) -> [T; 3] {
+    if shape.space == 2 {
         [T::zero(), T::zero(), T::one()]
     } else {
-        normalised(cross(sub(x[2], x[0]), sub(x[S::CORNERS - 1], x[1])))
+        normalised(cross(sub(x[2], x[0]), sub(x[shape.corners - 1], x[1])))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zelus_core::geometry::{Line2, Quadrilateral4, Triangle3};
+    use zelus_core::geometry::{LINE_2, QUADRILATERAL_4, TRIANGLE_3};
     use zelus_core::vector3::norm;
 
     #[test]
@@ -83,13 +83,13 @@ mod tests {
         let triangle = [[0.0, 0.0, 0.0], [1.0, 0.2, 0.1], [0.3, 0.9, -0.2]];
         let quadrilateral = [[0.0, 0.0, 0.0], [1.0, 0.2, 0.1], [1.1, 1.3, 0.3], [0.3, 0.9, -0.2]];
         let vector = [0.3, -0.5, 0.7];
-        let by_triangle = Turn::of_facet::<Triangle3>(&triangle.map(move_on), &triangle).apply(vector);
+        let by_triangle = FacetRotation::of_facet(&TRIANGLE_3, &triangle.map(move_on), &triangle).apply(vector);
         let by_quadrilateral =
-            Turn::of_facet::<Quadrilateral4>(&quadrilateral.map(move_on), &quadrilateral).apply(vector);
+            FacetRotation::of_facet(&QUADRILATERAL_4, &quadrilateral.map(move_on), &quadrilateral).apply(vector);
         for found in [by_triangle, by_quadrilateral] {
             assert!(norm(sub(found, turn(vector))) < 1e-14, "{found:?}");
         }
-        let line = Turn::of_facet::<Line2>(&[[0.0; 3], [c, s, 0.0]], &[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        let line = FacetRotation::of_facet(&LINE_2, &[[0.0; 3], [c, s, 0.0]], &[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         assert!(norm(sub(line.apply([0.0, 2.0, 0.0]), [-2.0 * s, 2.0 * c, 0.0])) < 1e-15);
     }
 }

@@ -1,7 +1,7 @@
-//! Contact by Nitsche's method, without friction and with it; its forces are stated in [`crate::formulations::nitsche`].
+//! Contact by Nitsche's method, without friction and with it; its forces are stated in [`crate::law::nitsche`].
 
 use crate::active_set;
-use crate::formulations::Multiplier;
+use crate::law::Multiplier;
 use crate::pairs::{Family, Friction, nitsche_block};
 use crate::register_contact_family;
 
@@ -9,15 +9,13 @@ register_contact_family! { "NitscheContactFrictionless",
     about: "frictionless contact by Nitsche's method: tractions of the slave's elements, no multipliers",
     source: "Chouly, Hild and Renard (2015)",
     conditions: ["NitscheFrictionlessMortarContactCondition", "NitscheFrictionlessAxisymMortarContactCondition"],
-    build: Family {
-        decide: |node, _| active_set::of_points(node),
-        ..Family::with_blocks(
-            "NitscheFrictionlessMortarContactCondition",
-            &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
-            Multiplier::Body,
-            |slave, master, request| nitsche_block(slave, master, request, false),
-        )
-    },
+    build: Family::with_blocks(
+        "NitscheFrictionlessMortarContactCondition",
+        &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
+        Multiplier::Body,
+        |node, _| active_set::of_points(node),
+        |request| nitsche_block(request, false),
+    ),
 }
 register_contact_family! { "NitscheContactFrictional",
     about: "Coulomb friction by Nitsche's method: tractions of the slave's elements, no multipliers",
@@ -25,12 +23,12 @@ register_contact_family! { "NitscheContactFrictional",
     conditions: ["NitscheFrictionalMortarContactCondition", "NitscheFrictionalAxisymMortarContactCondition"],
     build: Family {
         friction: Friction::Coulomb,
-        decide: |node, _| active_set::of_points(node),
         ..Family::with_blocks(
             "NitscheFrictionalMortarContactCondition",
             &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3), ("CARRIED_TRACTION", 3)],
             Multiplier::Body,
-            |slave, master, request| nitsche_block(slave, master, request, true),
+            |node, _| active_set::of_points(node),
+            |request| nitsche_block(request, true),
         )
     },
 }

@@ -6,11 +6,10 @@
 //! pressure k λ is then ε times its gap. p° is zero but for Uzawa's iteration (eq. D.10), which updates it outside, p° ← k λ, until
 //! k λ − p° and with it the gap vanish.
 
-use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
-use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters};
+use crate::law::{Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters};
 use crate::pairs::Family;
 use crate::register_contact_family;
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
@@ -24,35 +23,23 @@ pub struct AlmFrictionless {
     pub augmentation: Augmentation,
 }
 
-impl Formulation for AlmFrictionless {
+impl NodeLaw for AlmFrictionless {
     const MULTIPLIER: Multiplier = Multiplier::Scalar(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE);
-    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
 
-    fn residual<T: Real, S: FacetShape, M: FacetShape>(
-        &self,
-        pair: &Kinematics<T, S, M>,
-        nodes: &S::Nodal<SlaveNode>,
-        (): &(),
-    ) -> PairResidual<T, S, M> {
-        let k = self.scale_factor;
-        let gap = pair.gap();
-        let mut out = PairResidual::zero();
-        for (j, node) in nodes.iter().enumerate() {
-            let lambda = pair.multipliers[j][0];
-            if node.state.is_active() {
-                let pressure = (lambda * k + gap[j] * self.augmentation.penalty(node)) * node.dynamic_factor;
-                out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
-                let gives_way = lambda * k - node.kept;
-                out.multipliers[j][0] = (gap[j] - pair.area(j) * gives_way * node.compliance) * k;
-            } else {
-                out.multipliers[j][0] = lambda * (-k * k * self.augmentation.softness(node));
-            }
+    fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T> {
+        let (k, lambda, zero) = (self.scale_factor, inputs.multiplier[0], T::zero());
+        if !node.state.is_active() {
+            let row = lambda * (-k * k * self.augmentation.softness(node));
+            return NodeForces { force: None, multiplier: [row, zero, zero] };
         }
-        out
+        let pressure = (lambda * k + inputs.gap * self.augmentation.penalty(node)) * node.dynamic_factor;
+        let gives_way = lambda * k - node.kept;
+        let row = (inputs.gap - inputs.area * gives_way * node.compliance) * k;
+        NodeForces { force: Some(scale(inputs.normal, pressure)), multiplier: [row, zero, zero] }
     }
 }
 

@@ -3,10 +3,9 @@
 //! Active: p = f (k λ + ε̂ g̃ n) and b_λ = k g̃ n − k² (A/c) P λ, which drives the tangential part to zero.
 //! Inactive: p = 0 and b_λ = −k² (A/c) λ.
 
-use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 
-use crate::formulations::{Augmentation, Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters};
+use crate::law::{Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters};
 use crate::mortar::tangential;
 use crate::pairs::Family;
 use crate::register_contact_family;
@@ -21,37 +20,25 @@ pub struct AlmFrictionlessComponents {
     pub augmentation: Augmentation,
 }
 
-impl Formulation for AlmFrictionlessComponents {
+impl NodeLaw for AlmFrictionlessComponents {
     const MULTIPLIER: Multiplier = Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER);
-    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(parameters: &StepParameters) -> Self {
         Self { scale_factor: parameters.scale_factor, augmentation: parameters.augmentation }
     }
 
-    fn residual<T: Real, S: FacetShape, M: FacetShape>(
-        &self,
-        pair: &Kinematics<T, S, M>,
-        nodes: &S::Nodal<SlaveNode>,
-        (): &(),
-    ) -> PairResidual<T, S, M> {
-        let k = self.scale_factor;
-        let gap = pair.gap();
-        let mut out = PairResidual::zero();
-        for (j, node) in nodes.iter().enumerate() {
-            let (lambda, n) = (pair.multipliers[j], pair.normals[j]);
-            let release = -k * k * self.augmentation.softness(node);
-            if node.state.is_active() {
-                let normal = gap[j] * self.augmentation.penalty(node);
-                let traction = std::array::from_fn(|c| (lambda[c] * k + n[c] * normal) * node.dynamic_factor);
-                out.add_nodal_force(&pair.operators, j, traction);
-                let sliding = tangential(lambda, n);
-                out.multipliers[j] = std::array::from_fn(|c| n[c] * gap[j] * k + sliding[c] * release);
-            } else {
-                out.multipliers[j] = lambda.map(|x| x * release);
-            }
+    fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T> {
+        let (k, lambda, n) = (self.scale_factor, inputs.multiplier, inputs.normal);
+        let release = -k * k * self.augmentation.softness(node);
+        if !node.state.is_active() {
+            return NodeForces { force: None, multiplier: lambda.map(|x| x * release) };
         }
-        out
+        let normal = inputs.gap * self.augmentation.penalty(node);
+        let sliding = tangential(lambda, n);
+        NodeForces {
+            force: Some(std::array::from_fn(|c| (lambda[c] * k + n[c] * normal) * node.dynamic_factor)),
+            multiplier: std::array::from_fn(|c| n[c] * inputs.gap * k + sliding[c] * release),
+        }
     }
 }
 

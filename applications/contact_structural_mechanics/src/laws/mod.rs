@@ -1,7 +1,7 @@
-//! The families of contact conditions, one file each, registered by their `mortar_type`.
+//! Contact laws, one formula a file, each registered with its formulations by their `mortar_type`.
 //!
-//! A file states a family's multipliers, what it remembers, its residual, the rule of its active set and its names. Another crate
-//! adds one in the same way.
+//! A file states a law's multiplier, its measure of slip, its force and rows at a slave node, the rule of its active set and its
+//! names. Another crate adds one in the same way.
 
 pub mod alm_frictional;
 pub mod alm_frictionless;

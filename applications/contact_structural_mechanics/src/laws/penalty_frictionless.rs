@@ -2,13 +2,12 @@
 //!
 //! ε g̃ holds an area: it counts the weighted gap of the pair.
 
-use zelus_core::geometry::{FacetShape, NodeArray};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
 use super::alm_frictionless::AlmFrictionless;
 use super::penalty_by_node::PenaltyByNode;
-use crate::formulations::{Formulation, Kinematics, Multiplier, PairResidual, SlaveNode, StepParameters};
+use crate::law::{Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters};
 use crate::pairs::{ByNode, Family};
 use crate::register_contact_family;
 
@@ -16,27 +15,18 @@ use crate::register_contact_family;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PenaltyFrictionless;
 
-impl Formulation for PenaltyFrictionless {
+impl NodeLaw for PenaltyFrictionless {
     const MULTIPLIER: Multiplier = Multiplier::None;
-    type History<S: FacetShape, M: FacetShape> = ();
 
     fn new(_: &StepParameters) -> Self {
         Self
     }
 
-    fn residual<T: Real, S: FacetShape, M: FacetShape>(
-        &self,
-        pair: &Kinematics<T, S, M>,
-        nodes: &S::Nodal<SlaveNode>,
-        (): &(),
-    ) -> PairResidual<T, S, M> {
-        let gap = pair.gap();
-        let mut out = PairResidual::zero();
-        for (j, node) in nodes.iter().enumerate().filter(|(_, node)| node.state.is_active()) {
-            let pressure = gap[j] * (node.penalty * node.dynamic_factor);
-            out.add_nodal_force(&pair.operators, j, scale(pair.normals[j], pressure));
+    fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T> {
+        if !node.state.is_active() {
+            return NodeForces::none();
         }
-        out
+        NodeForces::force(scale(inputs.normal, inputs.gap * (node.penalty * node.dynamic_factor)))
     }
 }
 

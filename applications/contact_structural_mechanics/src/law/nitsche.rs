@@ -18,12 +18,13 @@
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
 
-use super::LastState;
 use crate::friction_law::Bound;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
-use crate::mortar::{PairGeometry, SegmentationSettings, Turn, inner_point, inner_values, nodal_shares, tangential};
-use zelus_core::geometry::{FacetShape, NodeArray};
+use crate::mortar::{
+    FacetRotation, PairGeometry, SegmentationSettings, inner_point, inner_values, nodal_shares, tangential,
+};
+use zelus_core::geometry::{Nodal, combine, interpolate};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, value};
 
@@ -76,9 +77,9 @@ impl Nitsche {
 
 /// The face of the slave's element, in the initial state.
 #[derive(Debug, Clone, Copy)]
-pub struct SlaveFace<S: FacetShape> {
+pub struct SlaveFace {
     /// Length or area by local coordinates at the inner points; about an axis times the radius.
-    pub densities: S::Nodal<f64>,
+    pub densities: Nodal<f64>,
     /// M A/V (stress by length, in the plane times the thickness).
     pub stiffness: f64,
     /// What tractions are multiplied by, where the weights of points are divided by it.
@@ -100,60 +101,63 @@ pub struct NodeOfPoints {
 
 /// What the points of a pair add up to.
 #[derive(Debug, Clone, Copy)]
-pub struct PointForces<T: Real, S: FacetShape, M: FacetShape> {
+pub struct PointForces<T: Real> {
     /// Forces on slave nodes.
-    pub slave: S::Nodal<[T; 3]>,
+    pub slave: Nodal<[T; 3]>,
     /// Forces on master nodes.
-    pub master: M::Nodal<[T; 3]>,
+    pub master: Nodal<[T; 3]>,
     /// ∫ L f: area times traction of the slave nodes, with what they have of each point ([`nodal_shares`]).
-    pub traction: S::Nodal<[f64; 3]>,
+    pub traction: Nodal<[f64; 3]>,
     /// ∫ L (τ − t + σ n) over the points in contact, with friction.
-    pub carried: S::Nodal<[T; 3]>,
+    pub carried: Nodal<[T; 3]>,
     /// What works on changes of the tractions at the inner points (a length times an area).
-    pub by_traction: S::Nodal<[T; 3]>,
+    pub by_traction: Nodal<[T; 3]>,
 }
 
 impl Nitsche {
     /// Forces of a pair whose slave has these tractions of the initial area at its inner points; `None` without overlap.
-    pub fn forces<T: Real, S: FacetShape, M: FacetShape>(
+    ///
+    /// `last` are the positions of slave and master nodes in the last accepted state.
+    pub fn forces<T: Real>(
         &self,
-        pair: &PairGeometry<T, S, M>,
-        tractions: &S::Nodal<[T; 3]>,
-        (face, nodes): (&SlaveFace<S>, &S::Nodal<NodeOfPoints>),
-        last: &LastState<S, M>,
+        pair: &PairGeometry<T>,
+        tractions: &[[T; 3]],
+        (face, nodes): (&SlaveFace, &[NodeOfPoints]),
+        last: (&[[f64; 3]], &[[f64; 3]]),
         settings: &SegmentationSettings,
-    ) -> Option<PointForces<T, S, M>> {
+    ) -> Option<PointForces<T>> {
+        let shape = pair.slave_shape;
         let zero = [T::zero(); 3];
-        let mut out = PointForces::<T, S, M> {
-            slave: S::nodal(|_| zero),
-            master: M::nodal(|_| zero),
-            traction: S::nodal(|_| [0.0; 3]),
-            carried: S::nodal(|_| zero),
-            by_traction: S::nodal(|_| zero),
+        let mut out = PointForces::<T> {
+            slave: shape.nodal(|_| zero),
+            master: pair.master.map(|_| zero),
+            traction: shape.nodal(|_| [0.0; 3]),
+            carried: shape.nodal(|_| zero),
+            by_traction: shape.nodal(|_| zero),
         };
         let origin = value(pair.slave[0]);
         let relative = |x: [T; 3]| std::array::from_fn(|c| x[c] - origin[c]);
-        let (slave, master) = (S::map(&pair.slave, relative), M::map(&pair.master, relative));
+        let (slave, master) = (pair.slave.map(relative), pair.master.map(relative));
         // By how much the facet has become smaller at its inner points.
-        let shrunk: S::Nodal<T> = S::nodal(|g| {
-            let xi = inner_point::<S>(g);
-            let mut now = norm(S::area_normal(&pair.slave, xi));
+        let shrunk: Nodal<T> = shape.nodal(|g| {
+            let xi = inner_point(shape, g);
+            let mut now = norm(shape.area_normal(&pair.slave, xi));
             if settings.axisymmetric.is_some() {
-                now *= S::combine(&S::values(xi), &pair.slave)[0];
+                now *= combine(&shape.values(xi), &pair.slave)[0];
             }
             now.recip() * (face.densities[g] * face.thickness)
         });
         let gamma = self.factor * face.stiffness * face.thickness;
-        let turn = Turn::of_facet::<S>(&pair.slave, &last.slave);
-        let covered = for_each_point(pair, settings, |point| {
-            let normal = normalised(S::interpolate(&point.slave, &pair.nodal_normals));
-            let inner = inner_values::<T, S>(point.local);
+        let rotation = FacetRotation::of_facet(shape, &pair.slave, last.0);
+        let covered = for_each_point(pair, settings, &mut |point| {
+            let normal = normalised(interpolate(&point.slave, &pair.nodal_normals));
+            let inner = inner_values(shape, point.local);
             let mut traction = zero;
-            for g in 0..S::NODES {
+            for g in 0..shape.nodes {
                 let share = inner[g] * shrunk[g];
                 (0..3).for_each(|c| traction[c].add_product(share, tractions[g][c]));
             }
-            let jump = sub(S::interpolate(&point.slave, &slave), M::interpolate(&point.master, &master));
+            let jump = sub(interpolate(&point.slave, &slave), interpolate(&point.master, &master));
             let stress = dot(normal, traction);
             let pressure = stress - dot(normal, jump) * gamma;
             let share = |of: fn(&NodeOfPoints) -> f64| {
@@ -163,43 +167,43 @@ impl Nitsche {
             let pressing = held || pressure.value() < 0.0;
             let mut force = if pressing { scale(normal, pressure) } else { zero };
             let mut own = scale(normal, stress);
-            let shares = nodal_shares(point);
+            let shares = nodal_shares(shape, point);
             if let Some(ratio) = self.friction {
                 own = traction;
                 if pressing {
-                    let before = jump_before::<T, S, M>(&point.slave, &point.master, last);
-                    let slip = tangential(sub(turn.apply(before), jump), normal);
-                    let weights = S::map(&point.slave, T::value);
+                    let before = jump_before(&point.slave, &point.master, last);
+                    let slip = tangential(sub(rotation.apply(before), jump), normal);
+                    let weights = point.slave.map(T::value);
                     let mut carried = zero;
                     for (node, n) in nodes.iter().zip(point.slave.iter()) {
                         (0..3).for_each(|c| carried[c].add_scaled(*n, node.carried[c]));
                     }
-                    let carried = tangential(turn.apply(carried), normal);
+                    let carried = tangential(rotation.apply(carried), normal);
                     let along = sub(traction, scale(normal, stress));
                     let trial = add(add(along, carried), scale(slip, T::constant(gamma * ratio)));
                     let sticks = held || share(|node| node.stuck);
-                    let friction = limited(trial, pressure, mean_bound::<S>(nodes, &weights), sticks);
+                    let friction = limited(trial, pressure, mean_bound(nodes, &weights), sticks);
                     force = add(force, friction);
                     let apart = sub(friction, along);
-                    for k in 0..S::NODES {
+                    for k in 0..shape.nodes {
                         let weight = shares[k] * point.weight;
                         (0..3).for_each(|c| out.carried[k][c].add_product(weight, apart[c]));
                     }
                 }
             }
-            for k in 0..S::NODES {
+            for k in 0..shape.nodes {
                 let weight = point.slave[k] * point.weight;
                 (0..3).for_each(|c| out.slave[k][c].add_product(weight, force[c]));
                 let own = (shares[k] * point.weight).value();
                 (0..3).for_each(|c| out.traction[k][c] += own * force[c].value());
             }
-            for l in 0..M::NODES {
+            for l in 0..pair.master.len() {
                 let weight = point.master[l] * point.weight;
                 (0..3).for_each(|c| out.master[l][c].add_product(weight, -force[c]));
             }
             if self.theta != 0.0 {
                 let lack = sub(force, own);
-                for g in 0..S::NODES {
+                for g in 0..shape.nodes {
                     let weight = inner[g] * shrunk[g] * point.weight * (-self.theta / gamma);
                     (0..3).for_each(|c| out.by_traction[g][c].add_product(weight, lack[c]));
                 }
@@ -210,17 +214,14 @@ impl Nitsche {
 }
 
 /// x¹ − x² of a point in the last accepted state.
-fn jump_before<T: Real, S: FacetShape, M: FacetShape>(
-    slave: &S::Nodal<T>,
-    master: &M::Nodal<T>,
-    last: &LastState<S, M>,
-) -> [T; 3] {
-    let origin = last.slave[0];
+fn jump_before<T: Real>(slave: &[T], master: &[T], last: (&[[f64; 3]], &[[f64; 3]])) -> [T; 3] {
+    let origin = last.0[0];
     let relative = |x: [f64; 3]| constant(sub(x, origin));
-    sub(S::interpolate(slave, &S::map(&last.slave, relative)), M::interpolate(master, &M::map(&last.master, relative)))
+    let before = |nodes: &[[f64; 3]]| Nodal::of(nodes).map(relative);
+    sub(interpolate(slave, &before(last.0)), interpolate(master, &before(last.1)))
 }
 
-fn mean_bound<S: FacetShape>(nodes: &S::Nodal<NodeOfPoints>, weights: &S::Nodal<f64>) -> Bound {
+fn mean_bound(nodes: &[NodeOfPoints], weights: &[f64]) -> Bound {
     let mean = |of: fn(&Bound) -> f64| nodes.iter().zip(weights.iter()).map(|(node, n)| n * of(&node.friction)).sum();
     Bound { coefficient: mean(|bound| bound.coefficient), threshold: mean(|bound| bound.threshold) }
 }

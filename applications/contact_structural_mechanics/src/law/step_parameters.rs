@@ -1,8 +1,8 @@
 //! What every pair of a run shares.
 
 use crate::active_set::SlipRule;
-use crate::formulations::{Augmentation, Nitsche};
 use crate::friction_law::FrictionLaw;
+use crate::law::{Augmentation, Nitsche};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::slave_states::SlaveState;
 

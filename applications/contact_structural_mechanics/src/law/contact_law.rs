@@ -1,0 +1,141 @@
+//! The trait of contact laws.
+//!
+//! A law is written once over the scalar ([`NodeLaw`]); the framework uses it as an object ([`ContactLaw`]), with plain numbers
+//! for the residual and with [`Active`] ones, which carry the derivatives of a pair, for the tangent. So a law is compiled for
+//! two scalars, whatever the shapes of facets.
+
+use super::{Multiplier, SlaveNode, StepParameters};
+use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
+use crate::mortar::{Active, OperatorThreshold};
+use zelus_core::scalar::Real;
+
+/// Active inputs of a law at one slave node: the share of one pair, with derivatives where the scalar has them.
+#[derive(Debug, Clone, Copy)]
+pub struct NodeInputs<T> {
+    /// Weighted gap g̃ of the pair, negative in penetration (length times area).
+    pub gap: T,
+    /// Weighted slip s of the pair, as [`NodeLaw::slip`] measures it (length times area); zero without a measure.
+    pub slip: [T; 3],
+    /// Unit normal out of the slave body.
+    pub normal: [T; 3],
+    /// Multiplier λ, compression negative; a scalar one in the first component.
+    pub multiplier: [T; 3],
+    /// History traction P R t° of the last accepted state, rotated with the facet (force per area).
+    pub history: [T; 3],
+    /// Area that the pair has of the node.
+    pub area: T,
+}
+
+/// Result of a law at one slave node.
+#[derive(Debug, Clone, Copy)]
+pub struct NodeForces<T> {
+    /// Nodal force vector p (force per area), spread over both sides by D and M; `None` for a node without contact.
+    pub force: Option<[T; 3]>,
+    /// Rows of the multiplier; a scalar one in the first component.
+    pub multiplier: [T; 3],
+}
+
+impl<T: Real> NodeForces<T> {
+    /// A force alone, of laws without multiplier.
+    pub fn force(force: [T; 3]) -> Self {
+        Self { force: Some(force), multiplier: [T::zero(); 3] }
+    }
+
+    /// Neither force nor equation: a node without contact of a law without multiplier.
+    pub fn none() -> Self {
+        Self { force: None, multiplier: [T::zero(); 3] }
+    }
+}
+
+/// Measure of the weighted slip of a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum SlipMeasure {
+    /// None: laws without friction.
+    #[default]
+    None,
+    /// Since the last accepted state, rotated with the slave facet. Its rate is what tractions do work on.
+    Rotated,
+    /// By the change of the operators in the step where both change by more than the threshold, else by displacement increments.
+    OfOperators(OperatorThreshold),
+}
+
+/// A contact law, written once over the scalar.
+///
+/// It must be affine in the multiplier for given states.
+pub trait NodeLaw: Send + Sync + 'static {
+    /// Its multiplier.
+    const MULTIPLIER: Multiplier;
+
+    /// The law with the numbers of the step.
+    fn new(parameters: &StepParameters) -> Self;
+
+    /// The measure of slip that it reads.
+    fn slip(&self) -> SlipMeasure {
+        SlipMeasure::None
+    }
+
+    /// Whether it reads the history traction.
+    fn has_history(&self) -> bool {
+        false
+    }
+
+    /// Force and multiplier rows of a slave node.
+    fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T>;
+
+    /// Area times trial traction, for laws with a history traction.
+    fn weighted_trial(&self, _node: &SlaveNode, _inputs: &NodeInputs<f64>) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// Its rule of the active set: whether a slave node is in contact, sticks or slides.
+    fn decide(node: &SlaveNumbers, _rule: SlipRule) -> Decision {
+        active_set::frictionless(node)
+    }
+}
+
+/// A contact law as an object; every [`NodeLaw`] is one.
+pub trait ContactLaw: Send + Sync {
+    /// Its multiplier.
+    fn multiplier(&self) -> Multiplier;
+
+    /// The measure of slip that it reads.
+    fn slip(&self) -> SlipMeasure;
+
+    /// Whether it reads the history traction.
+    fn has_history(&self) -> bool;
+
+    /// Force and multiplier rows of a slave node.
+    fn values(&self, node: &SlaveNode, inputs: &NodeInputs<f64>) -> NodeForces<f64>;
+
+    /// The same with derivatives.
+    fn derivatives(&self, node: &SlaveNode, inputs: &NodeInputs<Active>) -> NodeForces<Active>;
+
+    /// Area times trial traction, for laws with a history traction.
+    fn weighted_trial(&self, node: &SlaveNode, inputs: &NodeInputs<f64>) -> Option<[f64; 3]>;
+}
+
+impl<L: NodeLaw> ContactLaw for L {
+    fn multiplier(&self) -> Multiplier {
+        L::MULTIPLIER
+    }
+
+    fn slip(&self) -> SlipMeasure {
+        NodeLaw::slip(self)
+    }
+
+    fn has_history(&self) -> bool {
+        NodeLaw::has_history(self)
+    }
+
+    fn values(&self, node: &SlaveNode, inputs: &NodeInputs<f64>) -> NodeForces<f64> {
+        self.evaluate(node, inputs)
+    }
+
+    fn derivatives(&self, node: &SlaveNode, inputs: &NodeInputs<Active>) -> NodeForces<Active> {
+        self.evaluate(node, inputs)
+    }
+
+    fn weighted_trial(&self, node: &SlaveNode, inputs: &NodeInputs<f64>) -> Option<[f64; 3]> {
+        NodeLaw::weighted_trial(self, node, inputs)
+    }
+}

@@ -1,0 +1,37 @@
+//! Constants of a slave node during an assembly.
+
+use crate::friction_law::Bound;
+use crate::node_state::{Held, NodeState, Turning};
+
+/// Constants of a slave node during an assembly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlaveNode {
+    /// Decided by the active-set update, never here.
+    pub state: NodeState,
+    /// Penalty ε > 0.
+    pub penalty: f64,
+    /// 1/ε of regularised formulations, penetration by pressure; 0 of all others.
+    pub compliance: f64,
+    /// Uzawa pressure p° of regularised formulations, compression negative; 0 without an outer loop.
+    pub kept: f64,
+    /// c > 0: stiffness by length, for rows that state tractions beside others that state gaps and slips.
+    pub stiffness: f64,
+    /// A > 0: the area that this pair has of the node, or all pairs where they augment; constant in the tangent.
+    pub area: f64,
+    /// Factor f on nodal forces, 1 unless the dynamic factor is in use.
+    pub dynamic_factor: f64,
+    /// Limit of the tangential traction.
+    pub friction: Bound,
+    /// Unit tangent τ: the direction of sliding.
+    pub tangent: [f64; 3],
+    /// Derivative of that direction by the unknowns.
+    pub turning: Turning,
+    /// Constraint on each component of its multiplier; of a scalar one the first.
+    pub held: [Held; 3],
+    /// k² A/c: the weight of the equations of constrained components.
+    pub held_weight: f64,
+    /// Tangential traction t° of the last accepted state, where a law has a history traction (force per area).
+    pub carried: [f64; 3],
+    /// Traction of all pairs of the node, where a law has it before its pairs are looked at (force per area).
+    pub traction: [f64; 3],
+}
