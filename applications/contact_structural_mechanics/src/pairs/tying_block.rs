@@ -52,7 +52,7 @@ struct TyingBlock<S: FacetShape, M: FacetShape, const C: usize> {
 
 impl<S: FacetShape, M: FacetShape, const C: usize> TyingBlock<S, M, C> {
     fn boxed(request: TyingRequest) -> Box<dyn EntityBlock> {
-        let row = |node: usize, variable: ScalarVariable| LocalUnknown { node: node as u8, variable };
+        let row = |node: usize, variable: ScalarVariable| LocalUnknown::of_node(node as u8, variable);
         let mut unknowns = Vec::with_capacity(MeshTying::size::<S, M, C>());
         for node in 0..M::NODES + S::NODES {
             unknowns.extend(request.tied.iter().map(|&variable| row(node, variable)));
