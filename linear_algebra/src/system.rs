@@ -24,7 +24,7 @@ pub enum Symmetry {
 /// share a node should share their columns too.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layout {
-    /// Node of each equation, from 0; a multiplier carries the node of its slave.
+    /// Node of each equation, from 0; a multiplier carries the node of its slave, which may have those of several interfaces.
     pub node: Vec<u32>,
     /// Whether the equation is that of a multiplier.
     pub multiplier: Vec<bool>,

@@ -4,8 +4,8 @@ mod samples;
 
 use samples::{Brick, fix};
 use zelus_linear_algebra::{
-    Condensation, CondensationSettings, Csr, DirectSettings, Engine, KrylovSettings, Layout, Multipliers,
-    NotCondensable, Preconditioner, SolveError, Symmetry, System, create,
+    Condensation, CondensationSettings, Csr, DirectSettings, Engine, KrylovSettings, Layout, MultigridSettings,
+    Multipliers, NotCondensable, Preconditioner, SolveError, Symmetry, System, create,
 };
 
 /// What the multipliers of a slave node say.
@@ -254,5 +254,113 @@ fn iterative_engines_solve_condensed_systems() {
                 assert!(worst(&x, &whole) < 1e-7, "{preconditioner:?}: {}", worst(&x, &whole));
             }
         }
+    }
+}
+
+/// The system with a second set of multipliers at the first slave node, along another normal and with other masters.
+fn with_second_set(first: &Sample, kind: Kind, normal: [f64; 3], scale: f64) -> Sample {
+    let mut layout = first.layout.clone();
+    let entries = |matrix: &Csr| -> Vec<(usize, usize, f64)> {
+        let row =
+            |i: usize| matrix.row(i).0.iter().zip(matrix.row(i).1).map(move |(&j, &value)| (i, j as usize, value));
+        (0..matrix.rows).flat_map(row).collect()
+    };
+    let (bulk, mut coupling) = (entries(&first.bulk), entries(&first.coupling));
+    let slave = layout.node[layout.multiplier.iter().position(|is| *is).expect("a multiplier")];
+    let of_node = |node: u32| (0..first.layout.equations()).filter(move |&i| first.layout.node[i] == node);
+    let own: Vec<usize> = of_node(slave).filter(|&i| !first.layout.multiplier[i]).collect();
+    // Two nodes of the lower box, which has none with multipliers.
+    let masters = [1, 2].map(|node| of_node(node).collect::<Vec<usize>>());
+    let count = if matches!(kind, Kind::Normal | Kind::InactiveNormal) { 1 } else { 3 };
+    let next = layout.equations();
+    layout.node.extend(vec![slave; count]);
+    layout.multiplier.extend(vec![true; count]);
+    let diagonal = -10.0 * scale;
+    let weights = [(&own, 0.8), (&masters[0], -0.5), (&masters[1], -0.3)];
+    if matches!(kind, Kind::Inactive | Kind::InactiveNormal) {
+        coupling.extend((0..count).map(|c| (next + c, next + c, diagonal)));
+    } else {
+        for (nodes, weight) in weights {
+            for (c, &equation) in nodes.iter().enumerate() {
+                if kind == Kind::Normal {
+                    let entry = scale * weight * normal[c];
+                    coupling.extend([(next, equation, entry), (equation, next, entry)]);
+                    continue;
+                }
+                coupling.push((equation, next + c, scale * weight));
+                coupling.extend((0..3).map(|row| (next + row, equation, scale * weight * normal[row] * normal[c])));
+            }
+        }
+        if kind == Kind::Components {
+            let across = |c: usize, e: usize| f64::from(u8::from(c == e)) - normal[c] * normal[e];
+            coupling.extend((0..9).map(|at| (next + at / 3, next + at % 3, diagonal * across(at / 3, at % 3))));
+        }
+    }
+    let matrix = |triplets: &[(usize, usize, f64)]| Csr::from_triplets(layout.equations(), triplets);
+    Sample { bulk: matrix(&bulk), coupling: matrix(&coupling), layout }
+}
+
+/// Normals of a second set at a node whose first set has one near z.
+const SECOND: [[f64; 3]; 2] = [[1.0, 0.0, 0.0], [0.8, 0.0, 0.6]];
+
+#[test]
+fn a_node_may_have_multipliers_of_two_sets() {
+    let pairs = [
+        (Kind::Normal, Kind::Normal),
+        (Kind::Normal, Kind::Components),
+        (Kind::Components, Kind::Components),
+        (Kind::Slip, Kind::Components),
+        (Kind::Stick, Kind::Inactive),
+        (Kind::Inactive, Kind::Components),
+        (Kind::Slip, Kind::Inactive),
+        (Kind::Inactive, Kind::Inactive),
+    ];
+    let multigrid = MultigridSettings { tolerance: 1e-11, least: [0; 2], ..MultigridSettings::default() };
+    for (scale, of_second, normal) in [(1e5, 1e5, SECOND[0]), (1e2, 1e2, SECOND[1]), (1e5, 1e-1, SECOND[0])] {
+        for (first, second) in pairs {
+            let sample = with_second_set(&pressed(2, |_| first, scale, 0.0, |_, _| false), second, normal, of_second);
+            let differences = both(&sample);
+            assert!(differences.iter().all(|d| *d < 1e-9), "{first:?} and {second:?}: {differences:?}");
+            let system = sample.system();
+            let b = rhs(system.equations());
+            let (mut whole, mut x) = (vec![0.0; b.len()], vec![0.0; b.len()]);
+            create(Engine::Direct(DirectSettings::default())).solve(&system, &b, &mut whole).expect("regular");
+            let report = create(Engine::Multigrid(multigrid.clone())).solve(&system, &b, &mut x).expect("regular");
+            let said = format!("{first:?} and {second:?}: {report:?}");
+            assert_eq!((report.engine, &report.fallback), ("multigrid", &None), "{said}");
+            assert!(worst(&x, &whole) < 1e-7, "{said}: {}", worst(&x, &whole));
+        }
+    }
+}
+
+#[test]
+fn sets_that_say_the_same_twice_are_refused_by_name() {
+    // Both hold all three directions of one node.
+    let sample = with_second_set(&pressed(2, |_| Kind::Stick, 1e5, 0.0, |_, _| false), Kind::Normal, SECOND[1], 1e5);
+    let refused = Condensation::new(&sample.system(), &CondensationSettings::default(), 1).expect_err("undetermined");
+    let NotCondensable::Undetermined { multiplier, share } = refused else { panic!("{refused:?}") };
+    assert!(multiplier + 1 == sample.layout.equations() && share < 1e-12, "{refused:?}");
+    // Masters can give way, so the whole system is regular: the direct engine serves, and says so.
+    let b = rhs(sample.system().equations());
+    let mut x = vec![0.0; b.len()];
+    let multigrid = MultigridSettings { least: [0; 2], ..MultigridSettings::default() };
+    for engine in [gmres(CondensationSettings::default()), Engine::Multigrid(multigrid)] {
+        let report = create(engine).solve(&sample.system(), &b, &mut x).expect("the direct engine serves");
+        assert!(report.fallback.is_some() && report.relative_residual < 1e-9, "{report:?}");
+    }
+}
+
+#[test]
+fn a_direction_that_two_multipliers_hold_against_rigid_walls_is_singular() {
+    let layout = Layout { node: vec![0, 0, 0, 0], multiplier: vec![false, false, true, true], ..Layout::default() };
+    let bulk = Csr::from_triplets(4, &[(0, 0, 2e5), (0, 1, 1e4), (1, 0, 1e4), (1, 1, 3e5)]);
+    let both = [2, 3].into_iter().flat_map(|m| [(0, 0.6), (1, 0.8)].into_iter().map(move |(i, n)| (m, i, n)));
+    let both: Vec<(usize, usize, f64)> = both.flat_map(|(m, i, n)| [(m, i, n), (i, m, n)]).collect();
+    let sample = Sample { layout, bulk, coupling: Csr::from_triplets(4, &both) };
+    let multigrid = MultigridSettings { least: [0; 2], ..MultigridSettings::default() };
+    let engines = [Engine::Direct(DirectSettings::default()), gmres(CondensationSettings::default())];
+    for engine in engines.into_iter().chain([Engine::Multigrid(multigrid)]) {
+        let solved = create(engine).solve(&sample.system(), &[1.0, 2.0, 0.5, 0.7], &mut [0.0; 4]);
+        assert!(solved.is_err(), "{solved:?}");
     }
 }

@@ -55,7 +55,7 @@ impl PythonResidual {
         for (at, (width, (ids, nodes))) in groups.into_iter().enumerate() {
             line.ask(Event::Block(number, at, ids.clone(), nodes.clone(), width), model, None)?;
             let local = (0..width).flat_map(|node| unknowns.iter().map(move |&variable| (node, variable)));
-            let local = local.map(|(node, variable)| LocalUnknown { node: node as u8, variable }).collect();
+            let local = local.map(|(node, variable)| LocalUnknown::of_node(node as u8, variable)).collect();
             let tangent = if own.symmetric { Tangent::Symmetric } else { Tangent::General };
             let line = Arc::clone(line);
             blocks.push(Block {

@@ -26,8 +26,8 @@ impl<M: Method> ConstraintBlock<M> {
     /// The block of `constraints`, which have the same number of terms.
     pub(crate) fn new(entry: &'static EntityKind, constraints: Vec<Constraint>, method: std::sync::Arc<M>) -> Self {
         let terms = constraints.first().map_or(0, |constraint| constraint.terms.len()) as u8;
-        let position = |node| LocalUnknown { node, variable: POSITION.scalar() };
-        let multiplier = |m: usize| LocalUnknown { node: terms, variable: MULTIPLIERS[m].scalar() };
+        let position = |node| LocalUnknown::of_node(node, POSITION.scalar());
+        let multiplier = |m: usize| LocalUnknown::of_node(terms, MULTIPLIERS[m].scalar());
         let nodes_of = |c: &Constraint| c.terms.iter().map(|term| term.0).chain([c.node]).collect::<Vec<u32>>();
         Self {
             entry,

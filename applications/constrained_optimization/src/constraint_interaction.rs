@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::unfit;
 use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, find_kind};
-use zelus_core::model::{ModelPart, Role, ScalarVariable};
+use zelus_core::model::{Carriers, ModelPart, Role};
 use zelus_core::{Carrier, Result, State};
 
 use crate::constraint_block::ConstraintBlock;
@@ -128,9 +128,12 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
 }
 
 impl<M: Method> Coupling for ConstraintInteraction<M> {
-    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+    fn unknowns(&self, _part: &ModelPart) -> Vec<Carriers> {
         let nodes: Vec<u32> = self.blocks.iter().flat_map(|b| b.constraints().iter().map(|c| c.node)).collect();
-        MULTIPLIERS[..M::MULTIPLIERS].iter().map(|variable| (variable.scalar(), nodes.clone())).collect()
+        MULTIPLIERS[..M::MULTIPLIERS]
+            .iter()
+            .map(|variable| Carriers::of_nodes(variable.scalar(), nodes.clone()))
+            .collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {

@@ -104,7 +104,7 @@ impl<const NODES: usize> Kernel<NODES, 1> for Stated {
     type State = ();
 
     fn unknowns() -> [LocalUnknown; 1] {
-        [LocalUnknown { node: 0, variable: POSITION.scalar() }]
+        [LocalUnknown::of_node(0, POSITION.scalar())]
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {

@@ -21,7 +21,7 @@ impl<const POWER: i32> Kernel<1, 1> for Spring<POWER> {
     type State = ();
 
     fn unknowns() -> [LocalUnknown; 1] {
-        [LocalUnknown { node: 0, variable: POSITION.scalar() }]
+        [LocalUnknown::of_node(0, POSITION.scalar())]
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {

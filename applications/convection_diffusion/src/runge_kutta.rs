@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use zelus_core::diagnostics::{Diagnostic, Result, unfit};
-use zelus_core::model::{ModelPart, ScalarVariable};
+use zelus_core::model::ModelPart;
 use zelus_core::register;
 use zelus_core::strategies::{
     IterationRecord, Monitor, SolutionStrategy, StepRecord, StrategyEntry, accept, critical_step, recorded,
@@ -122,7 +122,7 @@ impl RungeKutta {
         self.lump(part, system)?;
         let length = part.info.delta_time;
         let end = self.assembler.values(part, system);
-        let start = system.dofs.gather(&part.nodes, 1);
+        let start = system.dofs.gather(part, 1);
         let mut rate = vec![0.0; start.len()];
         let mut mean = [rate.clone(), rate.clone()];
         for [share, weight] in STAGES {
@@ -159,19 +159,16 @@ impl RungeKutta {
 
     /// Sets the unknowns a time after the start: prescribed ones on the line to their end, others by their rate.
     fn put(&self, part: &mut ModelPart, system: &System, start: &[f64], end: &[f64], rate: &[f64], time: f64) {
-        let (equations, share) = (self.assembler.equations(), time / part.info.delta_time);
+        let length = part.info.delta_time;
+        let (equations, share) = (self.assembler.equations(), time / length);
         let present = self.assembler.values(part, system);
         let wanted = |n: usize| match equations.is_fixed(n) {
-            true if time == part.info.delta_time => end[n],
+            true if time == length => end[n],
             true => start[n] + share * (end[n] - start[n]),
             false => start[n] + time * rate[n],
         };
         for (number, dof) in system.dofs.dofs().iter().enumerate().filter(|(n, _)| present[*n] != wanted(*n)) {
-            let ScalarVariable { column, .. } = dof.variable;
-            if let Some(field) = part.nodes.history.get_mut(column) {
-                let at = dof.node as usize * field.components + dof.variable.offset();
-                field.levels[0][at] = wanted(number);
-            }
+            dof.set_value(part, wanted(number));
         }
         if !part.constraints.is_empty() {
             impose_constraints(&mut part.nodes, &part.constraints);

@@ -106,7 +106,7 @@ impl Follower for Together {
         }
         let share = NEARBY * if spread > 0.0 { spread / largest } else { 1.0 };
         let small: Vec<f64> = increment.iter().map(|d| share * d).collect();
-        self.heat.lock().unwrap_or_else(PoisonError::into_inner).system.dofs.scatter_add(&small, &mut part.nodes);
+        self.heat.lock().unwrap_or_else(PoisonError::into_inner).system.dofs.scatter_add(&small, part);
         share
     }
 

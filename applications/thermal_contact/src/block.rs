@@ -46,7 +46,7 @@ impl ConductanceBlock {
         laws: Arc<[Box<dyn ConductanceLaw>]>,
     ) -> Self {
         let each = nodes.len() / pairs.len().max(1);
-        let unknowns = (0..each).map(|node| LocalUnknown { node: node as u8, variable: unknown }).collect();
+        let unknowns = (0..each).map(|node| LocalUnknown::of_node(node as u8, unknown)).collect();
         Self { entry, pairs, nodes, masters, unknowns, laws }
     }
 

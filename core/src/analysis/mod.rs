@@ -24,6 +24,8 @@ mod solver;
 mod stage;
 mod threads;
 mod time_stepping;
+#[cfg(test)]
+mod two_walls;
 mod unheeded;
 
 pub use cutting::Cutting;

@@ -1,11 +1,11 @@
 //! The state to which a step goes back that did not converge.
 
 use crate::assembly::System;
-use crate::model::{Fields, Flags, MasterSlaveConstraint, ModelPart, Nodes, ProcessInfo};
+use crate::model::{Fields, Flags, MasterSlaveConstraint, ModelPart, NodalState, ProcessInfo};
 
 /// What a retried step must find again: all that processes and the solution of a step change.
 pub(super) struct Saved {
-    nodes: Nodes,
+    nodal: NodalState,
     elements: (Fields, Flags),
     conditions: (Fields, Flags),
     constraints: Vec<MasterSlaveConstraint>,
@@ -17,7 +17,7 @@ impl Saved {
     pub(super) fn of(part: &ModelPart, system: &mut System) -> Self {
         system.interactions.iter_mut().filter_map(|i| i.retry()).for_each(|own| own.save());
         Self {
-            nodes: part.nodes.clone(),
+            nodal: part.nodal_state(),
             elements: (part.elements.data.clone(), part.elements.flags.clone()),
             conditions: (part.conditions.data.clone(), part.conditions.flags.clone()),
             constraints: part.constraints.clone(),
@@ -27,7 +27,7 @@ impl Saved {
 
     /// Puts the state back.
     pub(super) fn restore(self, part: &mut ModelPart, system: &mut System) {
-        part.nodes = self.nodes;
+        part.restore(self.nodal);
         (part.elements.data, part.elements.flags) = self.elements;
         (part.conditions.data, part.conditions.flags) = self.conditions;
         part.elements.finish();

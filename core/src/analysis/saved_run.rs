@@ -206,9 +206,11 @@ pub(super) fn check_mesh(saved: &ModelPart, read: &ModelPart) -> Result<()> {
         _ => false,
     };
     let fits = shares
+        && saved.slave_nodes.is_alike(&read.slave_nodes)
         && read.properties.keys().all(|id| saved.properties.contains_key(id))
         && has_columns(&saved.nodes.history, &read.nodes.history)
         && has_columns(&saved.nodes.values, &read.nodes.values)
+        && has_columns(&saved.slave_nodes.history, &read.slave_nodes.history)
         && has_columns(&saved.elements.data, &read.elements.data)
         && has_columns(&saved.conditions.data, &read.conditions.data);
     if fits { Ok(()) } else { Err(other_deck(format!("what it holds of {} is not what the deck makes", read.name))) }

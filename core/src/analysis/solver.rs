@@ -249,7 +249,7 @@ impl SolverSettings {
             let problem = self.settings.error("buffer_size", "invalid-value", fact);
             return Err(problem.remedy(format!("write at most {MOST_LEVELS}; schemes take what they need")).into());
         }
-        part.nodes.history.set_levels(levels);
+        part.set_levels(levels);
         part.info.marks.insert(EXPLICIT, self.definition.explicit);
         part.info.marks.insert(INCOMPLETE, !self.is_whole);
         // Names that are not registered are reported where the strategy is made.

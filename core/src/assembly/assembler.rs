@@ -23,7 +23,7 @@ pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 pub use saved::AssemblerState;
 pub use shares::Push;
 
-use self::ranks::{Carriers, carriers_of_all};
+use self::ranks::carriers_of_all;
 use super::bulk_matrix::{BulkPattern, add_residual, block_numbers};
 use super::distribution::Distribution;
 use super::dof_table::Dof;
@@ -38,7 +38,7 @@ use super::system::System;
 use crate::communication::Ranks;
 use crate::diagnostics::Result;
 use crate::entities::{Coupling, EntityBlock, LocalSystems, Tangent, Want};
-use crate::model::ModelPart;
+use crate::model::{Carriers, ModelPart};
 
 /// Largest stiffness of an interaction in those of the bodies: what a stiff penalty adds to the round-off of forces.
 const STIFFEST: f64 = 100.0;
@@ -156,20 +156,18 @@ impl Assembler {
         for block in system.elements.iter().chain(&system.conditions) {
             for unknown in block.unknowns() {
                 let nodes = (0..block.len()).map(|at| block.nodes(at)[unknown.node as usize]);
-                match carriers.iter_mut().find(|(known, ..)| *known == unknown.variable) {
-                    Some((.., list)) => list.extend(nodes),
-                    None => carriers.push((unknown.variable, false, nodes.collect())),
+                match carriers.iter_mut().find(|known| known.variable == unknown.variable) {
+                    Some(known) => known.nodes.extend(nodes),
+                    None => carriers.push(Carriers::of_nodes(unknown.variable, nodes.collect())),
                 }
             }
         }
         if let Some(share) = &part.share {
             carriers = carriers_of_all(carriers, part.nodes.len(), &share.halo);
         }
-        carriers.sort_by_key(|(variable, ..)| *variable);
-        for coupling in couplings(system) {
-            carriers.extend(coupling.unknowns(part).into_iter().map(|(variable, nodes)| (variable, true, nodes)));
-        }
-        system.dofs.number(&part.nodes, &carriers);
+        carriers.sort_by_key(|own| own.variable);
+        let multipliers: Vec<Vec<Carriers>> = couplings(system).map(|coupling| coupling.unknowns(part)).collect();
+        system.dofs.number(part, &carriers, &multipliers.concat());
         let numbers = |blocks: &[Box<dyn EntityBlock>]| -> Vec<Vec<u32>> {
             blocks.iter().map(|block| block_numbers(block.as_ref(), &system.dofs)).collect()
         };
@@ -179,9 +177,9 @@ impl Assembler {
         let interaction_unknowns: Vec<u32> =
             (0..system.dofs.len() as u32).filter(|&n| system.dofs.dofs()[n as usize].multiplier).collect();
         let mut coupling_of = vec![0; interaction_unknowns.len()];
-        for (at, coupling) in couplings(system).enumerate() {
-            for (variable, nodes) in coupling.unknowns(part) {
-                let numbers = nodes.iter().filter_map(|&node| system.dofs.number_of(variable, node));
+        for (at, of_coupling) in multipliers.iter().enumerate() {
+            for own in of_coupling {
+                let numbers = own.owners().filter_map(|owner| system.dofs.number_of(own.variable, owner));
                 let places = numbers.filter_map(|number| interaction_unknowns.binary_search(&number).ok());
                 places.for_each(|place| coupling_of[place] = at);
             }
@@ -267,7 +265,7 @@ impl Assembler {
 
     /// Present values of all unknowns.
     pub fn values(&self, part: &ModelPart, system: &System) -> Vec<f64> {
-        system.dofs.gather(&part.nodes, 0)
+        system.dofs.gather(part, 0)
     }
 
     /// External minus internal forces over all unknowns; at supports, minus the reaction.
@@ -450,8 +448,8 @@ impl Assembler {
     /// Terms of constant blocks scale with displacements, those of all others with positions. No term is larger than
     /// stiffness times [`reach`]: bodies that have gone farther, and multipliers that push farther, measure no accuracy.
     pub fn round_off(&self, part: &ModelPart, system: &System) -> Vec<f64> {
-        let reach = reach(&part.ranks, &part.nodes, &system.dofs, &self.equations);
-        let before = system.dofs.gather(&part.nodes, 1);
+        let reach = reach(part, &system.dofs, &self.equations);
+        let before = system.dofs.gather(part, 1);
         let values = self.values(part, system);
         let dofs = system.dofs.dofs();
         // Of every unknown: its displacement, its position, its size as a multiplier, and how far it may go.

@@ -11,7 +11,8 @@ use super::local::{BATCH, add_rhs, entity_lhs, evaluate, side_by_side};
 use super::neighbours::Neighbours;
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Want};
+use crate::entities::{EntityBlock, EntityError, LocalOwner, LocalSystems, LocalUnknown, StepView, Want};
+use crate::model::Owner;
 
 /// Pattern over all unknowns: a row of node `a` holds the bulk unknowns of every node that shares an element with `a`.
 ///
@@ -200,12 +201,19 @@ impl BulkPattern {
 /// When the block uses an unknown that was not numbered.
 pub fn block_numbers(block: &dyn EntityBlock, dofs: &DofTable) -> Vec<u32> {
     let unknowns = block.unknowns();
-    let columns: Vec<&[u32]> = unknowns.iter().map(|u| dofs.numbers(u.variable)).collect();
+    let numbers = |u: &LocalUnknown| match u.owner {
+        LocalOwner::Node => dofs.numbers(u.variable),
+        LocalOwner::Slave(_) => dofs.slave_numbers(u.variable),
+    };
+    let columns: Vec<&[u32]> = unknowns.iter().map(numbers).collect();
     let mut out = vec![0; block.len() * unknowns.len()];
     let entities = out.par_chunks_exact_mut(unknowns.len().max(1)).enumerate().with_min_len(ROWS);
     entities.for_each(|(at, out)| {
-        let nodes = block.nodes(at);
-        let numbers = unknowns.iter().zip(&columns).map(|(u, column)| column[nodes[u.node as usize] as usize]);
+        let (nodes, slaves) = (block.nodes(at), block.slave_owners(at));
+        let numbers = unknowns.iter().zip(&columns).map(|(u, column)| {
+            let (Owner::Node(index) | Owner::Slave(index)) = u.owner_among(nodes, slaves);
+            column[index as usize]
+        });
         out.iter_mut().zip(numbers).for_each(|(to, number)| *to = number);
     });
     out

@@ -14,7 +14,7 @@ use zelus_linear_algebra::{Csr, Layout};
 use super::dof_table::{Dof, DofTable, NONE};
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
-use crate::model::{MasterSlaveConstraint, Nodes};
+use crate::model::{MasterSlaveConstraint, Nodes, Owner};
 
 /// What became of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -72,7 +72,7 @@ impl Equations {
         let mut slaves: BTreeMap<u32, &MasterSlaveConstraint> = BTreeMap::new();
         for constraint in constraints.iter().filter(|c| c.active) {
             let (node, variable) = constraint.slave;
-            let Some(number) = dofs.number_of(variable, node) else { continue };
+            let Some(number) = dofs.number_of(variable, Owner::Node(node)) else { continue };
             if let Some(first) = slaves.insert(number, constraint) {
                 let fact = format!(
                     "constraints {} and {} both eliminate {variable} of node {}",
@@ -294,7 +294,7 @@ fn follow(
     for (at, &((node, variable), weight)) in constraint.masters.iter().enumerate() {
         let force = constraint.forces.as_ref().map_or(weight, |forces| forces[at]);
         let shares = [shares[0] * weight, shares[1] * force];
-        let master = dofs.number_of(variable, node).ok_or_else(|| {
+        let master = dofs.number_of(variable, Owner::Node(node)).ok_or_else(|| {
             Diagnostic::error(
                 "constraint-unknown",
                 format!(
@@ -339,7 +339,7 @@ pub fn impose_constraints(nodes: &mut Nodes, constraints: &[MasterSlaveConstrain
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{ModelPart, test_variables::DISPLACEMENT};
+    use crate::model::{Carriers, ModelPart, test_variables::DISPLACEMENT};
 
     /// Three nodes on a line, some of them fixed; the last follows the others by halves and passes its force on as `forces` say.
     fn equations(fixed: &[u32], forces: Option<Vec<f64>>) -> Equations {
@@ -348,7 +348,7 @@ mod tests {
         let x = DISPLACEMENT.component(0);
         part.nodes.history.add(&DISPLACEMENT);
         let mut dofs = DofTable::default();
-        dofs.number(&part.nodes, &[(x, false, vec![0, 1, 2])]);
+        dofs.number(&part, &[Carriers::of_nodes(x, vec![0, 1, 2])], &[]);
         part.nodes.set_fixed(x, fixed, true);
         let masters = vec![((0, x), 0.5), ((1, x), 0.5)];
         let constraint = MasterSlaveConstraint { id: 1, slave: (2, x), masters, forces, constant: 0.0, active: true };

@@ -16,7 +16,7 @@ use super::dof_table::DofTable;
 use super::supports::supports;
 use crate::Carrier;
 use crate::entities::MasslessNodes;
-use crate::model::ModelPart;
+use crate::model::{ModelPart, Owner};
 
 /// Massless nodes and unknowns, and what stands in for them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -90,7 +90,8 @@ impl Redistribution {
         if !of_node.is_empty() {
             for (number, dof) in dofs.dofs().iter().enumerate().filter(|(_, dof)| !dof.multiplier) {
                 let Some(below) = of_node.get(&dof.node).filter(|_| free(number)) else { continue };
-                let numbers = below.iter().map(|&(node, weight)| Some((dofs.number_of(dof.variable, node)?, weight)));
+                let numbers =
+                    below.iter().map(|&(node, w)| Some((dofs.number_of(dof.variable, Owner::Node(node))?, w)));
                 if let Some(list) = numbers.collect::<Option<Vec<_>>>() {
                     unknowns.push((number as u32, list));
                 }

@@ -9,21 +9,50 @@ use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::State;
 
 use crate::diagnostics::{Diagnostic, Error, Result};
-use crate::model::{EntityKind, EntityTable, ModelPart, Nodes, ScalarVariable};
+use crate::model::{EntityKind, EntityTable, ModelPart, Nodes, Owner, ScalarVariable};
 
-/// A row of a local system: which unknown of which local node.
+/// The owner of a local unknown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LocalOwner {
+    /// The mesh node at which it stands.
+    Node,
+    /// A slave node: its position in [`EntityBlock::slave_owners`].
+    Slave(u8),
+}
+
+/// A row of a local system: which unknown of which local node or slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LocalUnknown {
-    /// Position of the node in the entity's connectivity.
+    /// Position of its mesh node in the entity's connectivity.
     pub node: u8,
+    /// Its owner.
+    pub owner: LocalOwner,
     /// The unknown.
     pub variable: ScalarVariable,
 }
 
 impl LocalUnknown {
+    /// The unknown of a mesh node, by its position in the connectivity.
+    pub const fn of_node(node: u8, variable: ScalarVariable) -> Self {
+        Self { node, owner: LocalOwner::Node, variable }
+    }
+
+    /// The unknown of a slave node, by its position in [`EntityBlock::slave_owners`] and that of its mesh node.
+    pub const fn of_slave(node: u8, slave: u8, variable: ScalarVariable) -> Self {
+        Self { node, owner: LocalOwner::Slave(slave), variable }
+    }
+
     /// One variable at each of the nodes.
     pub fn of_nodes<const NODES: usize>(variable: ScalarVariable) -> [Self; NODES] {
-        std::array::from_fn(|node| Self { node: node as u8, variable })
+        std::array::from_fn(|node| Self::of_node(node as u8, variable))
+    }
+
+    /// The owner of this unknown in an entity with these nodes and slave nodes.
+    pub fn owner_among(&self, nodes: &[u32], slaves: &[u32]) -> Owner {
+        match self.owner {
+            LocalOwner::Node => Owner::Node(nodes[usize::from(self.node)]),
+            LocalOwner::Slave(at) => Owner::Slave(slaves[usize::from(at)]),
+        }
     }
 }
 
@@ -174,6 +203,12 @@ pub trait EntityBlock: Send + Sync {
 
     /// Node indices of the `at`-th entity.
     fn nodes(&self, at: usize) -> &[u32];
+
+    /// Indices of the slave nodes whose unknowns the `at`-th entity has, each at one of its mesh nodes. Blocks of interactions
+    /// may have some; unknowns of elements and conditions are those of mesh nodes.
+    fn slave_owners(&self, _at: usize) -> &[u32] {
+        &[]
+    }
 
     /// The rows of every local system.
     fn unknowns(&self) -> &[LocalUnknown];

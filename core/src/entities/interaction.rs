@@ -9,7 +9,7 @@ use super::block::EntityBlock;
 use super::join::Join;
 use super::pair_state::PairState;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::model::{ModelPart, ScalarVariable};
+use crate::model::{Carriers, ModelPart};
 
 /// What the active-set stage of an iteration changed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -195,8 +195,9 @@ pub trait Interaction: Send + Sync {
 
 /// Blocks of an interaction, and the unknowns it adds.
 pub trait Coupling {
-    /// Unknowns it adds (beside those of elements), with the nodes that carry them; constant over the run.
-    fn unknowns(&self, _part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+    /// Lagrange multipliers it adds (beside the unknowns of elements), with the mesh nodes or slave nodes that own them;
+    /// constant over the stage. The owners have the columns of their variables.
+    fn unknowns(&self, _part: &ModelPart) -> Vec<Carriers> {
         Vec::new()
     }
 

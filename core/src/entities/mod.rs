@@ -14,7 +14,7 @@ mod pair_state;
 mod registered;
 mod view;
 
-pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Tangent, Want};
+pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalOwner, LocalSystems, LocalUnknown, Tangent, Want};
 pub(crate) use block_state::regroup;
 pub use constraint_entry::{ConstraintEntry, ConstraintFactory, ConstraintRow};
 pub use face_point::FacePoint;

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{EntityTable, ModelPart, Nodes, ProcessInfo, Properties};
+use crate::model::{EntityTable, ModelPart, Nodes, ProcessInfo, Properties, SlaveNodes};
 
 /// Fields and step data at one moment, to read only.
 #[derive(Clone, Copy)]
 pub struct StepView<'a> {
     /// Nodes with their fields and flags.
     pub nodes: &'a Nodes,
+    /// Slave nodes with their fields.
+    pub slave_nodes: &'a SlaveNodes,
     /// Elements with their data and flags.
     pub elements: &'a EntityTable,
     /// Conditions with their data and flags.
@@ -24,6 +26,7 @@ impl ModelPart {
     pub fn view(&self) -> StepView<'_> {
         StepView {
             nodes: &self.nodes,
+            slave_nodes: &self.slave_nodes,
             elements: &self.elements,
             conditions: &self.conditions,
             properties: &self.properties,

@@ -182,6 +182,19 @@ impl Fields {
         Some(field.levels[0][index * field.components + variable.offset()])
     }
 
+    /// One number at a time level; `None` where there is no such column or level.
+    pub fn value(&self, variable: ScalarVariable, index: usize, level: usize) -> Option<f64> {
+        let field = self.columns.get(variable.column)?;
+        field.levels.get(level).map(|values| values[index * field.components + variable.offset()])
+    }
+
+    /// Puts one number into a level of a column, where both are there.
+    pub fn set_value(&mut self, variable: ScalarVariable, index: usize, level: usize, value: f64) {
+        let Some(field) = self.columns.get_mut(variable.column) else { return };
+        let at = index * field.components + variable.offset();
+        field.levels.get_mut(level).into_iter().for_each(|values| values[at] = value);
+    }
+
     /// A new time level: each column moves back by one, the present starts as a copy of the previous.
     pub fn advance(&mut self) {
         for field in self.columns.values_mut() {

@@ -3,6 +3,7 @@
 use super::entity_table::EntityTable;
 use super::geometries::Geometries;
 use super::model_part::ModelPart;
+use super::slave_nodes::SlaveNodes;
 use super::sub_part::SubPart;
 
 /// Where the entities of all shares, one share after another, are in the whole part.
@@ -80,6 +81,16 @@ impl ModelPart {
             from.iter_mut().zip(counts).for_each(|(from, count)| *from += count);
         }
         tree.normalise();
+        let of_ranks: Vec<_> = shares
+            .iter()
+            .zip(&ranks)
+            .enumerate()
+            .map(|(rank, (part, share))| {
+                let owned = share.owners.iter().map(|&owner| owner as usize == rank).collect();
+                (&part.slave_nodes, share.places.as_slice(), owned)
+            })
+            .collect();
+        let slave_nodes = SlaveNodes::joined(&of_ranks)?;
         let mut shares = shares.into_iter();
         let mut all = shares.next().ok_or_else(incomplete)?;
         for part in shares {
@@ -100,7 +111,7 @@ impl ModelPart {
         } else {
             all.geometries = Geometries::default();
         }
-        (all.tree, all.share) = (tree, None);
+        (all.tree, all.share, all.slave_nodes) = (tree, None, slave_nodes);
         Ok(all)
     }
 

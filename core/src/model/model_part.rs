@@ -8,13 +8,17 @@ use serde::{Deserialize, Serialize};
 use super::constraint::MasterSlaveConstraint;
 use super::entity_kind::Role;
 use super::entity_table::EntityTable;
+use super::fields::Fields;
 use super::geometries::Geometries;
 use super::nodes::Nodes;
+use super::owner::Owner;
 use super::process_info::ProcessInfo;
 use super::properties::{Properties, PropertyValue};
 use super::share::{MeshSizes, Share};
+use super::slave_nodes::SlaveNodes;
 use super::sub_part::SubPart;
 use super::table::Table;
+use super::variable::ScalarVariable;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
 
@@ -25,6 +29,9 @@ pub struct ModelPart {
     pub name: String,
     /// Nodes.
     pub nodes: Nodes,
+    /// Slave nodes of interfaces: owners of unknowns beside the nodes.
+    #[serde(default)]
+    pub slave_nodes: SlaveNodes,
     /// Elements as the mesh gives them.
     pub elements: EntityTable,
     /// Conditions as the mesh gives them.
@@ -48,6 +55,13 @@ pub struct ModelPart {
     pub ranks: Ranks,
     /// What this rank has of a mesh that several share; `None` when this process computes everything.
     pub share: Option<Share>,
+}
+
+/// Nodes and slave nodes with all their values: the state that iterations change.
+#[derive(Clone)]
+pub struct NodalState {
+    nodes: Nodes,
+    slave_nodes: SlaveNodes,
 }
 
 impl ModelPart {
@@ -184,6 +198,7 @@ impl ModelPart {
         Self {
             name: self.name.clone(),
             nodes: self.nodes.pick(nodes),
+            slave_nodes: self.slave_nodes.kept(&new_nodes),
             elements: self.elements.pick(elements, &new_nodes),
             conditions: self.conditions.pick(conditions, &new_nodes),
             geometries: Geometries::default(),
@@ -198,9 +213,56 @@ impl ModelPart {
         }
     }
 
+    /// Sets the number of time levels of nodes and slave nodes; new ones copy the oldest.
+    pub fn set_levels(&mut self, levels: usize) {
+        self.nodes.history.set_levels(levels);
+        self.slave_nodes.history.set_levels(levels);
+    }
+
+    /// Mesh node at which an owner of unknowns stands.
+    pub fn node_of(&self, owner: Owner) -> u32 {
+        match owner {
+            Owner::Node(node) => node,
+            Owner::Slave(slave) => self.slave_nodes.mesh_node(slave),
+        }
+    }
+
+    /// Value of an owner's variable at a time level (0 the present); `None` where there is no such column or level.
+    pub fn value_of(&self, owner: Owner, variable: ScalarVariable, level: usize) -> Option<f64> {
+        let (fields, index) = match owner {
+            Owner::Node(node) => (&self.nodes.history, node),
+            Owner::Slave(slave) => (&self.slave_nodes.history, slave),
+        };
+        fields.value(variable, index as usize, level)
+    }
+
+    /// Sets the value of an owner's variable at a time level, where its column has that level.
+    pub fn set_value_of(&mut self, owner: Owner, variable: ScalarVariable, level: usize, value: f64) {
+        let (fields, index): (&mut Fields, u32) = match owner {
+            Owner::Node(node) => (&mut self.nodes.history, node),
+            Owner::Slave(slave) => (&mut self.slave_nodes.history, slave),
+        };
+        fields.set_value(variable, index as usize, level, value);
+    }
+
+    /// Copy of all values of nodes and slave nodes.
+    pub fn nodal_state(&self) -> NodalState {
+        NodalState { nodes: self.nodes.clone(), slave_nodes: self.slave_nodes.clone() }
+    }
+
+    /// Puts back the values of nodes and slave nodes.
+    pub fn restore(&mut self, state: NodalState) {
+        (self.nodes, self.slave_nodes) = (state.nodes, state.slave_nodes);
+    }
+
     /// A new time step: fields move back one level, time and step advance.
     pub fn clone_time_step(&mut self, time: f64) {
         self.nodes.history.advance();
+        let levels = self.nodes.history.levels();
+        if self.slave_nodes.history.levels() != levels {
+            self.slave_nodes.history.set_levels(levels);
+        }
+        self.slave_nodes.history.advance();
         self.info.delta_time = time - self.info.time;
         self.info.time = time;
     }

@@ -34,6 +34,8 @@ impl ModelPart {
             constraints: self.constraints.len(),
         };
         check_nodes(&self.nodes)?;
+        holds(self.slave_nodes.is_sound(counts.nodes), "its slave nodes are not those of its nodes")?;
+        check_fields(&self.slave_nodes.history, self.slave_nodes.len())?;
         self.elements.check(counts.nodes)?;
         self.conditions.check(counts.nodes)?;
         holds(self.geometries.is_sound(counts.nodes), "its geometries are not whole")?;

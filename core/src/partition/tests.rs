@@ -3,6 +3,7 @@ use std::collections::HashMap;
 use super::share::Shares;
 use super::{Counts, Partition, Repeats, Surface, Traffic, common_nodes, partition, surfaces};
 use crate::geometry::Shape;
+use crate::model::test_variables::NORMAL;
 use crate::model::{EntityKind, ModelPart, Nodes, Role, SubPart};
 use crate::parameters::{Document, Node};
 use crate::processes::{NamedSurface, ProcessEntry};
@@ -240,6 +241,41 @@ fn ranks_keep_their_elements_and_the_interface() {
             assert_eq!(places(&shares[a], of_a), places(&shares[b], of_b));
         }
     }
+}
+
+/// Slave nodes of interfaces go to all ranks in one order, those of other nodes with their nodes; shares make the whole again.
+#[test]
+fn slave_nodes_go_with_their_mesh_nodes_and_come_back() {
+    let mut whole = two_blocks(3);
+    let slaves = whole.part("Slave").unwrap().nodes.clone();
+    whole.slave_nodes.set("floor", &slaves);
+    whole.slave_nodes.set("edge", &slaves[..4]);
+    whole.slave_nodes.set("earlier", &[0, 1, 127]);
+    let values = whole.slave_nodes.history.values_mut(&NORMAL, 0);
+    values.iter_mut().enumerate().for_each(|(at, value)| *value = at as f64);
+    let surfaces = its_surfaces(&whole);
+    let cut = partition(&whole, &surfaces, 3).unwrap();
+    let common = common_nodes(&whole, &surfaces, &Document::from_str("{}", "deck.json").unwrap().root);
+    let of_all = Shares::new(&whole, &cut, &common);
+    let mut shares: Vec<ModelPart> = (0..3).map(|rank| of_all.of(&whole, rank)).collect();
+    for share in &shares {
+        share.check().unwrap();
+        assert_eq!([share.slave_nodes.range("floor"), share.slave_nodes.range("edge")], [Some(0..16), Some(16..20)]);
+        let ids = |part: &ModelPart, at: u32| part.nodes.ids[part.slave_nodes.mesh_node(at) as usize];
+        assert!((0..20).all(|at| ids(share, at) == ids(&whole, at)));
+    }
+    assert!(shares.iter().any(|share| share.slave_nodes.len() < whole.slave_nodes.len()));
+    // Values of copies count for nothing.
+    for (rank, share) in shares.iter_mut().enumerate() {
+        let owned = |at: u32| cut.nodes[share.share.as_ref().unwrap().places[at as usize] as usize] as usize == rank;
+        let copies: Vec<bool> = share.slave_nodes.mesh_nodes().iter().map(|&node| !owned(node)).collect();
+        let values = share.slave_nodes.history.values_mut(&NORMAL, 0).chunks_exact_mut(3);
+        values.zip(copies).filter(|(_, is_copy)| *is_copy).for_each(|(value, _)| value.fill(f64::NAN));
+    }
+    let like = of_all.of(&whole, 1);
+    let joined = ModelPart::joined(shares).unwrap();
+    assert!(joined.slave_nodes == whole.slave_nodes);
+    assert!(joined.cut_like(&like).unwrap().slave_nodes == like.slave_nodes);
 }
 
 /// What is left out of a process's settings is its default, the whole skin, and parts that it needs whole are kept.

@@ -6,7 +6,9 @@ use super::assign_to_entities::is_load;
 use super::prescription::{Load, LoadCarrier};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
-use crate::model::{Model, ModelPart, Named, NodeUnknown, ScalarVariable, SubPart, VariableKind, named, variables};
+use crate::model::{
+    Model, ModelPart, Named, NodeUnknown, Owner, ScalarVariable, SubPart, VariableKind, named, variables,
+};
 use crate::parameters::{Defaults, Interval, Node, Settings};
 use crate::registry::Entry;
 
@@ -188,7 +190,7 @@ pub fn check_unknowns(
     mut unknowns: impl Iterator<Item = NodeUnknown>,
     place: &Place,
 ) -> Result<()> {
-    match unknowns.find(|&(node, variable)| system.dofs.number_of(variable, node).is_none()) {
+    match unknowns.find(|&(node, variable)| system.dofs.number_of(variable, Owner::Node(node)).is_none()) {
         None => Ok(()),
         Some((node, variable)) => {
             let fact = format!("{variable} is not an unknown of node {}", part.nodes.ids[node as usize]);

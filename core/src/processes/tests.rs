@@ -2,7 +2,7 @@ use super::*;
 use crate::assembly::System;
 use crate::diagnostics::{Report, Result};
 use crate::geometry::Shape;
-use crate::model::{EntityKind, Model, ModelPart, Nodes, Role, ScalarVariable, SubPart, named};
+use crate::model::{Carriers, EntityKind, Model, ModelPart, Nodes, Role, ScalarVariable, SubPart, named};
 use crate::parameters::{Defaults, Document, Settings};
 use crate::register_variable;
 use crate::registry::{self, Entry};
@@ -40,9 +40,9 @@ fn model() -> Model {
 /// The displacements of [`model`] are unknowns.
 fn system() -> System {
     let mut system = System::default();
-    let displacement = |name| (scalar(name), false, vec![0, 1, 2]);
-    let nodes = &model().parts["Structure"].nodes;
-    system.dofs.number(nodes, &["DISPLACEMENT_X", "DISPLACEMENT_Y"].map(displacement));
+    let displacement = |name| Carriers::of_nodes(scalar(name), vec![0, 1, 2]);
+    let part = &model().parts["Structure"];
+    system.dofs.number(part, &["DISPLACEMENT_X", "DISPLACEMENT_Y"].map(displacement), &[]);
     system
 }
 

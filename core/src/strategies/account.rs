@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::balance::{Balance, Energies, Flows, PairBalance, Sums, UnknownBalance};
 use crate::Carrier;
-use crate::assembly::{Assembler, Inertia, NONE, Push, System};
+use crate::assembly::{Assembler, Inertia, Push, System};
 use crate::diagnostics::Result;
 use crate::entities::PairState;
 use crate::model::{ModelPart, Rates, ScalarVariable};
@@ -110,7 +110,7 @@ impl Account {
     fn works(&self, part: &ModelPart, system: &System, assembler: &Assembler, forces: &Forces) -> [f64; KINDS] {
         let goes_on = part.info.step > 1;
         let mut own = [0.0; KINDS];
-        let levels = [0, 1].map(|level| system.dofs.gather(&part.nodes, level));
+        let levels = [0, 1].map(|level| system.dofs.gather(part, level));
         for (n, dof) in system.dofs.dofs().iter().enumerate() {
             if dof.multiplier || !assembler.counts(n) || dof.rates().is_none_or(|rates| rates.second.is_none()) {
                 continue;
@@ -246,11 +246,12 @@ fn sums(
         let at = columns.iter().position(|column| *column == variable.column).expect("one of them");
         let (of_column, [entering, leaving, turning]) = (&mut all[at], &mut through[at]);
         let c = variable.offset();
-        for (node, &number) in system.dofs.numbers(variable).iter().enumerate() {
-            if number == NONE || !part.owns_node(node) {
+        for n in system.dofs.of_variable(variable) {
+            let node = system.dofs.dofs()[n].node as usize;
+            if !part.owns_node(node) {
                 continue;
             }
-            let (n, arm) = (number as usize, sub(part.nodes.current[node], centre));
+            let arm = sub(part.nodes.current[node], centre);
             let left = residual[n] + forces[REACTIONS][n];
             for own in [forces[LOADS][n], forces[REACTIONS][n]] {
                 *entering += own.max(0.0);

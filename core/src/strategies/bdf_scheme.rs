@@ -65,7 +65,7 @@ impl Scheme for BdfScheme {
     fn prepare(&self, part: &mut ModelPart) {
         Rates::add(&mut part.nodes.history, &[FIRST, SECOND]);
         let levels = part.nodes.history.levels().max(self.order + 1);
-        part.nodes.history.set_levels(levels);
+        part.set_levels(levels);
     }
 
     fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
@@ -113,7 +113,7 @@ impl Scheme for BdfScheme {
     }
 
     fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
-        let present = |column| dofs.column(&part.nodes.history, column, 0);
+        let present = |column| dofs.column(part, column, 0);
         Some(Inertia {
             mass_factor: self.weights[0].powi(2),
             damping_factor: self.weights[0],

@@ -55,15 +55,14 @@ impl Scheme for BossakScheme {
 
     fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
         let dt = part.info.delta_time;
-        let history = &part.nodes.history;
-        let [a, a_old] = [0, 1].map(|level| dofs.column(history, SECOND, level));
+        let [a, a_old] = [0, 1].map(|level| dofs.column(part, SECOND, level));
         Some(Inertia {
             mass_factor: (1.0 - self.alpha_m) / (self.beta * dt * dt),
             damping_factor: self.gamma / (self.beta * dt),
             alpha: self.rayleigh[0],
             beta: self.rayleigh[1],
             acceleration: a.iter().zip(&a_old).map(|(a, old)| (1.0 - self.alpha_m) * a + self.alpha_m * old).collect(),
-            velocity: dofs.column(history, FIRST, 0),
+            velocity: dofs.column(part, FIRST, 0),
             carried: Vec::new(),
         })
     }

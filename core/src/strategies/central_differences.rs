@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::scheme::{SchemeEntry, SchemeFactory};
 use crate::assembly::DofTable;
-use crate::model::{ColumnOf, FIRST, Fields, ModelPart, Rates, SECOND, UNKNOWN};
+use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND, UNKNOWN};
 use crate::register;
 
 /// The first derivative half a step later.
@@ -28,18 +28,19 @@ impl CentralDifferences {
         Rates::add(&mut part.nodes.history, &[FIRST, SECOND, MIDDLE]);
     }
 
-    /// Moves the unknowns by a step of `delta_time` under `acceleration` (one number an unknown).
+    /// Moves the unknowns by the step under `acceleration` (one number an unknown).
     ///
     /// Unknowns for which `target` gives a value go there; their rates follow the motion.
     pub fn advance(
         &mut self,
-        fields: &mut Fields,
+        part: &mut ModelPart,
         dofs: &DofTable,
         acceleration: &[f64],
-        delta_time: f64,
         target: impl Fn(usize) -> Option<f64>,
     ) {
+        let delta_time = part.info.delta_time;
         if !self.begun {
+            let fields = &mut part.nodes.history;
             for (rates, _) in Rates::within(fields) {
                 let initial = fields.level(rates.first, 0).to_vec();
                 rates.middle.into_iter().for_each(|middle| fields.write_level(middle, 0, &initial));
@@ -47,8 +48,8 @@ impl CentralDifferences {
             self.begun = true;
         }
         let half = 0.5 * delta_time;
-        let before = dofs.column(fields, MIDDLE, 0);
-        let mut u = dofs.column(fields, UNKNOWN, 0);
+        let before = dofs.column(part, MIDDLE, 0);
+        let mut u = dofs.column(part, UNKNOWN, 0);
         let mut rates = [FIRST, SECOND, MIDDLE].map(|_| vec![0.0; dofs.len()]);
         for n in 0..dofs.len() {
             let middle = before[n];
@@ -68,9 +69,9 @@ impl CentralDifferences {
             };
             rates.iter_mut().zip(new).for_each(|(column, value)| column[n] = value);
         }
-        dofs.write_column(fields, UNKNOWN, 0, &u);
+        dofs.write_column(part, UNKNOWN, 0, &u);
         for (column, values) in [FIRST, SECOND, MIDDLE].into_iter().zip(&rates) {
-            dofs.write_column(fields, column, 0, values);
+            dofs.write_column(part, column, 0, values);
         }
         self.half_before = half;
     }

@@ -5,7 +5,7 @@ use std::cell::LazyCell;
 use crate::assembly::{Distribution, Dof, DofTable, Equations};
 use crate::communication::Ranks;
 use crate::diagnostics::{Report, Result};
-use crate::model::{Nodes, ScalarVariable};
+use crate::model::{Nodes, ScalarVariable, SlaveNodes};
 use crate::names::{self, Name};
 use crate::parameters::{Node, Settings};
 use crate::registered_kind;
@@ -42,6 +42,8 @@ pub struct Measures<'a> {
     pub iteration: usize,
     /// Nodes, for flags and fields.
     pub nodes: &'a Nodes,
+    /// Slave nodes with their fields.
+    pub slave_nodes: &'a SlaveNodes,
     /// Unknowns.
     pub dofs: &'a DofTable,
     /// Which unknowns are solved for.

@@ -180,7 +180,7 @@ impl ExplicitStrategy {
             let follow = self.settings.follow_prescribed;
             equations.is_fixed(n).then(|| if follow { targets[n] } else { start[n] })
         };
-        self.scheme.advance(&mut part.nodes.history, &system.dofs, &acceleration, part.info.delta_time, target);
+        self.scheme.advance(part, &system.dofs, &acceleration, target);
         if !part.constraints.is_empty() {
             impose_constraints(&mut part.nodes, &part.constraints);
         }
@@ -203,11 +203,8 @@ impl ExplicitStrategy {
     /// Puts prescribed unknowns back to where they are now: forces are those of the step's start.
     fn step_back(&self, part: &mut ModelPart, system: &System) {
         for dof in system.dofs.dofs() {
-            if part.nodes.is_fixed(dof.variable, dof.node)
-                && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
-            {
-                let at = dof.node as usize * field.components + dof.variable.offset();
-                field.levels[0][at] = field.levels[1][at];
+            if part.nodes.is_fixed(dof.variable, dof.node) {
+                dof.step_back(part);
             }
         }
     }
@@ -221,19 +218,19 @@ impl ExplicitStrategy {
             alpha: self.settings.rayleigh[0],
             beta: self.settings.rayleigh[1],
             acceleration: vec![0.0; system.dofs.len()],
-            velocity: system.dofs.column(&part.nodes.history, FIRST, 0),
+            velocity: system.dofs.column(part, FIRST, 0),
             ..Inertia::default()
         })
     }
 
     /// What supports and constraints must carry: the residual less the inertia.
     fn unbalanced(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Vec<f64> {
-        let acceleration = system.dofs.column(&part.nodes.history, SECOND, 0);
+        let acceleration = system.dofs.column(part, SECOND, 0);
         residual.iter().zip(acceleration).zip(&self.mass).map(|((r, a), m)| r - m * a).collect()
     }
 
     fn write_residual(&self, part: &mut ModelPart, system: &System, residual: &[f64]) {
-        system.dofs.write_column(&mut part.nodes.history, OUT_OF_BALANCE, 0, residual);
+        system.dofs.write_column(part, OUT_OF_BALANCE, 0, residual);
     }
 
     /// Warns, once, of a fixed unknown on any rank that is given another value; collective.

@@ -34,7 +34,7 @@ pub(super) struct Gathered {
 const GATHERED: u64 = 1 << 32;
 
 /// Numbers that say what an equation is: place of its node, meaning, position.
-const NUMBERS: usize = 7;
+const NUMBERS: usize = 8;
 
 /// All equations on rank 0.
 #[derive(Default)]
@@ -53,9 +53,9 @@ impl Whole {
         let row = |&equation: &u32| {
             let number = unknowns[equation as usize];
             let place = assembler.distribution().map_or(0, |distribution| distribution.place(number as usize));
-            let [variable, node, multiplier] = Meaning::of(dofs, nodes, number).pack(dofs);
+            let [variable, node, multiplier, set] = Meaning::of(dofs, nodes, number).pack(dofs);
             let [x, y, z] = nodes.initial[dofs.dofs()[number as usize].node as usize];
-            [f64::from(place), variable, node, multiplier, x, y, z]
+            [f64::from(place), variable, node, multiplier, set, x, y, z]
         };
         let own: Vec<f64> = numbering.own.iter().flat_map(row).collect();
         let counts: Vec<usize> = numbering.counts().iter().map(|count| NUMBERS * count).collect();
@@ -67,8 +67,8 @@ impl Whole {
         self.places = vec![0; rows.len()];
         order.iter().enumerate().for_each(|(place, &number)| self.places[number as usize] = place as u32);
         let sorted = || order.iter().map(|&number| rows[number as usize]);
-        self.meanings = sorted().filter_map(|row| Meaning::unpack(&row[1..4], dofs)).collect();
-        let positions = sorted().map(|row| [row[4], row[5], row[6]]);
+        self.meanings = sorted().filter_map(|row| Meaning::unpack(&row[1..5], dofs)).collect();
+        let positions = sorted().map(|row| [row[5], row[6], row[7]]);
         let place = |(meaning, at): (&Meaning, _)| (!meaning.multiplier).then_some((meaning.variable, at));
         let places: Vec<Place> = self.meanings.iter().zip(positions).map(place).collect();
         self.layout = Layout {

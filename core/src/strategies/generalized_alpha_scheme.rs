@@ -72,9 +72,8 @@ impl Scheme for GeneralizedAlphaScheme {
 
     fn inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
         let dt = part.info.delta_time;
-        let history = &part.nodes.history;
-        let [a, a_old] = [0, 1].map(|level| dofs.column(history, SECOND, level));
-        let [v, v_old] = [0, 1].map(|level| dofs.column(history, FIRST, level));
+        let [a, a_old] = [0, 1].map(|level| dofs.column(part, SECOND, level));
+        let [v, v_old] = [0, 1].map(|level| dofs.column(part, FIRST, level));
         let (m, f) = (self.alpha_m, self.alpha_f);
         let scale = 1.0 / (1.0 - f);
         Some(Inertia {
@@ -89,7 +88,7 @@ impl Scheme for GeneralizedAlphaScheme {
     }
 
     fn past_inertia(&self, part: &ModelPart, dofs: &DofTable) -> Option<Inertia> {
-        let old = |column| dofs.column(&part.nodes.history, column, 1);
+        let old = |column| dofs.column(part, column, 1);
         let [alpha, beta] = self.rayleigh;
         self.forces.is_none().then(|| Inertia {
             alpha,

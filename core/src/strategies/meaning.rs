@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::assembly::DofTable;
 use crate::model::{Nodes, ScalarVariable};
+use crate::names::Name;
 
 /// The unknown of an equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,11 +14,14 @@ pub(super) struct Meaning {
     pub node: usize,
     /// Whether it is a Lagrange multiplier.
     pub multiplier: bool,
+    /// Set of its slave node, where several stand at the mesh node.
+    pub set: Option<Name>,
 }
 
 impl fmt::Display for Meaning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} of node {}", self.variable, self.node)
+        write!(f, "{} of node {}", self.variable, self.node)?;
+        self.set.map_or(Ok(()), |set| write!(f, " on {set}"))
     }
 }
 
@@ -25,21 +29,63 @@ impl Meaning {
     /// The meaning of an unknown.
     pub fn of(dofs: &DofTable, nodes: &Nodes, number: u32) -> Self {
         let dof = &dofs.dofs()[number as usize];
-        Self { variable: dof.variable, node: nodes.ids[dof.node as usize], multiplier: dof.multiplier }
+        let set = dofs.set_of(dof).filter(|_| dofs.is_one_of_several(number as usize));
+        Self {
+            variable: dof.variable,
+            node: nodes.ids[dof.node as usize],
+            multiplier: dof.multiplier,
+            set: set.map(|set| dofs.sets()[set as usize]),
+        }
     }
 
     /// As numbers, which [`Meaning::unpack`] reads on any rank.
-    pub fn pack(self, dofs: &DofTable) -> [f64; 3] {
+    pub fn pack(self, dofs: &DofTable) -> [f64; 4] {
         let variable = dofs.variables().position(|variable| variable == self.variable).unwrap_or(0);
-        [variable as f64, self.node as f64, f64::from(u8::from(self.multiplier))]
+        // 0 stands for no set.
+        let set = self.set.and_then(|set| dofs.sets().iter().position(|known| *known == set)).map_or(0, |at| at + 1);
+        [variable as f64, self.node as f64, f64::from(u8::from(self.multiplier)), set as f64]
     }
 
     /// What [`Meaning::pack`] made of a meaning.
     pub fn unpack(numbers: &[f64], dofs: &DofTable) -> Option<Self> {
         let variable = dofs.variables().nth(numbers[0] as usize)?;
-        Some(Self { variable, node: numbers[1] as usize, multiplier: numbers[2] != 0.0 })
+        let set = (numbers[3] as usize).checked_sub(1).and_then(|at| dofs.sets().get(at).copied());
+        Some(Self { variable, node: numbers[1] as usize, multiplier: numbers[2] != 0.0, set })
     }
 }
 
 /// Finds the meaning of an equation by its number.
 pub(super) type Meanings<'a> = &'a dyn Fn(usize) -> Option<Meaning>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::test_variables::{DISPLACEMENT, NORMAL};
+    use crate::model::{Carriers, ModelPart};
+
+    #[test]
+    fn sets_tell_the_multipliers_of_a_node_apart() {
+        let mut part = ModelPart::new("Structure");
+        part.nodes = Nodes::new(vec![4, 9], vec![[0.0; 3], [1.0, 0.0, 0.0]]);
+        part.slave_nodes.set("floor", &[0, 1]);
+        part.slave_nodes.set("wall", &[1]);
+        let mut dofs = DofTable::default();
+        let displacements = Carriers::of_nodes(DISPLACEMENT.component(0), vec![0, 1]);
+        dofs.number(&part, &[displacements], &[Carriers::of_slaves(NORMAL.component(1), 0..3)]);
+        let said: Vec<String> = (0..dofs.len() as u32)
+            .map(|number| {
+                let meaning = Meaning::of(&dofs, &part.nodes, number);
+                assert_eq!(Meaning::unpack(&meaning.pack(&dofs), &dofs), Some(meaning));
+                meaning.to_string()
+            })
+            .collect();
+        let expected = [
+            "DISPLACEMENT_X of node 4",
+            "NORMAL_Y of node 4",
+            "DISPLACEMENT_X of node 9",
+            "NORMAL_Y of node 9 on floor",
+            "NORMAL_Y of node 9 on wall",
+        ];
+        assert_eq!(said, expected);
+    }
+}

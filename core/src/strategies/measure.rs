@@ -163,21 +163,22 @@ mod tests {
     use super::*;
     use crate::assembly::{DofTable, Equations};
     use crate::model::test_variables::{DISPLACEMENT, VELOCITY};
-    use crate::model::{ModelPart, Nodes};
+    use crate::model::{Carriers, ModelPart, Nodes};
 
     /// Measures two variables at two nodes each, the second in a unit in which its numbers are `unit` times as large.
     fn check(form: Form, apart: bool, unit: f64, [start, now, moved]: [[f64; 2]; 3]) -> Check {
         let mut part = ModelPart::new("Structure");
         part.nodes = Nodes::new(vec![1, 2], vec![[0.0; 3], [1.0, 0.0, 0.0]]);
         let mut dofs = DofTable::default();
-        let carriers = [DISPLACEMENT.component(0), VELOCITY.component(0)].map(|variable| (variable, false, vec![0, 1]));
-        dofs.number(&part.nodes, &carriers);
+        let carriers = [DISPLACEMENT.component(0), VELOCITY.component(0)];
+        dofs.number(&part, &carriers.map(|variable| Carriers::of_nodes(variable, vec![0, 1])), &[]);
         let equations = Equations::new(&dofs, &part.nodes, &[]).unwrap();
         let of = |[one, other]: [f64; 2]| vec![one, unit * other, one, unit * other];
         let tolerance = Tolerance { relative: 1e-4, absolute: 0.0 };
         Measure { form, block: Block::All, tolerance, apart }.check(&Measures {
             iteration: 2,
             nodes: &part.nodes,
+            slave_nodes: &part.slave_nodes,
             dofs: &dofs,
             equations: &equations,
             distribution: None,

@@ -336,6 +336,7 @@ impl NewtonRaphson {
         self.criterion.judge(&Measures {
             iteration,
             nodes: &part.nodes,
+            slave_nodes: &part.slave_nodes,
             dofs: &system.dofs,
             equations: self.assembler.equations(),
             distribution: self.assembler.distribution(),
@@ -365,7 +366,7 @@ impl NewtonRaphson {
 
     /// Adds an increment to the unknowns; rates and positions follow.
     pub(super) fn move_by(&self, part: &mut ModelPart, system: &System, increment: &[f64]) {
-        system.dofs.scatter_add(increment, &mut part.nodes);
+        system.dofs.scatter_add(increment, part);
         if !part.constraints.is_empty() {
             impose_constraints(&mut part.nodes, &part.constraints);
         }

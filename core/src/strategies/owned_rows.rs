@@ -71,12 +71,12 @@ impl<'a> Here<'a> {
         let own = |number: usize| number.checked_sub(first).and_then(|at| self.numbering.own.get(at));
         let packed = |&number: &usize| match own(number) {
             Some(&equation) => Meaning::of(self.dofs, self.nodes, self.unknowns[equation as usize]).pack(self.dofs),
-            None => [0.0; 3],
+            None => [0.0; 4],
         };
         let mut packed: Vec<f64> = wanted.iter().flat_map(packed).collect();
         self.ranks().sum(&mut packed);
         let meaning = |(&number, packed)| Some((number, Meaning::unpack(packed, self.dofs)?));
-        wanted.iter().zip(packed.chunks_exact(3)).filter_map(meaning).collect()
+        wanted.iter().zip(packed.chunks_exact(4)).filter_map(meaning).collect()
     }
 
     /// Positions and directions of equations, for rigid motions; collective.

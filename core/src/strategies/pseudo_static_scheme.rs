@@ -43,7 +43,7 @@ impl Scheme for PseudoStaticScheme {
     /// Free unknowns go on with the rate of the last step.
     fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
         let dt = part.info.delta_time;
-        let [u, v] = [UNKNOWN, FIRST].map(|column| dofs.column(&part.nodes.history, column, 1));
+        let [u, v] = [UNKNOWN, FIRST].map(|column| dofs.column(part, column, 1));
         predict(part, dofs, |n| u[n] + dt * v[n]);
         Ok(())
     }
@@ -71,7 +71,7 @@ impl Scheme for PseudoStaticScheme {
             alpha,
             beta,
             acceleration: vec![0.0; dofs.len()],
-            velocity: dofs.column(&part.nodes.history, FIRST, 0),
+            velocity: dofs.column(part, FIRST, 0),
             ..Inertia::default()
         })
     }

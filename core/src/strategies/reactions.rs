@@ -13,5 +13,5 @@ pub fn write_reactions(part: &mut ModelPart, dofs: &DofTable, residual: &[f64], 
     const TAKEN_UP: ColumnOf = |rates| rates.reaction;
     let minus: Vec<f64> = residual.iter().map(|r| -r).collect();
     Rates::add(&mut part.nodes.history, &[TAKEN_UP]);
-    dofs.write_column(&mut part.nodes.history, TAKEN_UP, 0, &minus);
+    dofs.write_column(part, TAKEN_UP, 0, &minus);
 }

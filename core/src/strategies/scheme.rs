@@ -93,20 +93,19 @@ pub trait Scheme: Send {
 /// Moves free unknowns with rates to u + Δt v + Δt²/2 a of the last step.
 pub(super) fn predict_ballistic(part: &mut ModelPart, dofs: &DofTable) {
     let dt = part.info.delta_time;
-    let history = &part.nodes.history;
-    let [u, v, a] = [UNKNOWN, FIRST, SECOND].map(|column| dofs.column(history, column, 1));
+    let [u, v, a] = [UNKNOWN, FIRST, SECOND].map(|column| dofs.column(part, column, 1));
     predict(part, dofs, |n| u[n] + dt * v[n] + 0.5 * dt * dt * a[n]);
 }
 
 /// Moves free unknowns with rates to what is guessed of each.
 pub(super) fn predict(part: &mut ModelPart, dofs: &DofTable, guess: impl Fn(usize) -> f64) {
-    let mut values = dofs.column(&part.nodes.history, UNKNOWN, 0);
+    let mut values = dofs.column(part, UNKNOWN, 0);
     for (number, dof) in dofs.dofs().iter().enumerate() {
         if !part.nodes.is_fixed(dof.variable, dof.node) {
             values[number] = guess(number);
         }
     }
-    dofs.write_column(&mut part.nodes.history, UNKNOWN, 0, &values);
+    dofs.write_column(part, UNKNOWN, 0, &values);
 }
 
 /// Newmark's relations: first and second derivatives from unknowns and the last step, at every node.

@@ -26,11 +26,11 @@ impl Scheme for Continued {
     }
 
     fn predict(&mut self, part: &mut ModelPart, dofs: &DofTable) -> Result<()> {
-        let now = dofs.gather(&part.nodes, 0);
+        let now = dofs.gather(part, 0);
         let guess = |at: usize| if self.before.len() == now.len() { now[at] - self.before[at] } else { 0.0 };
         let free = |at: usize| !part.nodes.is_fixed(dofs.dofs()[at].variable, dofs.dofs()[at].node);
         let more: Vec<f64> = (0..now.len()).map(|at| if free(at) { guess(at) } else { 0.0 }).collect();
-        dofs.scatter_add(&more, &mut part.nodes);
+        dofs.scatter_add(&more, part);
         self.before = now;
         Ok(())
     }

@@ -29,10 +29,7 @@ impl Kernel<NODES, SIZE> for ElasticFoundation {
     type State = f64;
 
     fn unknowns() -> [LocalUnknown; SIZE] {
-        std::array::from_fn(|row| LocalUnknown {
-            node: (row / 2) as u8,
-            variable: DISPLACEMENT.component((row % 2) as u8),
-        })
+        std::array::from_fn(|row| LocalUnknown::of_node((row / 2) as u8, DISPLACEMENT.component((row % 2) as u8)))
     }
 
     fn new(_request: &BlockRequest<'_>) -> Result<Self> {

@@ -9,7 +9,7 @@ use zelus_core::entities::{
     ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Join, Massless, MasslessNodes, Outer, PairState,
     Retry, SetChange,
 };
-use zelus_core::model::{ModelPart, ScalarVariable};
+use zelus_core::model::{Carriers, ModelPart};
 use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
@@ -145,7 +145,7 @@ impl Interaction for ContactInteraction {
             part.nodes.history.add(&WEIGHTED_SLIP);
         }
         let levels = part.nodes.history.levels().max(self.contact.setup.parameters.levels_back + 1);
-        part.nodes.history.set_levels(levels);
+        part.set_levels(levels);
         find_nodal_h(part);
         part.info.marks.insert(CONTACT, explicit.is_none());
         if !self.contact.setup.updates_normals() {
@@ -318,9 +318,9 @@ impl Interaction for ContactInteraction {
 }
 
 impl Coupling for ContactInteraction {
-    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+    fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
         let unknowns = self.contact.setup.settings.family.multiplier.unknowns(part.info.domain_size);
-        unknowns.into_iter().map(|variable| (variable, self.contact.pairing.carriers())).collect()
+        unknowns.into_iter().map(|variable| Carriers::of_nodes(variable, self.contact.pairing.carriers())).collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {

@@ -70,9 +70,8 @@ impl SliderForces {
                 let masters = |slider: &Slider| slider.masters.iter().map(|m| m.0).collect::<Vec<_>>();
                 // The slave comes last: by it ranks know whose the slider is.
                 let nodes = sliders.iter().flat_map(|slider| [masters(slider), vec![slider.node]].concat()).collect();
-                let unknown = |at: usize| LocalUnknown {
-                    node: (at / dimension) as u8,
-                    variable: DISPLACEMENT.component((at % dimension) as u8),
+                let unknown = |at: usize| {
+                    LocalUnknown::of_node((at / dimension) as u8, DISPLACEMENT.component((at % dimension) as u8))
                 };
                 let unknowns = (0..width * dimension).map(unknown).collect();
                 Self { entry, nodes, width, dimension, unknowns, sliders }

@@ -276,7 +276,7 @@ impl Contact {
             block.local_systems(&self.part.view(), 0..block.len(), want, &mut out).unwrap();
             for at in 0..block.len() {
                 let nodes = block.nodes(at).to_vec();
-                let place = |u: &LocalUnknown| (nodes[u.node as usize], LocalUnknown { node: 0, variable: u.variable });
+                let place = |u: &LocalUnknown| (nodes[u.node as usize], LocalUnknown::of_node(0, u.variable));
                 let rows: Vec<_> = block.unknowns().iter().map(place).collect();
                 let (lhs, rhs) = out.entity(at);
                 for (i, &row) in rows.iter().enumerate() {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, require_kind};
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
+use zelus_core::model::{Carriers, MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
 use zelus_core::parameters::Interval;
 use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
@@ -344,9 +344,9 @@ impl Interaction for TyingInteraction {
 }
 
 impl Coupling for TyingInteraction {
-    fn unknowns(&self, part: &ModelPart) -> Vec<(ScalarVariable, Vec<u32>)> {
+    fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
         let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
-        unknowns.into_iter().map(|variable| (variable, self.slaves.clone())).collect()
+        unknowns.into_iter().map(|variable| Carriers::of_nodes(variable, self.slaves.clone())).collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {

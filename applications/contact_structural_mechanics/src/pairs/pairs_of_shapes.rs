@@ -272,13 +272,13 @@ fn local_unknowns(
 ) -> Vec<LocalUnknown> {
     let displacements = |nodes: Range<usize>| {
         nodes.flat_map(move |node| {
-            (0..dim as u8).map(move |c| LocalUnknown { node: node as u8, variable: DISPLACEMENT.component(c) })
+            (0..dim as u8).map(move |c| LocalUnknown::of_node(node as u8, DISPLACEMENT.component(c)))
         })
     };
     let end = around + masters + slaves;
     let mut unknowns: Vec<LocalUnknown> = displacements(around..end).collect();
     for node in around + masters..end {
-        unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown { node: node as u8, variable }));
+        unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown::of_node(node as u8, variable)));
     }
     unknowns.extend(displacements(0..around));
     unknowns

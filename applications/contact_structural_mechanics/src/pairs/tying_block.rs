@@ -40,7 +40,7 @@ impl TyingBlock {
     /// The block of pairs of two shapes (slave, master) with any number of tied components.
     pub fn new(slave: Shape, master: Shape, request: TyingRequest) -> Self {
         let (slaves, masters) = (slave.nodes(), master.nodes());
-        let row = |node: usize, variable: ScalarVariable| LocalUnknown { node: node as u8, variable };
+        let row = |node: usize, variable: ScalarVariable| LocalUnknown::of_node(node as u8, variable);
         let mut unknowns = Vec::new();
         for node in 0..masters + slaves {
             unknowns.extend(request.tied.iter().map(|&variable| row(node, variable)));

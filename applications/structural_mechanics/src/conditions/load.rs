@@ -79,10 +79,7 @@ where
 
 /// Displacements of all nodes in `dim` directions, node by node.
 pub(super) fn displacements<const SIZE: usize>(dim: usize) -> [LocalUnknown; SIZE] {
-    std::array::from_fn(|row| LocalUnknown {
-        node: (row / dim) as u8,
-        variable: DISPLACEMENT.component((row % dim) as u8),
-    })
+    std::array::from_fn(|row| LocalUnknown::of_node((row / dim) as u8, DISPLACEMENT.component((row % dim) as u8)))
 }
 
 /// Vector load at each node: that of the condition plus that of the node.

@@ -144,12 +144,14 @@ where
     type State = Box<[f64]>;
 
     fn unknowns() -> [LocalUnknown; SIZE] {
-        std::array::from_fn(|row| LocalUnknown {
-            node: (row / (DIM + 1)) as u8,
-            variable: match row % (DIM + 1) {
-                a if a < DIM => DISPLACEMENT.component(a as u8),
-                _ => VOLUMETRIC_STRAIN.scalar(),
-            },
+        std::array::from_fn(|row| {
+            LocalUnknown::of_node(
+                (row / (DIM + 1)) as u8,
+                match row % (DIM + 1) {
+                    a if a < DIM => DISPLACEMENT.component(a as u8),
+                    _ => VOLUMETRIC_STRAIN.scalar(),
+                },
+            )
         })
     }
 

@@ -35,7 +35,7 @@ impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
     type State = Constants;
 
     fn unknowns() -> [LocalUnknown; DIM] {
-        std::array::from_fn(|a| LocalUnknown { node: 0, variable: DISPLACEMENT.component(a as u8) })
+        std::array::from_fn(|a| LocalUnknown::of_node(0, DISPLACEMENT.component(a as u8)))
     }
 
     fn new(_request: &BlockRequest<'_>) -> Result<Self> {

@@ -86,10 +86,7 @@ where
     type State = Box<[f64]>;
 
     fn unknowns() -> [LocalUnknown; SIZE] {
-        std::array::from_fn(|row| LocalUnknown {
-            node: (row / DIM) as u8,
-            variable: DISPLACEMENT.component((row % DIM) as u8),
-        })
+        std::array::from_fn(|row| LocalUnknown::of_node((row / DIM) as u8, DISPLACEMENT.component((row % DIM) as u8)))
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {

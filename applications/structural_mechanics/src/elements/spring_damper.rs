@@ -38,10 +38,7 @@ impl<const DIM: usize, const SIZE: usize> Kernel<2, SIZE> for SpringDamper<DIM> 
     type State = Constants;
 
     fn unknowns() -> [LocalUnknown; SIZE] {
-        std::array::from_fn(|row| LocalUnknown {
-            node: (row / DIM) as u8,
-            variable: DISPLACEMENT.component((row % DIM) as u8),
-        })
+        std::array::from_fn(|row| LocalUnknown::of_node((row / DIM) as u8, DISPLACEMENT.component((row % DIM) as u8)))
     }
 
     fn new(_request: &BlockRequest<'_>) -> Result<Self> {

@@ -83,10 +83,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
     type State = [f64; 2];
 
     fn unknowns() -> [LocalUnknown; SIZE] {
-        std::array::from_fn(|row| LocalUnknown {
-            node: (row / DIM) as u8,
-            variable: DISPLACEMENT.component((row % DIM) as u8),
-        })
+        std::array::from_fn(|row| LocalUnknown::of_node((row / DIM) as u8, DISPLACEMENT.component((row % DIM) as u8)))
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {

@@ -68,7 +68,7 @@ impl Assembler {
     }
 
     fn own_kinetic_energy(&mut self, part: &ModelPart, system: &System) -> Result<f64> {
-        let v = system.dofs.column(&part.nodes.history, FIRST, 0);
+        let v = system.dofs.column(part, FIRST, 0);
         let mut momentum = vec![0.0; v.len()];
         self.mass(part, system)?;
         self.mul_subtract(self.mass.as_ref().expect("just made"), &v, &mut momentum);
@@ -81,9 +81,9 @@ impl Assembler {
             return;
         }
         for column in [FIRST, SECOND] {
-            let mut values = system.dofs.column(&part.nodes.history, column, 0);
+            let mut values = system.dofs.column(part, column, 0);
             self.redistribution.extrapolate(&mut values);
-            system.dofs.write_column(&mut part.nodes.history, column, 0, &values);
+            system.dofs.write_column(part, column, 0, &values);
         }
     }
 
@@ -94,7 +94,7 @@ impl Assembler {
 
     /// The nearest motion that the masses can have: P w with M_r (w − v) = Pᵀ M (v − P v), by conjugate gradients.
     fn project(&mut self, part: &mut ModelPart, system: &System, column: ColumnOf, level: usize) -> Result<()> {
-        let mut values = system.dofs.column(&part.nodes.history, column, level);
+        let mut values = system.dofs.column(part, column, level);
         self.mass(part, system)?;
         let mut residual = self.redistribution.excess(&values);
         if !part.ranks.any(residual.iter().any(|r| *r != 0.0)) {
@@ -136,7 +136,7 @@ impl Assembler {
             error = next;
         }
         self.redistribution.extrapolate(&mut values);
-        system.dofs.write_column(&mut part.nodes.history, column, level, &values);
+        system.dofs.write_column(part, column, level, &values);
         Ok(())
     }
 }

@@ -3,10 +3,7 @@
 use super::Assembler;
 use crate::assembly::{Distribution, Numbering};
 use crate::communication::Ranks;
-use crate::model::{Halo, Named, ScalarVariable, named};
-
-/// An unknown, whether it is a multiplier, and the nodes that carry it.
-pub(super) type Carriers = (ScalarVariable, bool, Vec<u32>);
+use crate::model::{Carriers, Halo, Named, ScalarVariable, named};
 
 impl Assembler {
     /// On several ranks: replaces what this rank has by the sum over all; collective.
@@ -61,7 +58,7 @@ impl Assembler {
 
 /// The nodes that carry each unknown on any rank; collective.
 pub(super) fn carriers_of_all(own: Vec<Carriers>, nodes: usize, halo: &Halo) -> Vec<Carriers> {
-    let names: Vec<String> = own.iter().map(|(variable, ..)| variable.to_string()).collect();
+    let names: Vec<String> = own.iter().map(|own| own.variable.to_string()).collect();
     let mut all: Vec<String> = halo
         .ranks
         .gather_bytes(names.join("\n").as_bytes())
@@ -78,11 +75,11 @@ pub(super) fn carriers_of_all(own: Vec<Carriers>, nodes: usize, halo: &Halo) -> 
         .map(scalar)
         .map(|variable| {
             let mut carries = vec![0.0; nodes];
-            let mine = own.iter().filter(|(known, ..)| *known == variable).flat_map(|(.., list)| list);
+            let mine = own.iter().filter(|known| known.variable == variable).flat_map(|known| &known.nodes);
             mine.for_each(|&node| carries[node as usize] = 1.0);
             halo.sum(&mut carries);
             let list = (0..nodes as u32).filter(|&node| carries[node as usize] > 0.0).collect();
-            (variable, false, list)
+            Carriers::of_nodes(variable, list)
         })
         .collect()
 }

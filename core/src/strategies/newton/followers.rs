@@ -15,7 +15,7 @@ use super::NewtonRaphson;
 use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::entities::{Follower, Interaction};
-use crate::model::{ModelPart, Nodes};
+use crate::model::{ModelPart, NodalState};
 use crate::strategies::linear_solve::{Failed, Solved};
 
 /// Share of an increment by which differences move the state, over what moves its unknowns by their own size.
@@ -83,9 +83,9 @@ impl NewtonRaphson {
         system: &mut System,
     ) -> Result<Solved, Failed> {
         let Some(mut taken) = Taken::from(system) else { return Ok(solved) };
-        let state = part.nodes.clone();
+        let state = part.nodal_state();
         let found = self.solve_together(solved, prescribed, &state, taken.follower(), part, system);
-        part.nodes = state;
+        part.restore(state);
         taken.put_back(system);
         found
     }
@@ -94,7 +94,7 @@ impl NewtonRaphson {
         &mut self,
         mut solved: Solved,
         prescribed: &[f64],
-        state: &Nodes,
+        state: &NodalState,
         follower: &mut dyn Follower,
         part: &mut ModelPart,
         system: &mut System,
@@ -104,7 +104,7 @@ impl NewtonRaphson {
         show(part, system);
         let mut left = follower.refer(part, &system.elements)?;
         self.phases.since(FOLLOWER, start);
-        part.nodes.clone_from(state);
+        part.restore(state.clone());
         let mut first = self.assembler.equations().expand(&solved.increment);
         first.iter_mut().zip(prescribed).for_each(|(sum, d)| *sum += d);
         add_scaled(1.0, &self.response(&first, state, follower, part, system)?, &mut left);
@@ -142,7 +142,7 @@ impl NewtonRaphson {
     fn response(
         &mut self,
         increment: &[f64],
-        state: &Nodes,
+        state: &NodalState,
         follower: &mut dyn Follower,
         part: &mut ModelPart,
         system: &mut System,
@@ -157,7 +157,7 @@ impl NewtonRaphson {
         show(part, system);
         let mut response = follower.respond(part, &system.elements)?;
         self.phases.since(FOLLOWER, start);
-        part.nodes.clone_from(state);
+        part.restore(state.clone());
         response.iter_mut().for_each(|value| *value /= share);
         Ok(response)
     }
@@ -167,14 +167,14 @@ impl NewtonRaphson {
         &mut self,
         increment: &[f64],
         before: &[f64],
-        state: &Nodes,
+        state: &NodalState,
         follower: &dyn Follower,
         part: &mut ModelPart,
         system: &System,
     ) -> Result<Vec<f64>, Failed> {
         let share = follower.nudge(part, increment);
         let after = self.residual(part, system);
-        part.nodes.clone_from(state);
+        part.restore(state.clone());
         let difference = |(after, before): (f64, &f64)| if share > 0.0 { (after - before) / share } else { 0.0 };
         Ok(after?.into_iter().zip(before).map(difference).collect())
     }

@@ -14,7 +14,7 @@ impl NewtonRaphson {
         if !self.scheme.is_static() {
             return None;
         }
-        let reach = reach(&part.ranks, &part.nodes, &system.dofs, self.assembler.equations());
+        let reach = reach(part, &system.dofs, self.assembler.equations());
         let now = self.assembler.values(part, system);
         let gone = system.dofs.dofs().iter().enumerate().filter(|(n, _)| system.dofs.moves_mesh(*n));
         let gone = gone.map(|(n, dof)| ((now[n] - begin[n]).abs(), dof.node)).filter(|(motion, _)| *motion > reach);

@@ -4,7 +4,7 @@ use super::NewtonRaphson;
 use crate::assembly::{System, impose_constraints};
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, MasslessNodes};
-use crate::model::{MasterSlaveConstraint, ModelPart};
+use crate::model::{MasterSlaveConstraint, ModelPart, Owner};
 use crate::strategies::strategy::after_prediction;
 
 impl NewtonRaphson {
@@ -53,12 +53,8 @@ impl NewtonRaphson {
             return Ok(vec![0.0; targets.len()]);
         }
         for (number, dof) in system.dofs.dofs().iter().enumerate() {
-            if self.assembler.equations().is_fixed(number)
-                && let Some(field) = part.nodes.history.get_mut(dof.variable.column)
-                && field.levels.len() > 1
-            {
-                let at = dof.node as usize * field.components + dof.variable.offset();
-                field.levels[0][at] = field.levels[1][at];
+            if self.assembler.equations().is_fixed(number) {
+                dof.step_back(part);
             }
         }
         self.scheme.predict(part, &system.dofs)?;
@@ -74,10 +70,10 @@ impl NewtonRaphson {
 
     /// Moves free unknowns back to where the step began: the prediction led to no state that can be computed.
     pub(super) fn stay(&self, part: &mut ModelPart, system: &System) {
-        let (now, old) = (self.assembler.values(part, system), system.dofs.gather(&part.nodes, 1));
+        let (now, old) = (self.assembler.values(part, system), system.dofs.gather(part, 1));
         let equations = self.assembler.equations();
         let back: Vec<f64> = (0..now.len()).map(|n| if equations.is_free(n) { old[n] - now[n] } else { 0.0 }).collect();
-        system.dofs.scatter_add(&back, &mut part.nodes);
+        system.dofs.scatter_add(&back, part);
         self.scheme.update(part);
         if self.settings.move_mesh {
             part.nodes.move_all();
@@ -100,12 +96,13 @@ impl NewtonRaphson {
 
     fn is_multiplier(&self, system: &System, constraint: &MasterSlaveConstraint) -> bool {
         let (node, variable) = constraint.slave;
-        system.dofs.number_of(variable, node).is_some_and(|number| system.dofs.dofs()[number as usize].multiplier)
+        let number = system.dofs.number_of(variable, Owner::Node(node));
+        number.is_some_and(|number| system.dofs.dofs()[number as usize].multiplier)
     }
 
     /// Whether forces are farther out of balance after the first iteration than before it, in a step that prescribes motion.
     pub(super) fn overshoots(&mut self, part: &ModelPart, system: &System, before: &[f64]) -> Result<bool> {
-        let (now, old) = (self.assembler.values(part, system), system.dofs.gather(&part.nodes, 1));
+        let (now, old) = (self.assembler.values(part, system), system.dofs.gather(part, 1));
         let moves = (0..now.len()).any(|n| self.assembler.equations().is_fixed(n) && now[n] != old[n]);
         if !part.ranks.any(moves) || self.settings.linear {
             return Ok(false);
@@ -123,7 +120,7 @@ impl NewtonRaphson {
         let now = self.assembler.values(part, system);
         let fixed = |n: usize| self.assembler.equations().is_fixed(n);
         let back: Vec<f64> = (0..now.len()).map(|n| if fixed(n) { 0.0 } else { begin[n] - now[n] }).collect();
-        system.dofs.scatter_add(&back, &mut part.nodes);
+        system.dofs.scatter_add(&back, part);
         let prescribed = self.start(part, system, None)?;
         after_prediction(part, &mut system.interactions)?;
         Ok(prescribed)
@@ -134,10 +131,10 @@ impl NewtonRaphson {
         let fixed = |(n, d): (usize, &f64)| if self.assembler.equations().is_fixed(n) { *d } else { 0.0 };
         let mut increment: Vec<f64> = prescribed.iter().enumerate().map(fixed).collect();
         if part.constraints.iter().any(|c| c.active) {
-            system.dofs.scatter_add(&increment, &mut part.nodes);
+            system.dofs.scatter_add(&increment, part);
             let lack = self.constraint_increment(part, system);
             let back: Vec<f64> = increment.iter().map(|d| -d).collect();
-            system.dofs.scatter_add(&back, &mut part.nodes);
+            system.dofs.scatter_add(&back, part);
             increment.iter_mut().zip(lack).for_each(|(sum, d)| *sum += d);
         }
         increment
@@ -150,7 +147,7 @@ impl NewtonRaphson {
         let lack: Vec<f64> =
             self.assembler.values(part, system).iter().zip(&before).map(|(after, b)| after - b).collect();
         let back: Vec<f64> = lack.iter().map(|d| -d).collect();
-        system.dofs.scatter_add(&back, &mut part.nodes);
+        system.dofs.scatter_add(&back, part);
         lack
     }
 }
