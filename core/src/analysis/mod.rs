@@ -25,7 +25,7 @@ mod stage;
 mod threads;
 mod time_stepping;
 #[cfg(test)]
-mod two_walls;
+mod two_walls_tests;
 mod unheeded;
 
 pub use cutting::Cutting;
