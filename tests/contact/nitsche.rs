@@ -6,7 +6,7 @@ use std::sync::Arc;
 use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interface::{
-    Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles,
+    Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles,
 };
 use zelus::contact_structural_mechanics::law::{
     Augmentation, Nitsche, NitscheVariant, NormalVariation, StepParameters,
@@ -15,7 +15,7 @@ use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThre
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Pair, PairKey, PairRequest, condition_name, find_family, group_by_surroundings,
 };
-use zelus::contact_structural_mechanics::slave_states::SlaveStates;
+use zelus::contact_structural_mechanics::slave_states::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::{LocalSystems, Want, require_kind};
@@ -122,7 +122,10 @@ impl Contact {
         let all: Vec<u32> = slave.nodes.iter().chain(&master.nodes).copied().collect();
         let interface = Interface { facets: vec![slave, master], nodes: all, ..Interface::default() };
         let interfaces = std::slice::from_ref(&interface);
-        let patches = Arc::new(NormalPatches::new(part.nodes.len(), interfaces, NodalNormals::ByEdges));
+        let of_slaves = Patches::new(&part, interfaces, None);
+        let patches = Arc::new(NormalPatches::of_slaves(&of_slaves, interfaces, NodalNormals::ByEdges));
+        let slaves = of_slaves.of_facet(0, 0, face.len()).to_vec();
+        let table = SlaveTable::of_patches(&mut part, &of_slaves, "pair");
         let axisymmetric = element.starts_with("Axisym").then_some(0.5);
         let bodies = Arc::new(Bodies::new(&part, interfaces, axisymmetric).expect("tractions"));
 
@@ -151,24 +154,31 @@ impl Contact {
         });
         let pair = Pair::new(PairKey { interface: 0, slave: 0, master: 1 }, [[0.0; 3]; 2]);
         let own: Vec<u32> = interface.facets[1].nodes.iter().chain(&interface.facets[0].nodes).copied().collect();
-        let behind = |_: &Pair| bodies.nodes([0, 0]).to_vec();
-        let groups = group_by_surroundings(Some(&patches), behind, face.len(), vec![pair], &own);
+        let around = |_: &Pair| {
+            let turning = slaves.iter().flat_map(|slave| patches.neighbours(slave.0));
+            bodies.nodes([0, 0]).iter().copied().chain(turning).collect()
+        };
+        let groups = group_by_surroundings(&around, vec![pair], &own);
         let (around, (pairs, nodes)) = groups.into_iter().next().expect("one pair");
         let entry =
             require_kind(Role::Condition, &condition_name(family.condition, slave, master)).expect("a condition");
-        let mut states = SlaveStates::of(&part, interface.nodes_of(Roles::Slave), family.columns());
+        let mut states = SlaveStates::of(&part, table, family.columns());
         states.read_friction(&part.nodes, &COULOMB);
         let request = PairRequest {
             entry,
+            slave,
+            master,
             pairs,
             nodes,
+            slaves: slaves.clone(),
+            owners: Vec::new(),
             around,
             bodies,
             patches: patches.clone(),
             parameters,
             states: Arc::new(states.clone()),
         };
-        let block = (family.block)(slave, master, request).expect("a block");
+        let block = (family.block)(request);
         Self { part, block, interface, patches, states }
     }
 
@@ -178,8 +188,7 @@ impl Contact {
             self.part.nodes.history.values_mut(&DISPLACEMENT, level).copy_from_slice(u.as_flattened());
         }
         self.part.nodes.move_all();
-        self.patches.write(&mut self.part);
-        self.states.read_normals(&self.part.nodes);
+        self.states.take_normals(&self.patches, &self.part.nodes.current);
         self.block.set_states(Arc::new(self.states.clone()));
         let normal = |facet: usize| {
             let facet = &self.interface.facets[facet];

@@ -12,7 +12,7 @@ use zelus::contact_structural_mechanics::mortar::{
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, condition_name,
 };
-use zelus::contact_structural_mechanics::slave_states::SlaveStates;
+use zelus::contact_structural_mechanics::slave_states::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
@@ -203,7 +203,13 @@ impl Setting {
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         };
-        let mut states = SlaveStates::of(&part, (masters as u32..count as u32).collect(), family.columns());
+        let nodes: Vec<u32> = (masters as u32..count as u32).collect();
+        let owners: Vec<u32> = part.slave_nodes.set("pair", &nodes).collect();
+        if let Some((name, components)) = family.multiplier.column() {
+            part.slave_nodes.history.add_named(name, components);
+        }
+        let table = SlaveTable { nodes, owners: owners.clone() };
+        let mut states = SlaveStates::of(&part, table, family.columns());
         states.read_friction(&part.nodes, &COULOMB);
         let key = PairKey { interface: 0, slave: 0, master: 0 };
         let pair = Pair { area: [0.6; MOST_NODES], ..Pair::new(key, [self.slave_normal, self.master_normal]) };
@@ -213,6 +219,8 @@ impl Setting {
             master,
             pairs: vec![pair],
             nodes: (0..count as u32).collect(),
+            slaves: states.all().collect(),
+            owners: if family.multiplier.is_unknown() { owners } else { Vec::new() },
             around: 0,
             bodies: Arc::default(),
             patches: Arc::default(),
@@ -244,14 +252,14 @@ impl Setting {
 /// Sets the unknown of a row.
 pub fn set(part: &mut ModelPart, block: &dyn EntityBlock, row: usize, value: f64) {
     let unknown = block.unknowns()[row];
-    let node = block.nodes(0)[unknown.node as usize] as usize;
-    let field = part.nodes.history.get_mut(unknown.variable.column).expect("a column for each unknown");
-    field.levels[0][node * field.components + unknown.variable.offset()] = value;
+    let owner = unknown.owner_among(block.nodes(0), block.slave_owners(0));
+    part.set_value_of(owner, unknown.variable, 0, value);
 }
 
 fn get(part: &ModelPart, block: &dyn EntityBlock, row: usize) -> f64 {
     let unknown = block.unknowns()[row];
-    part.nodes.history.scalar(unknown.variable, block.nodes(0)[unknown.node as usize] as usize).expect("a column")
+    let owner = unknown.owner_among(block.nodes(0), block.slave_owners(0));
+    part.value_of(owner, unknown.variable, 0).expect("a column")
 }
 
 /// The local system of the only pair.

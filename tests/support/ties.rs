@@ -44,10 +44,16 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
         key: PairKey { interface: 0, slave: 0, master: 0 },
         operators: operators(slave.nodes(), master.nodes(), &mut Random(3)),
     };
+    let slaves: Vec<u32> = (master.nodes() as u32..count as u32).collect();
+    let owners = part.slave_nodes.set("pair", &slaves).collect();
+    if let Some((name, components)) = family.multiplier.column() {
+        part.slave_nodes.history.add_named(name, components);
+    }
     let request = TyingRequest {
         entry,
         pairs: vec![pair],
         nodes: (0..count as u32).collect(),
+        owners,
         tied,
         multipliers,
         scale_factor: 1.7,

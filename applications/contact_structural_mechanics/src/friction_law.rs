@@ -94,12 +94,6 @@ pub fn find_friction_law(name: &str) -> Result<&'static FrictionLaw, Diagnostic>
     registry::require::<FrictionLawEntry>(name).map(|entry| &entry.build)
 }
 
-/// Whether no registered law has a number at a node.
-pub fn smooth_nodes(nodes: &Nodes) -> impl Fn(usize) -> bool + '_ {
-    let laws = registry::all::<FrictionLawEntry>();
-    move |at| laws.iter().all(|law| law.build.bound_at(nodes, at).is_smooth())
-}
-
 register! { FrictionLawEntry "Coulomb",
     about: "limit of the tangential traction: FRICTION_COEFFICIENT times the pressure",
     source: "eq. 4.1",

@@ -1,114 +1,33 @@
-//! What contact knows of its slave nodes: one typed state a node, owned by the interaction that decides on it.
+//! States of slave nodes: one typed state each, owned by the interaction that decides on it.
 //!
 //! Multipliers, displacements and normals of facets are fields of the model; all else that a decision, a pair or an output
 //! needs of a slave node stands here. A retried step restores it whole. [`SlaveStates::export`] is the only place that writes it
 //! into nodal columns and flags, for output, criteria and the next stage; [`SlaveStates::of`] the only one that reads it back.
 
-use std::ops::{Index, IndexMut};
+use std::ops::{Index, IndexMut, Range};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use crate::flags::{ISOLATED, SLIP};
-use zelus_core::Carrier;
 use zelus_core::Result;
 use zelus_core::diagnostics::unfit;
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ModelPart, Nodes, Variable};
-use zelus_core::vector3::cross;
+use zelus_core::vector3::{cross, norm};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use crate::friction_law::{Bound, FrictionLaw};
-use crate::node_state::{Held, NodeState, Turning};
+use crate::friction_law::FrictionLaw;
+use crate::interface::{NormalPatches, Patches};
+use crate::node_state::{NodeState, SlaveIndex};
+use crate::slave_state::{Accepted, SlaveState};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY,
     KEPT_CONTACT_PRESSURE, MULTIPLIER_WEIGHT, NODAL_AREA, NORMAL_GAP, TANGENT_ETA, TANGENT_XI, WEIGHTED_GAP,
     WEIGHTED_SLIP,
 };
 
-/// One slave node.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct SlaveState {
-    /// Whether it is in contact.
-    pub active: bool,
-    /// Whether it slides, while it is in contact or was last; `None` before.
-    pub slides: Option<bool>,
-    /// Whether it faces nothing that could bear on it.
-    pub isolated: bool,
-    /// Unit normal out of the slave body.
-    pub normal: [f64; 3],
-    /// Whether that is the normal of what it meets, and does not turn with its own facets: nodes on sharp edges.
-    pub normal_of_master: bool,
-    /// Pairs that overlap at it.
-    pub pairs: u32,
-    /// Area that belongs to it, over its pairs.
-    pub area: f64,
-    /// Weighted gap g̃ over its pairs, negative in penetration (length times area).
-    pub weighted_gap: f64,
-    /// Weighted gaps of its pairs, averaged by their areas (length times area).
-    pub mean_weighted_gap: f64,
-    /// Weighted slip of the step over its pairs (length times area).
-    pub weighted_slip: [f64; 3],
-    /// Tangential traction before the law of friction limits it; where points decide, their mean traction (force per area).
-    pub trial: [f64; 3],
-    /// Tangential traction carried from step to step, in families that do (force per area).
-    pub carried: [f64; 3],
-    /// Normal pressure that Uzawa's iteration keeps between updates, negative in compression (force per area).
-    pub kept_pressure: f64,
-    /// Penalty ε.
-    pub penalty: f64,
-    /// Factor of contact forces in the step in which a gap closes.
-    pub dynamic_factor: f64,
-    /// Limit of the tangential traction.
-    pub friction: Bound,
-    /// What becomes of each component of its multiplier; of a scalar one the first.
-    pub held: [Held; 3],
-    /// Weight of its multiplier's equation where that states a traction (force times area).
-    pub multiplier_weight: f64,
-    /// Unit tangent τ: the direction of sliding.
-    pub tangent: [f64; 3],
-    /// How that direction turns with the unknowns.
-    pub turning: Turning,
-    /// Whether points around it are in contact until the next solve, whatever their pressure.
-    pub pressed: bool,
-    /// Whether points in contact around it stick until the next solve, whatever their traction.
-    pub stuck: bool,
-    /// Gap with which it began the step near the master, else 0 (length).
-    pub start_gap: f64,
-    /// Normal traction for output, compression negative.
-    pub pressure: f64,
-    /// Tangential traction for output.
-    pub traction: [f64; 3],
-    /// What it was in the last accepted state.
-    pub last: Accepted,
-}
-
-/// What of a slave node is compared with its last accepted state.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Accepted {
-    /// Weighted gap.
-    pub weighted_gap: f64,
-    /// Carried traction.
-    pub carried: [f64; 3],
-}
-
-impl SlaveState {
-    /// Whether the node is in contact, and how.
-    pub fn contact(&self) -> NodeState {
-        match (self.active, self.slides) {
-            (false, _) => NodeState::Inactive,
-            (true, Some(true)) => NodeState::Slip,
-            (true, _) => NodeState::Stick,
-        }
-    }
-
-    /// Gap g̃/A (length); `None` where nothing overlaps.
-    pub fn gap(&self) -> Option<f64> {
-        (self.area > 0.0).then(|| self.weighted_gap / self.area)
-    }
-}
-
-/// What of the states has nodal columns.
+/// The nodal columns that states are exported to.
 #[derive(Clone, Copy, Default)]
 pub struct Columns {
     /// Whether penalties and tractions do.
@@ -119,112 +38,182 @@ pub struct Columns {
     pub carried: Option<&'static Variable<[f64; 3]>>,
 }
 
-/// The states of all nodes that may carry multipliers.
+/// The slave nodes of an interaction: where they stand, and which owners of unknowns they are.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SlaveTable {
+    /// Mesh node of each, ascending.
+    pub nodes: Vec<u32>,
+    /// Index of each among the [`SlaveNodes`](zelus_core::model::SlaveNodes) of the model part; none where the interaction has
+    /// no multipliers there.
+    pub owners: Vec<u32>,
+}
+
+impl SlaveTable {
+    /// The slave nodes of patches, whose names begin with `name`, as owners of unknowns in a model part.
+    pub fn of_patches(part: &mut ModelPart, patches: &Patches, name: &str) -> Self {
+        let names: Vec<String> = (0..patches.count()).map(|patch| set_name(name, patch as u32)).collect();
+        for (patch, name) in names.iter().enumerate() {
+            part.slave_nodes.set(name, &patches.nodes_of(patch as u32));
+        }
+        let owner = |slave: SlaveIndex| {
+            let name = &names[patches.patch(slave) as usize];
+            part.slave_nodes.find(name, patches.mesh_node(slave)).expect("a set that was just made")
+        };
+        Self {
+            nodes: patches.all().map(|slave| patches.mesh_node(slave)).collect(),
+            owners: patches.all().map(owner).collect(),
+        }
+    }
+
+    /// One slave node at each of these mesh nodes (ascending), which owns no unknowns.
+    pub fn of_nodes(nodes: Vec<u32>) -> Self {
+        Self { nodes, owners: Vec::new() }
+    }
+
+    /// Slave nodes at a mesh node.
+    fn at(&self, node: u32) -> Range<usize> {
+        let first = self.nodes.partition_point(|&own| own < node);
+        first..first + self.nodes[first..].partition_point(|&own| own == node)
+    }
+}
+
+/// Name of the set of the slave nodes of a patch; `name` is that of the interaction.
+pub fn set_name(name: &str, patch: u32) -> String {
+    format!("{name}, patch {patch}")
+}
+
+/// The states of all slave nodes of an interaction.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct SlaveStates {
     #[serde(skip)]
-    carriers: Arc<[u32]>,
-    slaves: Arc<[u32]>,
-    /// By node index; [`NONE`] for nodes without state.
-    #[serde(skip)]
-    slots: Arc<[u32]>,
+    table: Arc<SlaveTable>,
+    slaves: Arc<[SlaveIndex]>,
     states: Vec<SlaveState>,
     #[serde(skip)]
     columns: Columns,
 }
 
-const NONE: u32 = u32::MAX;
-
-impl Index<u32> for SlaveStates {
+impl Index<SlaveIndex> for SlaveStates {
     type Output = SlaveState;
 
-    fn index(&self, node: u32) -> &SlaveState {
-        &self.states[self.slots[node as usize] as usize]
+    fn index(&self, slave: SlaveIndex) -> &SlaveState {
+        &self.states[slave.place()]
     }
 }
 
-impl IndexMut<u32> for SlaveStates {
-    fn index_mut(&mut self, node: u32) -> &mut SlaveState {
-        &mut self.states[self.slots[node as usize] as usize]
+impl IndexMut<SlaveIndex> for SlaveStates {
+    fn index_mut(&mut self, slave: SlaveIndex) -> &mut SlaveState {
+        &mut self.states[slave.place()]
     }
 }
 
 impl SlaveStates {
-    /// The states that flags and columns of a part hold, of `carriers` (ascending); all of them count as slaves.
-    pub fn of(part: &ModelPart, carriers: Vec<u32>, columns: Columns) -> Self {
-        let nodes = &part.nodes;
-        let mut slots = vec![NONE; nodes.len()];
-        carriers.iter().enumerate().for_each(|(slot, &node)| slots[node as usize] = slot as u32);
-        let states = carriers.iter().map(|&node| imported(nodes, node as usize, columns)).collect();
-        let carriers: Arc<[u32]> = carriers.into();
-        Self { slaves: carriers.clone(), carriers, slots: slots.into(), states, columns }
+    /// The states that flags and columns of a part hold at the mesh nodes of a table; all of them count as slaves.
+    pub fn of(part: &ModelPart, table: SlaveTable, columns: Columns) -> Self {
+        let states = table.nodes.iter().map(|&node| imported(&part.nodes, node as usize, columns)).collect();
+        let slaves = (0..table.nodes.len() as u32).map(SlaveIndex).collect();
+        Self { slaves, table: Arc::new(table), states, columns }
     }
 
-    /// Nodes that may carry multipliers, ascending.
-    pub fn carriers(&self) -> Arc<[u32]> {
-        self.carriers.clone()
+    /// Number of slave nodes, whether they are on slave facets or not.
+    pub fn len(&self) -> usize {
+        self.states.len()
     }
 
-    /// Nodes on slave facets, ascending.
-    pub fn slaves(&self) -> Arc<[u32]> {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// All slave nodes, also those that are on no slave facet now.
+    pub fn all(&self) -> impl Iterator<Item = SlaveIndex> + use<> {
+        (0..self.states.len() as u32).map(SlaveIndex)
+    }
+
+    /// Slave nodes on slave facets, ascending.
+    pub fn slaves(&self) -> Arc<[SlaveIndex]> {
         self.slaves.clone()
     }
 
-    /// See [`State::carry`](zelus_core::State::carry): every rank has all carriers, in the same order.
-    pub fn carry(&mut self, carrier: &mut dyn Carrier) {
-        let mut slaves = self.slaves.to_vec();
-        carrier.nodes(&mut slaves);
-        self.slaves = slaves.into();
+    /// Mesh node of a slave node.
+    pub fn mesh_node(&self, slave: SlaveIndex) -> u32 {
+        self.table.nodes[slave.place()]
     }
 
-    /// Takes up the states of the same carriers from a saved run.
+    /// Mesh nodes of the slave nodes on slave facets, ascending, each once.
+    pub fn mesh_nodes(&self) -> Vec<u32> {
+        let mut nodes: Vec<u32> = self.slaves.iter().map(|&slave| self.mesh_node(slave)).collect();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Slave nodes at a mesh node.
+    pub fn at(&self, node: u32) -> impl Iterator<Item = SlaveIndex> + Clone + use<> {
+        self.table.at(node).map(|place| SlaveIndex(place as u32))
+    }
+
+    /// The only slave node at a mesh node, of interactions that have one at each.
+    ///
+    /// # Panics
+    /// Where there is none.
+    pub fn only_at(&self, node: u32) -> SlaveIndex {
+        self.at(node).next().expect("a slave node")
+    }
+
+    /// Owner of the unknowns of a slave node among the [`SlaveNodes`](zelus_core::model::SlaveNodes) of the model part.
+    pub fn owner(&self, slave: SlaveIndex) -> u32 {
+        self.table.owners[slave.place()]
+    }
+
+    /// Owners of the unknowns of all slave nodes.
+    pub fn owners(&self) -> &[u32] {
+        &self.table.owners
+    }
+
+    /// Takes up the states of the same slave nodes from a saved run.
     ///
     /// # Errors
     /// The states of others.
     pub fn resume(&mut self, saved: Self) -> Result<()> {
-        let carries = |node: &u32| self.carriers.binary_search(node).is_ok();
         let ascend = saved.slaves.windows(2).all(|pair| pair[0] < pair[1]);
-        if saved.states.len() != self.states.len() || !ascend || !saved.slaves.iter().all(carries) {
-            return Err(unfit("the states of contact that it remembers are of other nodes"));
+        let known = saved.slaves.last().is_none_or(|last| last.place() < self.states.len());
+        if saved.states.len() != self.states.len() || !ascend || !known {
+            return Err(unfit("the states of contact that it remembers are of other slave nodes"));
         }
         (self.slaves, self.states) = (saved.slaves, saved.states);
         Ok(())
     }
 
-    /// Sets which carriers are on slave facets; the others are not in contact.
-    pub fn set_slaves(&mut self, slaves: Vec<u32>) {
+    /// Sets which slave nodes are on slave facets; the others are not in contact.
+    pub fn set_slaves(&mut self, slaves: Vec<SlaveIndex>) {
         self.slaves = slaves.into();
-        for (node, state) in self.carriers.iter().zip(&mut self.states) {
-            state.active &= self.slaves.binary_search(node).is_ok();
+        for (place, state) in self.states.iter_mut().enumerate() {
+            state.active &= self.slaves.binary_search(&SlaveIndex(place as u32)).is_ok();
         }
     }
 
-    /// The slave nodes with their states.
-    pub fn iter(&self) -> impl Iterator<Item = (u32, &SlaveState)> + Clone {
-        self.slaves.iter().map(|&node| (node, &self[node]))
+    /// The slave nodes on slave facets with their states.
+    pub fn iter(&self) -> impl Iterator<Item = (SlaveIndex, &SlaveState)> + Clone {
+        self.slaves.iter().map(|&slave| (slave, &self[slave]))
+    }
+
+    /// Changes the state of every slave node on a slave facet.
+    pub fn for_each(&mut self, mut change: impl FnMut(SlaveIndex, &mut SlaveState)) {
+        for &slave in &*self.slaves() {
+            change(slave, &mut self[slave]);
+        }
     }
 
     /// Changes the state of every slave node.
-    pub fn for_each(&mut self, mut change: impl FnMut(u32, &mut SlaveState)) {
-        for &node in &*self.slaves() {
-            change(node, &mut self[node]);
-        }
-    }
-
-    /// Changes the state of every carrier.
     pub fn for_all(&mut self, change: impl FnMut(&mut SlaveState)) {
         self.states.iter_mut().for_each(change);
     }
 
-    /// Whether a node has a state and is in contact.
-    pub fn is_active(&self, node: u32) -> bool {
-        self.slots.get(node as usize).is_some_and(|&slot| slot != NONE && self.states[slot as usize].active)
-    }
-
-    /// The state of a slave node in a word; `None` for other nodes.
+    /// The state of the slave nodes at a mesh node in a word, of one in contact where there are several; `None` without any.
     pub fn word(&self, node: u32) -> Option<&'static str> {
-        self.slaves.binary_search(&node).ok()?;
-        Some(match self[node].contact() {
+        let own = self.at(node).filter(|slave| self.slaves.binary_search(slave).is_ok());
+        let state = own.map(|slave| self[slave].contact()).max_by_key(|state| state.is_active())?;
+        Some(match state {
             NodeState::Inactive => "is open",
             NodeState::Stick => "is in contact and does not slide",
             NodeState::Slip => "is in contact and slides",
@@ -246,60 +235,123 @@ impl SlaveStates {
     /// Takes the normals from the model.
     pub fn read_normals(&mut self, nodes: &Nodes) {
         let Some(field) = nodes.history.get(NORMAL.name()) else { return };
-        for (&node, state) in self.carriers.iter().zip(&mut self.states) {
+        for (&node, state) in self.table.nodes.iter().zip(&mut self.states) {
             state.normal = field.vector(0, node as usize);
+        }
+    }
+
+    /// Takes the normals of patches; a slave node whose facets have no area keeps its normal.
+    pub fn take_normals(&mut self, patches: &NormalPatches, places: &[[f64; 3]]) {
+        for (place, state) in self.states.iter_mut().enumerate() {
+            let sum = patches.sum(place as u32, places);
+            let size = norm(sum);
+            if size > 0.0 {
+                state.normal = sum.map(|x| x / size);
+            }
         }
     }
 
     /// Takes the bounds of friction from the numbers of a law at the nodes.
     pub fn read_friction(&mut self, nodes: &Nodes, law: &FrictionLaw) {
-        for (&node, state) in self.carriers.iter().zip(&mut self.states) {
+        for (&node, state) in self.table.nodes.iter().zip(&mut self.states) {
             state.friction = law.bound_at(nodes, node as usize);
         }
     }
 
-    /// Writes flags and columns of the carriers.
+    /// Writes flags and columns of the mesh nodes: those of their slave node, or what several add up to.
     pub fn export(&self, nodes: &mut Nodes) {
-        for (&node, state) in self.carriers.iter().zip(&self.states) {
-            let at = node as usize;
-            nodes.flags.set(ACTIVE, at, state.active);
-            match state.slides {
+        for own in self.table.nodes.chunk_by(|a, b| a == b).scan(0, next_range) {
+            let at = self.table.nodes[own.start] as usize;
+            let states = &self.states[own];
+            nodes.flags.set(ACTIVE, at, states.iter().any(|state| state.active));
+            // Of a node in contact, else of the first.
+            let slides = states.iter().find(|state| state.active).unwrap_or(&states[0]).slides;
+            match slides {
                 Some(slides) => nodes.flags.set(SLIP, at, slides),
                 None => nodes.flags.undefine(SLIP, at),
             }
         }
-        self.slaves.iter().for_each(|&node| nodes.flags.set(ISOLATED, node as usize, self[node].isolated));
+        for &node in &self.mesh_nodes() {
+            let isolated = self.at(node).all(|slave| self[slave].isolated);
+            nodes.flags.set(ISOLATED, node as usize, isolated);
+        }
         let Nodes { values, history, .. } = nodes;
-        self.put(values.values_mut(&NODAL_AREA, 0), |state| [state.area]);
-        self.put(values.values_mut(&NORMAL_GAP, 0), |state| [state.start_gap]);
-        self.put(history.values_mut(&WEIGHTED_GAP, 0), |state| [state.weighted_gap]);
+        self.put(values.values_mut(&NODAL_AREA, 0), Shown::Sum, |state| [state.area]);
+        self.put(values.values_mut(&NORMAL_GAP, 0), Shown::Mean, |state| [state.start_gap]);
+        self.put(history.values_mut(&WEIGHTED_GAP, 0), Shown::Sum, |state| [state.weighted_gap]);
+        if history.has(NORMAL.name()) {
+            self.put(history.values_mut(&NORMAL, 0), Shown::Direction, |state| state.normal);
+        }
         if let Some(field) = history.get_mut(KEPT_CONTACT_PRESSURE.name()) {
-            self.put(&mut field.levels[0], |state| [state.kept_pressure]);
+            self.put(&mut field.levels[0], Shown::Mean, |state| [state.kept_pressure]);
         }
         if let Some(field) = self.columns.carried.and_then(|variable| history.get_mut(variable.name())) {
-            self.put(&mut field.levels[0], |state| state.carried);
+            self.put(&mut field.levels[0], Shown::Mean, |state| state.carried);
         }
         if self.columns.friction {
-            self.put(history.values_mut(&WEIGHTED_SLIP, 0), |state| state.weighted_slip);
+            self.put(history.values_mut(&WEIGHTED_SLIP, 0), Shown::Sum, |state| state.weighted_slip);
         }
         if !self.columns.tractions {
             return;
         }
-        self.put(values.values_mut(&INITIAL_PENALTY, 0), |state| [state.penalty]);
-        self.put(values.values_mut(&DYNAMIC_FACTOR, 0), |state| [state.dynamic_factor]);
-        self.put(values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0), |state| [state.pressure]);
+        self.put(values.values_mut(&INITIAL_PENALTY, 0), Shown::Mean, |state| [state.penalty]);
+        self.put(values.values_mut(&DYNAMIC_FACTOR, 0), Shown::Mean, |state| [state.dynamic_factor]);
+        self.put(values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0), Shown::Mean, |state| [state.pressure]);
         if self.columns.friction {
-            self.put(values.values_mut(&MULTIPLIER_WEIGHT, 0), |state| [state.multiplier_weight]);
-            self.put(values.values_mut(&TANGENT_XI, 0), |state| state.tangent);
-            self.put(values.values_mut(&TANGENT_ETA, 0), |state| cross(state.normal, state.tangent));
-            self.put(values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0), |state| state.traction);
+            self.put(values.values_mut(&MULTIPLIER_WEIGHT, 0), Shown::Mean, |state| [state.multiplier_weight]);
+            self.put(values.values_mut(&TANGENT_XI, 0), Shown::Direction, |state| state.tangent);
+            self.put(values.values_mut(&TANGENT_ETA, 0), Shown::Direction, |state| cross(state.normal, state.tangent));
+            self.put(values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0), Shown::Mean, |state| state.traction);
         }
     }
 
-    fn put<const C: usize>(&self, column: &mut [f64], of: impl Fn(&SlaveState) -> [f64; C]) {
-        for (&node, state) in self.carriers.iter().zip(&self.states) {
-            column[C * node as usize..C * node as usize + C].copy_from_slice(&of(state));
+    /// Writes a column at the mesh nodes: the number of the only slave node there, or the combination of several.
+    pub fn put<const C: usize>(&self, column: &mut [f64], shown: Shown, of: impl Fn(&SlaveState) -> [f64; C]) {
+        for own in self.table.nodes.chunk_by(|a, b| a == b).scan(0, next_range) {
+            let node = self.table.nodes[own.start] as usize;
+            let value = match &self.states[own] {
+                [only] => of(only),
+                several => shown.combined(several.iter().map(|state| (of(state), state.area))),
+            };
+            column[C * node..C * node + C].copy_from_slice(&value);
         }
+    }
+}
+
+/// The range of the next chunk, whose length is that of `chunk`.
+fn next_range(first: &mut usize, chunk: &[u32]) -> Option<Range<usize>> {
+    let start = *first;
+    *first += chunk.len();
+    Some(start..*first)
+}
+
+/// Combination of the numbers of several slave nodes at one mesh node, for columns of mesh nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// Forces, areas and numbers weighted by them.
+    Sum,
+    /// Pressures and tractions: the mean by area.
+    Mean,
+    /// Unit vectors: the direction of the mean by area.
+    Direction,
+}
+
+impl Shown {
+    /// The combination of numbers with areas; all count alike where none has an area.
+    pub fn combined<const C: usize>(self, of: impl Iterator<Item = ([f64; C], f64)> + Clone) -> [f64; C] {
+        let total: f64 = of.clone().map(|(_, area)| area.max(0.0)).sum();
+        let count = of.clone().count() as f64;
+        let weight = |area: f64| match self {
+            Self::Sum => 1.0,
+            _ if total > 0.0 => area.max(0.0) / total,
+            _ => 1.0 / count,
+        };
+        let mut sum = [0.0; C];
+        for (numbers, area) in of {
+            (0..C).for_each(|c| sum[c] += weight(area) * numbers[c]);
+        }
+        let size = sum.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if self == Self::Direction && size > 0.0 { sum.map(|x| x / size) } else { sum }
     }
 }
 

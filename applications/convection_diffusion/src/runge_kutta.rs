@@ -171,7 +171,7 @@ impl RungeKutta {
             dof.set_value(part, wanted(number));
         }
         if !part.constraints.is_empty() {
-            impose_constraints(&mut part.nodes, &part.constraints);
+            impose_constraints(part);
         }
     }
 

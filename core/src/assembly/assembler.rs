@@ -225,7 +225,7 @@ impl Assembler {
             (self.bulk, self.constant, self.damping) = (None, None, None);
             (self.mass, self.tangent_key) = (None, None);
         }
-        let equations = part.ranks.agree(Equations::new(&system.dofs, &part.nodes, &part.constraints))?;
+        let equations = part.ranks.agree(Equations::new(&system.dofs, part))?;
         let changed = self.stamps.bulk_graph == 0 || !equations.same_as(&self.equations);
         let changed = part.ranks.any(changed);
         if changed || std::mem::take(&mut self.incomplete) {

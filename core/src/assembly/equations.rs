@@ -14,7 +14,7 @@ use zelus_linear_algebra::{Csr, Layout};
 use super::dof_table::{Dof, DofTable, NONE};
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
-use crate::model::{MasterSlaveConstraint, Nodes, Owner};
+use crate::model::{MasterSlaveConstraint, ModelPart};
 
 /// What became of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -68,11 +68,13 @@ impl Equations {
     ///
     /// # Errors
     /// Constraints that form a circle or eliminate an unknown twice.
-    pub fn new(dofs: &DofTable, nodes: &Nodes, constraints: &[MasterSlaveConstraint]) -> Result<Self> {
+    pub fn new(dofs: &DofTable, part: &ModelPart) -> Result<Self> {
+        let nodes = &part.nodes;
         let mut slaves: BTreeMap<u32, &MasterSlaveConstraint> = BTreeMap::new();
-        for constraint in constraints.iter().filter(|c| c.active) {
+        for constraint in part.constraints.iter().filter(|c| c.active) {
             let (node, variable) = constraint.slave;
-            let Some(number) = dofs.number_of(variable, Owner::Node(node)) else { continue };
+            let owner = part.slave_nodes.owner(constraint.set.as_deref(), node);
+            let Some(number) = owner.and_then(|owner| dofs.number_of(variable, owner)) else { continue };
             if let Some(first) = slaves.insert(number, constraint) {
                 let fact = format!(
                     "constraints {} and {} both eliminate {variable} of node {}",
@@ -94,7 +96,7 @@ impl Equations {
         let mut leaning = Vec::new();
         for &number in slaves.keys() {
             let mut terms = BTreeMap::new();
-            follow(number, [1.0; 2], &slaves, dofs, nodes, 0, &mut terms)?;
+            follow(number, [1.0; 2], &slaves, dofs, part, 0, &mut terms)?;
             let mut follows = Vec::with_capacity(terms.len());
             for (master, [weight, force]) in terms {
                 match roles[master as usize] {
@@ -282,7 +284,7 @@ fn follow(
     shares: [f64; 2],
     slaves: &BTreeMap<u32, &MasterSlaveConstraint>,
     dofs: &DofTable,
-    nodes: &Nodes,
+    part: &ModelPart,
     depth: usize,
     terms: &mut BTreeMap<u32, [f64; 2]>,
 ) -> Result<()> {
@@ -294,17 +296,18 @@ fn follow(
     for (at, &((node, variable), weight)) in constraint.masters.iter().enumerate() {
         let force = constraint.forces.as_ref().map_or(weight, |forces| forces[at]);
         let shares = [shares[0] * weight, shares[1] * force];
-        let master = dofs.number_of(variable, Owner::Node(node)).ok_or_else(|| {
+        let owner = part.slave_nodes.owner(constraint.set.as_deref(), node);
+        let master = owner.and_then(|owner| dofs.number_of(variable, owner)).ok_or_else(|| {
             Diagnostic::error(
                 "constraint-unknown",
                 format!(
                     "constraint {} needs {variable} of node {}, which is not an unknown",
-                    constraint.id, nodes.ids[node as usize]
+                    constraint.id, part.nodes.ids[node as usize]
                 ),
             )
         })?;
         if slaves.contains_key(&master) {
-            follow(master, shares, slaves, dofs, nodes, depth + 1, terms)?;
+            follow(master, shares, slaves, dofs, part, depth + 1, terms)?;
         } else {
             let sums = terms.entry(master).or_insert([0.0; 2]);
             (0..2).for_each(|at| sums[at] += shares[at]);
@@ -316,30 +319,34 @@ fn follow(
 /// Makes the values of constrained unknowns obey their constraints: u_s = Σ w u_m + g.
 ///
 /// A constraint may follow another one; passes are repeated until nothing changes.
-pub fn impose_constraints(nodes: &mut Nodes, constraints: &[MasterSlaveConstraint]) {
+pub fn impose_constraints(part: &mut ModelPart) {
+    let constraints = std::mem::take(&mut part.constraints);
     for _ in 0..=constraints.len() {
         let mut changed = false;
         for constraint in constraints.iter().filter(|c| c.active) {
+            let set = constraint.set.as_deref();
             let value = constraint.masters.iter().fold(constraint.constant, |sum, &((node, variable), weight)| {
-                sum + weight * nodes.history.scalar(variable, node as usize).unwrap_or(0.0)
+                let owner = part.slave_nodes.owner(set, node);
+                sum + weight * owner.and_then(|owner| part.value_of(owner, variable, 0)).unwrap_or(0.0)
             });
             let (node, variable) = constraint.slave;
-            if let Some(field) = nodes.history.get_mut(variable.column) {
-                let at = node as usize * field.components + variable.offset();
-                changed |= field.levels[0][at] != value;
-                field.levels[0][at] = value;
+            let Some(owner) = part.slave_nodes.owner(set, node) else { continue };
+            if let Some(before) = part.value_of(owner, variable, 0) {
+                changed |= before != value;
+                part.set_value_of(owner, variable, 0, value);
             }
         }
         if !changed {
             break;
         }
     }
+    part.constraints = constraints;
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Carriers, ModelPart, test_variables::DISPLACEMENT};
+    use crate::model::{Carriers, ModelPart, Nodes, test_variables::DISPLACEMENT};
 
     /// Three nodes on a line, some of them fixed; the last follows the others by halves and passes its force on as `forces` say.
     fn equations(fixed: &[u32], forces: Option<Vec<f64>>) -> Equations {
@@ -351,8 +358,10 @@ mod tests {
         dofs.number(&part, &[Carriers::of_nodes(x, vec![0, 1, 2])], &[]);
         part.nodes.set_fixed(x, fixed, true);
         let masters = vec![((0, x), 0.5), ((1, x), 0.5)];
-        let constraint = MasterSlaveConstraint { id: 1, slave: (2, x), masters, forces, constant: 0.0, active: true };
-        Equations::new(&dofs, &part.nodes, &[constraint]).unwrap()
+        let constraint =
+            MasterSlaveConstraint { id: 1, slave: (2, x), masters, forces, constant: 0.0, active: true, set: None };
+        part.constraints.push(constraint);
+        Equations::new(&dofs, &part).unwrap()
     }
 
     #[test]

@@ -23,11 +23,13 @@ pub struct MasterSlaveConstraint {
     pub constant: f64,
     /// Whether it holds now.
     pub active: bool,
+    /// The set of slave nodes that own its unknowns, each at the mesh node named; `None` for unknowns of mesh nodes.
+    pub set: Option<String>,
 }
 
 impl MasterSlaveConstraint {
     /// A constraint that holds, without a constant, and not yet of a part: its id is 0.
     pub fn new(slave: NodeUnknown, masters: Vec<(NodeUnknown, f64)>) -> Self {
-        Self { id: 0, slave, masters, forces: None, constant: 0.0, active: true }
+        Self { id: 0, slave, masters, forces: None, constant: 0.0, active: true, set: None }
     }
 }

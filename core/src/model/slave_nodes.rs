@@ -8,6 +8,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::fields::Fields;
+use super::owner::Owner;
 
 /// A named set of slave nodes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,6 +87,15 @@ impl SlaveNodes {
         let range = self.range(name)?;
         let at = self.mesh_nodes[indices(range.clone())].binary_search(&mesh_node).ok()?;
         Some(range.start + at as u32)
+    }
+
+    /// The owner of unknowns at a mesh node: the slave node of a set, or without one the mesh node itself; `None` where the set has no
+    /// slave node there.
+    pub fn owner(&self, set: Option<&str>, mesh_node: u32) -> Option<Owner> {
+        match set {
+            Some(set) => self.find(set, mesh_node).map(Owner::Slave),
+            None => Some(Owner::Node(mesh_node)),
+        }
     }
 
     /// Mesh node of a slave node.

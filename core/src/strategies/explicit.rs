@@ -182,7 +182,7 @@ impl ExplicitStrategy {
         };
         self.scheme.advance(part, &system.dofs, &acceleration, target);
         if !part.constraints.is_empty() {
-            impose_constraints(&mut part.nodes, &part.constraints);
+            impose_constraints(part);
         }
         self.write_residual(part, system, &residual);
         if self.settings.compute_reactions {

@@ -172,7 +172,7 @@ mod tests {
         let mut dofs = DofTable::default();
         let carriers = [DISPLACEMENT.component(0), VELOCITY.component(0)];
         dofs.number(&part, &carriers.map(|variable| Carriers::of_nodes(variable, vec![0, 1])), &[]);
-        let equations = Equations::new(&dofs, &part.nodes, &[]).unwrap();
+        let equations = Equations::new(&dofs, &part).unwrap();
         let of = |[one, other]: [f64; 2]| vec![one, unit * other, one, unit * other];
         let tolerance = Tolerance { relative: 1e-4, absolute: 0.0 };
         Measure { form, block: Block::All, tolerance, apart }.check(&Measures {

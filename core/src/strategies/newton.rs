@@ -368,7 +368,7 @@ impl NewtonRaphson {
     pub(super) fn move_by(&self, part: &mut ModelPart, system: &System, increment: &[f64]) {
         system.dofs.scatter_add(increment, part);
         if !part.constraints.is_empty() {
-            impose_constraints(&mut part.nodes, &part.constraints);
+            impose_constraints(part);
         }
         self.scheme.update(part);
         if self.settings.move_mesh {

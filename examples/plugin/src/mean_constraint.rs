@@ -19,6 +19,7 @@ register! { ConstraintEntry "MeanConstraint",
             forces: None,
             constant: row.constant,
             active: true,
+            set: None,
         }])
     },
 }

@@ -7,6 +7,7 @@
 use std::cell::LazyCell;
 
 use zelus_core::Result;
+use zelus_core::model::Owner;
 use zelus_core::strategies::{
     Block, Check, ConvergenceCriterion, CriterionRequest, Form, Measure, Measures, Tolerance, Verdict, is_last_digit,
     is_round_off,
@@ -14,9 +15,8 @@ use zelus_core::strategies::{
 use zelus_core::vector3::{dot, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use crate::friction_law::smooth_nodes;
-use crate::law::NodeState;
 use crate::mortar::tangential;
+use crate::slave_status::SlaveStatus;
 use crate::variables::MULTIPLIER_WEIGHT;
 
 /// The criterion of the families with friction.
@@ -71,59 +71,62 @@ impl Sizes {
     }
 }
 
-/// Splits the multiplier entries of a vector over all unknowns. Sizes of round-off, which have no sign, count in full in all
-/// parts of a node.
+/// Splits the multiplier entries of a vector over all unknowns, slave node by slave node. Sizes of round-off, which have no sign,
+/// count in full in all parts of a slave node.
 fn split(measures: &Measures<'_>, vector: &[f64], signed: bool) -> Sizes {
-    let nodes = measures.nodes;
-    let mut entries = vec![([0.0; 3], 0_usize); nodes.len()];
+    let slaves = measures.slave_nodes;
+    let mut entries = vec![([0.0; 3], 0_usize); slaves.len()];
+    let mut sizes = Sizes::default();
     for &unknown in measures.equations.unknowns() {
         let dof = &measures.dofs.dofs()[unknown as usize];
-        if dof.multiplier {
-            let (values, count) = &mut entries[dof.node as usize];
-            values[dof.variable.offset()] = vector[unknown as usize];
-            *count += 1;
+        match dof.owner {
+            _ if !dof.multiplier => {}
+            Owner::Slave(slave) => {
+                let (values, count) = &mut entries[slave as usize];
+                values[dof.variable.offset()] = vector[unknown as usize];
+                *count += 1;
+            }
+            // Multipliers of others count with the normal ones.
+            Owner::Node(_) => sizes.add(0, [vector[unknown as usize], 0.0, 0.0], 1),
         }
     }
-    let normals = nodes.history.get(NORMAL.name());
-    let is_smooth = smooth_nodes(nodes);
-    let mut sizes = Sizes::default();
+    let normals = slaves.history.get(NORMAL.name());
     for (at, (values, count)) in entries.into_iter().enumerate().filter(|(_, (_, count))| *count > 0) {
-        let state = NodeState::of_flags(&nodes.flags, at);
-        if state == NodeState::Inactive {
-            sizes.add(0, values, count);
-            continue;
-        }
-        let smooth = is_smooth(at);
+        let part = match SlaveStatus::at(slaves, at) {
+            SlaveStatus::Inactive => {
+                sizes.add(0, values, count);
+                continue;
+            }
+            SlaveStatus::Frictionless => 0,
+            SlaveStatus::Stick => 1,
+            SlaveStatus::Slip => 2,
+        };
         let normal = normals.map_or([0.0; 3], |n| n.vector(0, at));
         let along = if signed { tangential(values, normal) } else { values };
         let across = if signed { sub(values, along) } else { values };
-        let part = match state {
-            _ if smooth => 0,
-            NodeState::Stick => 1,
-            _ => 2,
-        };
         sizes.add(0, across, 1);
         sizes.add(part, along, count - 1);
     }
     sizes
 }
 
-/// Size of the tractions between the bodies, as the equations of sliding nodes state them: sliding parts of friction of all
-/// nodes in contact, normal parts of sliding nodes without friction.
+/// Size of the tractions between the bodies, as the equations of sliding slave nodes state them: tangential parts of those in
+/// contact with friction, normal parts of those without.
 fn tractions(measures: &Measures<'_>) -> Sizes {
-    let weights = measures.nodes.values.values(&MULTIPLIER_WEIGHT, 0);
-    let is_smooth = smooth_nodes(measures.nodes);
+    let slaves = measures.slave_nodes;
+    let weights = slaves.history.values(&MULTIPLIER_WEIGHT, 0);
     let mut sizes = Sizes::default();
     for &unknown in measures.equations.unknowns() {
         let dof = &measures.dofs.dofs()[unknown as usize];
-        let node = dof.node as usize;
-        let part = match NodeState::of_flags(&measures.nodes.flags, node) {
-            NodeState::Slip if is_smooth(node) => 0,
-            NodeState::Slip | NodeState::Stick if !is_smooth(node) => 2,
-            _ => continue,
+        let Owner::Slave(slave) = dof.owner else { continue };
+        let at = slave as usize;
+        let part = match SlaveStatus::at(slaves, at) {
+            SlaveStatus::Inactive => continue,
+            SlaveStatus::Frictionless => 0,
+            SlaveStatus::Stick | SlaveStatus::Slip => 2,
         };
         if dof.multiplier {
-            let size = weights.get(node).map_or(0.0, |weight| weight * measures.values[unknown as usize]);
+            let size = weights.get(at).map_or(0.0, |weight| weight * measures.values[unknown as usize]);
             sizes.squares[part] += size * size;
         }
     }

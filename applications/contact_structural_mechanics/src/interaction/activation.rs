@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use zelus_core::model::Nodes;
+use zelus_core::model::{Nodes, SlaveNodes};
 
 use crate::active_set::SlipRule;
-use crate::interface::{Interface, Roles};
+use crate::node_state::SlaveIndex;
 use crate::pairs::Multiplier;
 use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;
@@ -16,9 +16,15 @@ const SIMPLE_REACH: f64 = 2e-3;
 const FAR: f64 = 1e12;
 
 /// Sets the multipliers of inactive nodes among `of` to zero, and the tractions and pressures that are kept of them.
-pub(super) fn clear_inactive(nodes: &mut Nodes, states: &mut SlaveStates, multiplier: Multiplier, of: &[u32]) {
-    for &node in of {
-        let state = &mut states[node];
+pub(super) fn clear_inactive(
+    slave_nodes: &mut SlaveNodes,
+    states: &mut SlaveStates,
+    multiplier: Multiplier,
+    of: impl Iterator<Item = SlaveIndex>,
+) {
+    for slave in of {
+        let owner = if multiplier.is_unknown() { states.owner(slave) } else { 0 };
+        let state = &mut states[slave];
         if state.active {
             continue;
         }
@@ -26,10 +32,10 @@ pub(super) fn clear_inactive(nodes: &mut Nodes, states: &mut SlaveStates, multip
             Multiplier::Body => {}
             Multiplier::None => state.carried = [0.0; 3],
             Multiplier::Scalar(_) => {
-                multiplier.set(nodes, node, [0.0; 3]);
+                multiplier.set(slave_nodes, owner, [0.0; 3]);
                 state.kept_pressure = 0.0;
             }
-            Multiplier::Vector(_) => multiplier.set(nodes, node, [0.0; 3]),
+            Multiplier::Vector(_) => multiplier.set(slave_nodes, owner, [0.0; 3]),
         }
     }
 }
@@ -42,18 +48,19 @@ pub(super) enum Start<'a> {
     /// A gap below a small share of the mesh size of the node.
     ShareOfMeshSize,
     /// These nodes, and those that are in contact already.
-    Touching(&'a BTreeSet<u32>),
+    Touching(&'a BTreeSet<SlaveIndex>),
 }
 
 /// Step start: which nodes are active. Gaps are weighted gaps over areas, so they are those of the mortar mapping.
 pub(super) fn start(nodes: &Nodes, states: &mut SlaveStates, start: Start<'_>, rule: SlipRule) {
     let sizes = nodes.values.values(&NODAL_H, 0);
-    states.for_each(|node, state| {
+    let mesh_nodes: Vec<u32> = states.all().map(|slave| states.mesh_node(slave)).collect();
+    states.for_each(|slave, state| {
         let gap = state.gap().unwrap_or(FAR);
         let near = match start {
             Start::Reach(reach) => gap < reach,
-            Start::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[node as usize],
-            Start::Touching(nodes) => nodes.contains(&node) || state.active,
+            Start::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
+            Start::Touching(nodes) => nodes.contains(&slave) || state.active,
         };
         state.active = near && !state.isolated;
         state.start_gap = if near { gap } else { 0.0 };
@@ -64,26 +71,27 @@ pub(super) fn start(nodes: &Nodes, states: &mut SlaveStates, start: Start<'_>, r
     });
 }
 
-/// The slave nodes of interfaces without contact that are at most `reach` mesh sizes farther from a master than the nearest
+/// The slave nodes, of these of each interface, of interfaces without contact that are at most `reach` mesh sizes farther from a master than the nearest
 /// of their interface, where those are not in contact yet. `open` keeps the interfaces that had none when it was empty.
 pub(super) fn nearest(
     nodes: &Nodes,
     states: &SlaveStates,
-    interfaces: &[Interface],
+    slaves: &[Vec<SlaveIndex>],
     reach: f64,
     open: &mut BTreeSet<usize>,
-) -> BTreeSet<u32> {
+) -> BTreeSet<SlaveIndex> {
     let sizes = nodes.values.values(&NODAL_H, 0);
-    let slaves: Vec<Vec<u32>> = interfaces.iter().map(|interface| interface.nodes_of(Roles::Slave)).collect();
     if open.is_empty() {
         open.extend((0..slaves.len()).filter(|&at| !slaves[at].iter().any(|&n| states[n].active)));
     }
     let mut found = BTreeSet::new();
     for own in open.iter().map(|&at| &slaves[at]) {
         let facing = || own.iter().filter(|&&n| !states[n].isolated);
-        let gap = |n: u32| states[n].weighted_gap / states[n].area;
+        let gap = |n: SlaveIndex| states[n].weighted_gap / states[n].area;
         let least = facing().map(|&n| gap(n)).fold(f64::INFINITY, f64::min);
-        found.extend(facing().filter(|&&n| gap(n) - least <= reach * sizes[n as usize] && !states[n].active));
+        found.extend(
+            facing().filter(|&&n| gap(n) - least <= reach * sizes[states.mesh_node(n) as usize] && !states[n].active),
+        );
     }
     found
 }

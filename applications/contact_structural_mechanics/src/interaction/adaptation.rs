@@ -2,8 +2,10 @@
 
 use zelus_core::model::{ModelPart, Nodes};
 
+use crate::node_state::SlaveIndex;
 use crate::penalty_adaptation::{Growth, PenaltyRule, dynamic_factor};
-use crate::slave_states::{SlaveState, SlaveStates};
+use crate::slave_state::SlaveState;
+use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;
 
 /// Least share of a penalty that stays: a gap of round-off would otherwise take all of it away.
@@ -53,7 +55,8 @@ impl AdaptationSettings {
     /// Weighted gaps of the slave nodes before the next integration, when they will be needed: those of the last iterate,
     /// in explicit steps those of the last step.
     pub(super) fn gaps(self, states: &SlaveStates, explicit: bool) -> Vec<f64> {
-        let gap = |(_, state): (u32, &SlaveState)| if explicit { state.last.weighted_gap } else { state.weighted_gap };
+        let gap =
+            |(_, state): (SlaveIndex, &SlaveState)| if explicit { state.last.weighted_gap } else { state.weighted_gap };
         if self.acts() || explicit { states.iter().map(gap).collect() } else { Vec::new() }
     }
 
@@ -74,7 +77,8 @@ impl AdaptationSettings {
         }
         let sizes = nodes.values.values(&NODAL_H, 0);
         let mut previous = previous.iter();
-        states.for_each(|node, state| {
+        let mesh_nodes: Vec<u32> = states.all().map(|slave| states.mesh_node(slave)).collect();
+        states.for_each(|slave, state| {
             let before = previous.next().expect("a gap of every slave node");
             // The gap of an open node says nothing about its penalty.
             let Some(gap) = state.gap().filter(|_| state.active) else { return };
@@ -87,7 +91,7 @@ impl AdaptationSettings {
                 state.dynamic_factor = dynamic_factor(gap, before);
             }
             if let Some(rule) = self.rule {
-                let size = sizes[node as usize];
+                let size = sizes[mesh_nodes[slave.place()] as usize];
                 let next = rule.adapt(adapted, gap, before, [self.min_gap_factor * size, self.max_gap_factor * size]);
                 if next.is_finite() {
                     adapted = next.max(LEAST_SHARE * rule.floor_refers_to(penalty, adapted));

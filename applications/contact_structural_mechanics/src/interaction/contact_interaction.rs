@@ -32,8 +32,9 @@ use super::step_parameters::StepParameters;
 use crate::flags::CONTACT;
 use crate::interface::{Bodies, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
+use crate::node_state::SlaveIndex;
 use crate::penalty_adaptation::Growth;
-use crate::slave_states::SlaveState;
+use crate::slave_state::SlaveState;
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, KEEP_MASS};
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
@@ -167,7 +168,7 @@ impl Interaction for ContactInteraction {
         if self.shape != part.nodes.reshaped {
             self.find_bodies(part)?;
         }
-        self.contact.states.begin_step();
+        self.contact.begin_step(part);
         self.set.begin_step();
         self.reach = Reach::default();
         self.loops.begin_step(part, &mut self.contact);
@@ -187,17 +188,17 @@ impl Interaction for ContactInteraction {
             self.contact.switch_off(part);
         }
         self.contact.publish(part);
-        self.loops.keep_start(part);
+        self.loops.keep_start(&self.contact.states);
         Ok(())
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.loops.accept(part, &mut self.contact);
         if self.acting {
-            self.meetings.accept(&self.contact.pairing.interfaces, &self.contact.states);
+            self.meetings.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
         }
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
-        self.contact.clear_inactive(part, &self.contact.states.slaves());
+        self.contact.clear_inactive(part);
         let (family, clears) = (self.contact.setup.settings.family, self.contact.setup.settings.clear_inactive);
         self.contact.states.for_each(|_, state| {
             if clears && !state.active {
@@ -206,7 +207,8 @@ impl Interaction for ContactInteraction {
         });
         if family.frictional() {
             let parameters = &self.contact.setup.parameters;
-            friction::meet_bounds(&mut part.nodes, &self.contact.states, family.multiplier, parameters.scale_factor);
+            let states = &self.contact.states;
+            friction::meet_bounds(&mut part.slave_nodes, states, family.multiplier, parameters.scale_factor);
             if !self.warned_of_friction {
                 let warning = friction::warn_of_pushing(part, &self.contact.states, family.multiplier, parameters);
                 self.warned_of_friction = warning.is_some();
@@ -272,11 +274,12 @@ impl Interaction for ContactInteraction {
     fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
         let ContactState { setup: Setup { settings, parameters, resolution, .. }, pairing, states, .. } = &self.contact;
         let multiplier = settings.family.multiplier;
-        let of_node = |node: u32, state: &SlaveState| {
-            heat(state.traction, slip(&part.nodes, node, state, multiplier, parameters), state.area)
+        let of_node = |slave: SlaveIndex, state: &SlaveState| {
+            heat(state.traction, slip(part, states, slave, multiplier, parameters), state.area)
         };
         let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.family.frictional());
-        pair_states(&pairing.interfaces, parts, states, frictional, resolution.length, of_node)
+        let slaves = pairing.slaves_by_interface();
+        pair_states(&pairing.interfaces, parts, (states, &slaves), frictional, resolution.length, of_node)
     }
 
     fn node_state(&self, node: u32) -> Option<&'static str> {
@@ -320,7 +323,8 @@ impl Interaction for ContactInteraction {
 impl Coupling for ContactInteraction {
     fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
         let unknowns = self.contact.setup.settings.family.multiplier.unknowns(part.info.domain_size);
-        unknowns.into_iter().map(|variable| Carriers::of_nodes(variable, self.contact.pairing.carriers())).collect()
+        let owners = self.contact.states.owners();
+        unknowns.into_iter().map(|variable| Carriers::of_slaves(variable, owners.iter().copied())).collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
@@ -418,7 +422,8 @@ impl ActiveSet for ContactInteraction {
         }
         let mut any = self.contact.setup.by_points() && points::hold_active(&mut self.contact.states);
         if !any {
-            let near = self.reach.next(&part.nodes, &self.contact.states, &self.contact.pairing.interfaces);
+            let slaves = self.contact.pairing.slaves_by_interface();
+            let near = self.reach.next(&part.nodes, &self.contact.states, &slaves);
             self.contact.activate(part, Start::Touching(&near));
             if self.contact.setup.by_points() {
                 points::hold(&mut self.contact.states, &near);
@@ -453,7 +458,7 @@ impl Massless for ContactInteraction {
         if !self.acting || part.info.is(KEEP_MASS) {
             return MasslessNodes::default();
         }
-        self.near_nodes = near_nodes(part, &self.contact.pairing, &self.contact.states.slaves(), &self.near_nodes);
+        self.near_nodes = near_nodes(part, &self.contact.pairing, &self.contact.states, &self.near_nodes);
         MasslessNodes { surface: self.contact.pairing.nodes(), near: self.near_nodes.clone() }
     }
 }

@@ -7,10 +7,12 @@ use zelus_core::{Carrier, Result};
 
 use super::activation::{self, Start};
 use super::contact_settings::ContactSettings;
-use super::edges::turn_edges;
+use super::edges::take_normals_of_masters;
 use super::friction;
-use super::holding::Holding;
+use super::holding::{FacetsOfPair, Holding};
 use super::integration::integrate;
+use super::multiplier_columns;
+use super::owners::{feature_angle, owners_name};
 use super::pair_states::settle_all;
 use super::pairing::{Pairing, PairingState};
 use super::points;
@@ -18,11 +20,12 @@ use super::results::write_states;
 use super::set_stage::SetStage;
 use super::setup::Setup;
 use crate::flags::{MASTER, SLAVE};
-use crate::interface::{Roles, add_contact_part, interfaces, warnings_of_pairs};
+use crate::interface::{NormalPatches, Roles, add_contact_part, interfaces, warnings_of_pairs};
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
 use crate::search::{GapCheck, assign_roles};
 use crate::slave_states::SlaveStates;
+use crate::slave_status::write_status;
 use crate::solver::AVERAGED_EDGES;
 
 /// Contact at a moment.
@@ -54,8 +57,6 @@ pub(super) struct RememberedContact {
 impl RememberedContact {
     /// See [`State::carry`](zelus_core::State::carry): facets are everywhere the same.
     pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.pairing.carry(carrier);
-        self.states.carry(carrier);
         self.holding.carry(carrier);
     }
 }
@@ -72,7 +73,7 @@ impl ContactState {
         messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
         Ok(Self {
             messages,
-            pairing: Pairing::new(interfaces, part, settings.nodal_normals),
+            pairing: Pairing::new(interfaces, settings.nodal_normals),
             setup: Setup::new(settings),
             states: SlaveStates::default(),
             holding: Holding::default(),
@@ -83,11 +84,30 @@ impl ContactState {
 
     /// Makes the states of all nodes that may carry multipliers, none of them in contact.
     pub(super) fn make_states(&mut self, part: &mut ModelPart) {
-        self.pairing.patches.write(part);
-        self.states = SlaveStates::of(part, self.pairing.carriers(), self.setup.settings.family.columns());
+        let angle = feature_angle(part);
+        let name = self.owners_name();
+        let table = self.pairing.make_patches(part, angle, &name);
+        write_nodal_normals(part, &self.pairing, &self.holding);
+        let family = self.setup.settings.family;
+        if let Some((name, components)) = family.multiplier.column() {
+            part.slave_nodes.history.add_named(name, components);
+        }
+        self.states = SlaveStates::of(part, table, family.columns());
         self.states.for_all(|state| state.active = false);
+        self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         self.states.set_slaves(self.pairing.slaves());
+        self.import_multipliers(part);
         self.states.export(&mut part.nodes);
+    }
+
+    /// Name of the sets of its slave nodes: that of the parts of its pairs.
+    fn owners_name(&self) -> String {
+        owners_name("contact", &self.setup.settings.slaves, &self.setup.settings.parts)
+    }
+
+    /// Takes multipliers that the columns of mesh nodes were given from outside, as by a deck.
+    fn import_multipliers(&self, part: &mut ModelPart) {
+        multiplier_columns::import(part, &self.states, self.setup.settings.family.multiplier);
     }
 
     /// Whether the step began with a search.
@@ -99,7 +119,12 @@ impl ContactState {
     pub(super) fn switch_off(&mut self, part: &mut ModelPart) {
         self.states.for_all(|state| state.active = false);
         self.pairing.clear();
-        self.clear_inactive(part, &self.states.slaves());
+        self.clear_inactive(part);
+    }
+
+    /// Whether a slave node of an interface is in contact.
+    pub(super) fn in_contact(&self, interface: usize) -> bool {
+        self.pairing.slaves_of(interface).iter().any(|&slave| self.states[slave].active)
     }
 
     /// Activates these nodes, and keeps those that are in contact.
@@ -139,7 +164,7 @@ impl ContactState {
         let RememberedContact { pairing, states, holding, resolution, steps_since_search } = state;
         holding.check(part.nodes.len())?;
         (self.holding, self.setup.resolution, self.steps_since_search) = (holding, resolution, steps_since_search);
-        self.pairing.resume(part, &self.holding, &self.setup, pairing)?;
+        self.pairing.resume(&self.holding, &self.setup, pairing)?;
         self.states.resume(states)?;
         self.pairing.set_states(&self.states);
         Ok(())
@@ -147,11 +172,11 @@ impl ContactState {
 
     /// Normals of the nodes in the present configuration.
     pub(super) fn find_normals(&mut self, part: &mut ModelPart) {
-        self.pairing.patches.write(part);
+        write_nodal_normals(part, &self.pairing, &self.holding);
+        self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         if !part.info.is(AVERAGED_EDGES) {
-            turn_edges(part, &mut self.states, &self.pairing);
+            take_normals_of_masters(part, &mut self.states, &self.pairing);
         }
-        self.states.read_normals(&part.nodes);
     }
 
     /// Self contact: each search decides which facets are slaves.
@@ -169,14 +194,17 @@ impl ContactState {
             }
         }
         self.states.set_slaves(self.pairing.slaves());
-        self.clear_inactive(part, &self.states.carriers());
-        self.pairing.find_patches(part, &self.holding);
-        self.pairing.patches.write(part);
-        self.states.read_normals(&part.nodes);
+        let (all, multiplier) = (self.states.all(), self.setup.settings.family.multiplier);
+        activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, all);
+        self.pairing.find_normal_patches(&self.holding);
+        write_nodal_normals(part, &self.pairing, &self.holding);
+        self.states.take_normals(&self.pairing.normals, &part.nodes.current);
     }
 
-    pub(super) fn clear_inactive(&mut self, part: &mut ModelPart, of: &[u32]) {
-        activation::clear_inactive(&mut part.nodes, &mut self.states, self.setup.settings.family.multiplier, of);
+    /// Sets the multipliers of slave nodes without contact to zero.
+    pub(super) fn clear_inactive(&mut self, part: &mut ModelPart) {
+        let (slaves, multiplier) = (self.states.slaves(), self.setup.settings.family.multiplier);
+        activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, slaves.iter().copied());
     }
 
     /// Recomputes overlaps, weighted gaps and areas in the present configuration.
@@ -209,7 +237,11 @@ impl ContactState {
     fn hold(&mut self, part: &ModelPart) {
         if self.setup.settings.mind_supports {
             let keys = self.pairing.keys();
-            let facets = keys.iter().map(|&key| (self.pairing.slave(key), self.pairing.master(key)));
+            let facets = keys.iter().map(|&key| FacetsOfPair {
+                slave: self.pairing.slave(key),
+                slaves: self.pairing.slaves_of_pair(key),
+                master: self.pairing.master(key),
+            });
             let said = self.holding.hold(part, &mut self.states, self.setup.settings.family, facets);
             self.messages.extend(said);
         }
@@ -219,6 +251,16 @@ impl ContactState {
     pub(super) fn publish(&mut self, part: &mut ModelPart) {
         self.pairing.set_states(&self.states);
         self.states.export(&mut part.nodes);
+        multiplier_columns::export(part, &self.states, self.setup.settings.family.multiplier);
+        if self.setup.settings.family.frictional() {
+            write_status(part, &self.states);
+        }
+    }
+
+    /// Step start: takes up multipliers from outside, and what was accepted last is what the step compares with.
+    pub(super) fn begin_step(&mut self, part: &mut ModelPart) {
+        self.import_multipliers(part);
+        self.states.begin_step();
     }
 
     /// Searches where that is due, and decides which nodes begin the step in contact.
@@ -226,10 +268,10 @@ impl ContactState {
     /// # Errors
     /// A failed search.
     pub(super) fn find_contact(&mut self, part: &mut ModelPart) -> Result<()> {
-        self.clear_inactive(part, &self.states.slaves());
+        self.clear_inactive(part);
         if self.setup.settings.mind_supports {
             self.holding.begin_step(part, &self.pairing.interfaces);
-            self.pairing.find_patches(part, &self.holding);
+            self.pairing.find_normal_patches(&self.holding);
         }
         self.find_normals(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
@@ -252,11 +294,17 @@ impl ContactState {
         let rule = self.setup.parameters.slip_rule;
         activation::start(&part.nodes, &mut self.states, start, rule);
         if self.setup.by_points() {
-            points::hold_open_interfaces(&mut self.states, &self.pairing.interfaces, self.setup.resolution);
+            points::hold_open_interfaces(&mut self.states, &self.pairing.slaves_by_interface(), self.setup.resolution);
         }
         friction::start_in_stick(part.info.step, &mut self.states, rule, &settings.friction);
         self.pairing.refresh_normals(part, self.setup.updates_normals());
         self.pairing.begin_step(part, &self.states, settings.segmentation.slivers);
         Ok(())
     }
+}
+
+/// Writes the column NORMAL of all nodes of the interfaces, masters too.
+fn write_nodal_normals(part: &mut ModelPart, pairing: &Pairing, holding: &Holding) {
+    let all = NormalPatches::new(part.nodes.len(), &pairing.interfaces, pairing.normals.weights());
+    all.on_planes(holding.planes().clone()).write(part);
 }

@@ -10,8 +10,10 @@ use zelus_core::geometry::parts;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::norm;
 
-use super::nodal_sums::NodalSums;
-use crate::interface::{Interface, Roles};
+use super::pairing::Pairing;
+use super::slave_sums::SlaveSums;
+use crate::interface::Roles;
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
 /// Says of each slave node that is beside the master that it is isolated: the area that it integrates, as a share of its facets,
@@ -21,31 +23,36 @@ use crate::slave_states::SlaveStates;
 pub(super) fn isolate_beside(
     part: &ModelPart,
     states: &mut SlaveStates,
-    interfaces: &[Interface],
+    pairing: &Pairing,
     least: f64,
     weight: impl Fn(u32) -> f64,
 ) {
-    let slaves = states.slaves();
-    let facets = || interfaces.iter().flat_map(|i| &i.facets).filter(|facet| facet.role == Roles::Slave);
-    let mut whole = NodalSums::<1>::new(part.nodes.len(), &slaves);
-    for facet in facets() {
+    let facets = || {
+        pairing.interfaces.iter().enumerate().flat_map(|(i, interface)| {
+            let slaves = interface.facets.iter().enumerate().filter(|(_, facet)| facet.role == Roles::Slave);
+            slaves.map(move |(f, facet)| (facet, pairing.patches.of_facet(i as u32, f as u32, facet.nodes.len())))
+        })
+    };
+    let mut whole = SlaveSums::<1>::new(states);
+    for (facet, slaves) in facets() {
         let size = norm(vector_area(facet.shape, &facet.positions(part)));
         let mean = facet.nodes.iter().map(|&node| weight(node)).sum::<f64>() / facet.nodes.len() as f64;
-        // What the shape function of a node integrates of a weight along a line: on the axis it is not nothing.
-        for (local, &node) in facet.nodes.iter().enumerate() {
-            whole[node][0] += size / parts(facet.shape, local) * (weight(node) + 2.0 * mean) / 3.0;
+        // The shape function of a node integrates this of a weight along a line: on the axis it is not nothing.
+        for (local, (&node, &slave)) in facet.nodes.iter().zip(slaves).enumerate() {
+            whole[slave][0] += size / parts(facet.shape, local) * (weight(node) + 2.0 * mean) / 3.0;
         }
     }
-    let share = |node: u32| match whole[node] {
-        [whole] if whole > 0.0 => states[node].area / whole,
+    let share = |slave: SlaveIndex| match whole[slave] {
+        [whole] if whole > 0.0 => states[slave].area / whole,
         _ => 0.0,
     };
-    let mut best = NodalSums::<1>::new(part.nodes.len(), &slaves);
-    for facet in facets() {
-        let most = facet.nodes.iter().map(|&node| share(node)).fold(0.0, f64::max);
-        facet.nodes.iter().for_each(|&node| best[node][0] = best[node][0].max(most));
+    let mut best = SlaveSums::<1>::new(states);
+    for (_, slaves) in facets() {
+        let most = slaves.iter().map(|&slave| share(slave)).fold(0.0, f64::max);
+        slaves.iter().for_each(|&slave| best[slave][0] = best[slave][0].max(most));
     }
-    let bound = |node: u32| least * if states[node].active { 0.5 } else { 1.0 };
-    let beside: Vec<bool> = slaves.iter().map(|&node| share(node) < bound(node) * best[node][0]).collect();
-    slaves.iter().zip(beside).for_each(|(&node, beside)| states[node].isolated |= beside);
+    let bound = |slave: SlaveIndex| least * if states[slave].active { 0.5 } else { 1.0 };
+    let slaves = states.slaves();
+    let beside: Vec<bool> = slaves.iter().map(|&slave| share(slave) < bound(slave) * best[slave][0]).collect();
+    slaves.iter().zip(beside).for_each(|(&slave, beside)| states[slave].isolated |= beside);
 }

@@ -11,6 +11,7 @@ use zelus_core::diagnostics::Diagnostic;
 
 use crate::active_set::Decision;
 use crate::law::NodeState;
+use crate::node_state::SlaveIndex;
 
 /// Longest cycle that is looked for, in iterations.
 const LONGEST: usize = 6;
@@ -60,14 +61,19 @@ impl CycleGuard {
     }
 
     /// Takes back all changes of a set that is held.
-    pub(super) fn restrict(&self, decisions: &mut [(u32, Decision)], before: &[NodeState]) {
+    pub(super) fn restrict(&self, decisions: &mut [(SlaveIndex, Decision)], before: &[NodeState]) {
         if self.held {
             decisions.iter_mut().zip(before).for_each(|((_, decision), &was)| decision.stay(was, was));
         }
     }
 
     /// Keeps the set of an iteration; the warning when a cycle is met for the first time in the run.
-    pub(super) fn keep(&mut self, decisions: &[(u32, Decision)], ids: &[usize], step: usize) -> Option<Diagnostic> {
+    pub(super) fn keep(
+        &mut self,
+        decisions: &[(SlaveIndex, Decision)],
+        ids: &dyn Fn(SlaveIndex) -> usize,
+        step: usize,
+    ) -> Option<Diagnostic> {
         if self.held {
             return None;
         }
@@ -84,7 +90,7 @@ impl CycleGuard {
         let cycling = (0..decisions.len()).filter(|&at| states.iter().any(|set| set[at] != states[0][at]));
         let fact = format!(
             "step {step}: the contact states of nodes {} come back every {period} iterations",
-            named(cycling.map(|at| ids[decisions[at].0 as usize]))
+            named(cycling.map(|at| ids(decisions[at].0)))
         );
         Some(Diagnostic::warning("contact-cycle", fact).remedy(
             "nothing to do: from here on they change in converged states only; a shorter \"time_step\" may avoid it",
@@ -98,10 +104,10 @@ impl CycleGuard {
     /// that which is violated most of those that lead to a new set.
     pub(super) fn settle(
         &mut self,
-        decisions: &mut [(u32, Decision)],
+        decisions: &mut [(SlaveIndex, Decision)],
         before: &[NodeState],
         largest: f64,
-        ids: &[usize],
+        ids: &dyn Fn(SlaveIndex) -> usize,
     ) -> Settled {
         let mut changing: Vec<usize> = (0..before.len()).filter(|&at| decisions[at].1.state != before[at]).collect();
         if changing.is_empty() {
@@ -134,7 +140,7 @@ impl CycleGuard {
         if best <= ALLOWED && self.converged.len() < 2 * MOST_CHANGES {
             return Settled::Change;
         }
-        let nodes = named(changing.into_iter().map(|at| ids[decisions[at].0 as usize]));
+        let nodes = named(changing.into_iter().map(|at| ids(decisions[at].0)));
         Settled::Failed(format!(
             "the contact states of nodes {nodes} find no rest; they violate contact by {share:.1e} of the largest pressure"
         ))
@@ -163,13 +169,13 @@ mod tests {
     use super::*;
     use NodeState::{Inactive, Slip, Stick};
 
-    const IDS: [usize; 3] = [1, 2, 3];
+    const IDS: fn(SlaveIndex) -> usize = |slave| slave.place() + 1;
 
-    fn decisions(states: &[NodeState], excess: f64) -> Vec<(u32, Decision)> {
+    fn decisions(states: &[NodeState], excess: f64) -> Vec<(SlaveIndex, Decision)> {
         states
             .iter()
             .enumerate()
-            .map(|(at, &state)| (at as u32, Decision { excess, ..Decision::plain(state) }))
+            .map(|(at, &state)| (SlaveIndex(at as u32), Decision { excess, ..Decision::plain(state) }))
             .collect()
     }
 

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use zelus_core::entities::SetChange;
-use zelus_core::model::{ModelPart, Nodes};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use super::cycling::ALLOWED;
@@ -13,9 +13,11 @@ use crate::active_set::{self, Decision, SlaveNumbers};
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::{Augmentation, Held, NodeState};
 use crate::mortar::{tangent, tangential};
+use crate::node_state::SlaveIndex;
 use crate::pairs::{Family, Multiplier};
 use crate::resolution::Resolution;
-use crate::slave_states::{SlaveState, SlaveStates};
+use crate::slave_state::SlaveState;
+use crate::slave_states::SlaveStates;
 
 /// What decisions are taken by: the rules of a family with the numbers of the step.
 #[derive(Clone, Copy)]
@@ -35,14 +37,14 @@ impl Rules<'_> {
     /// friction pushes along their motion stick, each once a step: those in `released` did before.
     pub(super) fn decide(
         self,
-        nodes: &Nodes,
+        part: &ModelPart,
         states: &SlaveStates,
-        released: &mut BTreeSet<u32>,
-    ) -> (Vec<(u32, Decision)>, Vec<NodeState>) {
+        released: &mut BTreeSet<SlaveIndex>,
+    ) -> (Vec<(SlaveIndex, Decision)>, Vec<NodeState>) {
         let rule = self.parameters.slip_rule;
         let (mut decisions, mut before, mut pushed) = (Vec::new(), Vec::new(), Vec::new());
         for (node, state) in states.iter() {
-            let numbers = self.numbers(nodes, node, state);
+            let numbers = self.numbers(part, states, node);
             let mut decision = (self.family.decide)(&numbers, rule);
             if state.isolated {
                 decision = active_set::inactive(&numbers, decision.pressure);
@@ -65,9 +67,9 @@ impl Rules<'_> {
 
     /// Why a converged state is not accepted: slave nodes penetrate the master without being in contact, by more than
     /// [`ALLOWED`] of the largest pressure.
-    pub(super) fn passed_through(self, nodes: &Nodes, states: &SlaveStates) -> Option<String> {
+    pub(super) fn passed_through(self, part: &ModelPart, states: &SlaveStates) -> Option<String> {
         let facing = states.iter().filter(|(_, state)| !state.isolated);
-        let facing: Vec<(u32, SlaveNumbers)> = facing.map(|(n, state)| (n, self.numbers(nodes, n, state))).collect();
+        let facing: Vec<(SlaveIndex, SlaveNumbers)> = facing.map(|(n, _)| (n, self.numbers(part, states, n))).collect();
         let pressed = facing.iter().filter(|(_, numbers)| numbers.state.is_active());
         let largest = pressed.map(|(_, numbers)| -numbers.pressure()).fold(0.0, f64::max);
         let inside: Vec<_> =
@@ -76,7 +78,7 @@ impl Rules<'_> {
         Some(format!(
             "{} nodes without contact are in the master, node {} by {:.3e}",
             inside.len(),
-            nodes.ids[deepest.0 as usize],
+            part.nodes.ids[states.mesh_node(deepest.0) as usize],
             -deepest.1.gap
         ))
     }
@@ -89,21 +91,22 @@ impl Rules<'_> {
         self,
         part: &mut ModelPart,
         states: &mut SlaveStates,
-        decisions: &[(u32, Decision)],
+        decisions: &[(SlaveIndex, Decision)],
         before: &[NodeState],
     ) -> SetChange {
         let mut change = SetChange::default();
         let frictional = self.family.frictional();
         for ((node, decision), &was) in decisions.iter().zip(before) {
-            let (id, active) = (part.nodes.ids[*node as usize], decision.state.is_active());
+            let (id, active) = (part.nodes.ids[states.mesh_node(*node) as usize], decision.state.is_active());
             match (decision.changed, active) {
                 (true, true) => change.activated.push(id),
                 (true, false) => change.deactivated.push(id),
                 (false, _) if decision.slip_changed => change.stick_slip.push(id),
                 (false, _) => {}
             }
+            let pressure = self.acting_pressure(part, states, *node, decision);
             let state = &mut states[*node];
-            state.pressure = self.acting_pressure(&part.nodes, *node, state, decision);
+            state.pressure = pressure;
             state.active = active;
             if active {
                 state.slides = Some(decision.state == NodeState::Slip);
@@ -125,16 +128,17 @@ impl Rules<'_> {
             if let Some(multiplier) = decision.multiplier {
                 let along_normal = [decision.pressure / self.parameters.scale_factor, 0.0, 0.0];
                 let scalar = matches!(self.family.multiplier, Multiplier::Scalar(_));
-                self.family.multiplier.set(&mut part.nodes, *node, if scalar { along_normal } else { multiplier });
+                let value = if scalar { along_normal } else { multiplier };
+                self.family.multiplier.set(&mut part.slave_nodes, states.owner(*node), value);
             }
         }
         change
     }
 
     /// Takes pressures and tractions from decisions, and nothing else.
-    pub(super) fn press(self, nodes: &Nodes, states: &mut SlaveStates, decisions: &[(u32, Decision)]) {
+    pub(super) fn press(self, part: &ModelPart, states: &mut SlaveStates, decisions: &[(SlaveIndex, Decision)]) {
         for (node, decision) in decisions {
-            let pressure = self.acting_pressure(nodes, *node, &states[*node], decision);
+            let pressure = self.acting_pressure(part, states, *node, decision);
             let state = &mut states[*node];
             state.pressure = pressure;
             if self.family.frictional() {
@@ -144,12 +148,14 @@ impl Rules<'_> {
     }
 
     /// The pressure that acts at a slave node: k λ·n + ε g̃ where pairs augment, else that of the decision.
-    fn acting_pressure(self, nodes: &Nodes, node: u32, state: &SlaveState, decision: &Decision) -> f64 {
+    fn acting_pressure(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex, decision: &Decision) -> f64 {
+        let state = &states[slave];
         match (self.family.multiplier, self.parameters.augmentation) {
             (Multiplier::None | Multiplier::Body, _) | (_, Augmentation::Node) => decision.pressure,
             (multiplier, Augmentation::Pair) => {
                 let augmentation = state.penalty * state.weighted_gap;
-                let pressure = dot(multiplier.vector(nodes, node, state.normal), state.normal);
+                let whole = multiplier.vector(&part.slave_nodes, states.owner(slave), state.normal);
+                let pressure = dot(whole, state.normal);
                 self.parameters.scale_factor * pressure + augmentation
             }
         }
@@ -159,18 +165,19 @@ impl Rules<'_> {
     ///
     /// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
     /// kept until the next update, also of a node that is not in contact meanwhile.
-    fn numbers(self, nodes: &Nodes, node: u32, state: &SlaveState) -> SlaveNumbers {
+    fn numbers(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex) -> SlaveNumbers {
         let Self { family, parameters, resolution } = self;
+        let (state, owner) = (&states[slave], states.owner(slave));
         let (normal, area, penalty, held) = (state.normal, state.area, state.penalty, state.held);
         let by_area = if area > 0.0 { area.recip() } else { 0.0 };
         let kept = if state.kept_pressure == 0.0 { 0.0 } else { state.kept_pressure / penalty };
-        let slip = resolution.vector_of(slip(nodes, node, state, family.multiplier, parameters));
+        let slip = resolution.vector_of(slip(part, states, slave, family.multiplier, parameters));
         let stiffness = match family.multiplier {
             Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
             Multiplier::None if parameters.weighted_penalty => penalty * area,
             Multiplier::None | Multiplier::Body => penalty,
         };
-        let whole = family.multiplier.vector(nodes, node, normal);
+        let whole = family.multiplier.vector(&part.slave_nodes, owner, normal);
         let driven = held.contains(&Held::KeptInStick);
         let multiplier = match family.multiplier {
             // No multiplier holds what supports move: the slip itself says what would.
@@ -209,15 +216,16 @@ impl Rules<'_> {
 /// Slip of a node in this step (length). Where surfaces give way, that of a node in contact without its elastic part:
 /// (q − k P λ)/(κ ε), with the trial traction q.
 pub(super) fn slip(
-    nodes: &Nodes,
-    node: u32,
-    state: &SlaveState,
+    part: &ModelPart,
+    states: &SlaveStates,
+    slave: SlaveIndex,
     multiplier: Multiplier,
     parameters: &StepParameters,
 ) -> [f64; 3] {
+    let state = &states[slave];
     match multiplier {
         Multiplier::Vector(_) if parameters.compliant && state.active => {
-            let whole = multiplier.value(nodes, node);
+            let whole = multiplier.value(&part.slave_nodes, states.owner(slave));
             let traction = scale(tangential(whole, state.normal), parameters.scale_factor);
             let elastic = parameters.tangent_factor * state.penalty;
             along_free_tangents(scale(sub(state.trial, traction), elastic.recip()), state.normal, state.held)
@@ -238,16 +246,16 @@ pub(super) fn resolution(
     parameters: &StepParameters,
 ) -> Resolution {
     let motion = farthest(nodes, |at| norm(sub(part.nodes.current[at], part.nodes.initial[at])));
-    let traction = |node: u32, state: &SlaveState| match family.multiplier {
+    let traction = |slave: SlaveIndex, state: &SlaveState| match family.multiplier {
         Multiplier::Body => norm(state.trial),
         Multiplier::None => {
             let by_area = if state.area > 0.0 && !parameters.weighted_penalty { state.area.recip() } else { 1.0 };
             state.penalty * parameters.counted_gap(state).min(0.0).abs() * by_area
         }
-        multiplier => parameters.scale_factor * norm(multiplier.value(&part.nodes, node)),
+        multiplier => parameters.scale_factor * norm(multiplier.value(&part.slave_nodes, states.owner(slave))),
     };
     let in_contact = states.iter().filter(|(_, state)| state.active);
-    let largest = in_contact.map(|(node, state)| traction(node, state)).fold(0.0, f64::max);
+    let largest = in_contact.map(|(slave, state)| traction(slave, state)).fold(0.0, f64::max);
     let mut found = Resolution::of(extent(part, nodes), largest, parameters.stiffness * motion);
     if matches!(family.multiplier, Multiplier::Body) {
         // Where points decide, a length makes a pressure.

@@ -1,63 +1,75 @@
-//! Normals of slave nodes on sharp edges and corners.
+//! Normals of slave nodes on rims of patches and on sharp edges.
 //!
-//! The mean of the normals of faces that meet at an edge is the normal of none of them: a block that lands on it would be pushed
-//! aside without friction. What the node meets has a normal there, and forces without friction act along that one.
+//! An edge or a corner of a body that is pressed on a surface has no normal of its own: the force acts along the normal of the
+//! surface it lies on. Slave nodes where their patch ends at an edge of the body, and those on sharp folds within a patch, take
+//! the normal of the master that they overlap, turned round, once it differs from that of their facets.
 
 use std::collections::BTreeMap;
 
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{add, dot, norm, scale, sub};
-use zelus_structural_mechanics::variables::NORMAL;
+use zelus_core::vector3::{add, dot, norm, scale};
 
 use super::pairing::Pairing;
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
-/// Cosine of the angle between a facet and the mean normal of its node, beyond which the node is on an edge: 35°.
+/// Cosine of the angle between a facet and the mean normal of its node, beyond which the node is on a sharp fold: 35°.
 const SHARP: f64 = 0.82;
+/// Angle between the facets of a rim and the master, in radians, up to which both lie flat on each other.
+const FLAT: f64 = 1e-3;
+/// Length of the mean of unit normals of masters below which they have no normal in common.
+const NO_COMMON_NORMAL: f64 = 0.1;
 
-/// Gives slave nodes on sharp edges the normal of what they meet, turned round.
-pub(super) fn turn_edges(part: &mut ModelPart, states: &mut SlaveStates, pairing: &Pairing) {
+/// Gives slave nodes on rims and sharp folds the normal of the master that they overlap.
+pub(super) fn take_normals_of_masters(part: &ModelPart, states: &mut SlaveStates, pairing: &Pairing) {
     states.for_all(|state| state.normal_of_master = false);
-    let met = opposite_normals(part, pairing);
-    for (node, sum) in met {
+    for (slave, (sum, area)) in opposite_normals(part, states, pairing) {
         let size = norm(sum);
-        // Masters on all sides have no normal in common.
-        if size < 0.1 {
+        if size < NO_COMMON_NORMAL * area {
             continue;
         }
-        let at = node as usize;
         let normal = scale(sum, 1.0 / size);
-        part.nodes.history.values_mut(&NORMAL, 0)[3 * at..3 * at + 3].copy_from_slice(&normal);
-        states[node].normal_of_master = true;
+        let state = &mut states[slave];
+        let is_flat = dot(normal, state.normal) > FLAT.cos();
+        if !is_flat {
+            (state.normal, state.normal_of_master) = (normal, true);
+        }
     }
 }
 
-/// Sums of the normals into the masters that slave nodes on sharp edges overlap, each direction once.
-fn opposite_normals(part: &ModelPart, pairing: &Pairing) -> BTreeMap<u32, [f64; 3]> {
-    let mut sharp = BTreeMap::new();
-    for facet in pairing.interfaces.iter().flat_map(|interface| &interface.facets) {
-        let points = facet.positions(part);
-        for (local, &node) in facet.nodes.iter().enumerate() {
-            let mean = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
-            let own = unit_normal(facet.shape, &points, facet.shape.cell().points[local]);
-            if own.is_some_and(|own| dot(own, mean) < SHARP) {
-                sharp.insert(node, Vec::new());
+/// Sums of the normals into the masters that slave nodes on rims and sharp folds overlap, by their areas, and the areas.
+fn opposite_normals(
+    part: &ModelPart,
+    states: &SlaveStates,
+    pairing: &Pairing,
+) -> BTreeMap<SlaveIndex, ([f64; 3], f64)> {
+    let mut found: BTreeMap<SlaveIndex, ([f64; 3], f64)> = BTreeMap::new();
+    let rims = pairing.patches.all().filter(|&slave| pairing.patches.is_rim(slave));
+    found.extend(rims.map(|slave| (slave, ([0.0; 3], 0.0))));
+    for (i, interface) in pairing.interfaces.iter().enumerate() {
+        for (f, facet) in interface.facets.iter().enumerate() {
+            let points = facet.positions(part);
+            for (local, &slave) in pairing.patches.of_facet(i as u32, f as u32, facet.nodes.len()).iter().enumerate() {
+                let own = unit_normal(facet.shape, &points, facet.shape.cell().points[local]);
+                if own.is_some_and(|own| dot(own, states[slave].normal) < SHARP) {
+                    found.entry(slave).or_insert(([0.0; 3], 0.0));
+                }
             }
         }
     }
-    if sharp.is_empty() {
-        return BTreeMap::new();
+    if found.is_empty() {
+        return found;
     }
     for pair in pairing.blocks.iter().flat_map(|block| block.pairs()).filter(|pair| pair.overlapping) {
         let into = scale(pairing.master(pair.key).normal(part), -1.0);
-        for node in &pairing.slave(pair.key).nodes {
-            let Some(seen) = sharp.get_mut(node) else { continue };
-            if !seen.iter().any(|other: &[f64; 3]| norm(sub(into, *other)) < 1e-6) {
-                seen.push(into);
-            }
+        for (local, slave) in pairing.slaves_of_pair(pair.key).iter().enumerate() {
+            let Some((sum, whole)) = found.get_mut(slave) else { continue };
+            let area = pair.area[local].abs();
+            *sum = add(*sum, scale(into, area));
+            *whole += area;
         }
     }
-    let sums = sharp.into_iter().filter(|(_, seen)| !seen.is_empty());
-    sums.map(|(node, seen)| (node, seen.into_iter().fold([0.0; 3], add))).collect()
+    found.retain(|_, (_, area)| *area > 0.0);
+    found
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::{ModelPart, Nodes};
+use zelus_core::model::{ModelPart, SlaveNodes};
 use zelus_core::vector3::{add, dot, norm, scale};
 
 use super::decision::slip;
@@ -14,8 +14,10 @@ use crate::friction_law::{COULOMB, FrictionLaw};
 use crate::interface::Interface;
 use crate::law::NodeState;
 use crate::mortar::tangential;
+use crate::node_state::SlaveIndex;
 use crate::pairs::{Friction, Multiplier};
-use crate::slave_states::{SlaveState, SlaveStates};
+use crate::slave_state::SlaveState;
+use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;
 
 /// Slip, in mesh sizes, below which its direction says nothing.
@@ -120,17 +122,22 @@ pub(super) fn start_in_stick(step: usize, states: &mut SlaveStates, rule: SlipRu
 
 /// Puts the tractions of sliding nodes exactly at their bound: tolerances leave a little more or less, which is much where
 /// the pressure is small.
-pub(super) fn meet_bounds(nodes: &mut Nodes, states: &SlaveStates, multiplier: Multiplier, scale_factor: f64) {
+pub(super) fn meet_bounds(
+    slave_nodes: &mut SlaveNodes,
+    states: &SlaveStates,
+    multiplier: Multiplier,
+    scale_factor: f64,
+) {
     if !matches!(multiplier, Multiplier::Vector(_)) {
         return;
     }
-    for (node, state) in states.iter().filter(|(_, state)| state.contact() == NodeState::Slip) {
-        let whole = multiplier.value(nodes, node);
+    for (slave, state) in states.iter().filter(|(_, state)| state.contact() == NodeState::Slip) {
+        let whole = multiplier.value(slave_nodes, states.owner(slave));
         let (pressure, along) = (dot(whole, state.normal), tangential(whole, state.normal));
         let limit = state.friction.at(scale_factor * pressure).max(0.0) / scale_factor;
         if norm(along) > 0.0 {
             let met = add(scale(state.normal, pressure), scale(along, limit / norm(along)));
-            multiplier.set(nodes, node, met);
+            multiplier.set(slave_nodes, states.owner(slave), met);
         }
     }
 }
@@ -147,15 +154,16 @@ pub(super) fn warn_of_pushing(
         return None;
     }
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let pushed = |(node, state): &(u32, &SlaveState)| {
-        let slip = slip(&part.nodes, *node, state, multiplier, parameters);
-        let traction = tangential(multiplier.value(&part.nodes, *node), state.normal);
+    let pushed = |(slave, state): &(SlaveIndex, &SlaveState)| {
+        let slip = slip(part, states, *slave, multiplier, parameters);
+        let traction = tangential(multiplier.value(&part.slave_nodes, states.owner(*slave)), state.normal);
         state.contact() == NodeState::Slip
             && !state.friction.is_smooth()
-            && norm(slip) > LEAST_SLIP * sizes[*node as usize]
+            && norm(slip) > LEAST_SLIP * sizes[states.mesh_node(*slave) as usize]
             && dot(slip, traction) < 0.0
     };
-    let nodes: Vec<usize> = states.iter().filter(pushed).map(|(node, _)| part.nodes.ids[node as usize]).collect();
+    let nodes: Vec<usize> =
+        states.iter().filter(pushed).map(|(slave, _)| part.nodes.ids[states.mesh_node(slave) as usize]).collect();
     let first = nodes.first()?;
     let fact = format!(
         "step {}: friction pushes {} sliding nodes along their motion, e.g. node {first}",

@@ -10,14 +10,13 @@ use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::geometry::shape_functions;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
-use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use crate::interface::{
-    Facet, Fixed, Interface, NodalNormals, NormalPatches, check_nodes, fixed_components, symmetry_planes,
-};
+use crate::interface::{Facet, Fixed, Interface, check_nodes, fixed_components, symmetry_planes};
 use crate::law::Held;
 use crate::law::constrained_multiplier::free_normal;
 use crate::mortar::MOST_NODES;
+use crate::node_state::SlaveIndex;
 use crate::pairs::{Family, Multiplier};
 use crate::slave_states::SlaveStates;
 
@@ -36,6 +35,17 @@ pub(super) struct Holding {
     fixed: BTreeMap<u32, Fixed>,
     planes: BTreeMap<u32, Fixed>,
     said: bool,
+}
+
+/// A pair as supports are looked at.
+#[derive(Clone, Copy)]
+pub(super) struct FacetsOfPair<'a> {
+    /// The slave facet.
+    pub slave: &'a Facet,
+    /// Its slave nodes, in the order of its nodes.
+    pub slaves: &'a [SlaveIndex],
+    /// The master facet.
+    pub master: &'a Facet,
 }
 
 /// A slave node that is held with what it faces.
@@ -70,9 +80,9 @@ impl Holding {
         self.planes = symmetry_planes(part, interfaces, &self.fixed);
     }
 
-    /// The facets that make normals, with nodes on planes of symmetry.
-    pub(super) fn patches(&self, part: &ModelPart, interfaces: &[Interface], weights: NodalNormals) -> NormalPatches {
-        NormalPatches::new(part.nodes.len(), interfaces, weights).on_planes(self.planes.clone())
+    /// Components that the normals of nodes on planes of symmetry lack.
+    pub(super) fn planes(&self) -> &BTreeMap<u32, Fixed> {
+        &self.planes
     }
 
     /// Whether a component of an interface node is fixed.
@@ -80,18 +90,20 @@ impl Holding {
         self.fixed.get(&node).is_some_and(|fixed| fixed[component])
     }
 
-    /// The slave nodes that are held, of these pairs of slave and master facets.
+    /// The slave nodes that are held, of these pairs; `normal` is that of a slave node.
     pub(super) fn nodes<'a>(
         &self,
         part: &ModelPart,
-        pairs: impl Iterator<Item = (&'a Facet, &'a Facet)>,
-    ) -> BTreeMap<u32, HeldNode> {
+        normal: &dyn Fn(SlaveIndex) -> [f64; 3],
+        pairs: impl Iterator<Item = FacetsOfPair<'a>>,
+    ) -> BTreeMap<SlaveIndex, HeldNode> {
         // Of each node the image on the master that lies least beside a facet, then the nearest.
-        let mut faced: BTreeMap<u32, ([f64; 2], HeldNode)> = BTreeMap::new();
-        for (slave, master) in pairs {
-            for &node in slave.nodes.iter().filter(|node| self.fixed.contains_key(node)) {
+        let mut faced: BTreeMap<SlaveIndex, ([f64; 2], HeldNode)> = BTreeMap::new();
+        for FacetsOfPair { slave, slaves, master } in pairs {
+            let own = slave.nodes.iter().zip(slaves).filter(|(node, _)| self.fixed.contains_key(node));
+            for (&node, &at) in own {
                 let points = master.positions(part);
-                let foot = foot(part, node, master, &points);
+                let foot = foot(part, node, normal(at), master, &points);
                 let Some(image) = local_coordinates(master.shape, &points, foot) else { continue };
                 // Those of its corners, which are positive all over a facet of second order, too.
                 let mut shares = [0.0; MOST_NODES];
@@ -100,8 +112,8 @@ impl Holding {
                 let beside = shares.iter().fold(0.0_f64, |most, share| most.max(-share));
                 let distance = norm(sub(foot, part.nodes.current[node as usize])) + image.distance;
                 let place = [if beside > BESIDE { beside } else { 0.0 }, distance];
-                if beside <= BESIDE && faced.get(&node).is_none_or(|(known, _)| place < *known) {
-                    faced.insert(node, (place, self.held(part, node, master, &shares)));
+                if beside <= BESIDE && faced.get(&at).is_none_or(|(known, _)| place < *known) {
+                    faced.insert(at, (place, self.held(part, node, master, &shares)));
                 }
             }
         }
@@ -133,11 +145,15 @@ impl Holding {
         part: &ModelPart,
         states: &mut SlaveStates,
         family: &Family,
-        pairs: impl Iterator<Item = (&'a Facet, &'a Facet)> + Clone,
+        pairs: impl Iterator<Item = FacetsOfPair<'a>> + Clone,
     ) -> Option<Diagnostic> {
         states.for_all(|state| state.held = [Held::Free; 3]);
-        let held = if family.multiplier.is_unknown() { self.nodes(part, pairs.clone()) } else { BTreeMap::new() };
-        let followed = followed(&held, pairs.clone().map(|(slave, _)| slave));
+        let held = if family.multiplier.is_unknown() {
+            self.nodes(part, &|slave| states[slave].normal, pairs.clone())
+        } else {
+            BTreeMap::new()
+        };
+        let followed = followed(&held, pairs.clone().map(|pair| pair.slaves));
         let resting = self.resting(pairs);
         let mut dropped = BTreeMap::new();
         for (&node, own) in &held {
@@ -162,19 +178,19 @@ impl Holding {
                 _ => continue,
             };
             states[node].held = rules;
-            dropped.insert(node, rules.map(Held::is_still));
+            dropped.insert(states.mesh_node(node), rules.map(Held::is_still));
         }
         let scalar = matches!(family.multiplier, Multiplier::Scalar(_));
         self.say(part, &dropped, scalar)
     }
 
     /// Components in which nothing that a node faces can move.
-    fn resting<'a>(&self, pairs: impl Iterator<Item = (&'a Facet, &'a Facet)>) -> BTreeMap<u32, Fixed> {
-        let mut out: BTreeMap<u32, Fixed> = BTreeMap::new();
-        for (slave, master) in pairs {
+    fn resting<'a>(&self, pairs: impl Iterator<Item = FacetsOfPair<'a>>) -> BTreeMap<SlaveIndex, Fixed> {
+        let mut out: BTreeMap<SlaveIndex, Fixed> = BTreeMap::new();
+        for FacetsOfPair { slaves, master, .. } in pairs {
             let rests: Fixed = std::array::from_fn(|c| master.nodes.iter().all(|&node| self.fixes(node, c)));
-            for &node in &slave.nodes {
-                let own = out.entry(node).or_insert([true; 3]);
+            for &slave in slaves {
+                let own = out.entry(slave).or_insert([true; 3]);
                 (0..3).for_each(|c| own[c] &= rests[c]);
             }
         }
@@ -211,9 +227,8 @@ impl Holding {
 
 /// Where a slave node meets the plane of a master along its own normal, which lies in planes of symmetry: across a gap or a
 /// penetration the point nearest to it would not. The node itself where the facets hardly face each other.
-fn foot(part: &ModelPart, node: u32, master: &Facet, points: &[[f64; 3]]) -> [f64; 3] {
+fn foot(part: &ModelPart, node: u32, normal: [f64; 3], master: &Facet, points: &[[f64; 3]]) -> [f64; 3] {
     let at = part.nodes.current[node as usize];
-    let normal = part.nodes.history.get(NORMAL.name()).map_or([0.0; 3], |field| field.vector(0, node as usize));
     let across = master.normal_at(points);
     match dot(normal, across) {
         slope if slope < -LEAST_SLOPE => add(at, scale(normal, dot(sub(points[0], at), across) / slope)),
@@ -222,13 +237,16 @@ fn foot(part: &ModelPart, node: u32, master: &Facet, points: &[[f64; 3]]) -> [f6
 }
 
 /// The components of held nodes that some node of their facets has free.
-fn followed<'a>(held: &BTreeMap<u32, HeldNode>, slaves: impl Iterator<Item = &'a Facet>) -> BTreeSet<(u32, usize)> {
+fn followed<'a>(
+    held: &BTreeMap<SlaveIndex, HeldNode>,
+    facets: impl Iterator<Item = &'a [SlaveIndex]>,
+) -> BTreeSet<(SlaveIndex, usize)> {
     let mut found = BTreeSet::new();
-    for facet in slaves {
+    for slaves in facets {
         for c in 0..3 {
-            let is_held = |node: &u32| held.get(node).is_some_and(|own| own.components[c]);
-            if facet.nodes.iter().any(|node| !is_held(node)) {
-                found.extend(facet.nodes.iter().filter(|node| is_held(node)).map(|&node| (node, c)));
+            let is_held = |node: &SlaveIndex| held.get(node).is_some_and(|own| own.components[c]);
+            if slaves.iter().any(|node| !is_held(node)) {
+                found.extend(slaves.iter().filter(|node| is_held(node)).map(|&node| (node, c)));
             }
         }
     }

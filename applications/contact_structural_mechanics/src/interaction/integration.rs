@@ -4,18 +4,17 @@ use zelus_core::model::ModelPart;
 
 use super::coverage::isolate_beside;
 use super::decision::resolution;
-use super::nodal_sums::NodalSums;
 use super::pairing::Pairing;
 use super::setup::Setup;
+use super::slave_sums::SlaveSums;
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::slave_states::SlaveStates;
 
 /// Integrates all pairs, and finds what is too small to decide on.
 pub(super) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut SlaveStates, setup: &mut Setup) {
     let (integrals, meetings) = pairing.integrals(part, states);
-    let slaves = states.slaves();
     // Gap, area, gap times area, slip, traction, carried traction.
-    let mut sums = NodalSums::<12>::new(part.nodes.len(), &slaves);
+    let mut sums = SlaveSums::<12>::new(states);
     states.for_all(|state| {
         (state.pairs, state.area, state.weighted_gap, state.mean_weighted_gap) = (0, 0.0, 0.0, 0.0);
         state.weighted_slip = [0.0; 3];
@@ -29,7 +28,7 @@ pub(super) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
             if !overlaps {
                 continue;
             }
-            for (local, &node) in block.slave_nodes(at).iter().enumerate() {
+            for (local, &node) in block.slaves(at).iter().enumerate() {
                 states[node].pairs += 1;
                 let (gap, area) = (integral.gap[local], integral.area[local]);
                 let vectors = [integral.slip[local], integral.trial[local], integral.carried[local]];
@@ -38,7 +37,7 @@ pub(super) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
             }
         }
     }
-    sums.over_ranks(part);
+    sums.over_ranks(part, states);
 
     let family = setup.settings.family;
     states.for_each(|node, state| {
@@ -62,6 +61,6 @@ pub(super) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
     });
     let around = setup.parameters.segmentation.revolution();
     let weight = |n: u32| around.map_or(1.0, |per_radius| per_radius * part.nodes.current[n as usize][0]);
-    isolate_beside(part, states, &pairing.interfaces, setup.settings.least_coverage, weight);
+    isolate_beside(part, states, pairing, setup.settings.least_coverage, weight);
     setup.resolution = resolution(part, &pairing.nodes(), states, family, &setup.parameters);
 }

@@ -9,10 +9,11 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use super::nodal_sums::NodalSums;
 use super::pairing::{Pairing, integrals, searching};
 use super::setup::Setup;
+use super::slave_sums::SlaveSums;
 use crate::interface::Facet;
+use crate::node_state::SlaveIndex;
 use crate::pairs::{PAIRS, Pair, PairKey};
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
@@ -85,22 +86,21 @@ pub(super) fn late_pairs(
     let (crossed, rest) = pairs_of(&near.iter().copied().filter(is_own).collect::<Vec<_>>());
     let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;
     blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, setup.limit()))?);
-    let slaves = states.slaves();
-    let mut more = NodalSums::<2>::new(part.nodes.len(), &slaves);
+    let mut more = SlaveSums::<2>::new(states);
     let integrals = integrals(&mut blocks, part, states);
     for (block, integrals) in blocks.iter().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate().filter(|(_, integral)| integral.overlapping) {
-            for (local, &node) in block.slave_nodes(at).iter().enumerate() {
+            for (local, &node) in block.slaves(at).iter().enumerate() {
                 more[node][0] += integral.gap[local];
                 more[node][1] += integral.area[local];
             }
         }
     }
-    more.over_ranks(part);
+    more.over_ranks(part, states);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let area = |node: u32| states[node].area + more[node][1];
-    let inside = |&n: &u32| {
-        let at = n as usize;
+    let area = |slave: SlaveIndex| states[slave].area + more[slave][1];
+    let inside = |&n: &SlaveIndex| {
+        let at = states.mesh_node(n) as usize;
         let around =
             parameters.segmentation.revolution().map_or(1.0, |per_radius| per_radius * part.nodes.current[at][0]);
         let whole = around * sizes[at].powi(part.info.domain_size as i32 - 1);
@@ -108,15 +108,15 @@ pub(super) fn late_pairs(
         let gap = states[n].weighted_gap + more_gap;
         !states[n].active && more_area > wanted.facing * whole && gap < -wanted.depth * area(n)
     };
-    let nodes: BTreeSet<u32> = slaves.iter().copied().filter(inside).collect();
+    let nodes: BTreeSet<SlaveIndex> = states.slaves().iter().copied().filter(inside).collect();
     let mut found = BTreeSet::new();
     for (block, integrals) in blocks.iter().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate() {
-            let matters = |(local, &node): (usize, &u32)| {
+            let matters = |(local, &node): (usize, &SlaveIndex)| {
                 nodes.contains(&node)
                     || states[node].active && integral.area[local].abs() > wanted.share * area(node).abs()
             };
-            if integral.overlapping && block.slave_nodes(at).iter().enumerate().any(matters) {
+            if integral.overlapping && block.slaves(at).iter().enumerate().any(matters) {
                 found.insert(block.pairs()[at].key);
             }
         }
@@ -127,7 +127,10 @@ pub(super) fn late_pairs(
     }
     let missed = near.into_iter().zip(missed).filter(|(_, missed)| *missed).map(|(key, _)| key);
     let (crossed, rest) = pairs_of(&missed.collect::<Vec<_>>());
-    Ok(Late { missed: [crossed, rest].concat(), nodes: nodes.into_iter().collect() })
+    Ok(Late {
+        missed: [crossed, rest].concat(),
+        nodes: nodes.into_iter().map(|slave| states.mesh_node(slave)).collect(),
+    })
 }
 
 /// Whether the centre of the slave has gone from the front of the master's plane to its back in the step.

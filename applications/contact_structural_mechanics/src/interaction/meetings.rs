@@ -9,6 +9,7 @@ use zelus_core::vector3::{norm, sub};
 
 use super::pair_states::{Parts, name};
 use crate::interface::{Interface, Roles};
+use crate::node_state::SlaveIndex;
 use crate::search::{Bounds, Tree};
 use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;
@@ -24,10 +25,12 @@ pub(super) struct Meetings {
 
 impl Meetings {
     /// A step is accepted in which contact acts.
-    pub(super) fn accept(&mut self, interfaces: &[Interface], states: &SlaveStates) {
+    ///
+    /// `slaves` are the slave nodes of each interface.
+    pub(super) fn accept(&mut self, slaves: &[Vec<SlaveIndex>], states: &SlaveStates) {
         self.steps += 1;
-        for (at, interface) in interfaces.iter().enumerate() {
-            if !self.met.contains(&at) && interface.nodes_of(Roles::Slave).iter().any(|&node| states[node].active) {
+        for (at, slaves) in slaves.iter().enumerate() {
+            if !self.met.contains(&at) && slaves.iter().any(|&slave| states[slave].active) {
                 self.met.insert(at);
             }
         }

@@ -55,9 +55,10 @@ impl MpcFriction {
         let before = std::mem::take(&mut self.directions);
         states.for_all(|state| state.weighted_slip = [0.0; 3]);
         let mut sliders = Vec::new();
-        let resolved = resolved_length(part, &states.slaves());
+        let resolved = resolved_length(part, &states.mesh_nodes());
         for (&node, relation) in relations {
-            let state = &mut states[node];
+            let slave = states.only_at(node);
+            let state = &mut states[slave];
             if !state.active {
                 continue;
             }
@@ -108,10 +109,11 @@ impl MpcFriction {
     /// Nodes that slide from the step before begin in the direction they had.
     pub(super) fn slide_on(&mut self, part: &ModelPart, relations: &BTreeMap<u32, NodeRelation>, states: &SlaveStates) {
         let before = std::mem::take(&mut self.directions);
-        let slides = |node: u32| states[node].contact() == NodeState::Slip;
+        let slides = |node: u32| states[states.only_at(node)].contact() == NodeState::Slip;
         let sliders = relations.iter().filter(|(node, _)| slides(**node)).map(|(&node, relation)| {
             let direction = direction_along(before.get(&node), relation.normal);
-            let constant = states[node].friction.threshold * states[node].area;
+            let state = &states[states.only_at(node)];
+            let constant = state.friction.threshold * state.area;
             Slider::new(node, relation.weights.clone(), relation.normal, direction, [constant; 2], 0.0)
         });
         let sliders = sliders.collect();

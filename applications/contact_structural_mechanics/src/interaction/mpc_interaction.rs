@@ -35,8 +35,10 @@ use crate::interface::{
     slave_nodes, warnings_of_pairs,
 };
 use crate::mpc_kind::MpcKind;
+use crate::node_state::SlaveIndex;
 use crate::pairs::{Friction, condition_name};
-use crate::slave_states::{Columns, SlaveState, SlaveStates};
+use crate::slave_state::SlaveState;
+use crate::slave_states::{Columns, SlaveStates, SlaveTable};
 use crate::solver::UPDATE_EACH_ITERATION;
 use crate::variables::{NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 
@@ -85,7 +87,6 @@ struct SavedMpc {
 #[typetag::serde(name = "mpc_contact")]
 impl State for SavedMpc {
     fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.states.carry(carrier);
         self.relations.carry(carrier);
         carrier.node_map(&mut self.directions);
     }
@@ -132,7 +133,9 @@ impl MpcInteraction {
         }
         for interface in self.interfaces.iter_mut().filter(|interface| !interface.open) {
             let [slaves, masters] = [Roles::Slave, Roles::Master].map(|role| interface.nodes_of(role));
-            let held = |nodes: &[u32]| nodes.iter().all(|&node| !can_follow(part, node, self.states[node].normal));
+            let held = |nodes: &[u32]| {
+                nodes.iter().all(|&node| !can_follow(part, node, self.states[self.states.only_at(node)].normal))
+            };
             if !held(&slaves) || held(&masters) {
                 continue;
             }
@@ -152,7 +155,21 @@ impl MpcInteraction {
             let remedy = "name the side that can move as slave";
             self.messages.push(Diagnostic::warning("mpc-held-slaves", fact).remedy(remedy));
         }
-        self.states.set_slaves(slave_nodes(&self.interfaces));
+        self.set_slaves();
+    }
+
+    /// Nodes of slave facets, each with one slave node: constraints hold displacements of mesh nodes.
+    fn set_slaves(&mut self) {
+        let slaves = slave_nodes(&self.interfaces).into_iter().map(|node| self.states.only_at(node)).collect();
+        self.states.set_slaves(slaves);
+    }
+
+    /// Slave nodes of each interface.
+    fn slaves_by_interface(&self) -> Vec<Vec<SlaveIndex>> {
+        let of = |interface: &Interface| {
+            interface.nodes_of(Roles::Slave).into_iter().map(|node| self.states.only_at(node)).collect()
+        };
+        self.interfaces.iter().map(of).collect()
     }
 
     /// Names nodes in contact that supports hold along their normals, while their masters are free: nothing holds those there.
@@ -162,13 +179,16 @@ impl MpcInteraction {
         }
         let presses = |node: u32, relation: &NodeRelation| {
             let n = relation.normal;
-            self.states[node].active
+            self.states[self.states.only_at(node)].active
                 && !can_follow(part, node, n)
                 && relation.weights.iter().any(|&(master, _)| can_follow(part, master, n))
         };
-        let resolved = resolved_length(part, &self.states.slaves());
+        let resolved = resolved_length(part, &self.states.mesh_nodes());
         let held = self.relations.nodes.iter().filter(|(node, relation)| presses(**node, relation));
-        let depth = |node: u32| -self.states[node].weighted_gap / self.states[node].area;
+        let depth = |node: u32| {
+            let state = &self.states[self.states.only_at(node)];
+            -state.weighted_gap / state.area
+        };
         let depths = held.map(|(&node, _)| (node, depth(node))).filter(|of| of.1 > resolved);
         let depths: Vec<(u32, f64)> = depths.collect();
         let Some(&(node, depth)) = depths.iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))) else { return };
@@ -199,13 +219,13 @@ impl MpcInteraction {
 
     /// Puts the constraints of the active nodes into the model part.
     fn write_constraints(&mut self, part: &mut ModelPart) {
-        let (first, slaves) = (self.first_id, self.states.slaves());
+        let (first, slaves) = (self.first_id, self.states.mesh_nodes());
         let own = |c: &MasterSlaveConstraint| c.id >= first && slaves.binary_search(&c.slave.0).is_ok();
         let mut constraints = std::mem::take(&mut part.constraints);
         constraints.retain(|c| !own(c));
         let mut next_id = constraints.iter().map(|c| c.id + 1).max().unwrap_or(1).max(first);
         for (&node, relation) in &self.relations.nodes {
-            let state = &self.states[node];
+            let state = &self.states[self.states.only_at(node)];
             if state.active {
                 let hold = match self.settings.kind {
                     MpcKind::Frictionless => Hold::Normal { push: [0.0; 3] },
@@ -231,10 +251,11 @@ impl MpcInteraction {
     fn update_contact(&mut self, part: &ModelPart, change: &mut SetChange) {
         let release = self.settings.reaction_check_stiffness_factor * self.young;
         let stiffness = stiffness(self.young, &part.nodes);
-        for &node in &*self.states.slaves() {
+        for &slave in &*self.states.slaves() {
+            let node = self.states.mesh_node(slave);
             let id = part.nodes.ids[node as usize];
             let stiffness = stiffness(node);
-            let state = &mut self.states[node];
+            let state = &mut self.states[slave];
             let was = state.active;
             state.active = self.relations.nodes.get(&node).is_some_and(|relation| {
                 let held = if was { dot(reaction(part, node), relation.normal) } else { 0.0 };
@@ -300,8 +321,8 @@ impl Interaction for MpcInteraction {
         nodal_normals(part, &self.interfaces);
         let columns = Columns { friction: self.settings.kind == MpcKind::Frictional, ..Columns::default() };
         let nodes: BTreeSet<u32> = self.interfaces.iter().flat_map(|i| i.nodes.iter().copied()).collect();
-        self.states = SlaveStates::of(part, nodes.into_iter().collect(), columns);
-        self.states.set_slaves(slave_nodes(&self.interfaces));
+        self.states = SlaveStates::of(part, SlaveTable::of_nodes(nodes.into_iter().collect()), columns);
+        self.set_slaves();
         Ok(())
     }
 
@@ -330,7 +351,10 @@ impl Interaction for MpcInteraction {
         }
         self.integrate(part);
         if self.settings.ties() {
-            self.relations.nodes.keys().for_each(|&node| self.states[node].active = true);
+            for &node in self.relations.nodes.keys() {
+                let slave = self.states.only_at(node);
+                self.states[slave].active = true;
+            }
         } else {
             activation::start(&part.nodes, &mut self.states, Start::ShareOfMeshSize, self.friction.rule);
             friction::start_in_stick(part.info.step, &mut self.states, self.friction.rule, &self.settings.friction);
@@ -344,7 +368,7 @@ impl Interaction for MpcInteraction {
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.warn_of_held(part);
         if self.acting {
-            self.meetings.accept(&self.interfaces, &self.states);
+            self.meetings.accept(&self.slaves_by_interface(), &self.states);
         }
         Ok(())
     }
@@ -387,15 +411,20 @@ impl Interaction for MpcInteraction {
     fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
         let parts = (&self.settings.parts, &self.settings.slaves);
         let friction = self.settings.kind == MpcKind::Frictional;
-        let of_node = |node: u32, state: &SlaveState| {
+        let of_node = |slave: SlaveIndex, state: &SlaveState| {
+            let node = self.states.mesh_node(slave);
             // What friction adds to the force of the constraint goes with the pressure or is the slider's own.
             let bound = state.friction.at(dot(reaction(part, node), state.normal) / state.area);
             norm(state.weighted_slip) * bound
         };
-        let (holds, least) = (friction || self.settings.ties(), resolved_length(part, &self.states.slaves()));
-        let mut out = pair_states(&self.interfaces, parts, &self.states, holds, least, of_node);
+        let (holds, least) = (friction || self.settings.ties(), resolved_length(part, &self.states.mesh_nodes()));
+        let mut out =
+            pair_states(&self.interfaces, parts, (&self.states, &self.slaves_by_interface()), holds, least, of_node);
         for (interface, pair) in self.interfaces.iter().zip(&mut out) {
-            let held = interface.nodes_of(Roles::Slave).into_iter().filter(|&node| self.states[node].active);
+            let held = interface
+                .nodes_of(Roles::Slave)
+                .into_iter()
+                .filter(|&node| self.states[self.states.only_at(node)].active);
             pair.constraint_forces = held.map(|node| (node, reaction(part, node))).collect();
         }
         out
@@ -481,7 +510,7 @@ impl ActiveSet for MpcInteraction {
         if !self.acting || self.settings.ties() {
             return false;
         }
-        let near = self.reach.next(&part.nodes, &self.states, &self.interfaces);
+        let near = self.reach.next(&part.nodes, &self.states, &self.slaves_by_interface());
         activation::start(&part.nodes, &mut self.states, Start::Touching(&near), self.friction.rule);
         self.write_constraints(part);
         self.states.export(&mut part.nodes);

@@ -241,7 +241,7 @@ impl NodeRelation {
         let is_free = |c: usize| !part.nodes.is_fixed(DISPLACEMENT.component(c as u8), node);
         let mut push = |component: usize, masters, forces, constant| {
             let slave = (node, DISPLACEMENT.component(component as u8));
-            out.push(MasterSlaveConstraint { id: *next_id, slave, masters, forces, constant, active: true });
+            out.push(MasterSlaveConstraint { id: *next_id, slave, masters, forces, constant, active: true, set: None });
             *next_id += 1;
         };
         let n = self.normal;

@@ -14,7 +14,7 @@ use super::mpc_relation::{NodeRelation, PairRelation, node_relations};
 use super::mpc_settings::MpcSettings;
 use crate::interface::{Facet, Interface, check_nodes};
 use crate::mortar::{IntegrationOrder, SegmentationSettings};
-use crate::pairs::{FacetPair, PairKey, check_pairs, facet_operators, overlapping_pairs};
+use crate::pairs::{FacetPair, PairKey, check_pairs, facet_operators, nodal_normals, overlapping_pairs};
 use crate::slave_states::SlaveStates;
 use crate::variables::NODAL_H;
 
@@ -41,6 +41,14 @@ fn facets(interfaces: &[Interface], key: PairKey) -> (&Facet, &Facet) {
     (&facets[key.slave as usize], &facets[key.master as usize])
 }
 
+/// Normals at the nodes of slave facets, from the column of the mesh nodes.
+fn of_nodes<'a>(
+    part: &'a ModelPart,
+    interfaces: &'a [Interface],
+) -> impl Fn(PairKey, usize) -> [f64; 3] + Sync + use<'a> {
+    |key, local| nodal_normals(part, facets(interfaces, key).0)(local)
+}
+
 impl Relations {
     /// Whether they can be those of as many nodes, among them these slaves.
     ///
@@ -51,10 +59,9 @@ impl Relations {
         let of_pairs = self.pairs.values().flat_map(PairRelation::all_nodes);
         let of_nodes = self.nodes.values().flat_map(|relation| relation.weights.iter().map(|(node, _)| *node));
         check_nodes(nodes, of_pairs.chain(of_nodes))?;
-        let carriers = states.carriers();
         let mut slaves = self.pairs.values().flat_map(PairRelation::nodes).chain(self.nodes.keys().copied());
         let count: usize = interfaces.iter().map(|interface| interface.nodes.len()).sum();
-        if !slaves.all(|node| carriers.binary_search(&node).is_ok()) || ![0, count].contains(&self.places.len()) {
+        if !slaves.all(|node| states.at(node).next().is_some()) || ![0, count].contains(&self.places.len()) {
             return Err(unfit("the relations that it remembers are of other nodes"));
         }
         Ok(())
@@ -75,15 +82,17 @@ impl Relations {
         settings: &MpcSettings,
         states: &SlaveStates,
     ) -> Option<Diagnostic> {
-        let holds = |relation: &PairRelation| relation.nodes().any(|n| states[n].active);
+        let holds = |relation: &PairRelation| relation.nodes().any(|n| states[states.only_at(n)].active);
         let keep = !settings.update_relations || settings.ties();
         let segmentation = &settings.segmentation;
         self.pairs.retain(|key, relation| {
             let (slave, master) = facets(interfaces, *key);
-            keep && holds(relation) && facet_operators(part, slave, master, segmentation).is_some()
+            keep && holds(relation)
+                && facet_operators(part, slave, master, &nodal_normals(part, slave), segmentation).is_some()
         });
         let known = |key: &PairKey| self.pairs.contains_key(key);
-        let found = overlapping_pairs(part, interfaces, &settings.search, segmentation, &known);
+        let found =
+            overlapping_pairs(part, interfaces, &settings.search, segmentation, &of_nodes(part, interfaces), &known);
         self.relate(part, interfaces, settings, &found);
         self.warn_of_unlike_meshes(part, settings)
     }
@@ -92,7 +101,7 @@ impl Relations {
     pub(super) fn renew(&mut self, part: &ModelPart, interfaces: &[Interface], settings: &MpcSettings) {
         let pair = |key: &PairKey| {
             let (slave, master) = facets(interfaces, *key);
-            let operators = facet_operators(part, slave, master, &settings.segmentation)?;
+            let operators = facet_operators(part, slave, master, &nodal_normals(part, slave), &settings.segmentation)?;
             Some(FacetPair { key: *key, operators })
         };
         let pairs: Vec<FacetPair> = self.pairs.keys().filter_map(pair).collect();
@@ -123,7 +132,7 @@ impl Relations {
             let finer = || {
                 let integration_order = IntegrationOrder::new(FINE)?.max(settings.segmentation.integration_order);
                 let segmentation = SegmentationSettings { integration_order, ..settings.segmentation };
-                facet_operators(part, slave, master, &segmentation)
+                facet_operators(part, slave, master, &nodal_normals(part, slave), &segmentation)
             };
             let relation = PairRelation::new(part, interfaces, pair, settings.weights, finer);
             self.pairs.insert(pair.key, relation);
@@ -163,18 +172,23 @@ impl Relations {
         states.read_normals(&part.nodes);
         for key in self.pairs.keys() {
             let (slave, master) = facets(interfaces, *key);
-            let Some(operators) = facet_operators(part, slave, master, &settings.segmentation) else { continue };
+            let normals = nodal_normals(part, slave);
+            let Some(operators) = facet_operators(part, slave, master, &normals, &settings.segmentation) else {
+                continue;
+            };
             let origin = part.nodes.current[slave.nodes[0] as usize];
             let place = |n: &u32| sub(part.nodes.current[*n as usize], origin);
             let of_slave: Vec<[f64; 3]> = slave.nodes.iter().map(place).collect();
             let of_master: Vec<[f64; 3]> = master.nodes.iter().map(place).collect();
             for (j, &node) in slave.nodes.iter().enumerate() {
-                let state = &mut states[node];
+                let own = states.only_at(node);
+                let state = &mut states[own];
                 state.weighted_gap -= dot(state.normal, operators.jump(j, &of_slave, &of_master));
                 state.area += operators.d[j][..slave.nodes.len()].iter().sum::<f64>();
             }
         }
-        states.for_each(|node, state| state.isolated = !self.nodes.contains_key(&node));
+        let mesh_nodes: Vec<u32> = states.all().map(|slave| states.mesh_node(slave)).collect();
+        states.for_each(|slave, state| state.isolated = !self.nodes.contains_key(&mesh_nodes[slave.place()]));
     }
 
     /// Nothing is related any more.

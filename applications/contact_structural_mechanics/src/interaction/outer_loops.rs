@@ -17,7 +17,7 @@ use super::work::ContactWork;
 use crate::pairs::Multiplier;
 use crate::slave_states::SlaveStates;
 use crate::solver::{ENSURE_CONTACT, LARGEST_PENETRATION};
-use crate::variables::{NODAL_H, WEIGHTED_GAP};
+use crate::variables::NODAL_H;
 
 /// The loops of a step.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -30,7 +30,7 @@ pub(super) struct OuterLoops {
     penalty_ramp: PenaltyRamp,
     /// Whether friction waits for contact.
     friction_ramp: FrictionRamp,
-    /// Weighted gaps at the start of the step.
+    /// Weighted gaps of all slave nodes at the start of the step.
     #[serde(skip)]
     start_gaps: Vec<f64>,
     /// What the last attempt at the step made of the energy of motion, where that was too much.
@@ -68,9 +68,9 @@ impl OuterLoops {
         }
     }
 
-    /// Step start, once gaps are in their columns.
-    pub(super) fn keep_start(&mut self, part: &ModelPart) {
-        part.nodes.history.values(&WEIGHTED_GAP, 0).clone_into(&mut self.start_gaps);
+    /// Step start, once gaps are known.
+    pub(super) fn keep_start(&mut self, states: &SlaveStates) {
+        self.start_gaps = states.all().map(|slave| states[slave].weighted_gap).collect();
     }
 
     /// What follows in a converged state, in the order in which one needs the other.
@@ -85,7 +85,8 @@ impl OuterLoops {
     ) -> Result<Outer> {
         let (family, scale_factor) = (contact.setup.settings.family, contact.setup.parameters.scale_factor);
         if family.updated {
-            let outer = self.uzawa.update(&part.nodes, &mut contact.states, scale_factor, contact.setup.settings.uzawa);
+            let outer =
+                self.uzawa.update(&part.slave_nodes, &mut contact.states, scale_factor, contact.setup.settings.uzawa);
             if outer != Outer::Done {
                 return Ok(outer);
             }
@@ -119,14 +120,14 @@ impl OuterLoops {
         }
         // Points in the master press in every state that has converged.
         if !contact.setup.by_points()
-            && let Some(why) = contact.setup.rules().passed_through(&part.nodes, &contact.states)
+            && let Some(why) = contact.setup.rules().passed_through(part, &contact.states)
         {
             return Ok(Outer::Failed(why));
         }
         if let Some(why) = too_deep(part, &contact.states, contact.setup.resolution.length) {
             return Ok(Outer::Failed(why));
         }
-        if let Some(why) = self.unseen.why(part, &contact.pairing.interfaces, &contact.states) {
+        if let Some(why) = self.unseen.why(part, &contact.pairing.interfaces, |at| contact.in_contact(at)) {
             return Ok(Outer::Failed(why));
         }
         if part.info.is(ENSURE_CONTACT) && contact.states.count_active() == 0 {
@@ -141,8 +142,8 @@ impl OuterLoops {
                 return Ok(Outer::Failed(why));
             }
         }
-        let slaves = contact.states.slaves();
-        Ok(coarse_impact(part, &slaves, family, scale_factor, &self.start_gaps, &mut self.impact_error))
+        let start = (&*self.start_gaps, &mut self.impact_error);
+        Ok(coarse_impact(part, &contact.states, family, scale_factor, start))
     }
 
     /// The step is accepted.
@@ -176,7 +177,7 @@ fn too_deep(part: &ModelPart, states: &SlaveStates, least: f64) -> Option<String
     // A node without a mesh size has no share that could be judged.
     let share = |node: u32, depth: f64| if sizes[node as usize] > 0.0 { depth / sizes[node as usize] } else { 0.0 };
     let depths = states.iter().filter(|(_, state)| state.active);
-    let depths = depths.map(|(node, state)| (node, -state.gap().unwrap_or(0.0)));
+    let depths = depths.map(|(slave, state)| (states.mesh_node(slave), -state.gap().unwrap_or(0.0)));
     let deep: Vec<(u32, f64)> = depths.filter(|&(node, depth)| depth > least && share(node, depth) > most).collect();
     let (node, depth) = deep.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
     let [x, y, z] = part.nodes.initial[node as usize];

@@ -7,46 +7,48 @@ use zelus_core::entities::{Join, PairState};
 use zelus_core::model::{ModelPart, bodies_of_nodes};
 use zelus_core::vector3::norm;
 
-use crate::interface::{Interface, Roles, notes_of_bodies};
-use crate::node_state::NodeState;
+use crate::interface::{Interface, notes_of_bodies};
+use crate::node_state::{NodeState, SlaveIndex};
 use crate::search::{facing, settle};
-use crate::slave_states::{SlaveState, SlaveStates};
+use crate::slave_state::SlaveState;
+use crate::slave_states::SlaveStates;
 use crate::solver::{ADJUST_INITIAL, ADJUST_TOLERANCE, LARGEST_PENETRATION};
 
 /// Parts of each pair of a deck by key: all of them, and those on the slave side.
 pub(super) type Parts<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
 
 /// The pairs of these interfaces; nodes in contact slide where there is no friction, and `heat` is what a slave node that slides
-/// has dissipated in the step. No depth up to `least` counts. A node of several pairs counts in the first.
+/// has dissipated in the step; `slaves` are the slave nodes of each interface. No depth up to `least` counts. A slave node of several
+/// pairs counts in the first.
 pub(super) fn pair_states(
     interfaces: &[Interface],
     parts: Parts<'_>,
-    states: &SlaveStates,
+    (states, slaves): (&SlaveStates, &[Vec<SlaveIndex>]),
     frictional: bool,
     least: f64,
-    heat: impl Fn(u32, &SlaveState) -> f64,
+    heat: impl Fn(SlaveIndex, &SlaveState) -> f64,
 ) -> Vec<PairState> {
     let mut counted = BTreeSet::new();
-    let of_pair = |interface: &Interface| {
+    let of_pair = |(interface, slaves): (&Interface, &Vec<SlaveIndex>)| {
         let mut out = PairState { name: name(&interface.key, parts), ..PairState::default() };
-        for node in interface.nodes_of(Roles::Slave).into_iter().filter(|node| counted.insert(*node)) {
-            let state = &states[node];
+        for slave in slaves.iter().copied().filter(|slave| counted.insert(*slave)) {
+            let state = &states[slave];
             match state.contact() {
                 NodeState::Inactive => out.open += 1,
                 NodeState::Stick if frictional => out.sticking += 1,
                 NodeState::Stick | NodeState::Slip => out.slipping += 1,
             }
             if frictional && state.contact() == NodeState::Slip {
-                out.dissipated += heat(node, state);
+                out.dissipated += heat(slave, state);
             }
             let depth = -state.gap().unwrap_or(0.0);
             if depth > out.deepest.map_or(least, |(_, deepest)| deepest) {
-                out.deepest = Some((node, depth));
+                out.deepest = Some((states.mesh_node(slave), depth));
             }
         }
         out
     };
-    interfaces.iter().map(of_pair).collect()
+    interfaces.iter().zip(slaves).map(of_pair).collect()
 }
 
 /// What friction with this traction has dissipated over this slip on the area of a node.

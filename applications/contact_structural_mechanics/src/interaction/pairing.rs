@@ -7,25 +7,26 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::{EntityBlock, require_kind};
 use zelus_core::model::{ModelPart, Role};
 use zelus_core::vector3::dot;
-use zelus_core::{Carrier, Result};
 
 use super::contact_settings::ContactSettings;
 use super::holding::Holding;
-use super::nodal_sums::NodalSums;
 use super::setup::Setup;
+use super::slave_sums::SlaveSums;
 use super::step_parameters::{NormalVariation, StepParameters};
-use crate::interface::{Bodies, Facet, Interface, NodalNormals, NormalPatches, Roles, set_sides, sides, slave_nodes};
+use crate::interface::{Bodies, Facet, Interface, NodalNormals, NormalPatches, Patches, Roles, set_sides, sides};
 use crate::mortar::{Choices, MOST_NODES, SegmentationSettings};
+use crate::node_state::SlaveIndex;
 use crate::pairs::{
     ContactBlock, Integral, PAIRS, Pair, PairKey, PairRequest, Present, check_pairs, condition_name, group_by_shapes,
     group_by_surroundings,
 };
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
-use crate::slave_states::SlaveStates;
+use crate::slave_states::{SlaveStates, SlaveTable};
 use crate::solver::AVERAGED_EDGES;
 
 /// Cosine of the angle between normals beyond which facets do not face each other, 84°.
@@ -37,12 +38,16 @@ pub(super) struct Pairing {
     pub interfaces: Vec<Interface>,
     /// The elements behind slaves, where the family takes tractions from them.
     pub bodies: Arc<Bodies>,
-    /// The facets that make the normals of nodes.
-    pub patches: Arc<NormalPatches>,
+    /// The patches of slave facets.
+    pub patches: Patches,
+    /// Owners of the unknowns of slave nodes; none before they are made.
+    owners: Vec<u32>,
+    /// The facets that make the normals of slave nodes.
+    pub normals: Arc<NormalPatches>,
     /// The pairs, by shape of slave and master and by the number of nodes around them.
     pub blocks: Vec<Box<dyn ContactBlock>>,
     /// Slave nodes that the direct check found on a master.
-    pub touching: BTreeSet<u32>,
+    pub touching: BTreeSet<SlaveIndex>,
     /// Number of the present set of pairs.
     pub graph: u64,
     /// The states that blocks evaluate with.
@@ -58,16 +63,9 @@ pub(super) struct Pairing {
 pub(super) struct PairingState {
     sides: Vec<Vec<Roles>>,
     pairs: Vec<Pair>,
-    touching: BTreeSet<u32>,
+    touching: BTreeSet<SlaveIndex>,
     graph: u64,
     warned_of_reach: bool,
-}
-
-impl PairingState {
-    /// See [`State::carry`](zelus_core::State::carry): each step begins with the integrals of its pairs.
-    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        carrier.node_set(&mut self.touching);
-    }
 }
 
 /// How the facets of a pair meet.
@@ -81,9 +79,11 @@ pub(super) struct Meeting {
 
 impl Pairing {
     /// No pairs yet between the facets of these interfaces.
-    pub(super) fn new(interfaces: Vec<Interface>, part: &ModelPart, normals: NodalNormals) -> Self {
+    pub(super) fn new(interfaces: Vec<Interface>, normals: NodalNormals) -> Self {
         Self {
-            patches: Arc::new(NormalPatches::new(part.nodes.len(), &interfaces, normals)),
+            normals: Arc::new(NormalPatches::new(0, &[], normals)),
+            patches: Patches::default(),
+            owners: Vec::new(),
             interfaces,
             bodies: Arc::default(),
             blocks: Vec::new(),
@@ -96,11 +96,23 @@ impl Pairing {
         }
     }
 
-    /// Finds the facets around nodes anew, after the sides of facets or supports have changed.
-    pub(super) fn find_patches(&mut self, part: &ModelPart, holding: &Holding) {
-        let patches = holding.patches(part, &self.interfaces, self.patches.weights());
-        if patches != *self.patches {
-            self.patches = Arc::new(patches);
+    /// Makes the patches, and their slave nodes owners of unknowns in a model part; names of their sets begin with `name`.
+    ///
+    /// `angle` is the feature angle at which patches end; see [`Patches::new`].
+    pub(super) fn make_patches(&mut self, part: &mut ModelPart, angle: Option<f64>, name: &str) -> SlaveTable {
+        self.patches = Patches::new(part, &self.interfaces, angle);
+        self.normals = Arc::new(NormalPatches::of_slaves(&self.patches, &self.interfaces, self.normals.weights()));
+        let table = SlaveTable::of_patches(part, &self.patches, name);
+        self.owners.clone_from(&table.owners);
+        table
+    }
+
+    /// Finds the facets around slave nodes anew, after the sides of facets or supports have changed.
+    pub(super) fn find_normal_patches(&mut self, holding: &Holding) {
+        let normals = NormalPatches::of_slaves(&self.patches, &self.interfaces, self.normals.weights());
+        let normals = normals.on_planes(holding.planes().clone());
+        if normals != *self.normals {
+            self.normals = Arc::new(normals);
             self.graph += 1;
         }
     }
@@ -110,14 +122,24 @@ impl Pairing {
         self.ascending(|interface| interface.nodes.clone())
     }
 
-    /// Nodes that may carry multipliers, ascending.
-    pub(super) fn carriers(&self) -> Vec<u32> {
-        self.ascending(Interface::carriers)
+    /// Slave nodes of slave facets, ascending.
+    pub(super) fn slaves(&self) -> Vec<SlaveIndex> {
+        self.patches.slaves(&self.interfaces)
     }
 
-    /// Nodes of slave facets, ascending.
-    pub(super) fn slaves(&self) -> Vec<u32> {
-        slave_nodes(&self.interfaces)
+    /// Slave nodes of the slave facets of an interface, ascending.
+    pub(super) fn slaves_of(&self, interface: usize) -> Vec<SlaveIndex> {
+        self.patches.slaves_of(&self.interfaces, interface)
+    }
+
+    /// Slave nodes of the slave facets of each interface.
+    pub(super) fn slaves_by_interface(&self) -> Vec<Vec<SlaveIndex>> {
+        (0..self.interfaces.len()).map(|at| self.slaves_of(at)).collect()
+    }
+
+    /// Slave nodes of the slave facet of a pair.
+    pub(super) fn slaves_of_pair(&self, key: PairKey) -> &[SlaveIndex] {
+        self.patches.of_facet(key.interface, key.slave, self.slave(key).nodes.len())
     }
 
     fn ascending(&self, of: impl Fn(&Interface) -> Vec<u32>) -> Vec<u32> {
@@ -144,7 +166,7 @@ impl Pairing {
     pub(super) fn pair_of(&self, block: usize, at: usize) -> Option<(usize, Range<usize>)> {
         let block = self.blocks.get(block)?;
         let key = block.pairs().get(at)?.key;
-        let slaves = block.nodes(at).len() - block.slave_nodes(at).len();
+        let slaves = block.nodes(at).len() - block.slaves(at).len();
         Some((key.interface as usize, slaves - self.master(key).nodes.len()..slaves))
     }
 
@@ -188,7 +210,8 @@ impl Pairing {
                 if !within_reach || (nodes.is_empty() && !known.contains_key(&key)) {
                     continue;
                 }
-                touching.extend(nodes);
+                let own = self.slave(key).nodes.iter().zip(self.slaves_of_pair(key));
+                touching.extend(own.filter(|(node, _)| nodes.contains(node)).map(|(_, slave)| *slave));
             } else if !within_reach && !known.contains_key(&key) {
                 beyond.insert(key);
             }
@@ -271,10 +294,21 @@ impl Pairing {
         for ((slave, master), (pairs, nodes)) in groups {
             let name = condition_name(&stem, slave, master);
             let entry = require_kind(Role::Condition, &name)?;
-            let patches = (parameters.normal_variation == NormalVariation::Exact).then_some(&*self.patches);
-            let behind = |pair: &Pair| self.bodies.nodes([pair.key.interface, pair.key.slave]).to_vec();
-            for (around, (pairs, nodes)) in group_by_surroundings(patches, behind, slave.nodes(), pairs, &nodes) {
-                let (bodies, patches, parameters) = (self.bodies.clone(), self.patches.clone(), parameters.clone());
+            let exact = parameters.normal_variation == NormalVariation::Exact;
+            let around = |pair: &Pair| {
+                let mut around = self.bodies.nodes([pair.key.interface, pair.key.slave]).to_vec();
+                if exact {
+                    let slaves = self.slaves_of_pair(pair.key).iter();
+                    around.extend(slaves.flat_map(|slave| self.normals.neighbours(slave.0)));
+                }
+                around
+            };
+            for (around, (pairs, nodes)) in group_by_surroundings(&around, pairs, &nodes) {
+                let (bodies, patches, parameters) = (self.bodies.clone(), self.normals.clone(), parameters.clone());
+                let slaves: Vec<SlaveIndex> =
+                    pairs.iter().flat_map(|pair| self.slaves_of_pair(pair.key)).copied().collect();
+                let has_owners = settings.family.multiplier.is_unknown();
+                let owners = slaves.iter().filter(|_| has_owners).map(|slave| self.owners[slave.place()]).collect();
                 let states = self.states.clone();
                 blocks.push((settings.family.block)(PairRequest {
                     entry,
@@ -282,6 +316,8 @@ impl Pairing {
                     master,
                     pairs,
                     nodes,
+                    slaves,
+                    owners,
                     around,
                     bodies,
                     patches,
@@ -341,19 +377,18 @@ impl Pairing {
     pub(super) fn begin_step(&mut self, part: &ModelPart, states: &SlaveStates, slivers: bool) {
         self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.choices = Choices::default());
         if slivers {
-            let slaves = states.slaves();
-            let mut area = NodalSums::new(part.nodes.len(), &slaves);
+            let mut area = SlaveSums::new(states);
             let (integrals, _) = self.integrals(part, states);
             for (block, integrals) in self.blocks.iter().zip(&integrals) {
                 for (at, integral) in integrals.iter().enumerate() {
-                    for (local, &node) in block.slave_nodes(at).iter().enumerate() {
-                        area[node][0] += integral.area[local];
+                    for (local, &slave) in block.slaves(at).iter().enumerate() {
+                        area[slave][0] += integral.area[local];
                     }
                 }
             }
-            area.over_ranks(part);
+            area.over_ranks(part, states);
             for block in &mut self.blocks {
-                let covered = |at: usize| block.slave_nodes(at).iter().all(|&node| area[node] > [0.0]);
+                let covered = |at: usize| block.slaves(at).iter().all(|&slave| area[slave] > [0.0]);
                 let covered: Vec<bool> = (0..block.len()).map(covered).collect();
                 block.pairs_mut().iter_mut().zip(covered).for_each(|(pair, covered)| pair.choices.slivers = covered);
             }
@@ -414,20 +449,13 @@ impl Pairing {
     ///
     /// # Errors
     /// Those of making blocks.
-    pub(super) fn resume(
-        &mut self,
-        part: &ModelPart,
-        holding: &Holding,
-        setup: &Setup,
-        state: PairingState,
-    ) -> Result<()> {
+    pub(super) fn resume(&mut self, holding: &Holding, setup: &Setup, state: PairingState) -> Result<()> {
         set_sides(&mut self.interfaces, state.sides)?;
         check_pairs(&self.interfaces, state.pairs.iter().map(|pair| pair.key))?;
-        let carriers = self.carriers();
-        if !state.touching.iter().all(|node| carriers.binary_search(node).is_ok()) {
+        if state.touching.last().is_some_and(|last| last.place() >= self.patches.len()) {
             return Err(unfit("contact remembers nodes that touch and are no slaves"));
         }
-        self.find_patches(part, holding);
+        self.find_normal_patches(holding);
         self.set(state.pairs, &setup.settings, &setup.parameters)?;
         (self.touching, self.graph, self.warned_of_reach) = (state.touching, state.graph, state.warned_of_reach);
         Ok(())

@@ -8,25 +8,27 @@ use std::collections::BTreeSet;
 use zelus_core::vector3::{dot, norm};
 
 use crate::active_set::Decision;
-use crate::interface::{Interface, Roles};
 use crate::law::NodeState;
+use crate::node_state::SlaveIndex;
 use crate::resolution::Resolution;
 use crate::slave_states::SlaveStates;
 
 /// Step start: holds the active slave nodes of interfaces without pressure in contact.
-pub(super) fn hold_open_interfaces(states: &mut SlaveStates, interfaces: &[Interface], resolution: Resolution) {
+///
+/// `slaves` are the slave nodes of each interface.
+pub(super) fn hold_open_interfaces(states: &mut SlaveStates, slaves: &[Vec<SlaveIndex>], resolution: Resolution) {
     release(states);
-    for interface in interfaces {
-        let nodes = interface.nodes_of(Roles::Slave);
-        let presses = |&node: &u32| resolution.exceeds(-dot(states[node].trial, states[node].normal), 0.0, false);
+    for nodes in slaves {
+        let presses =
+            |&node: &SlaveIndex| resolution.exceeds(-dot(states[node].trial, states[node].normal), 0.0, false);
         if !nodes.iter().any(presses) {
-            nodes.into_iter().for_each(|node| states[node].pressed = states[node].active);
+            nodes.iter().for_each(|&node| states[node].pressed = states[node].active);
         }
     }
 }
 
 /// Holds the points around these nodes in contact until the next solve.
-pub(super) fn hold(states: &mut SlaveStates, nodes: &BTreeSet<u32>) {
+pub(super) fn hold(states: &mut SlaveStates, nodes: &BTreeSet<SlaveIndex>) {
     nodes.iter().for_each(|&node| states[node].pressed = true);
 }
 
@@ -48,7 +50,7 @@ pub(super) fn release(states: &mut SlaveStates) {
 /// Lets points stick until the next solve around nodes that slide back: one solve took them from one bound beyond the other.
 pub(super) fn hold_turned(
     states: &mut SlaveStates,
-    decisions: &mut [(u32, Decision)],
+    decisions: &mut [(SlaveIndex, Decision)],
     before: &[NodeState],
     resolution: Resolution,
 ) {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use zelus_core::model::Nodes;
 
 use super::activation;
-use crate::interface::Interface;
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
 /// How much farther from the master than the nearest node of an open interface a node may be to be activated with it, in mesh
@@ -21,10 +21,17 @@ pub(super) struct Reach {
 
 impl Reach {
     /// The slave nodes to activate next; empty where no more are left.
-    pub(super) fn next(&mut self, nodes: &Nodes, states: &SlaveStates, interfaces: &[Interface]) -> BTreeSet<u32> {
+    ///
+    /// `slaves` are the slave nodes of each interface.
+    pub(super) fn next(
+        &mut self,
+        nodes: &Nodes,
+        states: &SlaveStates,
+        slaves: &[Vec<SlaveIndex>],
+    ) -> BTreeSet<SlaveIndex> {
         let mut near = BTreeSet::new();
         while near.is_empty() && self.reached < REACHES.len() {
-            near = activation::nearest(nodes, states, interfaces, REACHES[self.reached], &mut self.open);
+            near = activation::nearest(nodes, states, slaves, REACHES[self.reached], &mut self.open);
             self.reached += 1;
         }
         near

@@ -11,6 +11,7 @@ use super::cycling::{CycleGuard, Settled};
 use super::points;
 use super::setup::Setup;
 use super::sliding::find_tangents;
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
 /// What the stage remembers of a step.
@@ -19,10 +20,10 @@ pub(super) struct SetStage {
     cycles: CycleGuard,
     /// Nodes that were pushed along their motion and stick since.
     #[serde(skip)]
-    released: BTreeSet<u32>,
+    released: BTreeSet<SlaveIndex>,
     /// How often nodes that always slide have turned back.
     #[serde(skip)]
-    reversals: BTreeMap<u32, usize>,
+    reversals: BTreeMap<SlaveIndex, usize>,
 }
 
 impl SetStage {
@@ -47,10 +48,10 @@ impl SetStage {
         messages: &mut Vec<Diagnostic>,
     ) -> SetChange {
         let rules = setup.rules();
-        let (mut decisions, before) = rules.decide(&part.nodes, states, &mut self.released);
+        let (mut decisions, before) = rules.decide(part, states, &mut self.released);
         if !setup.by_points() {
             self.cycles.restrict(&mut decisions, &before);
-            messages.extend(self.cycles.keep(&decisions, &part.nodes.ids, part.info.step));
+            messages.extend(self.cycles.keep(&decisions, &ids(part, states), part.info.step));
         } else if setup.settings.family.frictional() {
             // What points decide they decide in each evaluation of forces: nodes only tell of it.
             points::hold_turned(states, &mut decisions, &before, setup.resolution);
@@ -61,8 +62,8 @@ impl SetStage {
     /// Finds pressures and tractions in the present state, and holds the set.
     pub(super) fn find_tractions(&self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
         let rules = setup.rules();
-        let (decisions, _) = rules.decide(&part.nodes, states, &mut self.released.clone());
-        rules.press(&part.nodes, states, &decisions);
+        let (decisions, _) = rules.decide(part, states, &mut self.released.clone());
+        rules.press(part, states, &decisions);
     }
 
     /// Lets the rules decide in a converged state, where the set was held.
@@ -71,9 +72,10 @@ impl SetStage {
             return Outer::Done;
         }
         let rules = setup.rules();
-        let (mut decisions, before) = rules.decide(&part.nodes, states, &mut self.released);
+        let (mut decisions, before) = rules.decide(part, states, &mut self.released);
         let largest = decisions.iter().map(|(_, decision)| -decision.pressure).fold(0.0, f64::max);
-        match self.cycles.settle(&mut decisions, &before, largest, &part.nodes.ids) {
+        let settled = self.cycles.settle(&mut decisions, &before, largest, &ids(part, states));
+        match settled {
             Settled::Done => Outer::Done,
             Settled::Failed(why) => Outer::Failed(why),
             Settled::Change => {
@@ -91,4 +93,9 @@ impl SetStage {
             find_tangents(part, states, setup.rules(), keeps, &mut self.reversals);
         }
     }
+}
+
+/// Ids of the mesh nodes of slave nodes.
+fn ids<'a>(part: &'a ModelPart, states: &'a SlaveStates) -> impl Fn(SlaveIndex) -> usize + use<'a> {
+    |slave| part.nodes.ids[states.mesh_node(slave) as usize]
 }

@@ -11,8 +11,10 @@ use crate::active_set::{SlipRule, TURNED};
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::{Augmentation, NodeState, Turning};
 use crate::mortar::{tangent, tangential};
+use crate::node_state::SlaveIndex;
 use crate::pairs::Multiplier;
-use crate::slave_states::{SlaveState, SlaveStates};
+use crate::slave_state::SlaveState;
+use crate::slave_states::SlaveStates;
 
 /// Times in a step that a node which always slides may turn back.
 const MOST_REVERSALS: usize = 4;
@@ -32,20 +34,22 @@ pub(super) fn find_tangents(
     states: &mut SlaveStates,
     rules: Rules<'_>,
     keeps_direction: bool,
-    reversals: &mut BTreeMap<u32, usize>,
+    reversals: &mut BTreeMap<SlaveIndex, usize>,
 ) {
     let Rules { family, parameters, resolution } = rules;
     let dimension = part.info.domain_size;
     let pure = parameters.slip_rule == SlipRule::Pure;
     let decided = |traction: [f64; 3]| if resolution.exceeds(norm(traction), 0.0, false) { traction } else { [0.0; 3] };
-    states.for_each(|node, state| {
+    for slave in states.slaves().iter().copied() {
+        let state = &states[slave];
         let (contact, normal, before) = (state.contact(), state.normal, state.tangent);
         let by_slip = || {
-            let slip = resolution.vector_of(slip(&part.nodes, node, state, family.multiplier, parameters));
+            let slip = resolution.vector_of(slip(part, states, slave, family.multiplier, parameters));
             // Bodies that stand still keep the direction in which they came.
             let pressure = match family.multiplier {
                 Multiplier::Vector(_) => {
-                    parameters.scale_factor * dot(family.multiplier.value(&part.nodes, node), normal)
+                    parameters.scale_factor
+                        * dot(family.multiplier.value(&part.slave_nodes, states.owner(slave)), normal)
                 }
                 _ => 0.0,
             };
@@ -55,12 +59,12 @@ pub(super) fn find_tangents(
         let mut turning = Turning::default();
         let direction = match family.multiplier {
             Multiplier::Vector(_) => {
-                let whole = family.multiplier.value(&part.nodes, node);
+                let whole = family.multiplier.value(&part.slave_nodes, states.owner(slave));
                 let sliding = along_free_tangents(tangential(whole, normal), normal, state.held);
                 let multiplier = add(scale(normal, dot(whole, normal)), sliding);
                 match contact {
                     NodeState::Slip if dimension == 3 => {
-                        let slip = slip(&part.nodes, node, state, family.multiplier, parameters);
+                        let slip = slip(part, states, slave, family.multiplier, parameters);
                         let trial = Trial::new(state, slip, parameters, multiplier);
                         turning = trial.turning(state.pairs, pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }
@@ -85,15 +89,15 @@ pub(super) fn find_tangents(
         };
         let mut kept = norm(tangential(direction, normal)) <= f64::EPSILON * norm(direction);
         if pure && !kept && dot(direction, before) < 0.0 {
-            let count = reversals.entry(node).or_default();
+            let count = reversals.entry(slave).or_default();
             *count += 1;
             kept = *count > MOST_REVERSALS;
         }
         let any = tangent(if kept { before } else { direction }, normal, dimension);
         let free = along_free_tangents(any, normal, state.held);
-        state.tangent = if norm(free) > LEAST_FREE { normalised(free) } else { any };
-        state.turning = turning;
-    });
+        let tangent = if norm(free) > LEAST_FREE { normalised(free) } else { any };
+        (states[slave].tangent, states[slave].turning) = (tangent, turning);
+    }
 }
 
 /// Trial traction q̂ = k P λ + κ c s of a node with slip s, and what bounds it.

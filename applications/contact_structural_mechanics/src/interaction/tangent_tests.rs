@@ -15,17 +15,18 @@ use super::sliding::find_tangents;
 use crate::active_set::{Margin, SlipRule};
 use crate::flags::SLIP;
 use crate::friction_law::COULOMB;
-use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Roles};
+use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles};
 use crate::law::{Augmentation, Nitsche, NormalVariation, StepParameters};
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
+use crate::node_state::SlaveIndex;
 use crate::pairs::{
     ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Present, condition_name, find_family, group_by_shapes,
     group_by_surroundings,
 };
 use crate::resolution::Resolution;
-use crate::slave_states::SlaveStates;
-use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA, VECTOR_LAGRANGE_MULTIPLIER};
+use crate::slave_states::{SlaveStates, SlaveTable};
+use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA};
 
 /// Facets of two sides that overlap in several pairs a node, and all that their forces depend on.
 struct Contact {
@@ -34,7 +35,8 @@ struct Contact {
     part: ModelPart,
     interface: Interface,
     blocks: Vec<Box<dyn ContactBlock>>,
-    patches: Arc<NormalPatches>,
+    patches: Patches,
+    normals: Arc<NormalPatches>,
     states: SlaveStates,
 }
 
@@ -116,8 +118,13 @@ impl Contact {
         let start: Vec<[f64; 3]> = (0..count).map(|_| vector(0.05)).collect();
         part.nodes.history.values_mut(&DISPLACEMENT, 1).copy_from_slice(start.as_flattened());
         part.nodes.move_all();
-        let patches = Arc::new(NormalPatches::new(count, std::slice::from_ref(&interface), NodalNormals::ByEdges));
-        patches.write(&mut part);
+        let interfaces = std::slice::from_ref(&interface);
+        let patches = Patches::new(&part, interfaces, None);
+        let normals = Arc::new(NormalPatches::of_slaves(&patches, interfaces, NodalNormals::ByEdges));
+        let table = SlaveTable::of_patches(&mut part, &patches, "contact");
+        if let Some((name, components)) = family.multiplier.column() {
+            part.slave_nodes.history.add_named(name, components);
+        }
         part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(20.0);
         part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(0.8);
         part.nodes.values.values_mut(&FRICTION_COEFFICIENT, 0).fill(0.1);
@@ -142,10 +149,10 @@ impl Contact {
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         });
-        let mut states = SlaveStates::of(&part, interface.nodes.clone(), family.columns());
-        states.set_slaves(interface.nodes_of(Roles::Slave));
+        let mut states = SlaveStates::of(&part, table, family.columns());
+        states.set_slaves(patches.slaves(interfaces));
         states.read_friction(&part.nodes, &COULOMB);
-        let mut contact = Self { family, parameters, part, interface, blocks: Vec::new(), patches, states };
+        let mut contact = Self { family, parameters, part, interface, blocks: Vec::new(), patches, normals, states };
         contact.make_blocks();
         contact.leave_start();
         contact
@@ -165,10 +172,11 @@ impl Contact {
             group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
         {
             let entry = require_kind(Role::Condition, &condition_name(family.condition, slave, master)).unwrap();
-            for (around, (pairs, nodes)) in
-                group_by_surroundings(Some(&self.patches), |_| Vec::new(), slave.nodes(), pairs, &nodes)
-            {
-                let (patches, parameters) = (self.patches.clone(), self.parameters.clone());
+            for (around, (pairs, nodes)) in group_by_surroundings(&|pair: &Pair| self.around(pair.key), pairs, &nodes) {
+                let (patches, parameters) = (self.normals.clone(), self.parameters.clone());
+                let slaves: Vec<SlaveIndex> = pairs.iter().flat_map(|pair| self.slaves_of(pair.key)).copied().collect();
+                let has_owners = family.multiplier.is_unknown();
+                let owners = slaves.iter().filter(|_| has_owners).map(|slave| self.states.owner(*slave)).collect();
                 let (bodies, states) = (Arc::default(), Arc::default());
                 self.blocks.push((family.block)(PairRequest {
                     entry,
@@ -176,6 +184,8 @@ impl Contact {
                     master,
                     pairs,
                     nodes,
+                    slaves,
+                    owners,
                     around,
                     bodies,
                     patches,
@@ -187,6 +197,17 @@ impl Contact {
         self.follow();
         let present = Present { view: &self.part.view(), states: &self.states, own: &|_| true };
         self.blocks.iter_mut().for_each(|block| block.keep_operators(present));
+    }
+
+    /// Slave nodes of a pair.
+    fn slaves_of(&self, key: PairKey) -> &[SlaveIndex] {
+        let nodes = self.interface.facets[key.slave as usize].nodes.len();
+        self.patches.of_facet(key.interface, key.slave, nodes)
+    }
+
+    /// Nodes on which the normals of a pair depend.
+    fn around(&self, key: PairKey) -> Vec<u32> {
+        self.slaves_of(key).iter().flat_map(|slave| self.normals.neighbours(slave.0)).collect()
     }
 
     /// Moves somewhere else than at the start of the step, with multipliers of its own.
@@ -202,13 +223,16 @@ impl Contact {
         if family.variables.iter().any(|(name, _)| *name == "VECTOR_LAGRANGE_MULTIPLIER") {
             let down = if space == 2 { [0.3, -1.0, 0.0] } else { [0.3, 0.2, -1.0] };
             let multipliers: Vec<[f64; 3]> = (0..count).map(|_| add(vector(0.1), down)).collect();
-            let column = self.part.nodes.history.values_mut(&VECTOR_LAGRANGE_MULTIPLIER, 0);
-            column.copy_from_slice(multipliers.as_flattened());
-            column[3 * OUT_OF_CONTACT..3 * OUT_OF_CONTACT + 3].fill(0.0);
+            for slave in self.states.all() {
+                let node = self.states.mesh_node(slave) as usize;
+                let value = if node == OUT_OF_CONTACT { [0.0; 3] } else { multipliers[node] };
+                family.multiplier.set(&mut self.part.slave_nodes, self.states.owner(slave), value);
+            }
         } else {
-            let variable = family.multiplier.unknowns(space)[0];
-            let field = self.part.nodes.history.get_mut(variable.column).unwrap();
-            field.levels[0].iter_mut().enumerate().for_each(|(n, x)| *x = -1.0 - 0.1 * n as f64);
+            for slave in self.states.all() {
+                let value = [-1.0 - 0.1 * f64::from(self.states.mesh_node(slave)), 0.0, 0.0];
+                family.multiplier.set(&mut self.part.slave_nodes, self.states.owner(slave), value);
+            }
         }
         self.follow();
         for block in &mut self.blocks {
@@ -217,17 +241,17 @@ impl Contact {
         }
         // Areas stay those of this state: they weigh slips in the direction of sliding only.
         let areas = self.sums(|integral, j| [integral.area[j], 0.0, 0.0]);
-        self.states.for_each(|node, state| state.area = areas[node as usize][0]);
+        self.states.for_each(|slave, state| state.area = areas[slave.place()][0]);
         self.follow();
     }
 
-    /// Over the pairs of each node.
+    /// Over the pairs of each slave node.
     fn sums(&self, of: impl Fn(&Integral, usize) -> [f64; 3]) -> Vec<[f64; 3]> {
-        let mut sums = vec![[0.0; 3]; self.part.nodes.len()];
+        let mut sums = vec![[0.0; 3]; self.states.len()];
         for block in &self.blocks {
             for (at, integral) in self.integrals(block.as_ref()).iter().enumerate() {
-                for (j, &node) in block.slave_nodes(at).iter().enumerate() {
-                    sums[node as usize] = add(sums[node as usize], of(integral, j));
+                for (j, &slave) in block.slaves(at).iter().enumerate() {
+                    sums[slave.place()] = add(sums[slave.place()], of(integral, j));
                 }
             }
         }
@@ -237,8 +261,7 @@ impl Contact {
     /// Positions, normals and directions of sliding after displacements.
     fn follow(&mut self) {
         self.part.nodes.move_all();
-        self.patches.write(&mut self.part);
-        self.states.read_normals(&self.part.nodes);
+        self.states.take_normals(&self.normals, &self.part.nodes.current);
         for pair in self.blocks.iter_mut().flat_map(|block| block.pairs_mut()) {
             let normal = |facet: u32| {
                 let facet = &self.interface.facets[facet as usize];
@@ -249,11 +272,11 @@ impl Contact {
         }
         if self.family.frictional() {
             let slips = self.sums(|integral, j| integral.slip[j]);
-            self.states.for_each(|node, state| (state.weighted_slip, state.pairs) = (slips[node as usize], 0));
+            self.states.for_each(|slave, state| (state.weighted_slip, state.pairs) = (slips[slave.place()], 0));
             for block in &self.blocks {
                 let integrals = self.integrals(block.as_ref());
                 for at in (0..block.len()).filter(|&at| integrals[at].overlapping) {
-                    block.slave_nodes(at).iter().for_each(|&node| self.states[node].pairs += 1);
+                    block.slaves(at).iter().for_each(|&slave| self.states[slave].pairs += 1);
                 }
             }
             let (family, parameters) = (self.family, self.parameters.clone());

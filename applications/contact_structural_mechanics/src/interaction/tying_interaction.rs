@@ -9,22 +9,26 @@ use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, 
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{Carriers, MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
 use zelus_core::parameters::Interval;
+use zelus_core::vector3::norm;
 use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use super::holding::Holding;
+use super::holding::{FacetsOfPair, Holding};
+use super::owners::{feature_angle, owners_name};
 use super::pair_states::{joins, name};
 use crate::flags::CONTACT;
 use crate::interface::{
-    Fixed, Interface, NodalNormals, Roles, add_contact_part, alm_parameters, find_nodal_h, interfaces, nodal_normals,
-    slave_nodes, warnings_of_pairs,
+    Fixed, Interface, NodalNormals, NormalPatches, Patches, Roles, add_contact_part, alm_parameters, find_nodal_h,
+    interfaces, nodal_normals, warnings_of_pairs,
 };
 use crate::mortar::SegmentationSettings;
+use crate::node_state::SlaveIndex;
 use crate::pairs::{
     FacetOperators, FacetPair, PairKey, TyingBlock, TyingFamily, TyingRequest, check_pairs, condition_name,
     group_by_shapes, overlapping_pairs,
 };
 use crate::search::SearchSettings;
+use crate::slave_states::{SlaveTable, set_name};
 
 /// What a deck chooses about a tie.
 pub struct TyingSettings {
@@ -61,7 +65,11 @@ const LEAST_FREE: f64 = 1e-6;
 pub struct TyingInteraction {
     settings: TyingSettings,
     interfaces: Vec<Interface>,
-    slaves: Vec<u32>,
+    /// The patches of slave facets, and their slave nodes as owners of unknowns; made at the start.
+    patches: Patches,
+    table: SlaveTable,
+    /// Normals of the slave nodes at the last search.
+    normals: Vec<[f64; 3]>,
     pairs: BTreeMap<PairKey, FacetOperators>,
     blocks: Vec<Box<dyn EntityBlock>>,
     /// Of each block, the facets of its entities.
@@ -105,7 +113,9 @@ impl TyingInteraction {
         Ok(Self {
             messages: warnings_of_pairs(part, &settings.slaves, &interfaces),
             settings,
-            slaves: slave_nodes(&interfaces),
+            patches: Patches::default(),
+            table: SlaveTable::default(),
+            normals: Vec::new(),
             interfaces,
             pairs: BTreeMap::new(),
             blocks: Vec::new(),
@@ -119,11 +129,42 @@ impl TyingInteraction {
     }
 
     fn search(&mut self, part: &mut ModelPart) {
-        self.holding.patches(part, &self.interfaces, NodalNormals::ByFacets).write(part);
+        let all = NormalPatches::new(part.nodes.len(), &self.interfaces, NodalNormals::ByFacets);
+        all.on_planes(self.holding.planes().clone()).write(part);
+        self.find_normals(part);
         let known = |key: &PairKey| self.pairs.contains_key(key);
-        let found =
-            overlapping_pairs(part, &self.interfaces, &self.settings.search, &self.settings.segmentation, &known);
+        let normals = |key: PairKey, local: usize| self.normals[self.slaves_of(key)[local].place()];
+        let found = overlapping_pairs(
+            part,
+            &self.interfaces,
+            &self.settings.search,
+            &self.settings.segmentation,
+            &normals,
+            &known,
+        );
         self.pairs.extend(found.into_iter().map(|pair| (pair.key, pair.operators)));
+    }
+
+    /// Normals of the slave nodes in the present configuration.
+    fn find_normals(&mut self, part: &ModelPart) {
+        let patches = NormalPatches::of_slaves(&self.patches, &self.interfaces, NodalNormals::ByFacets);
+        let patches = patches.on_planes(self.holding.planes().clone());
+        let unit = |sum: [f64; 3]| {
+            let size = norm(sum);
+            sum.map(|x| if size > 0.0 { x / size } else { 0.0 })
+        };
+        self.normals = self.patches.all().map(|slave| unit(patches.sum(slave.0, &part.nodes.current))).collect();
+    }
+
+    /// Slave nodes of the slave facet of a pair.
+    fn slaves_of(&self, key: PairKey) -> &[SlaveIndex] {
+        let facet = &self.interfaces[key.interface as usize].facets[key.slave as usize];
+        self.patches.of_facet(key.interface, key.slave, facet.nodes.len())
+    }
+
+    /// Multipliers of a slave node, one an unknown.
+    fn unknowns(&self, part: &ModelPart) -> Vec<ScalarVariable> {
+        self.settings.family.multiplier.unknowns(part.info.domain_size)
     }
 
     fn make_blocks(&mut self, part: &ModelPart) -> Result<()> {
@@ -134,11 +175,14 @@ impl TyingInteraction {
         self.keys.clear();
         for ((slave, master), (pairs, nodes)) in groups {
             self.keys.push(pairs.iter().map(|pair| pair.key).collect());
+            let slaves = pairs.iter().flat_map(|pair| self.slaves_of(pair.key));
+            let owners = slaves.map(|slave| self.table.owners[slave.place()]).collect();
             let name = condition_name("MeshTyingMortarCondition", slave, master);
             let request = TyingRequest {
                 entry: require_kind(Role::Condition, &name)?,
                 pairs,
                 nodes,
+                owners,
                 tied: self.settings.tied.clone(),
                 multipliers: multipliers.clone(),
                 scale_factor: self.scale_factor,
@@ -156,11 +200,8 @@ impl TyingInteraction {
         }
         self.blocks.clear();
         self.graph += 1;
-        for variable in self.settings.family.multiplier.unknowns(part.info.domain_size) {
-            let Some(field) = part.nodes.history.get_mut(variable.column) else { continue };
-            for &node in &self.slaves {
-                field.levels[0][node as usize * field.components + variable.offset()] = 0.0;
-            }
+        for &owner in &self.table.owners {
+            self.settings.family.multiplier.set(&mut part.slave_nodes, owner, [0.0; 3]);
         }
         self.mark(part, false);
     }
@@ -170,16 +211,21 @@ impl TyingInteraction {
     /// Where supports hold both sides nothing is left to tie. The dual functions of such nodes are shared out, which keeps the
     /// system symmetric.
     fn hold(&mut self, part: &mut ModelPart) {
-        let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
-        let own =
-            |c: &MasterSlaveConstraint| unknowns.contains(&c.slave.1) && self.slaves.binary_search(&c.slave.0).is_ok();
+        let (unknowns, name) = (self.unknowns(part), self.owners_name());
+        let own = |c: &MasterSlaveConstraint| c.set.as_ref().is_some_and(|set| set.starts_with(&name));
         let (old, mut constraints): (Vec<_>, Vec<_>) = std::mem::take(&mut part.constraints).into_iter().partition(own);
         let facet = |interface: u32, facet: u32| &self.interfaces[interface as usize].facets[facet as usize];
-        let pairs = self.pairs.keys().map(|key| (facet(key.interface, key.slave), facet(key.interface, key.master)));
-        let held = if self.blocks.is_empty() { BTreeMap::new() } else { self.holding.nodes(part, pairs) };
+        let pairs = self.pairs.keys().map(|key| FacetsOfPair {
+            slave: facet(key.interface, key.slave),
+            slaves: self.slaves_of(*key),
+            master: facet(key.interface, key.master),
+        });
+        let normal = |slave: SlaveIndex| self.normals.get(slave.place()).copied().unwrap_or([0.0; 3]);
+        let held = if self.blocks.is_empty() { BTreeMap::new() } else { self.holding.nodes(part, &normal, pairs) };
         let mut dropped: BTreeMap<u32, Fixed> = BTreeMap::new();
         let mut new = Vec::new();
-        for (&node, how) in &held {
+        for (&slave, how) in &held {
+            let node = self.patches.mesh_node(slave);
             for (&multiplier, tied) in unknowns.iter().zip(&self.settings.tied) {
                 let Some(c) = tied.component.map(usize::from).filter(|&c| how.components[c]) else { continue };
                 if tied.column != DISPLACEMENT.name() {
@@ -188,14 +234,15 @@ impl TyingInteraction {
                 let masters = if how.symmetric {
                     Vec::new()
                 } else {
-                    self.neighbours(node, |n| !held.get(&n).is_some_and(|other| other.components[c]))
+                    self.neighbours(slave, |n| !held.get(&n).is_some_and(|other| other.components[c]))
                 };
                 let weight = 1.0 / masters.len().max(1) as f64;
-                if masters.is_empty() && !how.symmetric && self.ties_free_masters(node, |n| self.holding.fixes(n, c)) {
+                if masters.is_empty() && !how.symmetric && self.ties_free_masters(slave, |n| self.holding.fixes(n, c)) {
                     continue;
                 }
-                let masters = masters.into_iter().map(|n| ((n, multiplier), weight)).collect();
-                new.push(MasterSlaveConstraint::new((node, multiplier), masters));
+                let masters = masters.into_iter().map(|n| ((self.patches.mesh_node(n), multiplier), weight)).collect();
+                let set = Some(set_name(&name, self.patches.patch(slave)));
+                new.push(MasterSlaveConstraint { set, ..MasterSlaveConstraint::new((node, multiplier), masters) });
                 dropped.entry(node).or_default()[c] = true;
             }
         }
@@ -205,12 +252,17 @@ impl TyingInteraction {
         self.messages.extend(self.holding.say(part, &dropped, false));
     }
 
+    /// Name of the sets of its slave nodes: that of the parts of its pairs.
+    fn owners_name(&self) -> String {
+        owners_name("tie", &self.settings.slaves, &self.settings.parts)
+    }
+
     /// Whether the equation of a slave node ties masters that are not fixed.
-    fn ties_free_masters(&self, node: u32, fixed: impl Fn(u32) -> bool) -> bool {
+    fn ties_free_masters(&self, slave: SlaveIndex, fixed: impl Fn(u32) -> bool) -> bool {
         let facet = |interface: u32, facet: u32| &self.interfaces[interface as usize].facets[facet as usize].nodes;
         let (mut all, mut free) = (0.0, 0.0);
         for (key, operators) in &self.pairs {
-            let Some(j) = facet(key.interface, key.slave).iter().position(|&n| n == node) else { continue };
+            let Some(j) = self.slaves_of(*key).iter().position(|&own| own == slave) else { continue };
             for (&master, weight) in facet(key.interface, key.master).iter().zip(operators.m[j]) {
                 all += weight.abs();
                 free += if fixed(master) { 0.0 } else { weight.abs() };
@@ -219,14 +271,19 @@ impl TyingInteraction {
         free > LEAST_FREE * all
     }
 
-    /// The nearest slave nodes by facets that are wanted.
-    fn neighbours(&self, node: u32, wanted: impl Fn(u32) -> bool) -> Vec<u32> {
-        let mut reached = BTreeSet::from([node]);
+    /// The nearest slave nodes of the same patch, by facets, that are wanted.
+    fn neighbours(&self, slave: SlaveIndex, wanted: impl Fn(SlaveIndex) -> bool) -> Vec<SlaveIndex> {
+        let facets = || {
+            self.interfaces.iter().enumerate().flat_map(|(i, interface)| {
+                let own = interface.facets.iter().enumerate();
+                own.map(move |(f, facet)| self.patches.of_facet(i as u32, f as u32, facet.nodes.len()))
+            })
+        };
+        let mut reached = BTreeSet::from([slave]);
         loop {
-            let facets = self.interfaces.iter().flat_map(|i| &i.facets).filter(|f| f.role == Roles::Slave);
-            let beside = facets.filter(|f| f.nodes.iter().any(|n| reached.contains(n))).flat_map(|f| f.nodes.clone());
-            let more: BTreeSet<u32> = beside.collect();
-            let found: Vec<u32> = more.iter().copied().filter(|&n| wanted(n)).collect();
+            let beside = facets().filter(|own| own.iter().any(|n| reached.contains(n))).flatten();
+            let more: BTreeSet<SlaveIndex> = beside.copied().collect();
+            let found: Vec<SlaveIndex> = more.iter().copied().filter(|&n| wanted(n)).collect();
             if !found.is_empty() || more.len() == reached.len() {
                 return found;
             }
@@ -235,7 +292,7 @@ impl TyingInteraction {
     }
 
     fn mark(&self, part: &mut ModelPart, active: bool) {
-        self.slaves.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, active));
+        self.table.nodes.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, active));
     }
 }
 
@@ -253,6 +310,13 @@ impl Interaction for TyingInteraction {
         part.info.values.insert("SCALE_FACTOR", self.scale_factor);
         debug_assert!(self.interfaces.iter().all(|i| i.facets.iter().all(|f| f.role != Roles::Open)));
         nodal_normals(part, &self.interfaces);
+        let angle = feature_angle(part);
+        self.patches = Patches::new(part, &self.interfaces, angle);
+        self.table = SlaveTable::of_patches(part, &self.patches, &self.owners_name());
+        if let Some((name, components)) = self.settings.family.multiplier.column() {
+            part.slave_nodes.history.add_named(name, components);
+        }
+        self.find_normals(part);
         Ok(())
     }
 
@@ -346,7 +410,8 @@ impl Interaction for TyingInteraction {
 impl Coupling for TyingInteraction {
     fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
         let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
-        unknowns.into_iter().map(|variable| Carriers::of_nodes(variable, self.slaves.clone())).collect()
+        let owners = &self.table.owners;
+        unknowns.into_iter().map(|variable| Carriers::of_slaves(variable, owners.iter().copied())).collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {

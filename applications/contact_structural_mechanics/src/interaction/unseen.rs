@@ -7,7 +7,6 @@ use zelus_core::vector3::{add, dot, scale, sub};
 use super::late_pairs::{farthest_motion, step_start};
 use crate::interface::{Facet, Interface, Roles};
 use crate::search::{Bounds, Tree, inside};
-use crate::slave_states::SlaveStates;
 use crate::solver::LARGEST_PENETRATION;
 use crate::variables::NODAL_H;
 
@@ -26,12 +25,17 @@ pub(super) struct Unseen {
 impl Unseen {
     /// Why a converged state cannot be accepted: bodies are in each other by more than `"largest_penetration"` of their mesh size
     /// where no node of an interface is in contact, or nodes have gone through a master in the step. Collective.
-    pub(super) fn why(&mut self, part: &ModelPart, interfaces: &[Interface], states: &SlaveStates) -> Option<String> {
+    ///
+    /// `in_contact` says whether a slave node of an interface is in contact.
+    pub(super) fn why(
+        &mut self,
+        part: &ModelPart,
+        interfaces: &[Interface],
+        in_contact: impl Fn(usize) -> bool,
+    ) -> Option<String> {
         let most = part.info.value_or(LARGEST_PENETRATION, 0.0);
-        let idle = |interface: &&Interface| {
-            !interface.open && !interface.nodes_of(Roles::Slave).iter().any(|&node| states[node].active)
-        };
-        let idle: Vec<&Interface> = interfaces.iter().filter(idle).collect();
+        let idle = interfaces.iter().enumerate().filter(|(at, interface)| !interface.open && !in_contact(*at));
+        let idle: Vec<&Interface> = idle.map(|(_, interface)| interface).collect();
         if most <= 0.0 || idle.is_empty() {
             return None;
         }

@@ -2,9 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;
-use zelus_core::model::Nodes;
+use zelus_core::model::SlaveNodes;
 
-use crate::slave_states::{SlaveState, SlaveStates};
+use crate::node_state::SlaveIndex;
+use crate::slave_state::SlaveState;
+use crate::slave_states::SlaveStates;
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
 /// How far the outer loop goes.
@@ -31,14 +33,14 @@ impl Uzawa {
     /// p° ← k λ at the slave nodes in contact, none that pulls; zero at all others.
     pub(super) fn update(
         &mut self,
-        nodes: &Nodes,
+        slave_nodes: &SlaveNodes,
         states: &mut SlaveStates,
         scale_factor: f64,
         settings: UzawaSettings,
     ) -> Outer {
-        let multipliers = nodes.history.values(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE, 0);
-        let pressure = |(n, state): (u32, &SlaveState)| {
-            if state.active { (scale_factor * multipliers[n as usize]).min(0.0) } else { 0.0 }
+        let multipliers = slave_nodes.history.values(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE, 0);
+        let pressure = |(slave, state): (SlaveIndex, &SlaveState)| {
+            if state.active { (scale_factor * multipliers[states.owner(slave) as usize]).min(0.0) } else { 0.0 }
         };
         let pressures: Vec<f64> = states.iter().map(pressure).collect();
         let size = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();

@@ -69,6 +69,17 @@ impl Facet {
         Positions { places, count: self.nodes.len() }
     }
 
+    /// Its corners, in the order of its nodes.
+    pub fn corners(&self) -> &[u32] {
+        &self.nodes[..self.shape.cell().corners()]
+    }
+
+    /// Unit normal at its centre in the initial configuration, zero when it has no area.
+    pub fn initial_normal(&self, part: &ModelPart) -> [f64; 3] {
+        let places: Vec<[f64; 3]> = self.nodes.iter().map(|&node| part.nodes.initial[node as usize]).collect();
+        self.normal_at(&places)
+    }
+
     /// Unit normal at its centre, zero when it has no area.
     pub fn normal(&self, part: &ModelPart) -> [f64; 3] {
         self.normal_at(&self.positions(part))

@@ -5,6 +5,7 @@ mod bodies;
 mod facet;
 mod facets;
 mod nodal_h;
+mod patches;
 mod normals;
 mod parameters;
 mod supports;
@@ -18,4 +19,5 @@ pub use facets::{
 pub use nodal_h::find_nodal_h;
 pub use normals::{Corner, NodalNormals, NormalPatches, nodal_normals};
 pub use parameters::{AlmParameters, alm_parameters};
+pub use patches::{FEATURE_ANGLE, Patches};
 pub use supports::{Fixed, fixed_components, symmetry_planes};

@@ -22,6 +22,7 @@ use zelus_structural_mechanics::variables::NORMAL;
 
 use super::facet::{Facet, Roles};
 use super::facets::Interface;
+use super::patches::Patches;
 use super::supports::Fixed;
 
 /// The edge that a line has not.
@@ -67,15 +68,15 @@ pub enum NodalNormals {
     ByFacets,
 }
 
-/// The facets that make the normal of every node of the interfaces.
+/// The facets that make the normals of items: the mesh nodes of the interfaces, or the slave nodes of patches.
 ///
 /// Where each search decides the sides, facets that meet nothing do not turn the normals of those that do: the edge of a
 /// block found by its skin would otherwise be pressed askew.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NormalPatches {
-    /// Nodes of the interfaces.
+    /// Mesh node of each item.
     nodes: Vec<u32>,
-    /// First corner of each node, and the end.
+    /// First corner of each item, and the end.
     starts: Vec<u32>,
     corners: Vec<Corner>,
     terms: Vec<Term>,
@@ -85,40 +86,61 @@ pub struct NormalPatches {
 }
 
 impl NormalPatches {
-    /// Those of a model part with `count` nodes.
+    /// Those of the mesh nodes of a model part with `count` nodes, of all facets around each.
     pub fn new(count: usize, interfaces: &[Interface], weights: NodalNormals) -> Self {
+        let nodes: Vec<u32> = (0..count as u32).collect();
+        Self::of_items(nodes, interfaces, weights, &|_, _, _, node| Some(node))
+    }
+
+    /// Those of slave nodes, of the facets of their own patch alone.
+    pub fn of_slaves(patches: &Patches, interfaces: &[Interface], weights: NodalNormals) -> Self {
+        let nodes: Vec<u32> = patches.all().map(|slave| patches.mesh_node(slave)).collect();
+        Self::of_items(nodes, interfaces, weights, &|i, f, local, _| {
+            let facet = &interfaces[i as usize].facets[f as usize];
+            Some(patches.of_facet(i, f, facet.nodes.len()).get(local)?.0)
+        })
+    }
+
+    /// `item` names the item of a node of a facet: interface, facet, place of the node, node.
+    fn of_items(
+        nodes: Vec<u32>,
+        interfaces: &[Interface],
+        weights: NodalNormals,
+        item: &dyn Fn(u32, u32, usize, u32) -> Option<u32>,
+    ) -> Self {
+        let count = nodes.len();
+        let all = || {
+            interfaces.iter().enumerate().flat_map(|(i, interface)| {
+                let facets = interface.facets.iter().enumerate();
+                facets.map(move |(f, facet)| (i as u32, f as u32, interface.open, facet))
+            })
+        };
         let mut met = vec![false; count];
-        let meeting = interfaces.iter().filter(|i| i.open).flat_map(|i| &i.facets).filter(|f| f.role != Roles::Open);
-        meeting.flat_map(|f| &f.nodes).for_each(|&node| met[node as usize] = true);
-        let (mut at_nodes, mut terms): (Vec<(u32, Corner)>, Vec<Term>) = Default::default();
+        for (i, f, _, facet) in all().filter(|(_, _, open, facet)| *open && facet.role != Roles::Open) {
+            let own = facet.nodes.iter().enumerate().filter_map(|(local, &node)| item(i, f, local, node));
+            own.for_each(|item| met[item as usize] = true);
+        }
+        let (mut at_items, mut terms): (Vec<(u32, Corner)>, Vec<Term>) = Default::default();
         let mut keep = |edge: Vec<Term>| {
             let first = terms.len() as u32;
             terms.extend(edge);
             [first, terms.len() as u32]
         };
-        for (i, interface) in interfaces.iter().enumerate() {
-            for (f, facet) in interface.facets.iter().enumerate() {
-                for (local, &node) in facet.nodes.iter().enumerate() {
-                    if facet.role != Roles::Open || !met[node as usize] {
-                        let edges = edges(facet, local).map(|edge| edge.map(&mut keep));
-                        at_nodes.push((node, Corner { facet: [i as u32, f as u32], edges }));
-                    }
+        for (i, f, _, facet) in all() {
+            for (local, &node) in facet.nodes.iter().enumerate() {
+                let Some(item) = item(i, f, local, node) else { continue };
+                if facet.role != Roles::Open || !met[item as usize] {
+                    let edges = edges(facet, local).map(|edge| edge.map(&mut keep));
+                    at_items.push((item, Corner { facet: [i, f], edges }));
                 }
             }
         }
-        at_nodes.sort_by_key(|(node, _)| *node);
+        at_items.sort_by_key(|(item, _)| *item);
         let mut starts = vec![0_u32; count + 1];
-        at_nodes.iter().for_each(|(node, _)| starts[*node as usize + 1] += 1);
-        (0..count).for_each(|node| starts[node + 1] += starts[node]);
-        let nodes = (0..count as u32).filter(|&node| starts[node as usize] < starts[node as usize + 1]).collect();
-        Self {
-            nodes,
-            starts,
-            corners: at_nodes.into_iter().map(|(_, corner)| corner).collect(),
-            terms,
-            weights,
-            planes: BTreeMap::new(),
-        }
+        at_items.iter().for_each(|(item, _)| starts[*item as usize + 1] += 1);
+        (0..count).for_each(|item| starts[item + 1] += starts[item]);
+        let corners = at_items.into_iter().map(|(_, corner)| corner).collect();
+        Self { nodes, starts, corners, terms, weights, planes: BTreeMap::new() }
     }
 
     /// How facets count.
@@ -132,22 +154,22 @@ impl NormalPatches {
         Self { planes, ..self }
     }
 
-    /// The components that the normal of a node lacks.
-    pub fn lacks(&self, node: u32) -> Fixed {
-        self.planes.get(&node).copied().unwrap_or_default()
+    /// The components that the normal of an item lacks.
+    fn lacks(&self, item: u32) -> Fixed {
+        self.planes.get(&self.nodes[item as usize]).copied().unwrap_or_default()
     }
 
-    /// The facets of a node.
-    pub fn corners(&self, node: u32) -> &[Corner] {
-        match self.starts.get(node as usize..node as usize + 2) {
+    /// The facets of an item.
+    pub fn corners(&self, item: u32) -> &[Corner] {
+        match self.starts.get(item as usize..item as usize + 2) {
             Some(&[from, to]) => &self.corners[from as usize..to as usize],
             _ => &[],
         }
     }
 
-    /// The nodes, beside itself, that turn the normal of a node.
-    pub fn neighbours(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
-        let edges = self.corners(node).iter().flat_map(|corner| corner.edges).flatten();
+    /// The mesh nodes, beside its own, that the normal of an item depends on.
+    pub fn neighbours(&self, item: u32) -> impl Iterator<Item = u32> + '_ {
+        let edges = self.corners(item).iter().flat_map(|corner| corner.edges).flatten();
         edges.flat_map(|edge| self.terms(edge)).map(|(node, _)| *node)
     }
 
@@ -205,35 +227,36 @@ impl NormalPatches {
         }
     }
 
-    /// S.
-    pub(super) fn sum(&self, node: u32, places: &[[f64; 3]]) -> [f64; 3] {
+    /// S of an item; zero where no facet has an area.
+    pub fn sum(&self, item: u32, places: &[[f64; 3]]) -> [f64; 3] {
+        let node = self.nodes[item as usize];
         let mut sum = [0.0; 3];
-        for v in self.corners(node).iter().filter_map(|corner| self.normal(corner, node, places)) {
+        for v in self.corners(item).iter().filter_map(|corner| self.normal(corner, node, places)) {
             (0..3).for_each(|c| sum[c] += v[c]);
         }
-        let lacks = self.lacks(node);
+        let lacks = self.lacks(item);
         std::array::from_fn(|c| if lacks[c] { 0.0 } else { sum[c] })
     }
 
-    /// Visits nodes with ∂n/∂x, row by row, of the normal of `node`; the derivative by a node is the sum of its visits.
+    /// Visits mesh nodes with ∂n/∂x, row by row, of the normal of an item; the derivative by a node is the sum of its visits.
     ///
     /// Only facets that `knows` says yes to move; all of them count in the normal.
     pub fn variation(
         &self,
-        node: u32,
+        item: u32,
         places: &[[f64; 3]],
         knows: &dyn Fn(&Corner) -> bool,
         visit: &mut dyn FnMut(u32, [[f64; 3]; 3]),
     ) {
-        let sum = self.sum(node, places);
+        let (node, sum) = (self.nodes[item as usize], self.sum(item, places));
         let length = norm(sum);
         if length == 0.0 {
             return;
         }
-        let lacks = self.lacks(node);
+        let lacks = self.lacks(item);
         let mut outer = projector(scale(sum, 1.0 / length), length);
         outer.iter_mut().for_each(|row| (0..3).filter(|&c| lacks[c]).for_each(|c| row[c] = 0.0));
-        for corner in self.corners(node).iter().filter(|corner| knows(corner)) {
+        for corner in self.corners(item).iter().filter(|corner| knows(corner)) {
             let mut own = [[0.0; 3]; 3];
             self.corner_variation(corner, node, places, |end, by_end| {
                 let by_end = product(outer, by_end);
@@ -244,11 +267,13 @@ impl NormalPatches {
         }
     }
 
-    /// Writes NORMAL at the nodes of the interfaces.
+    /// Writes NORMAL at the mesh nodes of the items.
     pub fn write(&self, part: &mut ModelPart) {
-        let normals: Vec<[f64; 3]> = self.nodes.iter().map(|&node| self.sum(node, &part.nodes.current)).collect();
+        let items = (0..self.nodes.len() as u32).filter(|&item| !self.corners(item).is_empty());
+        let normals: Vec<(u32, [f64; 3])> =
+            items.map(|item| (self.nodes[item as usize], self.sum(item, &part.nodes.current))).collect();
         let column = part.nodes.history.values_mut(&NORMAL, 0);
-        for (&node, sum) in self.nodes.iter().zip(normals) {
+        for (node, sum) in normals {
             let size = norm(sum);
             if size > 0.0 {
                 (0..3).for_each(|c| column[3 * node as usize + c] = sum[c] / size);

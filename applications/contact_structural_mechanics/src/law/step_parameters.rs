@@ -4,7 +4,7 @@ use crate::active_set::SlipRule;
 use crate::friction_law::FrictionLaw;
 use crate::law::{Augmentation, Nitsche};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
-use crate::slave_states::SlaveState;
+use crate::slave_state::SlaveState;
 
 /// When normals follow the iteration, and whether the tangent knows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]

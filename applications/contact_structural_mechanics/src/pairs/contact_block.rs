@@ -5,6 +5,7 @@ use std::sync::Arc;
 use zelus_core::entities::{EntityBlock, StepView};
 
 use super::pair::{Integral, Pair};
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
 /// The present state, as pairs are integrated in it.
@@ -26,8 +27,8 @@ pub trait ContactBlock: EntityBlock {
     /// The pairs, to change.
     fn pairs_mut(&mut self) -> &mut [Pair];
 
-    /// Node indices on the slave side of the `at`-th pair.
-    fn slave_nodes(&self, at: usize) -> &[u32];
+    /// Slave nodes of the `at`-th pair, in the order of its slave's nodes.
+    fn slaves(&self, at: usize) -> &[SlaveIndex];
 
     /// Takes the states of slave nodes in which the assembly evaluates the block from now on.
     fn set_states(&mut self, states: Arc<SlaveStates>);

@@ -63,14 +63,14 @@ pub struct FacetPair {
 
 /// The operators of two facets as they stand; `None` when they do not overlap or carry no contact.
 ///
-/// Nodes of the slave must have their NORMAL.
+/// `normals` gives the unit normal at a node of the slave, by its place.
 pub fn facet_operators(
     part: &ModelPart,
     slave: &Facet,
     master: &Facet,
+    normals: &dyn Fn(usize) -> [f64; 3],
     settings: &SegmentationSettings,
 ) -> Option<FacetOperators> {
-    let normals = part.nodes.history.values(&NORMAL, 0);
     let normal = |facet: &Facet| Some(facet.normal(part)).filter(|normal| *normal != [0.0; 3]);
     let position = |facet: &Facet, at: usize| part.nodes.current[facet.nodes[at] as usize];
     let (slave_shape, master_shape) = (FacetShape::of(slave.shape)?, FacetShape::of(master.shape)?);
@@ -79,7 +79,7 @@ pub fn facet_operators(
         master_shape,
         slave: slave_shape.nodal(|j| position(slave, j)),
         master: master_shape.nodal(|l| position(master, l)),
-        nodal_normals: slave_shape.nodal(|j| std::array::from_fn(|c| normals[3 * slave.nodes[j] as usize + c])),
+        nodal_normals: slave_shape.nodal(normals),
         slave_normal: normal(slave)?,
         master_normal: normal(master)?,
         choices: Choices { slivers: settings.slivers, ..Choices::default() },
@@ -98,6 +98,12 @@ pub fn facet_operators(
     Some(out)
 }
 
+/// The normals of the mesh nodes of a facet, from their column.
+pub fn nodal_normals<'a>(part: &'a ModelPart, facet: &'a Facet) -> impl Fn(usize) -> [f64; 3] + use<'a> {
+    let column = part.nodes.history.values(&NORMAL, 0);
+    move |local| std::array::from_fn(|c| column[3 * facet.nodes[local] as usize + c])
+}
+
 /// Pairs that overlap now, ascending, without those `known` already.
 /// Slivers are among them where all nodes of their slave have other overlaps; a node that only slivers reach is beside the
 /// master.
@@ -106,6 +112,7 @@ pub fn overlapping_pairs(
     interfaces: &[Interface],
     search: &SearchSettings,
     segmentation: &SegmentationSettings,
+    normals: &(dyn Fn(PairKey, usize) -> [f64; 3] + Sync),
     known: &(dyn Fn(&PairKey) -> bool + Sync),
 ) -> Vec<FacetPair> {
     let mut pairs = Vec::new();
@@ -115,7 +122,8 @@ pub fn overlapping_pairs(
             let Candidate { slave, master, .. } = candidate;
             let key = PairKey { interface: at as u32, slave, master };
             let (slave, master) = (&interface.facets[slave as usize], &interface.facets[master as usize]);
-            let operators = if known(&key) { None } else { facet_operators(part, slave, master, segmentation) };
+            let own = |local: usize| normals(key, local);
+            let operators = if known(&key) { None } else { facet_operators(part, slave, master, &own, segmentation) };
             Some(FacetPair { key, operators: operators? })
         });
         let found: Vec<FacetPair> = found.collect();
@@ -200,7 +208,8 @@ mod tests {
         for (slave, master) in of(Roles::Slave).flat_map(|s| of(Roles::Master).map(move |m| (s, m))) {
             let facets = [slave, master].map(|at| &interface.facets[at as usize]);
             let settings = SegmentationSettings::default();
-            let overlaps = facet_operators(&part, facets[0], facets[1], &settings).is_some();
+            let overlaps =
+                facet_operators(&part, facets[0], facets[1], &nodal_normals(&part, facets[0]), &settings).is_some();
             assert!(!overlaps || near.contains(&(slave, master)), "facets {slave} and {master}");
             overlapping += usize::from(overlaps);
             left_out += usize::from(!near.contains(&(slave, master)));

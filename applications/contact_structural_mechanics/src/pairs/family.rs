@@ -16,6 +16,7 @@ use super::pair_block::PairBlock;
 use crate::active_set::{Decision, SlaveNumbers, SlipRule};
 use crate::interface::{Bodies, NormalPatches};
 use crate::law::{ContactLaw, Multiplier, NodeLaw, StepParameters};
+use crate::node_state::SlaveIndex;
 use crate::slave_states::{Columns, SlaveStates};
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
 
@@ -42,11 +43,15 @@ pub struct PairRequest {
     pub pairs: Vec<Pair>,
     /// Node indices of each pair: those around it, master nodes, slave nodes.
     pub nodes: Vec<u32>,
+    /// Slave nodes of each pair, in the order of its slave's nodes.
+    pub slaves: Vec<SlaveIndex>,
+    /// Their owners of unknowns; none for laws without multipliers.
+    pub owners: Vec<u32>,
     /// Number of nodes around each pair, which turn the normals of its slave nodes with it or are of the slave's element.
     pub around: usize,
     /// The elements behind slaves, where the family takes tractions from them.
     pub bodies: Arc<Bodies>,
-    /// The facets around nodes.
+    /// The facets around slave nodes.
     pub patches: Arc<NormalPatches>,
     /// Settings and numbers of the step.
     pub parameters: Arc<StepParameters>,

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use zelus_core::geometry::Shape;
 
 use super::pair::PairKey;
-use crate::interface::{Interface, NormalPatches};
+use crate::interface::Interface;
 
 /// Numbers of nodes around pairs are multiples of this.
 const PLACES: usize = 2;
@@ -37,22 +37,16 @@ pub fn group_by_shapes<T>(
 
 /// Sorts pairs of like shapes by the number of nodes around them, and puts those before the `nodes` of each pair.
 ///
-/// Around a pair are the nodes, beside its own, that turn the normals of its slave nodes, none without `patches`, and those
-/// `behind` it. Numbers are rounded up to few: a node that fills a place is one of the pair.
+/// Around a pair are the nodes, beside its own, on which the normals of its slave nodes depend, and those of the slave's element where a
+/// law reads its tractions: `around` gives both. Numbers are rounded up to few: a node that fills a place is one of the pair.
 pub fn group_by_surroundings<T: Sync>(
-    patches: Option<&NormalPatches>,
-    behind: impl Fn(&T) -> Vec<u32> + Sync,
-    slaves: usize,
+    around: &(dyn Fn(&T) -> Vec<u32> + Sync),
     pairs: Vec<T>,
     nodes: &[u32],
 ) -> BTreeMap<usize, (Vec<T>, Vec<u32>)> {
     let size = nodes.len() / pairs.len().max(1);
     let surroundings = |(pair, own): (&T, &[u32])| {
-        let turned = &own[size - slaves..];
-        let mut around = behind(pair);
-        if let Some(patches) = patches {
-            around.extend(turned.iter().flat_map(|&node| patches.neighbours(node)));
-        }
+        let mut around = around(pair);
         around.retain(|node| !own.contains(node));
         around.sort_unstable();
         around.dedup();

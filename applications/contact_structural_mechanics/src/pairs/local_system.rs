@@ -11,6 +11,7 @@ use crate::mortar::{
     Active, LANES, Operators, Overlap, PairGeometry, SegmentationSettings, find_operators_by_normals, variables_from,
 };
 use zelus_core::geometry::Nodal;
+use zelus_core::model::SlaveNodes;
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::constant;
 
@@ -237,7 +238,12 @@ impl PairSystem<'_> {
     }
 }
 
-/// Multipliers of nodes, for laws with this kind of them.
-pub(super) fn multipliers_of(kind: Multiplier, nodes: &[u32], fields: &zelus_core::model::Nodes) -> Nodal<[f64; 3]> {
-    Nodal::new(nodes.len(), |j| kind.value(fields, nodes[j]))
+/// Multipliers of so many slave nodes with these owners, for laws with this kind of them.
+pub(super) fn multipliers_of(
+    kind: Multiplier,
+    count: usize,
+    owners: &[u32],
+    slave_nodes: &SlaveNodes,
+) -> Nodal<[f64; 3]> {
+    Nodal::new(count, |j| owners.get(j).map_or([0.0; 3], |&owner| kind.value(slave_nodes, owner)))
 }

@@ -18,7 +18,7 @@ mod tying_block;
 pub use crate::law::Multiplier;
 pub use crate::mortar::condition_name;
 pub use contact_block::{ContactBlock, Present};
-pub use facet_operators::{FacetOperators, FacetPair, facet_operators, overlapping_pairs};
+pub use facet_operators::{FacetOperators, FacetPair, facet_operators, nodal_normals, overlapping_pairs};
 pub use facing_points::{FacingPoint, facing_points};
 pub use family::{
     ByNode, Family, FamilyEntry, Friction, PairRequest, TyingFamily, TyingFamilyEntry, find_family, find_tying_family,

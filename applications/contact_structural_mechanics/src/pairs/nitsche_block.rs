@@ -16,6 +16,7 @@ use super::pairs_of_shapes::PairsOfShapes;
 use crate::interface::{Bodies, Tractions};
 use crate::law::{Multiplier, Nitsche, NodeOfPoints, PointForces};
 use crate::mortar::{Active, LANES, PairGeometry, rotated_slip, variables_from};
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
 /// The block of Nitsche's method, with friction or without.
@@ -43,7 +44,7 @@ impl NitscheBlock {
     }
 
     fn nodes_of_points(&self, at: usize, states: &SlaveStates) -> Nodal<NodeOfPoints> {
-        let slaves = self.pairs.slave_nodes(at);
+        let slaves = self.pairs.slaves(at);
         Nodal::new(slaves.len(), |j| {
             let own = &states[slaves[j]];
             let (held, stuck) = (f64::from(u8::from(own.pressed)), f64::from(u8::from(own.stuck)));
@@ -174,6 +175,10 @@ impl EntityBlock for NitscheBlock {
         self.pairs.nodes(at)
     }
 
+    fn slave_owners(&self, at: usize) -> &[u32] {
+        self.pairs.owners(at)
+    }
+
     fn unknowns(&self) -> &[LocalUnknown] {
         &self.pairs.unknowns
     }
@@ -218,8 +223,8 @@ impl ContactBlock for NitscheBlock {
         &mut self.pairs.pairs
     }
 
-    fn slave_nodes(&self, at: usize) -> &[u32] {
-        self.pairs.slave_nodes(at)
+    fn slaves(&self, at: usize) -> &[SlaveIndex] {
+        self.pairs.slaves(at)
     }
 
     fn set_states(&mut self, states: Arc<SlaveStates>) {

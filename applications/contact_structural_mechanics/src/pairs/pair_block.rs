@@ -15,6 +15,7 @@ use super::pair::{Integral, Pair};
 use super::pairs_of_shapes::PairsOfShapes;
 use crate::kratos::FirstIterateTangent;
 use crate::law::{ContactLaw, SlipMeasure};
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
 /// Pairs of two shapes under one law.
@@ -63,6 +64,10 @@ impl EntityBlock for PairBlock {
         self.pairs.nodes(at)
     }
 
+    fn slave_owners(&self, at: usize) -> &[u32] {
+        self.pairs.owners(at)
+    }
+
     fn unknowns(&self) -> &[LocalUnknown] {
         &self.pairs.unknowns
     }
@@ -93,7 +98,8 @@ impl EntityBlock for PairBlock {
             }
             let geometry = pairs.geometry(at, view, &pairs.states);
             let nodes = pairs.slave_constants(at, &pairs.states);
-            let multipliers = multipliers_of(law.multiplier(), pairs.slave_nodes(at), view.nodes);
+            let multipliers =
+                multipliers_of(law.multiplier(), pairs.slaves(at).len(), pairs.owners(at), view.slave_nodes);
             let history = self.history(at, view);
             let system = PairSystem {
                 law: law.as_ref(),
@@ -131,8 +137,8 @@ impl ContactBlock for PairBlock {
         &mut self.pairs.pairs
     }
 
-    fn slave_nodes(&self, at: usize) -> &[u32] {
-        self.pairs.slave_nodes(at)
+    fn slaves(&self, at: usize) -> &[SlaveIndex] {
+        self.pairs.slaves(at)
     }
 
     fn set_states(&mut self, states: Arc<SlaveStates>) {

@@ -18,6 +18,7 @@ use super::pair::{Integral, Pair, Previous};
 use crate::interface::{Corner, NormalPatches};
 use crate::law::{Augmentation, Multiplier, NormalVariation, SlaveNode, StepParameters};
 use crate::mortar::{Active, Operators, Overlap, PairGeometry, choices_of, operators, weighted_gap};
+use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
 /// Pairs of two shapes.
@@ -42,6 +43,8 @@ pub(super) struct PairsOfShapes {
     /// Cached operators of each pair; `None` before the first evaluation.
     known: Vec<Option<KnownOperators>>,
     nodes: Vec<u32>,
+    slaves: Vec<SlaveIndex>,
+    owners: Vec<u32>,
     around: usize,
     patches: Arc<NormalPatches>,
 }
@@ -55,11 +58,27 @@ impl PairsOfShapes {
     /// # Panics
     /// If the shapes are not those of facets.
     pub(super) fn new(request: PairRequest, multiplier: Multiplier) -> Self {
-        let PairRequest { entry, slave, master, pairs, nodes, around, patches, parameters, states, .. } = request;
+        let PairRequest {
+            entry, slave, master, pairs, nodes, slaves, owners, around, patches, parameters, states, ..
+        } = request;
         let [slave, master] = [slave, master].map(|shape| FacetShape::of(shape).expect("pairs are made of facets"));
         let counts = [master.nodes, slave.nodes];
         let unknowns = local_unknowns(around, counts, slave.space, &multiplier.unknowns(slave.space));
-        Self { entry, slave, master, pairs, parameters, states, unknowns, known: Vec::new(), nodes, around, patches }
+        Self {
+            entry,
+            slave,
+            master,
+            pairs,
+            parameters,
+            states,
+            unknowns,
+            known: Vec::new(),
+            nodes,
+            slaves,
+            owners,
+            around,
+            patches,
+        }
     }
 
     /// Nodes of the `at`-th pair: those around it, master nodes, slave nodes.
@@ -83,7 +102,19 @@ impl PairsOfShapes {
         }
     }
 
-    /// Node indices on the slave side of the `at`-th pair.
+    /// Slave nodes of the `at`-th pair.
+    pub(super) fn slaves(&self, at: usize) -> &[SlaveIndex] {
+        let count = self.slave.nodes;
+        &self.slaves[at * count..(at + 1) * count]
+    }
+
+    /// Owners of the multipliers of the `at`-th pair.
+    pub(super) fn owners(&self, at: usize) -> &[u32] {
+        let count = self.slave.nodes;
+        if self.owners.is_empty() { &[] } else { &self.owners[at * count..(at + 1) * count] }
+    }
+
+    /// Mesh nodes of the slave facet of the `at`-th pair.
     pub(super) fn slave_nodes(&self, at: usize) -> &[u32] {
         &self.nodes(at)[self.around + self.master.nodes..]
     }
@@ -100,7 +131,7 @@ impl PairsOfShapes {
             master_shape: self.master,
             slave: Nodal::new(slaves.len(), |j| view.nodes.current[slaves[j] as usize]),
             master: Nodal::new(masters.len(), |l| view.nodes.current[masters[l] as usize]),
-            nodal_normals: Nodal::new(slaves.len(), |j| states[slaves[j]].normal),
+            nodal_normals: Nodal::new(slaves.len(), |j| states[self.slaves(at)[j]].normal),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
             choices: pair.choices,
@@ -132,12 +163,12 @@ impl PairsOfShapes {
         let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
         // By column, how the normal of a node turns: several facets tell of the same neighbour.
         let mut turning: Vec<(usize, [[f64; 3]; 3])> = Vec::with_capacity(self.nodes(at).len());
-        for (j, &node) in self.slave_nodes(at).iter().enumerate() {
-            if self.states[node].normal_of_master {
+        for (j, &slave) in self.slaves(at).iter().enumerate() {
+            if self.states[slave].normal_of_master {
                 continue;
             }
             turning.clear();
-            self.patches.variation(node, &view.nodes.current, &knows, &mut |by, matrix| {
+            self.patches.variation(slave.0, &view.nodes.current, &knows, &mut |by, matrix| {
                 let column = self.first_row(at, by);
                 match turning.iter_mut().find(|(known, _)| *known == column) {
                     Some((_, sum)) => (0..dim).for_each(|r| (0..dim).for_each(|c| sum[r][c] += matrix[r][c])),
@@ -177,7 +208,7 @@ impl PairsOfShapes {
         let by_pair = self.parameters.augmentation == Augmentation::Pair;
         let own = self.pairs[at].area;
         let k = self.parameters.scale_factor;
-        let slaves = self.slave_nodes(at);
+        let slaves = self.slaves(at);
         self.slave.nodal(|j| {
             let node = &states[slaves[j]];
             let area = positive(node.area);
@@ -278,7 +309,8 @@ fn local_unknowns(
     let end = around + masters + slaves;
     let mut unknowns: Vec<LocalUnknown> = displacements(around..end).collect();
     for node in around + masters..end {
-        unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown::of_node(node as u8, variable)));
+        let slave = (node - around - masters) as u8;
+        unknowns.extend(multipliers.iter().map(|&variable| LocalUnknown::of_slave(node as u8, slave, variable)));
     }
     unknowns.extend(displacements(0..around));
     unknowns

@@ -3,7 +3,7 @@
 use super::*;
 use crate::friction_law::Bound;
 use crate::kratos::FirstIterateTangent;
-use crate::law::{Augmentation, ContactLaw, Held, MeshTying, NodeLaw, NodeState, SlaveNode, SlipMeasure, Turning};
+use crate::law::{Augmentation, ContactLaw, Held, MeshTying, NodeState, SlaveNode, Turning};
 use crate::laws::alm_frictional::AlmFrictional;
 use crate::laws::alm_frictionless::AlmFrictionless;
 use crate::laws::alm_frictionless_components::AlmFrictionlessComponents;

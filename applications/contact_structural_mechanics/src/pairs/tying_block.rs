@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Nodal, Shape};
-use zelus_core::model::{EntityKind, ScalarVariable};
+use zelus_core::model::{EntityKind, Owner, ScalarVariable};
 
 use super::facet_operators::FacetPair;
 use crate::law::MeshTying;
@@ -18,6 +18,8 @@ pub struct TyingRequest {
     pub pairs: Vec<FacetPair>,
     /// Node indices of each pair: master nodes, then slave nodes.
     pub nodes: Vec<u32>,
+    /// Owners of the multipliers of each pair, in the order of its slave's nodes.
+    pub owners: Vec<u32>,
     /// The tied numbers.
     pub tied: Vec<ScalarVariable>,
     /// The multiplier of each tied number.
@@ -40,13 +42,13 @@ impl TyingBlock {
     /// The block of pairs of two shapes (slave, master) with any number of tied components.
     pub fn new(slave: Shape, master: Shape, request: TyingRequest) -> Self {
         let (slaves, masters) = (slave.nodes(), master.nodes());
-        let row = |node: usize, variable: ScalarVariable| LocalUnknown::of_node(node as u8, variable);
         let mut unknowns = Vec::new();
         for node in 0..masters + slaves {
-            unknowns.extend(request.tied.iter().map(|&variable| row(node, variable)));
+            unknowns.extend(request.tied.iter().map(|&variable| LocalUnknown::of_node(node as u8, variable)));
         }
-        for node in masters..masters + slaves {
-            unknowns.extend(request.multipliers.iter().map(|&variable| row(node, variable)));
+        for slave in 0..slaves {
+            let row = |&variable| LocalUnknown::of_slave((masters + slave) as u8, slave as u8, variable);
+            unknowns.extend(request.multipliers.iter().map(row));
         }
         let operators = request.pairs.iter().map(|pair| Operators {
             d: Nodal::new(slaves, |j| Nodal::new(slaves, |k| pair.operators.d[j][k])),
@@ -75,6 +77,10 @@ impl EntityBlock for TyingBlock {
         &self.request.nodes[at * size..(at + 1) * size]
     }
 
+    fn slave_owners(&self, at: usize) -> &[u32] {
+        &self.request.owners[at * self.slaves..(at + 1) * self.slaves]
+    }
+
     fn unknowns(&self) -> &[LocalUnknown] {
         &self.unknowns
     }
@@ -96,11 +102,14 @@ impl EntityBlock for TyingBlock {
     ) -> Result<(), EntityError> {
         let mut values = Vec::with_capacity(self.unknowns.len());
         for (slot, at) in range.enumerate() {
-            let nodes = self.nodes(at);
+            let (nodes, owners) = (self.nodes(at), self.slave_owners(at));
             values.clear();
             values.extend(self.unknowns.iter().map(|unknown| {
-                let node = nodes[unknown.node as usize] as usize;
-                view.nodes.history.scalar(unknown.variable, node).unwrap_or(0.0)
+                let (history, at) = match unknown.owner_among(nodes, owners) {
+                    Owner::Node(node) => (&view.nodes.history, node),
+                    Owner::Slave(slave) => (&view.slave_nodes.history, slave),
+                };
+                history.scalar(unknown.variable, at as usize).unwrap_or(0.0)
             }));
             let (lhs, rhs) = out.entity(slot);
             self.formulation.residual(&self.operators[at], &values, rhs);

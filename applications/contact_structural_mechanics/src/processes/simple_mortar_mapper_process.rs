@@ -11,9 +11,9 @@ use zelus_core::{Carrier, Result, State, register};
 use zelus_structural_mechanics::variables::NORMAL;
 
 use super::interface_settings::{check_positive, segmentation};
-use crate::interface::{Interface, interfaces, nodal_normals};
+use crate::interface::{self, Interface, interfaces};
 use crate::mortar::SegmentationSettings;
-use crate::pairs::{FacetPair, check_pairs, overlapping_pairs};
+use crate::pairs::{FacetPair, PairKey, check_pairs, nodal_normals, overlapping_pairs};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 
 /// Least difference of unit normals of facets that face each other.
@@ -155,8 +155,11 @@ impl Mapper {
     fn find_pairs(&mut self, part: &mut ModelPart) -> Result<()> {
         self.find_facets(part)?;
         part.nodes.history.add(&NORMAL);
-        nodal_normals(part, &self.interface);
-        let pairs = overlapping_pairs(part, &self.interface, &self.search, &self.segmentation, &|_| false);
+        interface::nodal_normals(part, &self.interface);
+        let normals = |key: PairKey, local: usize| {
+            nodal_normals(part, &self.interface[key.interface as usize].facets[key.slave as usize])(local)
+        };
+        let pairs = overlapping_pairs(part, &self.interface, &self.search, &self.segmentation, &normals, &|_| false);
         if pairs.is_empty() {
             let fact = format!("{} and {} do not overlap: nothing is mapped", self.origin_part, self.destination_part);
             return Err(Diagnostic::error("nothing-mapped", fact)

@@ -16,6 +16,8 @@ pub const COMPUTE_DYNAMIC_FACTOR: &str = "COMPUTE_DYNAMIC_FACTOR";
 pub const IMPACT_TOLERANCE: &str = "IMPACT_TOLERANCE";
 /// Slave nodes on sharp edges have the mean normal of their faces.
 pub const AVERAGED_EDGES: &str = "AVERAGED_EDGES";
+/// Angle between the normals of two slave facets, in degrees, at which their patch ends.
+pub const CONTACT_FEATURE_ANGLE: &str = "CONTACT_FEATURE_ANGLE";
 /// Nodes of contact keep their mass in motion.
 pub const KEEP_MASS: &str = "KEEP_MASS";
 /// Share of the energy of motion that contact may make before a step is refused; 0: any.
@@ -106,6 +108,14 @@ register! { SolverExtensionEntry "contact_settings",
                 }
                 values.push((name, share));
             }
+            let key = "feature_angle";
+            let angle = settings.get_f64(key)?;
+            if !(angle > 0.0 && angle <= 180.0) {
+                let fact = format!("\"{key}\" is {angle}°, it must be above 0° and at most 180°");
+                let remedy = "65 is the usual value: corners of bodies end a contact patch, coarse round bodies do not";
+                return Err(settings.error(key, "invalid-value", fact).remedy(remedy).into());
+            }
+            values.push((CONTACT_FEATURE_ANGLE, angle));
             for (key, name) in [
                 ("mixed_ulm_solver_parameters.dual_lm_off_node_tolerance", OFF_NODE_TOLERANCE),
                 ("mixed_ulm_solver_parameters.dual_lm_zero_row_tolerance", ZERO_ROW_TOLERANCE),

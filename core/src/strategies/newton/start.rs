@@ -4,7 +4,7 @@ use super::NewtonRaphson;
 use crate::assembly::{System, impose_constraints};
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, MasslessNodes};
-use crate::model::{MasterSlaveConstraint, ModelPart, Owner};
+use crate::model::{MasterSlaveConstraint, ModelPart};
 use crate::strategies::strategy::after_prediction;
 
 impl NewtonRaphson {
@@ -48,7 +48,7 @@ impl NewtonRaphson {
         }
         if self.scheme.begins_at_prescribed() {
             self.scheme.predict(part, &system.dofs)?;
-            impose_constraints(&mut part.nodes, &part.constraints);
+            impose_constraints(part);
             self.scheme.update(part);
             return Ok(vec![0.0; targets.len()]);
         }
@@ -87,16 +87,17 @@ impl NewtonRaphson {
     pub(super) fn moved_first(&self, part: &ModelPart, system: &mut System) -> Option<Vec<u32>> {
         let free = !self.failed
             && self.settings.move_mesh
-            && !part.constraints.iter().any(|c| c.active && !self.is_multiplier(system, c));
+            && !part.constraints.iter().any(|c| c.active && !self.is_multiplier(part, system, c));
         if !free || !self.scheme.is_static() {
             return None;
         }
         system.interactions.iter_mut().filter_map(|i| i.first_iterate()).find_map(|first| first.moved_first())
     }
 
-    fn is_multiplier(&self, system: &System, constraint: &MasterSlaveConstraint) -> bool {
+    fn is_multiplier(&self, part: &ModelPart, system: &System, constraint: &MasterSlaveConstraint) -> bool {
         let (node, variable) = constraint.slave;
-        let number = system.dofs.number_of(variable, Owner::Node(node));
+        let owner = part.slave_nodes.owner(constraint.set.as_deref(), node);
+        let number = owner.and_then(|owner| system.dofs.number_of(variable, owner));
         number.is_some_and(|number| system.dofs.dofs()[number as usize].multiplier)
     }
 
@@ -143,7 +144,7 @@ impl NewtonRaphson {
     /// What constrained unknowns lack to obey their constraints at the present values of the others.
     pub(super) fn constraint_increment(&self, part: &mut ModelPart, system: &System) -> Vec<f64> {
         let before = self.assembler.values(part, system);
-        impose_constraints(&mut part.nodes, &part.constraints);
+        impose_constraints(part);
         let lack: Vec<f64> =
             self.assembler.values(part, system).iter().zip(&before).map(|(after, b)| after - b).collect();
         let back: Vec<f64> = lack.iter().map(|d| -d).collect();
