@@ -30,6 +30,7 @@ mod owners;
 mod pair_states;
 mod pairing;
 mod penalty_ramp;
+mod piercing;
 mod points;
 mod reach;
 mod results;

@@ -9,6 +9,7 @@ use super::contact_state::ContactState;
 use super::friction_ramp::FrictionRamp;
 use super::impact::coarse_impact;
 use super::penalty_ramp::PenaltyRamp;
+use super::piercing::pierced;
 use super::set_stage::SetStage;
 use super::step_search::StepSearch;
 use super::unseen::Unseen;
@@ -128,6 +129,11 @@ impl OuterLoops {
             return Ok(Outer::Failed(why));
         }
         if let Some(why) = self.unseen.why(part, &contact.pairing.interfaces, |at| contact.in_contact(at)) {
+            return Ok(Outer::Failed(why));
+        }
+        if part.info.value_or(LARGEST_PENETRATION, 0.0) > 0.0
+            && let Some(why) = pierced(part, &contact.pairing, &contact.states)
+        {
             return Ok(Outer::Failed(why));
         }
         if part.info.is(ENSURE_CONTACT) && contact.states.count_active() == 0 {

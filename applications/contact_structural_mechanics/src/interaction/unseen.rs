@@ -2,7 +2,7 @@
 
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{add, dot, scale, sub};
+use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use super::late_pairs::{farthest_motion, step_start};
 use crate::interface::{Facet, Interface, Roles};
@@ -56,25 +56,31 @@ impl Unseen {
     }
 }
 
-/// Nodes of idle interfaces that are in another body.
+/// Nodes of idle interfaces that are in another body. Collective.
 fn buried(part: &ModelPart, idle: &[&Interface], most: f64) -> Option<String> {
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let mut points = Vec::new();
-    for interface in idle {
-        for role in [Roles::Slave, Roles::Master] {
-            for (node, normal) in interface.normals_of(part, role) {
-                let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
-                if size > 0.0 {
-                    points.extend([1.0, -1.0].map(|sign| (node, add(x, scale(normal, sign * most * size)), size)));
-                }
-            }
-        }
-    }
+    let both = |interface: &&Interface| [Roles::Slave, Roles::Master].map(|role| interface.normals_of(part, role));
+    let mut normals: Vec<(u32, [f64; 3])> = idle.iter().flat_map(both).flatten().collect();
+    normals.retain(|(node, _)| sizes[*node as usize] > 0.0);
+    let mut nodes: Vec<u32> = normals.iter().map(|(node, _)| *node).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let inward = inward(part, &nodes);
+    // Elements of the node itself do not count. The point towards them tells a body around the node from two beside it, as where it is
+    // glued to one at an edge.
+    let around = |&(node, normal): &(u32, [f64; 3])| {
+        let size = sizes[node as usize];
+        let inward = inward[nodes.binary_search(&node).expect("a node of an idle interface")];
+        [normal, scale(normal, -1.0), inward].map(|way| {
+            let x = add(part.nodes.current[node as usize], scale(way, most * size));
+            (node, x, size)
+        })
+    };
+    let points: Vec<(u32, [f64; 3], f64)> = normals.iter().flat_map(around).collect();
     let mut found = inside(part, &points);
     part.ranks.any_of(&mut found);
-    // Elements of the node itself do not count: another body is around it both ways along its normal.
-    let deep: Vec<u32> =
-        (0..points.len()).step_by(2).filter(|&at| found[at] && found[at + 1]).map(|at| points[at].0).collect();
+    let is_deep = |at: &usize| found[3 * at..3 * at + 3].iter().all(|found| *found);
+    let deep: Vec<u32> = (0..normals.len()).filter(is_deep).map(|at| normals[at].0).collect();
     let first = *deep.first()?;
     let x = part.nodes.initial[first as usize];
     Some(format!(
@@ -85,6 +91,27 @@ fn buried(part: &ModelPart, idle: &[&Interface], most: f64) -> Option<String> {
         x[1],
         x[2]
     ))
+}
+
+/// Of nodes, ascending, the unit way to the centres of their elements. Collective.
+fn inward(part: &ModelPart, nodes: &[u32]) -> Vec<[f64; 3]> {
+    let mut sums = vec![0.0; 3 * nodes.len()];
+    for element in (0..part.elements.len() as u32).filter(|&at| part.elements.kinds[at as usize].cell.is_some()) {
+        let own = part.elements.nodes(element);
+        let Some(count) = Some(own.len()).filter(|_| own.iter().any(|node| nodes.binary_search(node).is_ok())) else {
+            continue;
+        };
+        let places = own.iter().map(|&node| part.nodes.current[node as usize]);
+        let centre = scale(places.fold([0.0; 3], add), 1.0 / count as f64);
+        for node in own {
+            let Ok(at) = nodes.binary_search(node) else { continue };
+            let way = sub(centre, part.nodes.current[*node as usize]);
+            sums[3 * at..3 * at + 3].iter_mut().zip(way).for_each(|(sum, way)| *sum += way);
+        }
+    }
+    part.ranks.sum(&mut sums);
+    let unit = |sum: [f64; 3]| scale(sum, norm(sum).max(f64::MIN_POSITIVE).recip());
+    sums.as_chunks().0.iter().map(|&sum| unit(sum)).collect()
 }
 
 /// Slave nodes that were before a master facet when the step began and have gone through it, by straight ways.

@@ -43,6 +43,8 @@ pub struct Patches {
     /// Of each facet of each interface the place of its first slave node in `of_facets`; [`NONE`] for masters.
     starts: Vec<Vec<u32>>,
     of_facets: Vec<SlaveIndex>,
+    /// Of each interface, the nodes of master facets at edges of bodies, ascending.
+    master_edges: Vec<Vec<u32>>,
 }
 
 impl Patches {
@@ -62,6 +64,7 @@ impl Patches {
         let normals: Vec<[f64; 3]> = (0..facets.len()).map(|at| facet(at).initial_normal(part)).collect();
         let mut sets = DisjointSets::new(facets.len());
         let mut rims: FxHashSet<(u32, u32)> = FxHashSet::default();
+        let mut master_edges: Vec<Vec<u32>> = vec![Vec::new(); interfaces.len()];
         match angle {
             None => (1..facets.len()).for_each(|at| sets.join(0, at)),
             Some(angle) => {
@@ -85,6 +88,7 @@ impl Patches {
                         edge.iter().for_each(|&node| _ = rims.insert((node, patch)));
                     }
                 }
+                master_edges = interfaces.iter().map(|own| nodes_of_edges(part, own, &sharp)).collect();
             }
         }
         // Patches are numbered in the order of their first facets.
@@ -122,7 +126,7 @@ impl Patches {
                 SlaveIndex(place.expect("a node of the patch") as u32)
             }));
         }
-        Self { nodes, count: numbers.len(), starts, of_facets }
+        Self { nodes, count: numbers.len(), starts, of_facets, master_edges }
     }
 
     /// Number of slave nodes.
@@ -158,6 +162,11 @@ impl Patches {
     /// Whether the patch of a slave node ends there at an edge of its body.
     pub fn is_rim(&self, slave: SlaveIndex) -> bool {
         self.nodes[slave.place()].rim
+    }
+
+    /// Nodes of the master facets of an interface at edges of their bodies, ascending.
+    pub fn master_edges(&self, interface: usize) -> &[u32] {
+        &self.master_edges[interface]
     }
 
     /// Slave nodes at a mesh node.
@@ -244,6 +253,20 @@ fn sharp_edges(part: &ModelPart, interfaces: &[Interface], least: f64) -> FxHash
         dot(*one, *other) <= least && dot(*one, sub(*centre, mean(&places))) < 0.0
     };
     around.into_iter().filter(|(edge, faces)| is_sharp(edge, faces)).map(|(edge, _)| edge).collect()
+}
+
+/// Nodes of the master facets of an interface on these edges, ascending. Collective.
+fn nodes_of_edges(part: &ModelPart, interface: &Interface, sharp: &FxHashSet<Vec<u32>>) -> Vec<u32> {
+    let mut at_edge = vec![false; interface.nodes.len()];
+    for facet in interface.facets.iter().filter(|facet| facet.role == Roles::Master) {
+        for node in edges(facet.corners()).into_iter().filter(|edge| sharp.contains(edge)).flatten() {
+            at_edge[interface.nodes.binary_search(&node).expect("a node of the interface")] = true;
+        }
+    }
+    if part.share.is_some() {
+        part.ranks.any_of(&mut at_edge);
+    }
+    interface.nodes.iter().zip(at_edge).filter(|(_, at_edge)| *at_edge).map(|(&node, _)| node).collect()
 }
 
 fn mean(places: &[[f64; 3]]) -> [f64; 3] {

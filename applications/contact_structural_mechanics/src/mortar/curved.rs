@@ -19,7 +19,7 @@ use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
 use zelus_core::geometry::{FacetShape, LINE_2, Nodal, ShapeTable, TRIANGLE_3, combine, interpolate};
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{dot, norm, normalised, value};
+use zelus_core::vector3::{cross, dot, norm, normalised, value};
 
 /// Gauss rule of cells: exact for functions of the fourth degree, as those of quadrilaterals with nine nodes are.
 const RULE: usize = 4;
@@ -27,6 +27,10 @@ const RULE: usize = 4;
 const PIECE: usize = 4;
 /// Share of a triangle's area below which a cell is skipped.
 const LEAST_CELL: f64 = 1e-13;
+/// Triangles that the largest facet is cut into.
+const MOST_TRIANGLES: usize = 16;
+/// Share of its size by which a triangle may be beside another that it is cut with all the same.
+const NEAR: f64 = 1e-6;
 
 /// A visitor of points, each with the number of the slave's sub-facet that it lies on.
 type Visitor<'v, T> = &'v mut dyn FnMut(usize, &Point<T>);
@@ -58,6 +62,40 @@ fn triangles(shape: &'static FacetShape, piece: &'static [usize]) -> impl Iterat
     let centre: [f64; 2] = std::array::from_fn(|c| piece.iter().map(|&n| 0.25 * shape.corner(n)[c]).sum());
     let count = if piece.len() == 3 { 1 } else { 4 };
     (0..count).map(move |n| [corner(n), corner(n + 1), if count == 1 { corner(2) } else { centre }])
+}
+
+/// A triangle of a facet and the box around it in a plane.
+#[derive(Clone, Copy, Default)]
+struct Triangle {
+    local: [[f64; 2]; 3],
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Triangle {
+    /// The one with these local coordinates on a facet, seen along two axes.
+    fn new(shape: &FacetShape, nodes: &[[f64; 3]], local: [[f64; 2]; 3], axes: &[[f64; 3]; 2]) -> Self {
+        let corners = local.map(|xi| combine(&shape.values(xi), nodes));
+        let bound = |start: f64, of: fn(f64, f64) -> f64| {
+            axes.map(|axis| corners.iter().map(|x| dot(*x, axis)).fold(start, of))
+        };
+        Self { local, low: bound(f64::INFINITY, f64::min), high: bound(f64::NEG_INFINITY, f64::max) }
+    }
+
+    /// Whether the boxes meet, or nearly.
+    fn may_meet(&self, other: &Self) -> bool {
+        (0..2).all(|c| {
+            let slack = NEAR * (self.high[c] - self.low[c]);
+            self.low[c] <= other.high[c] + slack && other.low[c] <= self.high[c] + slack
+        })
+    }
+}
+
+/// Two unit vectors across a normal.
+fn axes_across(normal: [f64; 3]) -> [[f64; 3]; 2] {
+    let smallest = (0..3).min_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+    let first = normalised(cross(normal, std::array::from_fn(|c| f64::from(u8::from(c == smallest)))));
+    [first, cross(normalised(normal), first)]
 }
 
 impl<T: Real> Curved<'_, T> {
@@ -111,25 +149,35 @@ impl<T: Real> Curved<'_, T> {
     }
 
     /// Points of a sub-facet of the slave before those of the master.
+    ///
+    /// What cannot overlap is found on values, before anything is computed with derivatives.
     fn over_surface(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&Point<T>)) {
         let pair = self.pair;
         let (slave_shape, master_shape) = (pair.slave_shape, pair.master_shape);
+        let (slave, master) = (pair.slave.map(value), pair.master.map(value));
+        let axes = axes_across(value(pair.slave_normal));
+        let others = master_shape.pieces.iter().flat_map(|piece| triangles(master_shape, piece));
+        let mut masters = [Triangle::default(); MOST_TRIANGLES];
+        let count =
+            masters.iter_mut().zip(others).map(|(t, xi)| *t = Triangle::new(master_shape, &master, xi, &axes)).count();
         for own in triangles(slave_shape, slave_shape.pieces[piece]) {
+            let triangle = Triangle::new(slave_shape, &slave, own, &axes);
             let corners = Nodal::from(own.map(|xi| combine(&slave_shape.values(xi), &pair.slave)));
-            for other in master_shape.pieces.iter().flat_map(|piece| triangles(master_shape, piece)) {
+            let centre = combine(&[1.0 / 3.0; 3], &own);
+            let whole = TRIANGLE_3.measure(&corners.map(value));
+            for other in masters[..count].iter().filter(|other| triangle.may_meet(other)) {
+                let at = |n: usize| combine(&master_shape.values(other.local[n]), &pair.master);
                 let linear = PairGeometry {
                     slave_shape: &TRIANGLE_3,
                     master_shape: &TRIANGLE_3,
                     slave: corners,
-                    master: Nodal::from(other.map(|xi| combine(&master_shape.values(xi), &pair.master))),
+                    master: TRIANGLE_3.nodal(at),
                     nodal_normals: TRIANGLE_3.nodal(|_| pair.slave_normal),
                     slave_normal: pair.slave_normal,
                     master_normal: pair.master_normal,
                     choices: Choices { origin: Some(TRIANGLE_3.corner(0)), ..Choices::default() },
                 };
                 if let Some(polygon) = Polygon::new(&linear, self.settings) {
-                    let centre = combine(&[1.0 / 3.0; 3], &own);
-                    let whole = TRIANGLE_3.measure(&linear.slave.map(value));
                     *covered += self.of_polygon(&polygon, centre, whole, visit);
                 }
             }

@@ -47,13 +47,8 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let part = request.model.root_mut(&whole.model_part_name)?;
     let (mortar_type, tied) = tied(&settings, part.info.domain_size)?;
     let family = find_tying_family(mortar_type)?;
-    if let Some((missing, _)) = family.variables.iter().find(|(name, _)| !part.nodes.history.has(name)) {
-        let fact =
-            format!("\"variable_name\" asks for {mortar_type}, but the solver's \"mortar_type\" brings no {missing}");
-        return Err(settings
-            .error("variable_name", "contact-type", fact)
-            .remedy(format!("set \"contact_settings.mortar_type\" to \"{mortar_type}\""))
-            .into());
+    for (name, components) in family.variables {
+        part.nodes.history.add_named(name, *components);
     }
     let manual = &whole.scale_factor_parameters;
     let chosen = TyingSettings {
