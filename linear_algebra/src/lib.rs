@@ -5,6 +5,7 @@
 //! passed a check of its true residual, and none depends on the number of threads.
 
 pub mod address_space;
+pub mod parallel;
 
 mod state;
 

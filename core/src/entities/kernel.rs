@@ -4,10 +4,9 @@ use std::any::Any;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{State, parallel};
 
 use super::block::{
     BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Tangent, Want,
@@ -15,7 +14,7 @@ use super::block::{
 use super::block_state::BlockState;
 use super::face_point::FacePoint;
 use super::view::StepView;
-use crate::diagnostics::{Result, unfit};
+use crate::diagnostics::{Report, Result, unfit};
 use crate::model::{EntityKind, Properties, Role};
 
 /// What a kernel is told of its entity, beside the step's fields.
@@ -232,14 +231,33 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
     }
 
     fn error(&self, at: usize, view: &StepView<'_>, fact: String) -> EntityError {
-        EntityError {
-            kind: self.entry.name,
-            id: self.ids[at],
-            nodes: self.nodes[at].iter().map(|&n| view.nodes.ids[n as usize]).collect(),
-            fact,
-            remedy: "check the order and the coordinates of its nodes; in a running analysis, take shorter steps",
-        }
+        error(self.entry, self.ids[at], &self.nodes[at], view, fact)
     }
+}
+
+/// Errors of a block that are told at most.
+const ERRORS: usize = 20;
+
+fn error(entry: &EntityKind, id: usize, nodes: &[u32], view: &StepView<'_>, fact: String) -> EntityError {
+    EntityError {
+        kind: entry.name,
+        id,
+        nodes: nodes.iter().map(|&n| view.nodes.ids[n as usize]).collect(),
+        fact,
+        remedy: "check the order and the coordinates of its nodes; in a running analysis, take shorter steps",
+    }
+}
+
+fn refuse(errors: Vec<EntityError>) -> Result<()> {
+    let mut report = Report::new();
+    errors.into_iter().for_each(|error| _ = report.absorb::<()>(Err(error.into())));
+    report.finish().map(|_| ())
+}
+
+/// Places in two lists of ids that both have: in the first and in the second.
+fn shared(own: &[usize], earlier: &[usize]) -> Vec<(usize, usize)> {
+    let places: HashMap<usize, usize> = earlier.iter().enumerate().map(|(at, &id)| (id, at)).collect();
+    own.iter().enumerate().filter_map(|(at, id)| Some((at, *places.get(id)?))).collect()
 }
 
 impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock for KernelBlock<K, NODES, SIZE> {
@@ -269,23 +287,17 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
     }
 
     fn initialize(&mut self, view: &StepView<'_>) -> Result<()> {
-        let mut report = crate::diagnostics::Report::new();
         let state = |at: usize| self.kernel.state(&self.gather(at, view), view);
-        let found: Vec<Result<K::State, String>> =
-            (0..self.members.len()).into_par_iter().with_min_len(64).map(state).collect();
-        let mut states = Vec::with_capacity(found.len());
+        let found: Vec<Result<K::State, String>> = parallel::map(self.members.len(), 64, state);
+        let (mut states, mut errors) = (Vec::with_capacity(found.len()), Vec::new());
         for (at, found) in found.into_iter().enumerate() {
             match found {
                 Ok(state) => states.push(state),
-                Err(fact) => {
-                    report.absorb::<()>(Err(self.error(at, view, fact).into()));
-                    if report.diagnostics().len() >= 20 {
-                        break;
-                    }
-                }
+                Err(fact) if errors.len() < ERRORS => errors.push(self.error(at, view, fact)),
+                Err(_) => {}
             }
         }
-        report.finish()?;
+        refuse(errors)?;
         self.states = states;
         Ok(())
     }
@@ -385,10 +397,9 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
 
     fn inherit(&mut self, earlier: &dyn EntityBlock) {
         let Some(earlier) = earlier.as_any().and_then(|block| block.downcast_ref::<Self>()) else { return };
-        let places: HashMap<usize, usize> = earlier.ids.iter().enumerate().map(|(at, &id)| (id, at)).collect();
-        for (id, state) in self.ids.iter().zip(&mut self.states) {
-            if let Some(&at) = places.get(id) {
-                self.kernel.inherit(state, &earlier.states[at]);
+        for (own, before) in shared(&self.ids, &earlier.ids) {
+            if let (Some(state), Some(before)) = (self.states.get_mut(own), earlier.states.get(before)) {
+                self.kernel.inherit(state, before);
             }
         }
     }
