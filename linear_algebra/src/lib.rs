@@ -7,6 +7,7 @@
 pub mod address_space;
 pub mod parallel;
 
+pub mod packed;
 mod state;
 
 pub mod prefetch;
