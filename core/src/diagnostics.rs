@@ -145,16 +145,13 @@ impl Report {
 
     /// Takes the value of `result`, or keeps its problems and gives `None`.
     pub fn absorb<T>(&mut self, result: Result<T>) -> Option<T> {
-        match result {
-            Ok(value) => Some(value),
-            Err(Error::Input(problems)) => {
-                problems.into_iter().for_each(|d| self.push(d));
-                None
-            }
-            Err(other) => {
-                self.push(Diagnostic::error("failed", other.to_string()));
-                None
-            }
+        result.map_err(|error| self.keep(error)).ok()
+    }
+
+    fn keep(&mut self, error: Error) {
+        match error {
+            Error::Input(problems) => problems.into_iter().for_each(|d| self.push(d)),
+            other => self.push(Diagnostic::error("failed", other.to_string())),
         }
     }
 

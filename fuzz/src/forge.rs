@@ -7,6 +7,8 @@ pub enum Value {
     Plain(Vec<u8>),
     /// Text or bytes, without their length.
     Long(bool, Vec<u8>),
+    /// Bytes that are a value of their own, as states are.
+    Inner(Box<Value>),
     /// A list.
     Array(Vec<Value>),
     /// Keys and values, one after the other.
@@ -41,7 +43,10 @@ impl Value {
             0xc4..=0xc6 | 0xd9..=0xdb => {
                 let text = mark > 0xd0;
                 let length = length(bytes, 1 << (mark - if text { 0xd9 } else { 0xc4 }))?;
-                Some(Self::Long(text, take(bytes, length)?.to_vec()))
+                let own = take(bytes, length)?;
+                let mut rest = own;
+                let inner = Self::read(&mut rest).filter(|inner| !text && rest.is_empty() && inner.is_list());
+                Some(inner.map_or_else(|| Self::Long(text, own.to_vec()), |inner| Self::Inner(Box::new(inner))))
             }
             0xdc | 0xdd => length(bytes, 2 << (mark - 0xdc)).and_then(|n| Self::items(bytes, n)).map(Self::Array),
             0xde | 0xdf => length(bytes, 2 << (mark - 0xde)).and_then(|n| Self::items(bytes, 2 * n)).map(Self::Map),
@@ -51,6 +56,10 @@ impl Value {
             0xcd | 0xd1 => plain(bytes, 2),
             _ => plain(bytes, 0),
         }
+    }
+
+    fn is_list(&self) -> bool {
+        matches!(self, Self::Array(_) | Self::Map(_))
     }
 
     fn items(bytes: &mut &[u8], count: usize) -> Option<Vec<Self>> {
@@ -69,6 +78,12 @@ impl Value {
                 head(if *text { 0xdb } else { 0xc6 }, bytes.len(), out);
                 out.extend(bytes);
             }
+            Self::Inner(value) => {
+                let mut bytes = Vec::new();
+                value.write(&mut bytes);
+                head(0xc6, bytes.len(), out);
+                out.extend(bytes);
+            }
             Self::Array(items) => {
                 head(0xdd, items.len(), out);
                 items.iter().for_each(|item| item.write(out));
@@ -82,6 +97,9 @@ impl Value {
 
     /// The value that `steps` lead to from here: which of those inside, at each list; where that ends early, by itself.
     fn find(&mut self, steps: &mut impl Iterator<Item = usize>) -> &mut Self {
+        if let Self::Inner(value) = self {
+            return value.find(steps);
+        }
         let is_list = matches!(self, Self::Array(items) | Self::Map(items) if !items.is_empty());
         let Some(step) = steps.next().filter(|step| is_list && *step % 8 != 7) else { return self };
         match self {
@@ -94,7 +112,7 @@ impl Value {
                 let count = items.len();
                 items[step / 8 % count].find(steps)
             }
-            Self::Plain(_) | Self::Long(..) => self,
+            Self::Plain(_) | Self::Long(..) | Self::Inner(_) => self,
         }
     }
 
@@ -106,6 +124,7 @@ impl Value {
             Self::Plain(bytes) if how % 4 == 0 && bytes.len() == 1 => bytes[0] = bytes[0].wrapping_add(1),
             Self::Plain(bytes) => *bytes = ODD[which % ODD.len()].to_vec(),
             Self::Long(_, bytes) => bytes.truncate(which % (bytes.len() + 1)),
+            Self::Inner(_) => {}
             Self::Map(items) => {
                 let at = which % (items.len() / 2).max(1);
                 items.drain((2 * at).min(items.len())..(2 * at + 2).min(items.len()));

@@ -1,8 +1,9 @@
 //! What every engine does before and after its own work: look at the input, refine and measure the answer.
 
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::ghosts::Ghosts;
+use crate::parallel;
 use crate::prefetch::ROWS_AHEAD;
 use crate::solver::SolveError;
 use crate::system::System;
@@ -51,10 +52,14 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
     for (what, matrix) in [("matrix", bulk), ("coupling matrix", system.coupling)] {
         let Some(matrix) = matrix else { continue };
         let is_whole = |chunk: &[f64]| chunk.iter().fold(true, |whole, a| whole & a.is_finite());
-        let chunks = matrix.values.par_chunks(CHUNK);
-        if let Some(chunk) = chunks.position_first(|chunk| !is_whole(chunk)) {
-            let entries = matrix.values[chunk * CHUNK..].iter();
-            let at = chunk * CHUNK + entries.take_while(|a| a.is_finite()).count();
+        let is_bad = AtomicBool::new(false);
+        parallel::ranges(matrix.values.len(), CHUNK, &|own| {
+            if !is_whole(&matrix.values[own]) {
+                is_bad.store(true, Ordering::Relaxed);
+            }
+        });
+        if is_bad.into_inner() {
+            let at = matrix.values.iter().take_while(|a| a.is_finite()).count();
             let row = matrix.row_starts.partition_point(|&start| start <= at) - 1;
             let (column, value) = (matrix.columns_of(row)[at - matrix.row_starts[row]], matrix.values[at]);
             return Err(SolveError::Failed(format!("entry ({row}, {column}) of the {what} is {value}")));
@@ -67,13 +72,13 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
 pub(crate) fn zero_in_bulk(system: &System<'_>) -> Vec<usize> {
     let is_own = system.shared.map(Ghosts::is_own);
     let is_here = |i: &usize| is_own.as_ref().is_none_or(|is_own| is_own[*i]) && !system.layout.is_held(*i);
-    let own = (0..system.equations()).into_par_iter().with_min_len(CHUNK).filter(is_here);
     let alone = System { coupling: None, ..*system };
     let is_zero = |i: &usize| {
         system.bulk.prefetch_row(*i + ROWS_AHEAD);
         alone.row(*i).next().is_none()
     };
-    own.filter(is_zero).collect()
+    let found = parallel::select(system.equations(), CHUNK, |i| is_here(&i) && is_zero(&i));
+    found.into_iter().map(|i| i as usize).collect()
 }
 
 /// Names equations whose row is zero, which no solver can solve.

@@ -48,7 +48,7 @@ fn tiles<T>(mut values: &[T], order: usize, pivots: usize) -> Vec<(usize, usize,
 }
 
 /// Runs `work` on the first column and the numbers of each tile of a trapezoid.
-fn each_tile<T: Number>(to: &mut [T], order: usize, pivots: usize, work: impl Fn((usize, &mut [T])) + Sync + Send) {
+fn each_tile<T: Number>(to: &mut [T], order: usize, pivots: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     let mut rest = to;
     let mut tiles = Vec::with_capacity(pivots / TILE + 1);
     for k in (0..pivots).step_by(TILE) {
@@ -56,7 +56,7 @@ fn each_tile<T: Number>(to: &mut [T], order: usize, pivots: usize, work: impl Fn
         rest = tail;
         tiles.push((k, tile));
     }
-    for_each(order * pivots > PARALLEL_WORK / 8, tiles, work);
+    for_each(order * pivots > PARALLEL_WORK / 8, tiles, |(first, tile)| work(*first, tile));
 }
 
 /// Keeps the trapezoid of a matrix whose column `k` is `column(k)`; what stands above the diagonal is of no account.
@@ -66,7 +66,7 @@ pub(crate) fn keep_columns<'a, T: Number>(
     pivots: usize,
     column: impl Fn(usize) -> &'a [f64] + Sync,
 ) {
-    each_tile(to, order, pivots, |(first, tile)| {
+    each_tile(to, order, pivots, |first, tile| {
         for (k, to) in (first..).zip(tile.chunks_mut(order - first)) {
             to.iter_mut().zip(&column(k)[first..]).for_each(|(to, &from)| *to = T::of(from));
         }
@@ -80,7 +80,7 @@ pub(crate) fn keep_rows<'a, T: Number>(
     pivots: usize,
     row: impl Fn(usize) -> &'a [f64] + Sync,
 ) {
-    each_tile(to, order, pivots, |(first, tile)| {
+    each_tile(to, order, pivots, |first, tile| {
         let stride = order - first;
         for i in first..order {
             let to = tile[i - first..].iter_mut().step_by(stride);
@@ -111,7 +111,7 @@ pub(crate) fn forward<T: Number>(trapezoid: &[T], pivots: usize, local: &mut [f6
         }
         let parallel = below.len() * width > PARALLEL_WORK / 8;
         let tasks = below.chunks_mut(ROWS).zip((width..).step_by(ROWS)).collect();
-        for_each(parallel, tasks, |(rows, at)| subtract_product(rows, &tile[at.min(tile.len())..], stride, x));
+        for_each(parallel, tasks, |(rows, at)| subtract_product(rows, &tile[(*at).min(tile.len())..], stride, x));
     }
 }
 

@@ -59,16 +59,18 @@ impl Components {
 
 #[cfg(test)]
 mod tests {
-    use rayon::prelude::*;
-
     use super::*;
+    use crate::parallel;
 
     #[test]
     fn items_that_join_have_one_first_item_whatever_the_order() {
         // Chains of every seventh item, joined from their ends inwards.
         let items = 70_000_u32;
         let components = Components::new(items as usize);
-        (0..items - 7).into_par_iter().rev().for_each(|item| components.join(item + 7, item));
+        parallel::ranges(items as usize - 7, 1, &|range| {
+            let item = items - 8 - range.start as u32;
+            components.join(item + 7, item);
+        });
         assert!((0..items).all(|item| components.first(item) == item % 7));
         components.join(3, items - 1);
         assert_eq!(components.first(6), 3_u32.min((items - 1) % 7));

@@ -1,7 +1,6 @@
 //! Square sparse matrices by rows, with sorted columns.
 
-use rayon::prelude::*;
-
+use crate::parallel;
 use crate::prefetch::{AHEAD, prefetch};
 use crate::row_sums::{Gathered, NOTHING_GATHERED, row_sums};
 
@@ -68,17 +67,13 @@ impl Csr {
     /// When a column is not below the number of rows.
     pub fn from_pattern(adjacency: &[Vec<u32>]) -> Self {
         let rows = adjacency.len();
-        let sorted: Vec<Vec<u32>> = adjacency
-            .par_iter()
-            .with_min_len(ROWS_PER_TASK)
-            .map(|row| {
-                let mut row = row.clone();
-                row.sort_unstable();
-                row.dedup();
-                assert!(row.last().is_none_or(|&column| (column as usize) < rows), "column out of range");
-                row
-            })
-            .collect();
+        let sorted: Vec<Vec<u32>> = parallel::map(rows, ROWS_PER_TASK, |i| {
+            let mut row = adjacency[i].clone();
+            row.sort_unstable();
+            row.dedup();
+            assert!(row.last().is_none_or(|&column| (column as usize) < rows), "column out of range");
+            row
+        });
         let mut row_starts = Vec::with_capacity(rows + 1);
         row_starts.push(0);
         let mut entries = 0;
@@ -112,13 +107,18 @@ impl Csr {
 
     /// The same matrix, whose columns have been looked at.
     fn checked(self) -> Self {
-        (0..self.rows).into_par_iter().with_min_len(ROWS_PER_TASK).for_each(|i| {
-            let row = self.columns_of(i);
-            if i > 0 && std::ptr::eq(row, self.columns_of(i - 1)) {
-                return;
+        parallel::ranges(self.rows, ROWS_PER_TASK, &|rows| {
+            for i in rows {
+                let row = self.columns_of(i);
+                if i > 0 && std::ptr::eq(row, self.columns_of(i - 1)) {
+                    continue;
+                }
+                assert!(row.windows(2).all(|pair| pair[0] < pair[1]), "columns of row {i} ascend");
+                assert!(
+                    row.last().is_none_or(|&column| (column as usize) < self.rows),
+                    "column out of range in row {i}"
+                );
             }
-            assert!(row.windows(2).all(|pair| pair[0] < pair[1]), "columns of row {i} ascend");
-            assert!(row.last().is_none_or(|&column| (column as usize) < self.rows), "column out of range in row {i}");
         });
         self
     }
@@ -152,7 +152,7 @@ impl Csr {
 
     /// Sets every stored value to zero and keeps the pattern.
     pub fn zero(&mut self) {
-        self.values.par_chunks_mut(1 << 15).for_each(|chunk| chunk.fill(0.0));
+        parallel::parts_mut(&mut self.values, 1 << 15, &|_, chunk| chunk.fill(0.0));
     }
 
     /// Columns and values of row `i`.
@@ -262,10 +262,9 @@ impl Csr {
     fn apply(&self, all: &[f64], x: &[f64], y: &mut [f64], combine: impl Fn(f64, f64) -> f64 + Sync) {
         assert_eq!(x.len(), self.rows, "length of x");
         assert_eq!(y.len(), self.rows, "length of y");
-        let block = |(task, out): (usize, &mut [f64])| {
+        parallel::parts_mut(y, ROWS_PER_TASK, &|first, out| {
             let mut gathered = NOTHING_GATHERED;
-            for (at, value) in out.iter_mut().enumerate() {
-                let row = task * ROWS_PER_TASK + at;
+            for (row, value) in (first..).zip(out) {
                 let columns = self.columns_of(row);
                 // A matrix of contact has rows at interfaces only.
                 let sum = if columns.is_empty() {
@@ -276,12 +275,7 @@ impl Csr {
                 };
                 *value = combine(sum, *value);
             }
-        };
-        if self.rows <= ROWS_PER_TASK {
-            block((0, y));
-        } else {
-            y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(block);
-        }
+        });
     }
 
     /// Adds `|A| x` to `out` for several x at once, for the matrix A with this pattern and these values.
@@ -303,10 +297,11 @@ impl Csr {
             }
             sums.map(|sums| sums.iter().sum::<f64>())
         };
-        let found: Vec<[f64; N]> = (0..self.rows).into_par_iter().with_min_len(ROWS_PER_TASK).map(sums).collect();
+        let found: Vec<[f64; N]> = parallel::map(self.rows, ROWS_PER_TASK, sums);
         for (n, out) in out.into_iter().enumerate() {
-            let both = out.par_iter_mut().zip(&found).with_min_len(ROWS_PER_TASK);
-            both.for_each(|(out, sums)| *out += sums[n]);
+            parallel::parts_mut(out, ROWS_PER_TASK, &|first, out| {
+                out.iter_mut().zip(&found[first..]).for_each(|(out, sums)| *out += sums[n]);
+            });
         }
     }
 
@@ -326,7 +321,7 @@ impl Csr {
             }
             lengths
         };
-        let parts: Vec<Vec<u8>> = (0..self.rows.div_ceil(ROWS_PER_TASK)).into_par_iter().map(of_task).collect();
+        let parts: Vec<Vec<u8>> = parallel::map(self.rows.div_ceil(ROWS_PER_TASK), 1, of_task);
         let mut tasks = vec![0];
         parts.iter().for_each(|part| tasks.push(tasks[tasks.len() - 1] + part.len()));
         Runs { lengths: parts.concat(), tasks }
@@ -336,10 +331,10 @@ impl Csr {
     pub(crate) fn mul_vec_by_runs(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
         assert_eq!(x.len(), self.rows, "length of x");
         assert_eq!(y.len(), self.rows, "length of y");
-        y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, mut out)| {
+        parallel::parts_mut(y, ROWS_PER_TASK, &|first, mut out| {
             let mut gathered = NOTHING_GATHERED;
-            let mut row = task * ROWS_PER_TASK;
-            for &length in runs.of_task(task) {
+            let mut row = first;
+            for &length in runs.of_task(first / ROWS_PER_TASK) {
                 let (now, rest) = std::mem::take(&mut out).split_at_mut(length as usize);
                 self.run_product(row, x, now, &mut gathered);
                 row += length as usize;
@@ -390,8 +385,7 @@ impl Csr {
     /// When the sizes differ.
     pub fn plus(&self, other: &Self) -> Self {
         assert_eq!(self.rows, other.rows, "matrices of one size");
-        let tasks = (0..self.rows.div_ceil(ROWS_PER_TASK)).into_par_iter();
-        let parts: Vec<Self> = tasks.map(|task| self.rows_plus(other, task)).collect();
+        let parts: Vec<Self> = parallel::map(self.rows.div_ceil(ROWS_PER_TASK), 1, |task| self.rows_plus(other, task));
         let entries = parts.iter().map(Self::entries).sum();
         let mut sum = Self::empty(0);
         sum.row_starts.reserve(self.rows);

@@ -10,7 +10,8 @@ use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
 use faer::{Accum, MatMut, MatRef, Par};
-use rayon::prelude::*;
+
+use crate::parallel;
 
 /// Columns of a block of a factorisation.
 const BLOCK: usize = 128;
@@ -32,12 +33,9 @@ pub(crate) fn view_mut(values: &mut [f64], rows: usize, columns: usize) -> MatMu
 }
 
 /// Runs `work` on every item, on several threads when there is enough to do.
-pub(crate) fn for_each<T: Send>(parallel: bool, items: Vec<T>, work: impl Fn(T) + Sync + Send) {
-    if parallel && items.len() > 1 {
-        items.into_par_iter().with_max_len(1).for_each(work);
-    } else {
-        items.into_iter().for_each(work);
-    }
+pub(crate) fn for_each<T: Send>(parallel: bool, mut items: Vec<T>, work: impl Fn(&mut T) + Sync) {
+    let length = if parallel { 1 } else { items.len().max(1) };
+    parallel::each_mut(&mut items, length, |_, item| work(item));
 }
 
 fn row_tiles<'a>(mut matrix: MatMut<'a, f64>, tile: usize) -> Vec<(usize, MatMut<'a, f64>)> {
@@ -107,12 +105,12 @@ pub(crate) fn cholesky_panel(panel: &mut [f64], order: usize, pivots: usize) -> 
             .map_err(|LltError::NonPositivePivot { index }| k + index)?;
         let head = head.as_ref();
         let parallel = below.nrows() * width * (k + width) > PARALLEL_WORK;
-        for_each(parallel, row_tiles(below.as_mut(), ROW_TILE), |(at, mut tile)| {
+        for_each(parallel, row_tiles(below.as_mut(), ROW_TILE), |(at, tile)| {
             if k > 0 {
                 let rows = tile.nrows();
-                subtract_product(tile.as_mut(), left_below.subrows(at, rows), left_head.transpose());
+                subtract_product(tile.as_mut(), left_below.subrows(*at, rows), left_head.transpose());
             }
-            solve_lower_triangular_in_place(head, tile.transpose_mut(), Par::Seq);
+            solve_lower_triangular_in_place(head, tile.as_mut().transpose_mut(), Par::Seq);
         });
         k += width;
     }
@@ -146,7 +144,7 @@ pub(crate) fn general_update(update: MatMut<'_, f64>, left: MatRef<'_, f64>, rig
 pub(crate) fn solve_upper_from_right(matrix: MatMut<'_, f64>, factor: MatRef<'_, f64>) {
     let work = matrix.nrows() * matrix.ncols() * matrix.ncols();
     for_each(work > PARALLEL_WORK, row_tiles(matrix, ROW_TILE), |(_, tile)| {
-        solve_lower_triangular_in_place(factor.transpose(), tile.transpose_mut(), Par::Seq);
+        solve_lower_triangular_in_place(factor.transpose(), tile.as_mut().transpose_mut(), Par::Seq);
     });
 }
 
@@ -154,7 +152,7 @@ pub(crate) fn solve_upper_from_right(matrix: MatMut<'_, f64>, factor: MatRef<'_,
 pub(crate) fn solve_unit_lower(matrix: MatMut<'_, f64>, factor: MatRef<'_, f64>) {
     let work = matrix.nrows() * matrix.nrows() * matrix.ncols();
     for_each(work > PARALLEL_WORK, column_tiles(matrix, COLUMN_TILE), |(_, tile)| {
-        solve_unit_lower_triangular_in_place(factor, tile, Par::Seq);
+        solve_unit_lower_triangular_in_place(factor, tile.as_mut(), Par::Seq);
     });
 }
 
@@ -184,7 +182,7 @@ fn subtract_from_vector(target: &mut [f64], matrix: MatRef<'_, f64>, x: MatRef<'
     let tiles = row_tiles(view_mut(target, rows, 1), VECTOR_TILE);
     for_each(rows * matrix.ncols() > PARALLEL_WORK / 8, tiles, |(at, tile)| {
         let count = tile.nrows();
-        subtract_product(tile, matrix.subrows(at, count), x);
+        subtract_product(tile.as_mut(), matrix.subrows(*at, count), x);
     });
 }
 

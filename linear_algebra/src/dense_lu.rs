@@ -67,7 +67,7 @@ pub(crate) fn factorise(values: &mut [f64], n: usize, limit: f64) -> Pivots {
         }
         // The next block is factorised by the task that updates it, while others update the rest.
         for_each((n - after) * (n - after) > PARALLEL_ENTRIES, tiles, |(tile, then)| {
-            let mut tile = tile.subrows_mut(k, n - k);
+            let mut tile = tile.as_mut().subrows_mut(k, n - k);
             exchange_rows(&block.exchanges, tile.as_mut());
             let (mut upper, mut lower) = tile.split_at_row_mut(width);
             solve_unit_lower_triangular_in_place(done.subrows(0, width), upper.as_mut(), Par::Seq);
@@ -94,7 +94,7 @@ pub(crate) fn solve(values: &[f64], n: usize, pivots: &Pivots, x: &mut [f64]) {
 fn exchange_left(values: &mut [f64], n: usize, exchanges: &[u32]) {
     let tiles: Vec<(usize, &mut [f64])> = values.chunks_mut((n * BLOCK).max(1)).enumerate().collect();
     for_each(n * n > PARALLEL_ENTRIES, tiles, |(block, columns)| {
-        let done = ((block + 1) * BLOCK).min(n);
+        let done = ((*block + 1) * BLOCK).min(n);
         for column in columns.chunks_mut(n) {
             for k in done..n {
                 column.swap(k, exchanges[k] as usize);

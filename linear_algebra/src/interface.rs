@@ -5,14 +5,13 @@
 
 use std::cell::Cell;
 
-use rayon::prelude::*;
-
 use crate::csr::Csr;
 use crate::dense_lu::{self, Pivots};
 use crate::equilibrate;
 use crate::ghosts::Ghosts;
 use crate::iterations::Gmres;
 use crate::multifrontal::Scaling;
+use crate::parallel;
 use crate::square::Square;
 
 /// Pivots of the equilibrated matrix below this are replaced and reported.
@@ -230,8 +229,7 @@ fn scaling(schur: &Square, parts: &Parts) -> Scaling {
 /// Writes the scaled rows and columns `kept` of a Schur complement to a column-major block.
 fn dense_block(schur: &Square, kept: &[u32], scaling: &Scaling, values: &mut [f64]) {
     let m = kept.len().max(1);
-    let columns = values.par_chunks_mut(m).enumerate().with_min_len(16);
-    columns.for_each(|(k, target)| {
+    parallel::groups_mut(values, m, 16, |k, target| {
         let column = kept[k] as usize;
         let first = if schur.is_symmetric() { k } else { 0 };
         let from = kept[first] as usize;
@@ -260,7 +258,7 @@ fn mirror_lower(values: &mut [f64], ratio: &[f64]) {
             }
         }
         let source = &left[block * order..];
-        right.par_chunks_mut(order).enumerate().with_min_len(64).for_each(|(k, column)| {
+        parallel::groups_mut(right, order, 64, |k, column| {
             let j = block_end + k;
             for i in block..block_end {
                 column[i] = source[j + (i - block) * order] * (ratio[i] / ratio[j]);

@@ -5,7 +5,9 @@
 //! passed a check of its true residual, and none depends on the number of threads.
 
 pub mod address_space;
+pub mod parallel;
 
+pub mod packed;
 mod state;
 
 pub mod prefetch;

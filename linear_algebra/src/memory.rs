@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::address_space;
+use crate::{address_space, parallel};
 
 /// Entries of a row, on average, from which on factors fill like those of solids in space.
 const MANY_ENTRIES: usize = 40;
@@ -69,7 +69,7 @@ pub fn available() -> Option<u64> {
     let machine = fs::read_to_string("/proc/meminfo").ok().and_then(|text| free_of_machine(&text));
     let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let limits = folders(&groups).into_iter().filter_map(|folder| free_of_group(&folder));
-    let threads = rayon::current_num_threads() as u64 * address_space::workspace();
+    let threads = parallel::threads() as u64 * address_space::workspace();
     let addresses = address_space::left().map(|left| left.saturating_sub(threads));
     machine.into_iter().chain(limits).chain(addresses).min()
 }

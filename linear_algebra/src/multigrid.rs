@@ -16,6 +16,7 @@ use crate::precondition::{Constrained, LatestBlocks, Multigrid};
 use crate::reduced::Reduced;
 use crate::solver::{DirectSettings, LinearSolver, MultigridSettings, SolveError, SolveReport};
 use crate::state::{Carrier, State, WrongState};
+use crate::stored_as_bytes;
 use crate::system::{Stamps, System};
 use crate::vector;
 
@@ -114,12 +115,15 @@ struct Learnt {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct MultigridState {
     learnt: Learnt,
     /// That of an earlier matrix than the last.
     hierarchy: Option<Hierarchy>,
     stand_in: Option<Box<dyn State>>,
 }
+
+stored_as_bytes!(MultigridState);
 
 #[typetag::serde(name = "multigrid")]
 impl State for MultigridState {

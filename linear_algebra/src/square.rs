@@ -1,9 +1,8 @@
 //! Dense square matrices in tiles of columns; of a symmetric one only the lower triangle stands.
 
-use rayon::prelude::*;
-
 use crate::columns::{subtract_product, subtract_sums};
 use crate::dense::{PARALLEL_WORK, for_each};
+use crate::parallel;
 
 /// Columns of a tile.
 pub(crate) const TILE: usize = 192;
@@ -114,7 +113,7 @@ impl Square {
     }
 
     /// Runs `work`, of so many multiplications an entry, on every tile.
-    pub(crate) fn each_tile(&mut self, effort: usize, work: impl Fn(Tile<'_>) + Sync + Send) {
+    pub(crate) fn each_tile(&mut self, effort: usize, work: impl Fn(&mut Tile<'_>) + Sync) {
         for_each(self.order * self.order * effort > PARALLEL_WORK, self.tiles_mut(), work);
     }
 
@@ -150,7 +149,7 @@ impl Square {
             part
         };
         let parts: Vec<Vec<f64>> = if order * order > PARALLEL_WORK / 8 {
-            columns.par_iter().with_max_len(1).map(of_tile).collect()
+            parallel::map(columns.len(), 1, |at| of_tile(&columns[at]))
         } else {
             columns.iter().map(of_tile).collect()
         };

@@ -1,10 +1,10 @@
 //! What a solver is given: the equations and their matrix in two parts.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::csr::{Csr, Runs};
 use crate::ghosts::Ghosts;
+use crate::parallel;
 use crate::vector::{self, CHUNK};
 
 /// What is known of a matrix before it is factorised.
@@ -127,8 +127,12 @@ impl<'a> System<'a> {
 
     /// Sets what belongs to equations that are held to zero.
     pub fn clear_held(&self, values: &mut [f64]) {
-        let both = values.par_iter_mut().zip(&self.layout.held).with_min_len(CHUNK);
-        both.filter(|(_, is_held)| **is_held).for_each(|(value, _)| *value = 0.0);
+        let held = &self.layout.held;
+        let known = values.len().min(held.len());
+        parallel::parts_mut(&mut values[..known], CHUNK, &|first, values| {
+            let both = values.iter_mut().zip(&held[first..]);
+            both.filter(|(_, is_held)| **is_held).for_each(|(value, _)| *value = 0.0);
+        });
     }
 
     /// Entries of a row of both parts that are not zero: columns with values, those of the bulk first.

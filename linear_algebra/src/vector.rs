@@ -2,7 +2,7 @@
 
 use std::ops::AddAssign;
 
-use rayon::prelude::*;
+use crate::parallel;
 
 /// Entries of one task.
 pub(crate) const CHUNK: usize = 1 << 14;
@@ -19,15 +19,12 @@ pub fn zeros<T: Number>(n: usize) -> Vec<T> {
 
 /// Sets all numbers to zero.
 pub fn clear<T: Number>(values: &mut [T]) {
-    values.par_chunks_mut(CHUNK).for_each(|chunk| chunk.fill(T::default()));
+    parallel::parts_mut(values, CHUNK, &|_, chunk| chunk.fill(T::default()));
 }
 
 /// A copy, written by all threads.
 pub fn copied<T: Copy + Send + Sync>(values: &[T]) -> Vec<T> {
-    match values.len() <= CHUNK {
-        true => values.to_vec(),
-        false => values.par_iter().with_min_len(CHUNK).copied().collect(),
-    }
+    parallel::copied(values, CHUNK)
 }
 
 /// Copies all numbers, by all threads.
@@ -36,7 +33,7 @@ pub fn copied<T: Copy + Send + Sync>(values: &[T]) -> Vec<T> {
 /// When the lengths differ.
 pub fn copy<T: Number>(from: &[T], to: &mut [T]) {
     assert_eq!(from.len(), to.len(), "vectors of one length");
-    to.par_chunks_mut(CHUNK).zip(from.par_chunks(CHUNK)).for_each(|(to, from)| to.copy_from_slice(from));
+    parallel::parts_mut(to, CHUNK, &|first, to| to.copy_from_slice(&from[first..][..to.len()]));
 }
 
 /// Gives a vector `n` entries, zeros where it had not as much room; its memory is then written by all threads.
@@ -85,8 +82,7 @@ pub fn dot<T: Number>(a: &[T], b: &[T]) -> f64 {
     if a.len() <= CHUNK {
         return dot_chunk(a, b);
     }
-    let partial: Vec<f64> = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK)).map(|(a, b)| dot_chunk(a, b)).collect();
-    partial.iter().sum()
+    parallel::of_ranges(a.len(), CHUNK, &|own| dot_chunk(&a[own.clone()], &b[own])).iter().sum()
 }
 
 /// Eight running sums, which the compiler keeps in vector registers.
@@ -122,10 +118,10 @@ pub fn norm<T: Number>(a: &[T]) -> f64 {
 /// # Panics
 /// When the lengths differ.
 pub fn products<T: Number>(basis: &[Vec<T>], vector: &[T]) -> Vec<f64> {
-    let of_chunk = |(at, chunk): (usize, &[T])| -> Vec<f64> {
-        basis.iter().map(|v| dot_chunk(&v[at * CHUNK..][..chunk.len()], chunk)).collect()
-    };
-    let partial: Vec<Vec<f64>> = vector.par_chunks(CHUNK).enumerate().map(of_chunk).collect();
+    let partial: Vec<Vec<f64>> = parallel::map(vector.len().div_ceil(CHUNK), 1, |at| {
+        let own = at * CHUNK..((at + 1) * CHUNK).min(vector.len());
+        basis.iter().map(|v| dot_chunk(&v[own.clone()], &vector[own.clone()])).collect()
+    });
     (0..basis.len()).map(|k| partial.iter().map(|of_chunk| of_chunk[k]).sum()).collect()
 }
 
@@ -134,9 +130,9 @@ pub fn products<T: Number>(basis: &[Vec<T>], vector: &[T]) -> Vec<f64> {
 /// # Panics
 /// When the lengths differ.
 pub fn subtract_combination<T: Number>(basis: &[Vec<T>], sizes: &[f64], vector: &mut [T]) {
-    vector.par_chunks_mut(CHUNK).enumerate().for_each(|(at, chunk)| {
+    parallel::parts_mut(vector, CHUNK, &|first, chunk| {
         for (v, size) in basis.iter().zip(sizes) {
-            let (factor, v) = (T::from_f64(-size), &v[at * CHUNK..][..chunk.len()]);
+            let (factor, v) = (T::from_f64(-size), &v[first..][..chunk.len()]);
             chunk.iter_mut().zip(v).for_each(|(y, &x)| *y = y.plus(factor, x));
         }
     });
@@ -148,7 +144,7 @@ pub fn subtract_combination<T: Number>(basis: &[Vec<T>], sizes: &[f64], vector: 
 /// When the lengths differ.
 pub fn scale_each(factors: &[f64], x: &mut [f64]) {
     assert_eq!(x.len(), factors.len(), "vectors of one length");
-    x.par_iter_mut().zip(factors).with_min_len(CHUNK).for_each(|(x, factor)| *x *= factor);
+    parallel::parts_mut(x, CHUNK, &|first, x| x.iter_mut().zip(&factors[first..]).for_each(|(x, factor)| *x *= factor));
 }
 
 /// `x_i /= factors_i`.
@@ -157,12 +153,12 @@ pub fn scale_each(factors: &[f64], x: &mut [f64]) {
 /// When the lengths differ.
 pub fn divide_each(factors: &[f64], x: &mut [f64]) {
     assert_eq!(x.len(), factors.len(), "vectors of one length");
-    x.par_iter_mut().zip(factors).with_min_len(CHUNK).for_each(|(x, factor)| *x /= factor);
+    parallel::parts_mut(x, CHUNK, &|first, x| x.iter_mut().zip(&factors[first..]).for_each(|(x, factor)| *x /= factor));
 }
 
 /// `x *= factor`.
 pub fn scale_by<T: Number>(factor: f64, x: &mut [T]) {
-    x.par_iter_mut().with_min_len(CHUNK).for_each(|x| *x = T::from_f64((*x).into() * factor));
+    parallel::parts_mut(x, CHUNK, &|_, x| x.iter_mut().for_each(|x| *x = T::from_f64((*x).into() * factor)));
 }
 
 /// `y = factor * x`.
@@ -171,7 +167,9 @@ pub fn scale_by<T: Number>(factor: f64, x: &mut [T]) {
 /// When the lengths differ.
 pub fn scale_to<T: Number>(factor: f64, x: &[T], y: &mut [T]) {
     assert_eq!(x.len(), y.len(), "vectors of one length");
-    y.par_iter_mut().zip(x).with_min_len(CHUNK).for_each(|(y, &x)| *y = T::from_f64(x.into() * factor));
+    parallel::parts_mut(y, CHUNK, &|first, y| {
+        y.iter_mut().zip(&x[first..]).for_each(|(y, &x)| *y = T::from_f64(x.into() * factor));
+    });
 }
 
 /// `y += factor * x`.
@@ -181,7 +179,9 @@ pub fn scale_to<T: Number>(factor: f64, x: &[T], y: &mut [T]) {
 pub fn add_scaled<T: Number>(factor: f64, x: &[T], y: &mut [T]) {
     assert_eq!(x.len(), y.len(), "vectors of one length");
     let factor = T::from_f64(factor);
-    y.par_iter_mut().zip(x).with_min_len(CHUNK).for_each(|(y, &x)| *y = y.plus(factor, x));
+    parallel::parts_mut(y, CHUNK, &|first, y| {
+        y.iter_mut().zip(&x[first..]).for_each(|(y, &x)| *y = y.plus(factor, x));
+    });
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ mod samples;
 
 use samples::{Brick, Contact, clamped_box, contact};
 use zelus_linear_algebra::{
-    Csr, Engine, Layout, LinearSolver, MultigridSettings, SolveReport, State, Symmetry, System, create,
+    Csr, Engine, Layout, LinearSolver, MultigridSettings, SolveReport, State, Symmetry, System, create, packed,
 };
 
 /// Largest difference from the answer of the direct engine, as a share of the largest value.
@@ -206,8 +206,8 @@ fn levels_of_earlier_matrices_are_part_of_the_state() {
     let mut one = create(engine());
     (0..3).for_each(|step| drop(solve(one.as_mut(), step)));
     let state = one.state().expect("a state");
-    let file = rmp_serde::to_vec_named(&state).expect("a state is written");
-    let state: Box<dyn State> = rmp_serde::from_slice(&file).expect("a state is read");
+    let file = packed::to_bytes(&state).expect("a state is written");
+    let state: Box<dyn State> = packed::from_bytes(&file).expect("a state is read");
     let mut other = create(engine());
     other.resume(state).expect("a state of its own");
     let mut fresh = create(engine());

@@ -17,7 +17,7 @@ use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
 use zelus_core::parameters::Settings;
 use zelus_core::register;
 use zelus_core::strategies::{Monitor, Phases, SolutionStrategy, StepRecord};
-use zelus_linear_algebra::{Carrier, State, Unknowns};
+use zelus_linear_algebra::{Carrier, State, Unknowns, stored_as_bytes};
 
 use crate::adoption::{PROPERTIES, replace};
 use crate::columns::Columns;
@@ -208,11 +208,14 @@ impl Coupled {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct CoupledState {
     unknowns_of_heat: Unknowns,
     heat: Option<Box<dyn State>>,
     structure: Option<Box<dyn State>>,
 }
+
+stored_as_bytes!(CoupledState);
 
 #[typetag::serde(name = "thermo_mechanically_coupled")]
 impl State for CoupledState {

@@ -3,9 +3,9 @@
 //! Work is by element, the sum over its Gauss points, and heat spreads evenly over the element; so no work is lost whatever the meshes of both
 //! are integrated by. Taylor and Quinney, Proc. R. Soc. A 143 (1934).
 
-use rayon::prelude::*;
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_structural_mechanics::laws::PLASTIC_WORK;
 
 use crate::adoption::properties_of_heat;
@@ -52,7 +52,7 @@ impl PlasticHeat {
                 let work: f64 = points.values.iter().zip(&points.weights).map(|(work, weight)| work * weight).sum();
                 share * work / part.info.delta_time
             };
-            let all: Vec<f64> = (0..members.len()).into_par_iter().with_min_len(64).map(of_element).collect();
+            let all: Vec<f64> = parallel::map(members.len(), 64, of_element);
             members.iter().zip(all).for_each(|(&member, own)| power[member as usize] = own);
         }
         part.elements.data.write_level(PLASTIC_HEAT_POWER, 0, &power);

@@ -13,7 +13,7 @@ use zelus_core::strategies::{
     IterationRecord, Monitor, SolutionStrategy, StepRecord, StrategyEntry, accept, critical_step, recorded,
     write_reactions,
 };
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use crate::columns::Columns;
 use crate::elements::{PROJECTING, STAGE};
@@ -50,11 +50,14 @@ struct RungeKutta {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct RungeKuttaState {
     assembler: AssemblerState,
     stable: Option<(f64, usize, f64)>,
     warned: bool,
 }
+
+stored_as_bytes!(RungeKuttaState);
 
 #[typetag::serde(name = "runge_kutta_4")]
 impl State for RungeKuttaState {

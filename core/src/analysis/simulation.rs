@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use zelus_linear_algebra::parallel::Pool;
+
 use super::carrier::{OfRank, Regrouping};
 use super::checkpoints::{Checkpoints, Pointer};
 use super::deck::{Folders, StageDeck, open, stages};
@@ -24,7 +26,7 @@ use crate::strategies::{Monitor, StepRecord};
 /// What a caller of a [`Simulation`] chooses.
 #[derive(Debug, Clone, Default)]
 pub struct RunOptions {
-    /// Threads; `None` takes all of the machine, as rayon sees them.
+    /// Threads; `None` takes all of the machine.
     pub threads: Option<usize>,
     /// Program whose defaults hold where the deck names nothing, e.g. `kratos`; `None` for what the deck says, else our own.
     pub like: Option<String>,
@@ -72,7 +74,7 @@ pub struct Simulation {
     driver: Box<dyn Driver>,
     /// Processes to act in the next stage.
     more: Vec<Box<dyn Process>>,
-    pool: Arc<rayon::ThreadPool>,
+    pool: Arc<Pool>,
     report: RunReport,
     /// Warnings of the deck as a whole, which no monitor has heard of.
     untold: Vec<Diagnostic>,
@@ -107,7 +109,7 @@ impl Simulation {
 
     fn new(deck: &Node, folder: PathBuf, options: &RunOptions) -> Result<Self> {
         let (pool, fewer) = threads::pool(options.threads)?;
-        let mut report = RunReport { threads: pool.current_num_threads(), ..RunReport::default() };
+        let mut report = RunReport { threads: pool.threads(), ..RunReport::default() };
         let stages = stages(deck, &mut report)?;
         let results = options.results.clone().unwrap_or_else(|| folder.clone());
         let folders = Folders { deck: folder, results };
@@ -449,7 +451,7 @@ impl Simulation {
     /// Does `work` with the threads of this simulation.
     fn timed<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> Result<T> + Send) -> Result<T> {
         let (start, pool) = (Instant::now(), Arc::clone(&self.pool));
-        let result = pool.install(|| work(self));
+        let result = pool.run(|| work(self));
         self.report.add_seconds("total", start.elapsed().as_secs_f64());
         self.report.memory = zelus_linear_algebra::memory::largest().unwrap_or_default();
         result

@@ -1,7 +1,7 @@
 //! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values, loads that are given twice.
 
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use zelus_linear_algebra::parallel;
 
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart};
@@ -12,6 +12,9 @@ const SAME: f64 = 1e-12;
 
 /// Entities that a thread takes at a time, at least.
 const ENTITIES: usize = 1 << 12;
+
+/// Lists of entities that are sorted side by side.
+const LISTS: usize = 64;
 
 /// Warns of solid elements, and of conditions of one kind, on the same nodes as others: their stiffness, mass and loads count
 /// twice.
@@ -58,16 +61,20 @@ fn twins(table: &EntityTable, wanted: impl Fn(u32) -> bool + Sync) -> Vec<[u32; 
         let least = nodes.iter().copied().min().unwrap_or(0);
         (least, nodes.iter().map(|&node| u64::from(node).pow(2)).sum::<u64>(), kind)
     };
-    let entities = (0..table.len() as u32).into_par_iter().with_min_len(ENTITIES).filter(|&at| wanted(at));
-    let mut keys: Vec<_> = entities.map(|at| (key(at), at)).collect();
-    keys.par_sort_unstable();
+    let entities = parallel::select(table.len(), ENTITIES, |at| wanted(at as u32));
+    let keys = parallel::map(entities.len(), ENTITIES, |at| (key(entities[at]), entities[at]));
+    // Twins stand in one list, each of which is sorted by one thread.
+    let mut lists = vec![Vec::new(); LISTS];
+    keys.into_iter().for_each(|key| lists[key.0.0 as usize % LISTS].push(key));
+    parallel::each_mut(&mut lists, 1, |_, list| list.sort_unstable());
     let sorted = |of: u32| {
         let mut nodes = table.nodes(of).to_vec();
         nodes.sort_unstable();
         nodes
     };
     let mut out = Vec::new();
-    for alike in keys.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
+    let groups = lists.iter().flat_map(|list| list.chunk_by(|a, b| a.0 == b.0));
+    for alike in groups.filter(|alike| alike.len() > 1) {
         let (_, earlier) = alike[0];
         let later = alike[1..].iter().map(|&(_, later)| later);
         out.extend(later.filter(|&later| sorted(earlier) == sorted(later)).map(|later| [earlier, later]));

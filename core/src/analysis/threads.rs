@@ -1,6 +1,6 @@
 //! The threads of a run, as many as its address space carries.
 
-use zelus_linear_algebra::address_space;
+use zelus_linear_algebra::{address_space, parallel::Pool};
 
 use crate::communication::{cores, fair_threads};
 use crate::diagnostics::{Diagnostic, Error, Result};
@@ -10,7 +10,7 @@ use crate::diagnostics::{Diagnostic, Error, Result};
 ///
 /// # Errors
 /// [`Error::System`] when not one thread fits, or none can be started.
-pub(super) fn pool(wanted: Option<usize>) -> Result<(rayon::ThreadPool, Option<Diagnostic>)> {
+pub(super) fn pool(wanted: Option<usize>) -> Result<(Pool, Option<Diagnostic>)> {
     let asked = wanted.unwrap_or_else(fair_threads);
     let wanted = if asked == 0 { cores() } else { asked };
     let (own, left) = (address_space::of_a_thread(), address_space::left());
@@ -23,7 +23,7 @@ pub(super) fn pool(wanted: Option<usize>) -> Result<(rayon::ThreadPool, Option<D
             "{fact}\n    raise the limit; what is reserved and not used takes no memory"
         )));
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(if fitting < wanted { fitting } else { asked }).build();
+    let pool = Pool::new(if fitting < wanted { fitting } else { asked });
     let pool = pool.map_err(|error| Error::System(format!("cannot start threads: {error}")))?;
     let fewer = (fitting < wanted).then(|| {
         let mib = own >> 20;

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use zelus_linear_algebra::{DirectSettings, Engine, State, create};
+use zelus_linear_algebra::{DirectSettings, Engine, State, create, packed};
 
 use super::saved::Saved;
 use crate::assembly::{Assembler, Equations, System};
@@ -308,16 +308,16 @@ fn a_node_in_a_corner_has_the_pressure_of_each_wall() {
 fn a_restart_in_the_middle_gives_the_same_bits() {
     let mut whole = Run::new(mesh(), true);
     [0.4, 0.7].iter().for_each(|&time| whole.step(time));
-    let file = |part: &ModelPart| rmp_serde::to_vec_named(part).expect("numbers");
-    let (saved, state) = (file(&whole.part), rmp_serde::to_vec_named(&whole.newton.state()).expect("a state"));
+    let file = |part: &ModelPart| packed::to_bytes(part).expect("numbers");
+    let (saved, state) = (file(&whole.part), packed::to_bytes(&whole.newton.state()).expect("a state"));
     whole.step(1.0);
 
     let mut resumed = Run::new(mesh(), true);
-    let part: ModelPart = rmp_serde::from_slice(&saved).expect("a part");
+    let part: ModelPart = packed::from_bytes(&saved).expect("a part");
     part.check().expect("a part that can be");
     assert!(part.slave_nodes.is_alike(&resumed.part.slave_nodes));
     resumed.part = part;
-    let state: Option<Box<dyn State>> = rmp_serde::from_slice(&state).expect("a state");
+    let state: Option<Box<dyn State>> = packed::from_bytes(&state).expect("a state");
     resumed.newton.resume(&resumed.part, &resumed.system, state.expect("Newton's")).expect("its own state");
     // The active set, which contact keeps in a state of its own, follows from the values.
     let set = resumed.system.interactions[0].active_set().expect("walls");

@@ -14,10 +14,9 @@ mod tangents;
 
 use std::time::Instant;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::vector::{scale_by, zeros};
-use zelus_linear_algebra::{Csr, Layout, Symmetry};
+use zelus_linear_algebra::{Csr, Layout, Symmetry, parallel};
 
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 pub use saved::AssemblerState;
@@ -29,7 +28,7 @@ use super::distribution::Distribution;
 use super::dof_table::Dof;
 use super::equations::Equations;
 use super::group_matrix::GroupMatrix;
-use super::near_null_space::{Place, near_null_space};
+use super::near_null_space::near_null_space;
 use super::numbering::Numbering;
 use super::reach::reach;
 use super::redistribution::Redistribution;
@@ -230,17 +229,17 @@ impl Assembler {
         let changed = part.ranks.any(changed);
         if changed || std::mem::take(&mut self.incomplete) {
             self.equations = equations;
-            let dofs = system.dofs.dofs().par_iter().with_min_len(ROWS);
+            let dofs = system.dofs.dofs();
             let place = |dof: &Dof| (!dof.multiplier).then(|| (dof.variable, part.nodes.initial[dof.node as usize]));
             self.whole = Layout {
-                node: dofs.clone().map(|dof| dof.node).collect(),
-                multiplier: dofs.clone().map(|dof| dof.multiplier).collect(),
+                node: parallel::map(dofs.len(), ROWS, |at| dofs[at].node),
+                multiplier: parallel::map(dofs.len(), ROWS, |at| dofs[at].multiplier),
                 // Motions of bodies that several ranks share are found by all of them.
                 near_null_space: match self.distribution {
-                    None => near_null_space(&dofs.clone().map(place).collect::<Vec<Place>>()),
+                    None => near_null_space(&parallel::map(dofs.len(), ROWS, |at| place(&dofs[at]))),
                     Some(_) => Vec::new(),
                 },
-                held: dofs.enumerate().map(|(number, _)| !self.equations.is_free(number)).collect(),
+                held: parallel::map(dofs.len(), ROWS, |number| !self.equations.is_free(number)),
             };
             self.numbering = self.distribution.as_ref().map(|d| Numbering::new(&self.equations, d));
             let follows = part.ranks.any(self.equations.has_slaves());
@@ -463,10 +462,8 @@ impl Assembler {
             }
             value => [value, value, 0.0, 0.0],
         };
-        let [displacement, position, multiplier, farthest] = [0, 1, 2, 3].map(|i| {
-            let unknowns = (0..dofs.len()).into_par_iter().with_min_len(ROWS);
-            unknowns.map(|n| sizes(n)[i]).collect::<Vec<f64>>()
-        });
+        let [displacement, position, multiplier, farthest] =
+            [0, 1, 2, 3].map(|i| parallel::map(dofs.len(), ROWS, |n| sizes(n)[i]));
         let bulk = if self.traits.variable_elements { &position } else { &displacement };
         let [mut out, mut bodies, mut coupled, mut pushed, mut gaps] = std::array::from_fn(|_| zeros(dofs.len()));
         let coupling = &self.coupling.matrix;
@@ -490,9 +487,9 @@ impl Assembler {
             let matrix = &self.pattern.matrix;
             matrix.add_products_of_sizes(values, [bulk, &farthest], [&mut out, &mut bodies]);
         }
-        out.par_iter_mut().zip(dofs).enumerate().with_min_len(ROWS).for_each(|(n, (out, dof))| {
+        parallel::each_mut(&mut out, ROWS, |n, out| {
             // Multipliers stand in the tangent of turning normals, too: forces are bounded by the bodies alone.
-            *out += match dof.multiplier {
+            *out += match dofs[n].multiplier {
                 true => coupled[n] + pushed[n].min(gaps[n]),
                 false => (coupled[n] + pushed[n]).min(STIFFEST * bodies[n]),
             };

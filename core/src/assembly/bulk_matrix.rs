@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-use zelus_linear_algebra::Csr;
 use zelus_linear_algebra::prefetch::prefetch_as_many;
+use zelus_linear_algebra::{Csr, parallel};
 
 use super::dof_table::{Dof, DofTable};
 use super::local::{BATCH, add_rhs, entity_lhs, evaluate, side_by_side};
@@ -84,7 +83,7 @@ impl BulkPattern {
         members.extend(blocks.flat_map(|block| (0..block.len()).map(|at| block.nodes(at))));
         let neighbours = Neighbours::new(nodes, &members, keeps);
         let width = |node: usize| neighbours.of(node).iter().map(|&b| u32::from(count[b as usize])).sum::<u32>();
-        let widths: Vec<u32> = (0..nodes).into_par_iter().with_min_len(ROWS).map(width).collect();
+        let widths: Vec<u32> = parallel::map(nodes, ROWS, width);
         let mut offsets = vec![0; neighbours.list.len()];
         fill_rows(&neighbours.starts, &mut offsets, |node, offsets| {
             let mut end = 0;
@@ -207,8 +206,7 @@ pub fn block_numbers(block: &dyn EntityBlock, dofs: &DofTable) -> Vec<u32> {
     };
     let columns: Vec<&[u32]> = unknowns.iter().map(numbers).collect();
     let mut out = vec![0; block.len() * unknowns.len()];
-    let entities = out.par_chunks_exact_mut(unknowns.len().max(1)).enumerate().with_min_len(ROWS);
-    entities.for_each(|(at, out)| {
+    parallel::groups_mut(&mut out, unknowns.len(), ROWS, |at, out| {
         let (nodes, slaves) = (block.nodes(at), block.slave_owners(at));
         let numbers = unknowns.iter().zip(&columns).map(|(u, column)| {
             let (Owner::Node(index) | Owner::Slave(index)) = u.owner_among(nodes, slaves);

@@ -7,11 +7,10 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Csr, Layout};
+use zelus_linear_algebra::{Csr, Layout, parallel};
 
-use super::dof_table::{Dof, DofTable, NONE};
+use super::dof_table::{DofTable, NONE};
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{MasterSlaveConstraint, ModelPart};
@@ -83,10 +82,11 @@ impl Equations {
                 return Err(Diagnostic::error("constraint-twice", fact).remedy("remove one of them").into());
             }
         }
-        let is_free = |(number, dof): (usize, &Dof)| {
+        let is_free = |number: usize| {
+            let dof = &dofs.dofs()[number];
             !slaves.contains_key(&(number as u32)) && !nodes.is_fixed(dof.variable, dof.node)
         };
-        let is_free: Vec<bool> = dofs.dofs().par_iter().enumerate().with_min_len(ROWS).map(is_free).collect();
+        let is_free: Vec<bool> = parallel::map(dofs.len(), ROWS, is_free);
         let mut roles = vec![Role::Fixed; dofs.len()];
         let mut free = Vec::with_capacity(dofs.len());
         for number in (0..dofs.len()).filter(|&number| is_free[number]) {
@@ -107,8 +107,8 @@ impl Equations {
             roles[number as usize] = Role::Slave(follows);
         }
         let layout = Layout {
-            node: free.par_iter().with_min_len(ROWS).map(|&n| dofs.dofs()[n as usize].node).collect(),
-            multiplier: free.par_iter().with_min_len(ROWS).map(|&n| dofs.dofs()[n as usize].multiplier).collect(),
+            node: parallel::map(free.len(), ROWS, |at| dofs.dofs()[free[at] as usize].node),
+            multiplier: parallel::map(free.len(), ROWS, |at| dofs.dofs()[free[at] as usize].multiplier),
             ..Layout::default()
         };
         let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());
@@ -167,7 +167,7 @@ impl Equations {
 
     /// Tᵀ v: a vector over unknowns gathered on equations.
     pub fn reduce(&self, full: &[f64]) -> Vec<f64> {
-        let mut out: Vec<f64> = self.free.par_iter().with_min_len(ROWS).map(|&n| full[n as usize]).collect();
+        let mut out: Vec<f64> = parallel::map(self.free.len(), ROWS, |at| full[self.free[at] as usize]);
         if self.has_slaves {
             for (role, value) in self.roles.iter().zip(full) {
                 if let Role::Slave(terms) = role {
@@ -200,13 +200,12 @@ impl Equations {
 
     /// T v: increments of the equations spread to all unknowns; fixed ones get zero.
     pub fn expand(&self, reduced: &[f64]) -> Vec<f64> {
-        let roles = self.roles.par_iter().with_min_len(ROWS);
         let value = |role: &Role| match role {
             Role::Free(equation) => reduced[*equation as usize],
             Role::Fixed => 0.0,
             Role::Slave(terms) => terms.iter().map(|term| term.weight * reduced[term.equation as usize]).sum(),
         };
-        roles.map(value).collect()
+        parallel::map(self.roles.len(), ROWS, |number| value(&self.roles[number]))
     }
 
     /// Lumped masses of unknowns gathered on equations: what slaves carry is lumped on their masters.
@@ -228,7 +227,7 @@ impl Equations {
         let columns_of = |row: usize| full.columns_of(self.free[row] as usize).iter().map(|&c| equation[c as usize]);
         if !same_pattern {
             let count = |row: usize| columns_of(row).filter(|&to| to != NONE).count();
-            let counts: Vec<usize> = (0..self.len()).into_par_iter().with_min_len(ROWS).map(count).collect();
+            let counts: Vec<usize> = parallel::map(self.len(), ROWS, count);
             let row_starts = starts(counts);
             let mut columns = vec![0; row_starts[self.len()]];
             fill_rows(&row_starts, &mut columns, |row, out| {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 use super::rows::parts_of_rows;
 use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
@@ -40,12 +40,13 @@ fn evaluate_runs<'a>(
 ) -> Result<&'a mut [LocalSystems], EntityError> {
     buffers.resize_with(buffers.len().max(runs.len()), LocalSystems::default);
     let systems = &mut buffers[..runs.len()];
-    let evaluate = |(run, out): (&Range<usize>, &mut LocalSystems)| {
-        out.reset_rows(run.len(), sizes, want);
-        compute(run.clone(), out)
-    };
-    let done: Vec<Result<(), EntityError>> = runs.par_iter().zip(&mut *systems).map(evaluate).collect();
-    done.into_iter().collect::<Result<(), _>>()?;
+    let mut done: Vec<(&mut LocalSystems, Result<(), EntityError>)> =
+        systems.iter_mut().map(|out| (out, Ok(()))).collect();
+    parallel::each_mut(&mut done, 1, |at, (out, result)| {
+        out.reset_rows(runs[at].len(), sizes, want);
+        *result = compute(runs[at].clone(), out);
+    });
+    done.into_iter().try_for_each(|(_, result)| result)?;
     Ok(systems)
 }
 
@@ -109,8 +110,8 @@ pub(super) fn side_by_side(
     let (Some(first), Some(last)) = (touched.clone().min(), touched.max()) else { return };
     let (first, rows) = (first as usize, (last - first) as usize + 1);
     let bound = |part: usize| first + rows * part / ROW_PARTS;
-    let parts = parts_of_rows(starts, values, (0..ROW_PARTS).map(|part| bound(part)..bound(part + 1)));
-    parts.into_par_iter().for_each(|(rows, values)| add(rows.clone(), starts[rows.start], values));
+    let mut parts = parts_of_rows(starts, values, (0..ROW_PARTS).map(|part| bound(part)..bound(part + 1)));
+    parallel::each_mut(&mut parts, 1, |_, (rows, values)| add(rows.clone(), starts[rows.start], values));
 }
 
 /// Tangent of the `at`-th entity of the evaluated range.

@@ -1,6 +1,6 @@
 //! Motions that elements hardly resist: what multigrid has to carry to the coarser levels.
 
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 use crate::communication::Ranks;
 use crate::model::ScalarVariable;
@@ -56,7 +56,7 @@ fn motions(places: &[Place], variables: &[ScalarVariable], center: [f64; 3]) -> 
                 Some((variable, at)) if variable.column == column => value(variable.offset(), at),
                 _ => 0.0,
             };
-            space.push(places.par_iter().with_min_len(4096).map(of).collect());
+            space.push(parallel::map(places.len(), 4096, |at| of(&places[at])));
         };
         for axis in (0..3).filter(|&axis| has[axis]) {
             add(&|along, _| f64::from(u8::from(along == axis)));

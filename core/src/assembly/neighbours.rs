@@ -1,6 +1,6 @@
 //! Which items share a group with each item, as the nodes of elements do.
 
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 use super::rows::starts;
 
@@ -52,8 +52,7 @@ impl Neighbours {
             (counts, list)
         };
         // Items that have lists may stand together.
-        let parts: Vec<(Vec<usize>, Vec<u32>)> =
-            (0..items.div_ceil(ITEMS)).into_par_iter().with_max_len(1).map(task).collect();
+        let parts: Vec<(Vec<usize>, Vec<u32>)> = parallel::map(items.div_ceil(ITEMS), 1, task);
         let starts = starts(parts.iter().flat_map(|(counts, _)| counts.iter().copied()));
         let mut list = Vec::with_capacity(starts[items]);
         parts.iter().for_each(|(_, part)| list.extend_from_slice(part));

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 /// Rows of a task.
 pub(super) const ROWS: usize = 1024;
@@ -28,8 +28,9 @@ pub(super) fn parts_of_rows<'a, T>(
 pub(super) fn fill_rows<T: Send>(starts: &[usize], entries: &mut [T], fill: impl Fn(usize, &mut [T]) + Sync) {
     let rows = starts.len() - 1;
     let ranges = (0..rows).step_by(ROWS).map(|first| first..(first + ROWS).min(rows));
-    parts_of_rows(starts, entries, ranges).into_par_iter().for_each(|(own, mut rest)| {
-        for row in own {
+    parallel::each_mut(&mut parts_of_rows(starts, entries, ranges), 1, |_, (own, rest)| {
+        let mut rest = &mut **rest;
+        for row in own.clone() {
             let (now, later) = rest.split_at_mut(starts[row + 1] - starts[row]);
             fill(row, now);
             rest = later;

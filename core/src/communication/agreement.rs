@@ -59,14 +59,21 @@ impl Ranks {
         if self.size() == 1 {
             return result;
         }
-        let result = result.and_then(|value| self.deferred().map(|()| value));
-        if !self.any(result.is_err()) {
-            return result;
+        let (value, own) = match result {
+            Ok(value) => (Some(value), self.deferred().err()),
+            Err(error) => (None, Some(error)),
+        };
+        self.agree_on(own).map(|()| value.expect("a rank without a value has an error"))
+    }
+
+    /// That no rank has an error; collective.
+    fn agree_on(&self, own: Option<Error>) -> Result<()> {
+        if !self.any(own.is_some()) {
+            return Ok(());
         }
-        let own = result.as_ref().err().map(encode).unwrap_or_default();
-        let all = self.gather_bytes(&own);
+        let all = self.gather_bytes(&own.as_ref().map(encode).unwrap_or_default());
         let mut errors = all.iter().filter(|text| !text.is_empty()).map(|text| decode(text));
-        let Some(first) = errors.next() else { return result };
+        let Some(first) = errors.next() else { return own.map_or(Ok(()), Err) };
         let mut problems = match first {
             Error::Input(problems) => problems,
             other => return Err(other),

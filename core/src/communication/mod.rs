@@ -15,6 +15,8 @@ mod values;
 pub use communicator::Communicator;
 pub use ranks::Ranks;
 
+use zelus_linear_algebra::parallel;
+
 use crate::diagnostics::Result;
 
 /// Joins the other processes, if the program was started as one of several; they part when the last clone is dropped.
@@ -68,6 +70,6 @@ pub fn fair_threads() -> usize {
 /// Threads this process may take while those of the other ranks on its machine wait: theirs and its own, as far as there
 /// are cores it may use.
 pub fn threads_while_others_wait() -> usize {
-    let own = rayon::current_num_threads();
+    let own = parallel::threads();
     (own * neighbours()).min(cores()).max(own)
 }

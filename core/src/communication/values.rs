@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use zelus_linear_algebra::packed;
 
 use super::Ranks;
 use crate::diagnostics::{Error, Result};
@@ -23,9 +24,9 @@ impl Ranks {
     }
 }
 
-/// Number of bytes in two words, then MessagePack with the names of fields.
+/// Number of bytes in two words, then the bytes.
 fn pack(value: &impl Serialize) -> Result<Vec<u32>> {
-    let mut bytes = rmp_serde::to_vec_named(value).map_err(|error| failed(&error))?;
+    let mut bytes = packed::to_bytes(value).map_err(|error| failed(&error))?;
     let length = bytes.len() as u64;
     bytes.resize(bytes.len().next_multiple_of(4), 0);
     let mut words = vec![length as u32, (length >> 32) as u32];
@@ -37,7 +38,7 @@ fn unpack<T: DeserializeOwned>(words: &[u32]) -> Result<T> {
     let length = u64::from(words[0]) | u64::from(words[1]) << 32;
     let mut bytes: Vec<u8> = words[2..].iter().flat_map(|word| word.to_le_bytes()).collect();
     bytes.truncate(length as usize);
-    rmp_serde::from_slice(&bytes).map_err(|error| failed(&error))
+    packed::from_bytes(&bytes).map_err(|error| failed(&error))
 }
 
 fn failed(error: &dyn std::error::Error) -> Error {

@@ -3,13 +3,14 @@
 use rustc_hash::FxHashMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, packed, stored_as_bytes};
 
 use super::block::EntityBlock;
 use crate::diagnostics::{Diagnostic, Result};
 
 /// What entities of one kind remember.
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 pub(super) struct BlockState {
     kind: String,
     /// Of its entities.
@@ -20,6 +21,8 @@ pub(super) struct BlockState {
     #[serde(with = "serde_bytes")]
     bytes: Vec<u8>,
 }
+
+stored_as_bytes!(BlockState);
 
 #[typetag::serde(name = "entities")]
 impl State for BlockState {
@@ -32,7 +35,7 @@ impl BlockState {
     pub(super) fn of(kind: &str, ids: &[usize], states: &[impl Serialize]) -> Self {
         let (mut bytes, mut ends) = (Vec::new(), Vec::with_capacity(states.len()));
         for state in states {
-            rmp_serde::encode::write(&mut bytes, state).expect("numbers can be written");
+            packed::append(state, &mut bytes).expect("numbers can be written");
             ends.push(bytes.len());
         }
         Self { kind: kind.to_owned(), ids: ids.to_vec(), ends, bytes }
@@ -45,7 +48,7 @@ impl BlockState {
     pub(super) fn states<T: DeserializeOwned>(self, kind: &str, ids: &[usize]) -> Result<Vec<T>> {
         let fits = self.kind == kind && self.ids == ids && self.ends.len() == ids.len();
         let states = self.of_entities().take(if fits { usize::MAX } else { 0 });
-        let states: Vec<T> = states.map_while(|bytes| rmp_serde::from_slice(bytes?).ok()).collect();
+        let states: Vec<T> = states.map_while(|bytes| packed::from_bytes(bytes?).ok()).collect();
         if fits && states.len() == ids.len() {
             return Ok(states);
         }

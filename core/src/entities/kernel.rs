@@ -4,10 +4,9 @@ use std::any::Any;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use zelus_linear_algebra::State;
+use zelus_linear_algebra::{State, parallel};
 
 use super::block::{
     BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Tangent, Want,
@@ -15,7 +14,7 @@ use super::block::{
 use super::block_state::BlockState;
 use super::face_point::FacePoint;
 use super::view::StepView;
-use crate::diagnostics::{Result, unfit};
+use crate::diagnostics::{Report, Result, unfit};
 use crate::model::{EntityKind, Properties, Role};
 
 /// What a kernel is told of its entity, beside the step's fields.
@@ -36,15 +35,19 @@ pub struct Gather<'a, const NODES: usize> {
 impl<const NODES: usize> Gather<'_, NODES> {
     /// Three numbers a node of a vector column.
     pub fn vectors(&self, column: &[f64]) -> [[f64; 3]; NODES] {
-        std::array::from_fn(|i| {
-            let at = 3 * self.nodes[i] as usize;
-            [column[at], column[at + 1], column[at + 2]]
-        })
+        let mut out = [[0.0; 3]; NODES];
+        for (out, &node) in out.iter_mut().zip(self.nodes) {
+            let at = 3 * node as usize;
+            *out = [column[at], column[at + 1], column[at + 2]];
+        }
+        out
     }
 
     /// One number a node of a scalar column.
     pub fn scalars(&self, column: &[f64]) -> [f64; NODES] {
-        std::array::from_fn(|i| column[self.nodes[i] as usize])
+        let mut out = [0.0; NODES];
+        out.iter_mut().zip(self.nodes).for_each(|(out, &node)| *out = column[node as usize]);
+        out
     }
 }
 
@@ -187,12 +190,9 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
 
 /// A block made of a kernel, a connectivity and a state for each entity.
 pub struct KernelBlock<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> {
-    entry: &'static EntityKind,
+    members: Members,
     kernel: K,
-    members: Vec<u32>,
-    ids: Vec<usize>,
     nodes: Vec<[u32; NODES]>,
-    properties: Vec<usize>,
     states: Vec<K::State>,
     unknowns: Vec<LocalUnknown>,
 }
@@ -203,18 +203,13 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
     /// # Errors
     /// As [`Kernel::new`].
     pub fn boxed(request: &BlockRequest<'_>) -> Result<Box<dyn EntityBlock>> {
-        let table = request.table;
-        let nodes =
-            request.members.iter().map(|&m| table.nodes(m).try_into().expect("registered node count")).collect();
+        let (members, nodes) = (Members::of(request), nodes_of(request, NODES));
         let kernel = K::new(request)?;
         Ok(Box::new(Self {
-            entry: request.entry,
+            members,
             unknowns: kernel.own_unknowns().to_vec(),
             kernel,
-            ids: request.members.iter().map(|&m| table.ids[m as usize]).collect(),
-            properties: request.members.iter().map(|&m| table.properties[m as usize]).collect(),
-            members: request.members.clone(),
-            nodes,
+            nodes: nodes.as_chunks().0.to_vec(),
             states: Vec::new(),
         }))
     }
@@ -222,33 +217,136 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
     #[inline(always)]
     fn gather<'a>(&'a self, at: usize, view: &StepView<'a>) -> Gather<'a, NODES> {
         let nodes = &self.nodes[at];
+        let (mut initial, mut current) = ([[0.0; 3]; NODES], [[0.0; 3]; NODES]);
+        for (i, &node) in nodes.iter().enumerate() {
+            initial[i] = view.nodes.initial[node as usize];
+            current[i] = view.nodes.current[node as usize];
+        }
         Gather {
-            index: self.members[at],
+            index: self.members.indices[at],
             nodes,
-            properties: &view.properties[&self.properties[at]],
-            initial: std::array::from_fn(|i| view.nodes.initial[nodes[i] as usize]),
-            current: std::array::from_fn(|i| view.nodes.current[nodes[i] as usize]),
+            properties: &view.properties[&self.members.properties[at]],
+            initial,
+            current,
         }
     }
 
     fn error(&self, at: usize, view: &StepView<'_>, fact: String) -> EntityError {
+        self.members.error(at, &self.nodes[at], view, fact)
+    }
+}
+
+/// Errors of a block that are told at most.
+const ERRORS: usize = 20;
+
+/// The entities of a block, whatever its kernel.
+struct Members {
+    entry: &'static EntityKind,
+    /// Indices in the table of the model part.
+    indices: Vec<u32>,
+    ids: Vec<usize>,
+    properties: Vec<usize>,
+}
+
+impl Members {
+    fn of(request: &BlockRequest<'_>) -> Self {
+        let (table, indices) = (request.table, request.members.clone());
+        Self {
+            entry: request.entry,
+            ids: indices.iter().map(|&m| table.ids[m as usize]).collect(),
+            properties: indices.iter().map(|&m| table.properties[m as usize]).collect(),
+            indices,
+        }
+    }
+
+    fn error(&self, at: usize, nodes: &[u32], view: &StepView<'_>, fact: String) -> EntityError {
         EntityError {
             kind: self.entry.name,
             id: self.ids[at],
-            nodes: self.nodes[at].iter().map(|&n| view.nodes.ids[n as usize]).collect(),
+            nodes: nodes.iter().map(|&n| view.nodes.ids[n as usize]).collect(),
             fact,
             remedy: "check the order and the coordinates of its nodes; in a running analysis, take shorter steps",
+        }
+    }
+
+    /// The error of entities with these facts, `size` nodes each.
+    fn refuse(&self, facts: Vec<(usize, String)>, nodes: &[u32], size: usize, view: &StepView<'_>) -> Result<()> {
+        let mut report = Report::new();
+        for (at, fact) in facts.into_iter().take(ERRORS) {
+            report.absorb::<()>(Err(self.error(at, &nodes[at * size..(at + 1) * size], view, fact).into()));
+        }
+        report.finish().map(|_| ())
+    }
+
+    /// Places of entities that an earlier block has, too: here and there.
+    fn shared(&self, earlier: &Self) -> Vec<(usize, usize)> {
+        let places: HashMap<usize, usize> = earlier.ids.iter().enumerate().map(|(at, &id)| (id, at)).collect();
+        self.ids.iter().enumerate().filter_map(|(at, id)| Some((at, *places.get(id)?))).collect()
+    }
+}
+
+/// Nodes of all members, `size` each.
+fn nodes_of(request: &BlockRequest<'_>, size: usize) -> Vec<u32> {
+    let mut out = Vec::with_capacity(size * request.members.len());
+    request.members.iter().for_each(|&member| out.extend_from_slice(request.table.nodes(member)));
+    assert_eq!(out.len(), size * request.members.len(), "registered node count");
+    out
+}
+
+/// `of` each of so many entities, or what is wrong with them.
+fn states_of<T: Send>(
+    count: usize,
+    of: &(dyn Fn(usize) -> Result<T, String> + Sync),
+) -> Result<Vec<T>, Vec<(usize, String)>> {
+    let (mut states, mut facts) = (Vec::with_capacity(count), Vec::new());
+    for (at, found) in parallel::map(count, 64, of).into_iter().enumerate() {
+        match found {
+            Ok(state) => states.push(state),
+            Err(fact) => facts.push((at, fact)),
+        }
+    }
+    if facts.is_empty() { Ok(states) } else { Err(facts) }
+}
+
+/// Lets each state be changed; the first that fails, by its place.
+fn change<T>(states: &mut [T], by: &dyn Fn(usize, &mut T) -> Result<(), String>) -> Result<(), (usize, String)> {
+    for (at, state) in states.iter_mut().enumerate() {
+        by(at, state).map_err(|fact| (at, fact))?;
+    }
+    Ok(())
+}
+
+/// States out of a file that fit `own`.
+fn resumed<T: DeserializeOwned>(
+    state: Box<dyn State>,
+    members: &Members,
+    own: &[T],
+    fits: &dyn Fn(&T, &T) -> bool,
+) -> Result<Vec<T>> {
+    let kind = members.entry.name;
+    let states: Vec<T> = state.take::<BlockState>()?.states(kind, &members.ids)?;
+    match own.iter().zip(&states).all(|(own, saved)| fits(own, saved)) {
+        true => Ok(states),
+        false => Err(unfit(format!("what {kind} remember is of other materials"))),
+    }
+}
+
+/// Gives states those of the same entities before.
+fn take_over<T>(shared: &[(usize, usize)], own: &mut [T], earlier: &[T], inherit: &dyn Fn(&mut T, &T)) {
+    for &(here, there) in shared {
+        if let (Some(state), Some(before)) = (own.get_mut(here), earlier.get(there)) {
+            inherit(state, before);
         }
     }
 }
 
 impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock for KernelBlock<K, NODES, SIZE> {
     fn entry(&self) -> &'static EntityKind {
-        self.entry
+        self.members.entry
     }
 
     fn members(&self) -> &[u32] {
-        &self.members
+        &self.members.indices
     }
 
     fn nodes(&self, at: usize) -> &[u32] {
@@ -264,29 +362,16 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
     }
 
     fn is_active(&self, at: usize, view: &StepView<'_>) -> bool {
-        let table = if self.entry.role == Role::Element { view.elements } else { view.conditions };
-        table.flags.is_active(self.members[at] as usize)
+        let table = if self.members.entry.role == Role::Element { view.elements } else { view.conditions };
+        table.flags.is_active(self.members.indices[at] as usize)
     }
 
     fn initialize(&mut self, view: &StepView<'_>) -> Result<()> {
-        let mut report = crate::diagnostics::Report::new();
         let state = |at: usize| self.kernel.state(&self.gather(at, view), view);
-        let found: Vec<Result<K::State, String>> =
-            (0..self.members.len()).into_par_iter().with_min_len(64).map(state).collect();
-        let mut states = Vec::with_capacity(found.len());
-        for (at, found) in found.into_iter().enumerate() {
-            match found {
-                Ok(state) => states.push(state),
-                Err(fact) => {
-                    report.absorb::<()>(Err(self.error(at, view, fact).into()));
-                    if report.diagnostics().len() >= 20 {
-                        break;
-                    }
-                }
-            }
+        match states_of(self.nodes.len(), &state) {
+            Ok(states) => self.states = states,
+            Err(facts) => self.members.refuse(facts, self.nodes.as_flattened(), NODES, view)?,
         }
-        report.finish()?;
-        self.states = states;
         Ok(())
     }
 
@@ -356,26 +441,20 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
             return Ok(());
         }
         let mut states = std::mem::take(&mut self.states);
-        let result = states.iter_mut().enumerate().try_for_each(|(at, state)| {
-            self.kernel.accept(&self.gather(at, view), state, view).map_err(|fact| self.error(at, view, fact))
-        });
+        let result = change(&mut states, &|at, state| self.kernel.accept(&self.gather(at, view), state, view));
         self.states = states;
-        result
+        result.map_err(|(at, fact)| self.error(at, view, fact))
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
         if size_of::<K::State>() == 0 {
             return None;
         }
-        Some(Box::new(BlockState::of(self.entry.name, &self.ids, &self.states)))
+        Some(Box::new(BlockState::of(self.members.entry.name, &self.members.ids, &self.states)))
     }
 
     fn resume(&mut self, state: Box<dyn State>) -> Result<()> {
-        let states: Vec<K::State> = state.take::<BlockState>()?.states(self.entry.name, &self.ids)?;
-        if !self.states.iter().zip(&states).all(|(own, saved)| self.kernel.fits(own, saved)) {
-            return Err(unfit(format!("what {} remember is of other materials", self.entry.name)));
-        }
-        self.states = states;
+        self.states = resumed(state, &self.members, &self.states, &|own, saved| self.kernel.fits(own, saved))?;
         Ok(())
     }
 
@@ -385,12 +464,8 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
 
     fn inherit(&mut self, earlier: &dyn EntityBlock) {
         let Some(earlier) = earlier.as_any().and_then(|block| block.downcast_ref::<Self>()) else { return };
-        let places: HashMap<usize, usize> = earlier.ids.iter().enumerate().map(|(at, &id)| (id, at)).collect();
-        for (id, state) in self.ids.iter().zip(&mut self.states) {
-            if let Some(&at) = places.get(id) {
-                self.kernel.inherit(state, &earlier.states[at]);
-            }
-        }
+        let shared = self.members.shared(&earlier.members);
+        take_over(&shared, &mut self.states, &earlier.states, &|own, before| self.kernel.inherit(own, before));
     }
 
     fn gauss(&self, view: &StepView<'_>, variable: &str, at: usize) -> Option<Gauss> {

@@ -1,7 +1,7 @@
 //! The file of a saved run: what it is, which version, of how many ranks, then of each rank how long its contents are and their
 //! checksum, then the contents, rank after rank.
 //!
-//! Numbers of the head are little-endian. Contents are MessagePack with the names of fields, in which numbers keep their bits. All
+//! Numbers of the head are little-endian. Contents are values as bytes ([`packed`]), in which numbers keep their bits. All
 //! ranks stand in one file, which is replaced as a whole: no end of a run leaves files of two moments.
 
 use std::fs::{self, File};
@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use zelus_linear_algebra::packed;
 
 use super::outputs::Mark;
 use super::replace::replace_own_file;
@@ -21,7 +22,7 @@ const MARK: &str = "zelus saved run\n";
 /// How a saved run is known.
 pub(crate) const SAVED: Mark = Mark::Begins(&[MARK]);
 /// Version of the contents: one more with every change of what is saved.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Bytes before the lengths.
 const HEAD: usize = MARK.len() + 4 + 4;
 /// Bytes of the head for each rank: length and checksum.
@@ -34,7 +35,7 @@ const AT_ONCE: usize = 1 << 24;
 /// # Errors
 /// A disk that refuses.
 pub fn write_saved(ranks: &Ranks, path: &Path, contents: &impl Serialize) -> Result<()> {
-    let bytes = rmp_serde::to_vec_named(contents)
+    let bytes = packed::to_bytes(contents)
         .map_err(|error| Error::System(format!("{}: the run cannot be saved: {error}", path.display())));
     let bytes = ranks.agree(bytes)?;
     let entry = [bytes.len() as f64, f64::from(crc32fast::hash(&bytes))];
@@ -155,7 +156,7 @@ impl SavedFile {
             let fact = "it is damaged: its checksum is another".to_owned();
             return Err(problem(&self.path, fact, "run the deck from its start, or take an older file"));
         }
-        rmp_serde::from_slice(&contents).map_err(|error| {
+        packed::from_bytes(&contents).map_err(|error| {
             let remedy = "go on with the program that has written it, with all that is registered there";
             problem(&self.path, format!("this program does not know what it holds: {error}"), remedy)
         })

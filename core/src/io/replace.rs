@@ -27,6 +27,14 @@ pub fn replace_file(
 /// # Errors
 /// As [`replace_file`], but at once: other ranks know of it when they agree.
 pub fn replace_own_file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    let mut fill = Some(fill);
+    replace(path, &mut |out| fill.take().map_or(Ok(()), |fill| fill(out)))
+}
+
+/// Writes to a file.
+type Fill<'a> = &'a mut dyn FnMut(&mut BufWriter<File>) -> io::Result<()>;
+
+fn replace(path: &Path, fill: Fill<'_>) -> Result<()> {
     let followed = path.canonicalize();
     let path = followed.as_deref().unwrap_or(path);
     if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
@@ -60,10 +68,11 @@ pub fn append_to_file(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<()> {
-    ranks.on_root(|| append(path, fill))
+    let mut fill = Some(fill);
+    ranks.on_root(|| append(path, &mut |out| fill.take().map_or(Ok(()), |fill| fill(out))))
 }
 
-fn append(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+fn append(path: &Path, fill: Fill<'_>) -> Result<()> {
     let done = File::options().append(true).open(path).and_then(|file| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
         fill(&mut writer)?;

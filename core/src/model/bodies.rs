@@ -2,8 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use rayon::prelude::*;
-use zelus_linear_algebra::Components;
+use zelus_linear_algebra::{Components, parallel};
 
 use super::model_part::ModelPart;
 
@@ -15,14 +14,16 @@ pub fn bodies_of_nodes(part: &ModelPart) -> Vec<Option<usize>> {
     let (nodes, elements) = (part.nodes.len(), &part.elements);
     let components = Components::new(nodes);
     let used: Vec<AtomicBool> = (0..nodes).map(|_| AtomicBool::new(false)).collect();
-    (0..elements.len() as u32).into_par_iter().with_min_len(ELEMENTS).for_each(|at| {
-        let [first, others @ ..] = elements.nodes(at) else { return };
-        for &other in others {
-            components.join(*first, other);
-            used[other as usize].store(true, Ordering::Relaxed);
-        }
-        if !others.is_empty() {
-            used[*first as usize].store(true, Ordering::Relaxed);
+    parallel::ranges(elements.len(), ELEMENTS, &|range| {
+        for at in range {
+            let [first, others @ ..] = elements.nodes(at as u32) else { continue };
+            for &other in others {
+                components.join(*first, other);
+                used[other as usize].store(true, Ordering::Relaxed);
+            }
+            if !others.is_empty() {
+                used[*first as usize].store(true, Ordering::Relaxed);
+            }
         }
     });
     let used: Vec<bool> = used.into_iter().map(AtomicBool::into_inner).collect();

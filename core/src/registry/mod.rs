@@ -99,9 +99,16 @@ pub fn entries() -> Vec<(&'static str, &'static Entry)> {
 
 /// The entries of one kind, sorted by name.
 pub fn all<R: Registered>() -> Vec<&'static R> {
-    let mut all: Vec<&'static R> = inventory::iter::<R>.into_iter().collect();
-    all.sort_by_key(|registered| registered.entry().name);
-    all
+    let all: Vec<&'static R> = inventory::iter::<R>.into_iter().collect();
+    let names: Vec<&str> = all.iter().map(|registered| registered.entry().name).collect();
+    order_of(&names).into_iter().map(|at| all[at]).collect()
+}
+
+/// Places of names in their order.
+fn order_of(names: &[&str]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..names.len()).collect();
+    order.sort_by_key(|&at| names[at]);
+    order
 }
 
 /// Names and aliases of a kind, sorted.

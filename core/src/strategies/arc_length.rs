@@ -5,7 +5,7 @@
 //! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
@@ -79,12 +79,15 @@ pub struct ArcLength {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct ArcLengthState {
     factor: f64,
     radius: Option<[f64; 2]>,
     last: Vec<f64>,
     newton: Option<Box<dyn State>>,
 }
+
+stored_as_bytes!(ArcLengthState);
 
 #[typetag::serde(name = "arc_length")]
 impl State for ArcLengthState {

@@ -6,7 +6,7 @@
 //! 5 are not for motion without damping.
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::scheme::{Scheme, SchemeFactory, predict_ballistic};
 use crate::assembly::{DofTable, Inertia};
@@ -26,10 +26,13 @@ pub struct BdfScheme {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct BdfState {
     ends: Vec<f64>,
     weights: Vec<f64>,
 }
+
+stored_as_bytes!(BdfState);
 
 #[typetag::serde(name = "bdf")]
 impl State for BdfState {

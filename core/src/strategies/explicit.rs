@@ -5,7 +5,7 @@
 //! ([`crate::entities::Interaction::step_factor`]). One that adds stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
@@ -90,12 +90,15 @@ pub struct ExplicitStrategy {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct ExplicitState {
     scheme: CentralDifferences,
     assembler: AssemblerState,
     predicted: Option<(f64, usize)>,
     warned: bool,
 }
+
+stored_as_bytes!(ExplicitState);
 
 #[typetag::serde(name = "explicit")]
 impl State for ExplicitState {

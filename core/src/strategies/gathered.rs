@@ -4,7 +4,7 @@
 
 use std::sync::OnceLock;
 
-use rayon::ThreadPool;
+use zelus_linear_algebra::parallel::{self, Pool};
 use zelus_linear_algebra::{Csr, Layout, NotCondensable, System};
 
 use super::meaning::Meaning;
@@ -22,7 +22,7 @@ pub(super) struct Gathered {
     loads: GatheredMatrix,
     solves: u64,
     /// As many threads as there are on the machine of rank 0, on rank 0.
-    threads: OnceLock<Option<ThreadPool>>,
+    threads: OnceLock<Option<Pool>>,
     /// What solvers that work where the rows are have in place of rank 0.
     pub(super) shared: SharedRows,
     /// Solves where the rows are, in place of rank 0.
@@ -133,13 +133,13 @@ impl Gathered {
     /// Does what the other ranks wait for, with the threads of those on this machine.
     pub(super) fn while_others_wait<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         let count = threads_while_others_wait();
-        if count == rayon::current_num_threads() {
+        if count == parallel::threads() {
             return work();
         }
         // Without more threads the own ones do the same work.
-        let threads = self.threads.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(count).build().ok());
+        let threads = self.threads.get_or_init(|| Pool::new(count).ok());
         match threads {
-            Some(threads) => threads.install(work),
+            Some(threads) => threads.run(work),
             None => work(),
         }
     }

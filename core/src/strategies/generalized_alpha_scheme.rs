@@ -6,7 +6,7 @@
 //! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
@@ -26,9 +26,12 @@ pub struct GeneralizedAlphaScheme {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct GeneralizedAlphaState {
     forces: Option<Vec<f64>>,
 }
+
+stored_as_bytes!(GeneralizedAlphaState);
 
 #[typetag::serde(name = "generalized_alpha")]
 impl State for GeneralizedAlphaState {

@@ -12,7 +12,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "petsc")]
 use zelus_linear_algebra::Multipliers;
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 use zelus_linear_algebra::{LinearSolver, SolveReport};
 
 pub(super) use references::References;
@@ -95,6 +95,7 @@ pub struct NewtonRaphson {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct NewtonState {
     failed: bool,
     /// Of redundant constraints, and of multipliers that are not condensed.
@@ -104,6 +105,8 @@ struct NewtonState {
     assembler: AssemblerState,
     account: Account,
 }
+
+stored_as_bytes!(NewtonState);
 
 #[typetag::serde(name = "newton_raphson")]
 impl State for NewtonState {

@@ -1,6 +1,6 @@
 //! Where nodes and elements are, as messages name them.
 
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 use crate::geometry::mapping::is_inverted;
 use crate::model::{ModelPart, SubPart};
@@ -22,14 +22,14 @@ pub(crate) fn body_of(part: &SubPart, node: u32) -> Option<&str> {
 /// The elements that are inside out in the present configuration, in words; collective.
 pub(super) fn inside_out(part: &ModelPart) -> Option<String> {
     let (elements, space) = (&part.elements, part.info.domain_size);
-    let is_so = |&at: &u32| {
-        elements.kinds[at as usize].cell.filter(|shape| shape.dim() == space).is_some_and(|shape| {
-            let nodes = elements.nodes(at).iter();
+    let is_so = |at: usize| {
+        elements.kinds[at].cell.filter(|shape| shape.dim() == space).is_some_and(|shape| {
+            let nodes = elements.nodes(at as u32).iter();
             let places: Vec<[f64; 3]> = nodes.map(|&node| part.nodes.current[node as usize]).collect();
             is_inverted(shape, space, &places)
         })
     };
-    let found: Vec<u32> = (0..elements.len() as u32).into_par_iter().with_min_len(1024).filter(is_so).collect();
+    let found: Vec<u32> = parallel::select(elements.len(), 1024, is_so);
     let said = found.first().map(|&at| {
         let (kind, id, node) = (elements.kinds[at as usize].name, elements.ids[at as usize], elements.nodes(at)[0]);
         format!("{} elements are inside out, the first is {kind} {id}{}", found.len(), whereabouts(part, node))

@@ -19,6 +19,7 @@ use crate::memory;
 use crate::multifrontal::Precision;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
 use crate::state::{Carrier, State, WrongState};
+use crate::stored_as_bytes;
 use crate::system::{Stamps, Symmetry, System};
 use crate::vector;
 use answers::{is_regular, krylov, largest_entries, null_vector};
@@ -82,6 +83,7 @@ pub(crate) struct DirectSolver {
 
 /// What the engine has learnt.
 #[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct DirectState {
     /// The way of the last answer, with the stamps of its system.
     served: Option<(Way, Stamps)>,
@@ -91,6 +93,8 @@ struct DirectState {
     /// Whether factors in single precision did not serve.
     needs_double: bool,
 }
+
+stored_as_bytes!(DirectState);
 
 #[typetag::serde(name = "direct")]
 impl State for DirectState {

@@ -1,13 +1,12 @@
 //! Elimination over the tree: every front adds up the updates of its children in their order.
 
-use rayon::prelude::*;
-
 use super::pool::Pool;
 use super::scatter::Scatter;
 use super::store::Block;
 use super::{Kind, NotPositiveDefinite, Scaling};
 use crate::dense::{self, PARALLEL_WORK, view, view_mut};
 use crate::dense_lu::{self, Pivots};
+use crate::parallel;
 use crate::square::{Square, Tile};
 use crate::symbolic::{Front, Symbolic};
 
@@ -37,15 +36,16 @@ impl Elimination<'_> {
         let mut pieces = Vec::with_capacity(tops.len());
         for &top in tops {
             let (piece, tail) = std::mem::take(&mut rest).split_at_mut(top + 1 - at);
-            pieces.push((piece, top));
+            pieces.push((piece, top, Ok(Square::default())));
             (rest, at) = (tail, top + 1);
         }
         let large = |top: usize| self.symbolic.fronts[top].subtree_work > TASK_WORK;
         if tops.len() > 1 && tops.iter().any(|&top| large(top)) {
-            pieces.into_par_iter().with_max_len(1).map(|(piece, top)| self.eliminate(piece, top)).collect()
+            parallel::each_mut(&mut pieces, 1, |_, (piece, top, update)| *update = self.eliminate(piece, *top));
         } else {
-            pieces.into_iter().map(|(piece, top)| self.eliminate(piece, top)).collect()
+            pieces.iter_mut().for_each(|(piece, top, update)| *update = self.eliminate(piece, *top));
         }
+        pieces.into_iter().map(|(_, _, update)| update).collect()
     }
 
     /// Eliminates a subtree and gives its update of the rows of its top.
@@ -97,8 +97,8 @@ impl Elimination<'_> {
         let below = view(panel, order, pivots).subrows(pivots, rows);
         let memory = self.pool.take(Square::size(rows, symmetric));
         let mut update = Square::over(memory, rows, symmetric);
-        update.each_tile(pivots, |mut tile| {
-            let Tile { row, column, width, ref mut values } = tile;
+        update.each_tile(pivots, |tile| {
+            let Tile { row, column, width, ref mut values } = *tile;
             if symmetric {
                 dense::symmetric_update(values, below.subrows(row, rows - row), width);
             } else {
@@ -106,7 +106,7 @@ impl Elimination<'_> {
                 dense::general_update(view_mut(values, rows, width), below, right);
             }
             for (&child, update) in front.children.iter().zip(&updates) {
-                extend_tile(&self.symbolic.fronts[child], update, &mut tile, rows, pivots);
+                extend_tile(&self.symbolic.fronts[child], update, tile, rows, pivots);
             }
         });
         for memory in [panel_memory, right_memory] {
@@ -124,9 +124,9 @@ impl Elimination<'_> {
         values.resize(Square::size(order, symmetric), 0.0);
         let mut schur = Square::over(values, order, symmetric);
         self.each_entry(root, |row, column, value| *schur.entry_mut(row, column) += value);
-        schur.each_tile(4, |mut tile| {
+        schur.each_tile(4, |tile| {
             for (&top, update) in tops.iter().zip(updates) {
-                extend_tile(&self.symbolic.fronts[top], update, &mut tile, order, 0);
+                extend_tile(&self.symbolic.fronts[top], update, tile, order, 0);
             }
         });
         schur
@@ -228,7 +228,7 @@ fn add_below(child: &Front, update: &Square, k: usize, first: usize, offset: usi
 
 fn each_column(columns: &mut [f64], order: usize, work: impl Fn(usize, &mut [f64]) + Sync + Send) {
     if columns.len() > PARALLEL_WORK / 16 {
-        columns.par_chunks_mut(order).enumerate().with_min_len(4).for_each(|(k, column)| work(k, column));
+        parallel::groups_mut(columns, order, 4, work);
     } else {
         columns.chunks_mut(order).enumerate().for_each(|(k, column)| work(k, column));
     }

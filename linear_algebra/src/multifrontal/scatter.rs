@@ -1,8 +1,7 @@
 //! Where each entry of a matrix goes in the fronts of its factorisation.
 
-use rayon::prelude::*;
-
 use crate::csr::Csr;
+use crate::parallel;
 use crate::symbolic::Symbolic;
 
 /// One entry of the matrix.
@@ -25,11 +24,8 @@ impl Scatter {
     /// Finds the place of each entry of `pattern`; of a symmetric matrix only the lower triangle is kept.
     pub(crate) fn new(symbolic: &Symbolic, pattern: &Csr, symmetric: bool) -> Self {
         let transposed = (!symmetric).then(|| Transposed::new(pattern));
-        let (entries, lower) = (0..symbolic.fronts.len())
-            .into_par_iter()
-            .with_min_len(16)
-            .map(|front| entries_of(symbolic, pattern, transposed.as_ref(), front))
-            .unzip();
+        let of_front = |front: usize| entries_of(symbolic, pattern, transposed.as_ref(), front);
+        let (entries, lower) = parallel::map(symbolic.fronts.len(), 16, of_front).into_iter().unzip();
         Self { entries, lower }
     }
 

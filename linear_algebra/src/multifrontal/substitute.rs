@@ -1,9 +1,8 @@
 //! Forward and backward substitution over the tree, in parallel over its subtrees.
 
-use rayon::prelude::*;
-
 use super::{Factor, Kind};
 use crate::dense;
+use crate::parallel;
 use crate::symbolic::{Front, Run};
 
 /// Operations of the elimination of a subtree below which one task substitutes in all of it.
@@ -58,7 +57,9 @@ impl Factor {
     fn forward_subtrees(&self, y: &mut [f64], begin: usize, tops: &[usize]) -> Vec<Vec<f64>> {
         let pieces = self.pieces(y, begin, tops);
         if tops.len() > 1 && tops.iter().any(|&top| !self.is_small(top)) {
-            pieces.into_par_iter().zip(tops).with_max_len(1).map(|(piece, &top)| self.forward(piece, top)).collect()
+            let mut pieces: Vec<(&mut [f64], Vec<f64>)> = pieces.into_iter().map(|piece| (piece, Vec::new())).collect();
+            parallel::each_mut(&mut pieces, 1, |at, (piece, update)| *update = self.forward(piece, tops[at]));
+            pieces.into_iter().map(|(_, update)| update).collect()
         } else {
             pieces.into_iter().zip(tops).map(|(piece, &top)| self.forward(piece, top)).collect()
         }
@@ -87,16 +88,16 @@ impl Factor {
         let pieces = self.pieces(y, begin, tops);
         let parallel = tops.len() > 1 && tops.iter().any(|&top| !self.is_small(top));
         let items = pieces.into_iter().zip(known).zip(tops).collect();
-        dense::for_each(parallel, items, |((piece, known), &top)| self.backward(piece, top, known));
+        dense::for_each(parallel, items, |((piece, known), top)| self.backward(piece, **top, known));
     }
 
     /// Backward substitution in a subtree whose rows are `known`.
-    fn backward(&self, y: &mut [f64], top: usize, known: Vec<f64>) {
+    fn backward(&self, y: &mut [f64], top: usize, known: &[f64]) {
         let front = &self.symbolic.fronts[top];
         let (inner, own) = y.split_at_mut(y.len() - front.pivots());
         let mut local = Vec::with_capacity(front.order());
         local.extend_from_slice(own);
-        local.extend_from_slice(&known);
+        local.extend_from_slice(known);
         self.store.backward(top, self.kind == Kind::Cholesky, &mut local);
         own.copy_from_slice(&local[..front.pivots()]);
         let begin = front.columns.start - inner.len();

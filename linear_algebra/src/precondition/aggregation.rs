@@ -2,9 +2,8 @@
 
 use std::cmp::Reverse;
 
-use rayon::prelude::*;
-
 use super::block_matrix::BlockMatrix;
+use crate::parallel;
 
 /// Aggregate of a block that has no strong neighbour.
 pub(super) const NONE: u32 = u32::MAX;
@@ -40,14 +39,10 @@ impl Strong {
     fn new(matrix: &BlockMatrix, bodies: &[u32]) -> Self {
         let size = matrix.size();
         let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
-        let diagonal: Vec<f64> = (0..matrix.rows)
-            .into_par_iter()
-            .with_min_len(ROWS)
-            .map(|i| {
-                let (columns, values) = matrix.row(i);
-                columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
-            })
-            .collect();
+        let diagonal: Vec<f64> = parallel::map(matrix.rows, ROWS, |i| {
+            let (columns, values) = matrix.row(i);
+            columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
+        });
         let of_task = |task: usize| {
             let (mut ends, mut lists) = (Vec::with_capacity(ROWS), Vec::new());
             for i in task * ROWS..((task + 1) * ROWS).min(matrix.rows) {
@@ -64,7 +59,7 @@ impl Strong {
             }
             (ends, lists)
         };
-        Self { parts: (0..matrix.rows.div_ceil(ROWS)).into_par_iter().map(of_task).collect() }
+        Self { parts: parallel::map(matrix.rows.div_ceil(ROWS), 1, of_task) }
     }
 
     /// Strong neighbours of a block.
@@ -133,10 +128,13 @@ pub(super) fn coarsen(matrix: &BlockMatrix, bodies: &[u32], near_null_space: &[V
         members[a as usize].push(i);
     }
     let orthonormal: Vec<(Vec<f64>, Vec<f64>)> =
-        members.par_iter().with_min_len(16).map(|list| orthonormalise(list, height, near_null_space)).collect();
+        parallel::map(members.len(), 16, |at| orthonormalise(&members[at], height, near_null_space));
     let mut values = vec![0.0; matrix.rows * height * modes];
-    let blocks = values.par_chunks_exact_mut((height * modes).max(1)).zip(&aggregate).zip(&place).with_min_len(ROWS);
-    blocks.filter(|((_, a), _)| **a != NONE).for_each(|((block, &a), &place)| {
+    parallel::groups_mut(&mut values, height * modes, ROWS, |i, block| {
+        let (a, place) = (aggregate[i], place[i]);
+        if a == NONE {
+            return;
+        }
         let length = members[a as usize].len() * height;
         for (m, column) in block.chunks_exact_mut(height).enumerate() {
             let known = &orthonormal[a as usize].0[m * length + place as usize * height..][..height];

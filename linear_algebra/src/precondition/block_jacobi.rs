@@ -1,10 +1,9 @@
 //! Inverses of the diagonal blocks of the nodes.
 
-use rayon::prelude::*;
-
 use super::Precondition;
 use crate::csr::Csr;
 use crate::dense_lu;
+use crate::parallel;
 
 /// Inverse diagonal blocks, one a group of equations.
 pub(crate) struct BlockJacobi {
@@ -29,7 +28,7 @@ impl BlockJacobi {
                 (g, blocks[g as usize].len() as u32 - 1)
             })
             .collect();
-        let inverses = blocks.par_iter().with_min_len(256).map(|block| inverse(matrix, block)).collect();
+        let inverses = parallel::map(blocks.len(), 256, |at| inverse(matrix, &blocks[at]));
         Self { blocks, place, inverses }
     }
 }
@@ -63,7 +62,8 @@ fn inverse(matrix: &Csr, block: &[u32]) -> Vec<f64> {
 impl Precondition for BlockJacobi {
     fn apply(&self, x: &mut [f64]) {
         let old = x.to_vec();
-        x.par_iter_mut().zip(&self.place).with_min_len(4096).for_each(|(value, &(block, at))| {
+        parallel::each_mut(x, 4096, |equation, value| {
+            let (block, at) = self.place[equation];
             let block = block as usize;
             let n = self.blocks[block].len();
             let row = &self.inverses[block][at as usize * n..(at as usize + 1) * n];

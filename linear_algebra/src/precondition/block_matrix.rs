@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::block_row::BlockRow;
@@ -13,6 +12,7 @@ use super::row_product::Avx2;
 use super::row_product::{Lanes, Plain, TAIL, row_product};
 use super::workspaces::Workspaces;
 use crate::csr::Csr;
+use crate::parallel;
 
 /// Block rows of a part; fixed, so that results do not depend on the number of threads.
 const ROWS: usize = 64;
@@ -22,10 +22,7 @@ const PIECE: usize = 8;
 /// Parts that are no longer made in pieces.
 const MANY: usize = 128;
 
-/// Tasks that a thread takes in one piece: their work differs, and the last thread to end decides.
-const TASKS: usize = 1;
-
-/// The same for products with vectors, which take less.
+/// Parts that a thread takes in one piece for a product with a vector.
 const PRODUCTS: usize = 8;
 
 /// Parts of a product of three matrices that are made at a time, at least.
@@ -149,6 +146,9 @@ impl BlockMatrix {
 /// No earlier matrix to take rows from.
 pub(super) const NOTHING_EARLIER: Option<(&BlockMatrix, fn(usize) -> bool)> = None;
 
+/// What is done with the product of a part: its first row, the product, and the numbers at its rows.
+type WithProduct<'a> = &'a (dyn Fn(usize, &[f32], &mut [f32]) + Sync);
+
 /// What a product does to what stands where it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Into {
@@ -185,8 +185,7 @@ impl BlockMatrix {
             Part::joined(std::iter::once(part))
         };
         let workspaces = Workspaces::new(|| (BlockRow::new(columns, height * width), scratch()));
-        let tasks = (0..rows.div_ceil(ROWS)).into_par_iter().with_max_len(TASKS);
-        let parts = tasks.map(|task| workspaces.lend(|own| make(task, own))).collect();
+        let parts = parallel::map(rows.div_ceil(ROWS), 1, |task| workspaces.lend(|own| make(task, own)));
         Self { rows, columns, height, width, parts }
     }
 
@@ -225,7 +224,7 @@ impl BlockMatrix {
     }
 
     /// Calls `each(i, A x, y)` for the rows of each part, of which row `i` is the first.
-    fn parts_of_product(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
+    fn parts_of_product(&self, x: &[f32], y: &mut [f32], each: WithProduct<'_>) {
         match (self.height, self.width) {
             (1, 1) => self.fixed_parts::<1, 1>(x, y, each),
             (2, 2) => self.fixed_parts::<2, 2>(x, y, each),
@@ -239,14 +238,8 @@ impl BlockMatrix {
         }
     }
 
-    fn fixed_parts<const H: usize, const W: usize>(
-        &self,
-        x: &[f32],
-        y: &mut [f32],
-        each: impl Fn(usize, &[f32], &mut [f32]) + Sync,
-    ) {
-        let parts = y.par_chunks_mut(ROWS * H).zip(&self.parts).enumerate().with_max_len(PRODUCTS);
-        parts.for_each(|(task, (out, part))| {
+    fn fixed_parts<const H: usize, const W: usize>(&self, x: &[f32], y: &mut [f32], each: WithProduct<'_>) {
+        self.each_part(y, &|task, part, out| {
             let mut sums = [[0.0; H]; ROWS];
             let sums = &mut sums[..out.len() / H];
             part.products::<H, W>(x, sums);
@@ -254,9 +247,19 @@ impl BlockMatrix {
         });
     }
 
-    fn any_parts(&self, x: &[f32], y: &mut [f32], each: impl Fn(usize, &[f32], &mut [f32]) + Sync) {
+    /// Calls `work` for each part with its number and the numbers of `y` at its rows.
+    fn each_part(&self, y: &mut [f32], work: &(dyn Fn(usize, &Part, &mut [f32]) + Sync)) {
+        let size = ROWS * self.height;
+        parallel::parts_mut(y, size * PRODUCTS, &|first, out| {
+            for (task, out) in (first / size..).zip(out.chunks_mut(size)) {
+                work(task, &self.parts[task], out);
+            }
+        });
+    }
+
+    fn any_parts(&self, x: &[f32], y: &mut [f32], each: WithProduct<'_>) {
         let (h, w) = (self.height, self.width);
-        y.par_chunks_mut(ROWS * h).enumerate().with_max_len(PRODUCTS).for_each(|(task, out)| {
+        self.each_part(y, &|task, _, out| {
             let mut sums = vec![0.0_f32; out.len()];
             for (at, sum) in sums.chunks_exact_mut(h).enumerate() {
                 let (columns, values) = self.row(task * ROWS + at);
@@ -273,7 +276,7 @@ impl BlockMatrix {
 
     /// `y = A x` or `y += A x`.
     pub(super) fn mul_vec(&self, x: &[f32], y: &mut [f32], into: Into) {
-        self.parts_of_product(x, y, |_, sums, out| match into {
+        self.parts_of_product(x, y, &|_, sums, out| match into {
             Into::Set => out.copy_from_slice(sums),
             Into::Add => out.iter_mut().zip(sums).for_each(|(y, s)| *y += s),
         });
@@ -282,7 +285,7 @@ impl BlockMatrix {
     /// `y = b - A x`.
     pub(super) fn residual(&self, b: &[f32], x: &[f32], y: &mut [f32]) {
         let h = self.height;
-        self.parts_of_product(x, y, |i, sums, out| {
+        self.parts_of_product(x, y, &|i, sums, out| {
             let b = &b[i * h..i * h + out.len()];
             out.iter_mut().zip(b).zip(sums).for_each(|((y, b), s)| *y = b - s);
         });
@@ -291,7 +294,7 @@ impl BlockMatrix {
     /// `step = keep step + gain D⁻¹ (b - A x)` with the inverses of diagonal blocks, all by block rows.
     pub(super) fn smoothing_step(&self, inverse: &[f32], b: &[f32], x: &[f32], factors: [f32; 2], step: &mut [f32]) {
         let h = self.height;
-        self.parts_of_product(x, step, |i, sums, out| {
+        self.parts_of_product(x, step, &|i, sums, out| {
             let (own, square) = (i * h..i * h + out.len(), i * h * h..(i * h + out.len()) * h);
             let (inverse, b) = (&inverse[square], &b[own]);
             // Sizes that are known make loops of known lengths.
@@ -342,7 +345,7 @@ impl BlockMatrix {
             part.end();
             Arc::new(part)
         };
-        let parts = (0..self.columns.div_ceil(ROWS)).into_par_iter().map(make).collect();
+        let parts = parallel::map(self.columns.div_ceil(ROWS), 1, make);
         Self { rows: self.columns, columns: self.rows, height, width, parts }
     }
 
@@ -362,7 +365,7 @@ impl BlockMatrix {
             rows.for_each(|&k| is_needed[k as usize / ROWS] = true);
             (0..is_needed.len()).filter(|&part| is_needed[part]).collect()
         };
-        let needed: Vec<Vec<usize>> = panels.par_iter().map(needs).collect();
+        let needed: Vec<Vec<usize>> = parallel::map(panels.len(), 1, |at| needs(&panels[at]));
         let mut last = vec![0; inner.parts.len()];
         needed.iter().enumerate().for_each(|(at, needed)| needed.iter().for_each(|&part| last[part] = at));
         let mut parts = Vec::with_capacity(tasks.len());
@@ -407,7 +410,7 @@ impl BlockMatrix {
                 })
             })
         };
-        let mut made = pieces.par_iter().with_max_len(TASKS).map(make).collect::<Vec<Part>>().into_iter();
+        let mut made = parallel::map(pieces.len(), 1, |at| make(&pieces[at])).into_iter();
         tasks.iter().map(|task| Part::joined(made.by_ref().take(pieces_of(task).count()))).collect()
     }
 

@@ -8,7 +8,6 @@
 
 use std::sync::{Arc, Mutex};
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::aggregation::{NONE, Tentative, coarsen};
@@ -23,6 +22,7 @@ use crate::dense_lu;
 use crate::ghosts::Ghosts;
 use crate::memory;
 use crate::multifrontal::{Factor, Kind, Precision, Scatter};
+use crate::parallel;
 use crate::symbolic::Symbolic;
 use crate::system::Layout;
 use crate::vector::{self, add_scaled, scale_by};
@@ -336,8 +336,9 @@ impl Level {
 
 /// `step = gain D⁻¹ b`.
 fn diagonal_step(inverse: &[f32], height: usize, b: &[f32], gain: f32, step: &mut [f32]) {
-    let blocks = step.par_chunks_exact_mut(height).zip(b.par_chunks_exact(height));
-    blocks.zip(inverse.par_chunks_exact(height * height)).with_min_len(1024).for_each(|((step, b), inverse)| {
+    parallel::groups_mut(step, height, 1024, |i, step| {
+        let b = &b[i * height..(i + 1) * height];
+        let inverse = &inverse[i * height * height..(i + 1) * height * height];
         for (step, row) in step.iter_mut().zip(inverse.chunks_exact(height)) {
             *step = gain * row.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
         }
@@ -348,7 +349,7 @@ fn diagonal_step(inverse: &[f32], height: usize, b: &[f32], gain: f32, step: &mu
 fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
     let h = matrix.height;
     let mut out = vec![0.0; matrix.rows * h * h];
-    let invert = |(lu, column): &mut (Vec<f64>, Vec<f64>), (i, out): (usize, &mut [f32])| {
+    let invert = |(lu, column): &mut (Vec<f64>, Vec<f64>), i: usize, out: &mut [f32]| {
         let (columns, values) = matrix.row(i);
         let Ok(at) = columns.binary_search(&(i as u32)) else { return };
         let block = &values[at * h * h..(at + 1) * h * h];
@@ -371,8 +372,10 @@ fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
             (0..h).for_each(|k| out[k * h + w] = column[k] as f32);
         }
     };
-    let rows = out.par_chunks_exact_mut(h * h).enumerate().with_min_len(256);
-    rows.for_each_init(|| (Vec::with_capacity(h * h), vec![0.0; h]), invert);
+    parallel::parts_mut(&mut out, 256 * h * h, &|first, out| {
+        let mut memory = (Vec::with_capacity(h * h), vec![0.0; h]);
+        out.chunks_exact_mut(h * h).zip(first / (h * h)..).for_each(|(out, i)| invert(&mut memory, i, out));
+    });
     out
 }
 

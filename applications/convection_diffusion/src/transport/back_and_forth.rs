@@ -4,12 +4,15 @@
 //! Dupont and Liu, J. Comput. Phys. 190 (2003). A path goes through the velocities at both ends of the step, linear in time; it begins
 //! with that of its node, and each further part of it takes the velocity of the place it has come to, at the time it has come to.
 
-use rayon::prelude::*;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_core::vector3::{add, scale};
 
 use super::locator::{Locator, Place};
 use super::whole::Whole;
+
+/// Nodes of a task.
+const NODES: usize = 64;
 
 /// Velocities of all nodes and how paths are followed.
 pub struct Paths<'a> {
@@ -58,16 +61,16 @@ pub fn carried(
     paths: &Paths<'_>,
     values: &[[f64; 1]],
 ) -> Vec<[f64; 1]> {
-    let own = || whole.own.par_iter().map(|&node| Whole::place(part, node));
-    let back: Vec<(usize, End<'_>)> = own().map(|node| (node, paths.follow(locator, node, -1.0))).collect();
+    let own: Vec<usize> = whole.own.iter().map(|&node| Whole::place(part, node)).collect();
+    let back: Vec<(usize, End<'_>)> =
+        parallel::map(own.len(), NODES, |at| (own[at], paths.follow(locator, own[at], -1.0)));
     let there: Vec<[f64; 1]> =
         back.iter().map(|(node, end)| end.place.map_or(values[*node], |place| [place.value(values)])).collect();
     let all_there = whole.field(part, &there);
-    let corrected = own().map(|node| match paths.follow(locator, node, 1.0) {
-        End { place: Some(place), is_inside: true } => [1.5 * values[node][0] - 0.5 * place.value(&all_there)],
-        _ => values[node],
+    let corrected: Vec<[f64; 1]> = parallel::map(own.len(), NODES, |at| match paths.follow(locator, own[at], 1.0) {
+        End { place: Some(place), is_inside: true } => [1.5 * values[own[at]][0] - 0.5 * place.value(&all_there)],
+        _ => values[own[at]],
     });
-    let corrected: Vec<[f64; 1]> = corrected.collect();
     let all_corrected = whole.field(part, &corrected);
     let better = |((_, end), there): (&(usize, End<'_>), &[f64; 1])| match end.place {
         Some(place) if end.is_inside => [place.value(&all_corrected)],

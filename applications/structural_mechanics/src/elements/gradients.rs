@@ -1,9 +1,10 @@
 //! Gradients of shape functions, and columns of the nodes of an entity, as elements read them.
 
-use zelus_core::entities::{Gather, StepView};
+use zelus_core::entities::{Gather, LocalUnknown, StepView};
 use zelus_core::model::Variable;
 
 use crate::tensor::{IDENTITY, Tensor, inverse, pairs};
+use crate::variables::DISPLACEMENT;
 
 /// Σ x_i ⊗ ∂N_i: Jacobian of a map with values `x` at the nodes.
 pub(super) fn gradient<const NODES: usize, const DIM: usize>(
@@ -45,13 +46,12 @@ pub fn physical_gradients<const NODES: usize, const DIM: usize>(
 ) -> ([[f64; DIM]; NODES], f64) {
     let jacobian = padded(&gradient(x, local));
     let inverse = inverse(&jacobian);
-    let dn = local.map(|dn| {
-        let mut out = [0.0; DIM];
-        for (a, out) in out.iter_mut().enumerate() {
-            *out = (0..DIM).map(|k| dn[k] * inverse[(k, a)]).sum();
+    let mut dn = [[0.0; DIM]; NODES];
+    for (dn, local) in dn.iter_mut().zip(local) {
+        for (a, out) in dn.iter_mut().enumerate() {
+            *out = (0..DIM).map(|k| local[k] * inverse[(k, a)]).sum();
         }
-        out
-    });
+    }
     (dn, jacobian.determinant())
 }
 
@@ -73,4 +73,9 @@ pub(super) fn nodal_vectors<const NODES: usize>(
         [] => [[0.0; 3]; NODES],
         column => entity.vectors(column),
     }
+}
+
+/// Displacements of all nodes in `dim` directions, node by node.
+pub(super) fn displacements<const SIZE: usize>(dim: usize) -> [LocalUnknown; SIZE] {
+    std::array::from_fn(|row| LocalUnknown::of_node((row / dim) as u8, DISPLACEMENT.component((row % dim) as u8)))
 }

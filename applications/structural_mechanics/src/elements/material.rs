@@ -109,7 +109,7 @@ impl<const S: usize> Material<S> {
 
     /// # Errors
     /// A band that would have to snap back as it softens.
-    pub(super) fn accepts_band(&self, width: impl FnOnce() -> f64) -> Result<(), String> {
+    pub(super) fn accepts_band(&self, width: &dyn Fn() -> f64) -> Result<(), String> {
         let widest = self.law.widest_band();
         if widest == f64::INFINITY {
             return Ok(());

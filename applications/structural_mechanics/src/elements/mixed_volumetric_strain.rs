@@ -283,7 +283,7 @@ where
         variable: &str,
     ) -> Option<Gauss> {
         let (material, values) = (self.material(entity), Self::values(entity, view));
-        results::gauss(material, StressMeasure::Pk2, false, variable, |g| {
+        results::gauss(material, StressMeasure::Pk2, false, variable, &|g| {
             let at = Self::place(material, g, entity);
             Some((Self::state_at(material, &at, &values, state).ok()?, at.weight / material.thickness))
         })

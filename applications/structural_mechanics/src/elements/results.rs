@@ -45,7 +45,7 @@ pub(super) fn gauss<'a, const S: usize>(
     measure: StressMeasure,
     ring: bool,
     variable: &str,
-    point: impl Fn(usize) -> Option<(StrainState<'a, S>, f64)>,
+    point: &dyn Fn(usize) -> Option<(StrainState<'a, S>, f64)>,
 ) -> Option<Gauss> {
     let mut out = Gauss::default();
     for g in 0..material.rule.len() {

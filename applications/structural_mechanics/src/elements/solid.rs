@@ -18,13 +18,13 @@ use zelus_core::geometry::{Shape, ShapeTable};
 use self::kinematics::{Motion, radius};
 use super::band::{self, BANDS_AS_KRATOS};
 use super::formulation::Formulation;
-use super::gradients::{nodal_vectors, physical_gradients};
+use super::gradients::{displacements, nodal_vectors, physical_gradients};
 use super::material::Material;
 use super::results;
 use super::stiffness::add_stiffness;
 use crate::laws::{LawFactory, MakesLaw, StrainState};
 use crate::tensor::{inverse, stress_vector};
-use crate::variables::{DISPLACEMENT, VOLUME_ACCELERATION};
+use crate::variables::VOLUME_ACCELERATION;
 
 /// Solid element with `NODES` nodes in `DIM` dimensions and `S` strains (3 plane, 4 axisymmetric or plane B-bar, 6 solid).
 pub struct Solid<F, const NODES: usize, const DIM: usize, const S: usize> {
@@ -78,6 +78,35 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     }
 }
 
+/// Adds the mass matrix on `positions`; a thickness of `None` is that of a ring.
+fn add_mass<const NODES: usize, const DIM: usize>(
+    table: &ShapeTable,
+    positions: &[[f64; 3]; NODES],
+    density: f64,
+    thickness: Option<f64>,
+    lumped: bool,
+    out: &mut [f64],
+) {
+    for g in 0..table.len() {
+        let n = &table.n::<NODES>()[g];
+        let (_, det) = physical_gradients(positions, &table.dn::<NODES, DIM>()[g]);
+        let turn = thickness.unwrap_or_else(|| 2.0 * PI * radius(n, positions));
+        let mass = density * table.weight(g) * det * turn;
+        for i in 0..NODES {
+            for j in 0..NODES {
+                let share = match (lumped, i == j) {
+                    (false, _) => n[i] * n[j],
+                    (true, true) => n[i],
+                    (true, false) => continue,
+                };
+                for a in 0..DIM {
+                    out[(i * DIM + a) * NODES * DIM + j * DIM + a] += mass * share;
+                }
+            }
+        }
+    }
+}
+
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize> Kernel<NODES, SIZE>
     for Solid<F, NODES, DIM, S>
 where
@@ -86,7 +115,7 @@ where
     type State = Box<[f64]>;
 
     fn unknowns() -> [LocalUnknown; SIZE] {
-        std::array::from_fn(|row| LocalUnknown::of_node((row / DIM) as u8, DISPLACEMENT.component((row % DIM) as u8)))
+        displacements(DIM)
     }
 
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
@@ -110,7 +139,7 @@ where
     fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;
-        material.accepts_band(|| band::width(table, &entity.initial, view.info.is(BANDS_AS_KRATOS)))?;
+        material.accepts_band(&|| band::width(table, &entity.initial, view.info.is(BANDS_AS_KRATOS)))?;
         if (0..table.len()).all(|g| Self::initial_weight(table, g, entity) > 0.0) {
             Ok(vec![0.0; table.len() * material.law.history()].into())
         } else if Self::AXISYMMETRIC {
@@ -209,24 +238,8 @@ where
         let order = self.shape.cell().default_order + usize::from(!lumped);
         let table = ShapeTable::get(self.shape, order);
         let positions = if lumped { &entity.current } else { &entity.initial };
-        for g in 0..table.len() {
-            let n = &table.n::<NODES>()[g];
-            let (_, det) = physical_gradients(positions, &table.dn::<NODES, DIM>()[g]);
-            let turn = if Self::AXISYMMETRIC { 2.0 * PI * radius(n, positions) } else { material.thickness };
-            let mass = material.density * table.weight(g) * det * turn;
-            for i in 0..NODES {
-                for j in 0..NODES {
-                    let share = match (lumped, i == j) {
-                        (false, _) => n[i] * n[j],
-                        (true, true) => n[i],
-                        (true, false) => continue,
-                    };
-                    for a in 0..DIM {
-                        out[(i * DIM + a) * SIZE + j * DIM + a] += mass * share;
-                    }
-                }
-            }
-        }
+        let thickness = (!Self::AXISYMMETRIC).then_some(material.thickness);
+        add_mass::<NODES, DIM>(table, positions, material.density, thickness, lumped, out);
         true
     }
 
@@ -264,7 +277,7 @@ where
         let material = self.material(entity);
         let (motion, mean) = (self.motion(entity, view), Self::mean_gradients(material, entity));
         let [_, pressure] = Self::pressure(material, entity, &motion, state).ok()?;
-        results::gauss(material, F::MEASURE, S == 4 && !F::MEAN_DILATATION, variable, |g| {
+        results::gauss(material, F::MEASURE, S == 4 && !F::MEAN_DILATATION, variable, &|g| {
             let point = Self::point(material, g, entity, &motion, &mean, state).ok()?;
             let weight = Self::initial_weight(material.rule, g, entity);
             Some((StrainState { pressure, ..point.state }, weight))

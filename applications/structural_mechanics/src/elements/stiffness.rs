@@ -71,7 +71,10 @@ fn add<const S: usize, const SIZE: usize>(
     whole: bool,
     out: &mut [[f64; SIZE]; SIZE],
 ) {
-    let transposed: Matrix<S> = std::array::from_fn(|s| std::array::from_fn(|row| weight * d[row][s]));
+    let mut transposed = [[0.0; S]; S];
+    for s in 0..S {
+        (0..S).for_each(|row| transposed[s][row] = weight * d[row][s]);
+    }
     let mut db = [[0.0; SIZE]; S];
     add_product(&transposed, b, true, &mut db);
     add_product(b, &db, whole, out);

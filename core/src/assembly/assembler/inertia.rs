@@ -1,16 +1,12 @@
 //! What moves: mass and damping matrices on the pattern of the bulk, and the forces they take up.
 
-use rayon::prelude::*;
-use zelus_linear_algebra::vector::{clear, zeros};
+use zelus_linear_algebra::vector::{clear, copy, zeros};
 
 use super::{Assembler, is_variable};
 use crate::assembly::{Dof, System};
 use crate::diagnostics::Result;
 use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
 use crate::model::{ModelPart, Nodes, Rates, Role};
-
-/// Numbers of a task.
-pub(super) const CHUNK: usize = 1 << 14;
 
 /// What inertia and damping add: factors of the mass and damping matrices in the tangent, and the fields they act on.
 ///
@@ -160,7 +156,7 @@ impl Assembler {
         let mut values = if memory.len() == entries { memory } else { zeros(entries) };
         match self.constant.as_deref().expect("assembled before the first residual") {
             [] => clear(&mut values),
-            constant => values.par_iter_mut().zip(constant).with_min_len(CHUNK).for_each(|(value, own)| *value = *own),
+            constant => copy(constant, &mut values),
         }
         let is_element = |block: &dyn EntityBlock| block.entry().role == Role::Element;
         self.add_blocks(

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 use super::dataset::{Column, Dataset, Values};
 use crate::communication::Ranks;
@@ -105,7 +105,9 @@ impl Appended {
             escape(name),
             self.bytes.len()
         )?;
-        let blocks: Vec<Vec<u8>> = bytes.par_chunks(BLOCK).map(compress).collect::<io::Result<_>>()?;
+        let block = |at: usize| compress(&bytes[at * BLOCK..((at + 1) * BLOCK).min(bytes.len())]);
+        let blocks = parallel::map(bytes.len().div_ceil(BLOCK), 1, block);
+        let blocks: Vec<Vec<u8>> = blocks.into_iter().collect::<io::Result<_>>()?;
         let head = [blocks.len(), BLOCK, bytes.len() % BLOCK].into_iter().chain(blocks.iter().map(Vec::len));
         self.bytes.extend(head.flat_map(|number| (number as u64).to_le_bytes()));
         blocks.iter().for_each(|block| self.bytes.extend_from_slice(block));

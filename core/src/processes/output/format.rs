@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use crate::diagnostics::Result;
 use crate::io::Mark;
@@ -106,10 +106,13 @@ impl OutputFormat for Legacy {
 
 /// Compressed VTU, with a PVD file a series.
 #[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct Vtu {
     /// Time and file of every step written, by series.
     series: BTreeMap<String, Vec<(f64, String)>>,
 }
+
+stored_as_bytes!(Vtu);
 
 #[typetag::serde(name = "vtu")]
 impl State for Vtu {

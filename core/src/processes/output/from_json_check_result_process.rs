@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::control::TimeCounter;
 use super::gauss;
@@ -157,7 +157,10 @@ impl FromJsonCheck {
 
 /// Time since the last comparison.
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct SavedCounter(f64);
+
+stored_as_bytes!(SavedCounter);
 
 #[typetag::serde(name = "from_json_check_result")]
 impl State for SavedCounter {

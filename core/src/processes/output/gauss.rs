@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 use super::quantity::GaussQuantity;
 use crate::assembly::System;
@@ -55,7 +55,7 @@ fn visit(
             .filter_map(|(at, &member)| position.get(member as usize).filter(|&&p| p != OUT).map(|&p| (at, p as usize)))
             .collect();
         let values: Vec<Option<Gauss>> =
-            wanted.par_iter().map(|&(at, _)| values_of(block.as_ref(), &view, name, at)).collect();
+            parallel::map(wanted.len(), 16, |at| values_of(block.as_ref(), &view, name, wanted[at].0));
         for ((at, row), gauss) in wanted.into_iter().zip(values) {
             let Some(gauss) = gauss.filter(|gauss| !gauss.weights.is_empty()) else { continue };
             let seen =

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::control::OutputControl;
 use super::gauss;
@@ -188,10 +188,13 @@ impl GidOutput {
 
 /// Files of results so far, with their lengths, and when output is wanted next.
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct GidOutputState {
     written: Vec<(PathBuf, u64)>,
     next: f64,
 }
+
+stored_as_bytes!(GidOutputState);
 
 #[typetag::serde(name = "gid_output")]
 impl State for GidOutputState {

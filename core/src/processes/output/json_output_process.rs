@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::control::TimeCounter;
 use super::gauss;
@@ -55,6 +55,7 @@ struct Histories {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct JsonOutputState {
     counter: f64,
     series: Histories,
@@ -62,6 +63,8 @@ struct JsonOutputState {
     #[serde(skip)]
     regrouped: bool,
 }
+
+stored_as_bytes!(JsonOutputState);
 
 #[typetag::serde(name = "json_output")]
 impl State for JsonOutputState {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::json_output_process::fields;
 use super::place::{PartPath, one_of};
@@ -186,7 +186,10 @@ impl PointsOutput {
 
 /// Lengths of the files, once there are any.
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct SavedLengths(Vec<u64>);
+
+stored_as_bytes!(SavedLengths);
 
 #[typetag::serde(name = "points_output")]
 impl State for SavedLengths {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::place::{PartPath, one_of};
 use crate::diagnostics::{Result, unfit};
@@ -36,10 +36,13 @@ struct SaveRestart {
 
 /// Time or step of the next file, and the files so far.
 #[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct Saved {
     next: f64,
     files: Vec<PathBuf>,
 }
+
+stored_as_bytes!(Saved);
 
 #[typetag::serde(name = "save_restart")]
 impl State for Saved {

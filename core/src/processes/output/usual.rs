@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
+use zelus_linear_algebra::parallel;
 
 use super::gauss::is_known;
 use super::quantity::{GaussQuantity, Quantity};
@@ -42,8 +42,7 @@ pub fn largest_results(part: &ModelPart) -> BTreeMap<String, f64> {
             let entries = (row * components..(row + 1) * components).map(|at| column.values.get(at));
             entries.map(|x| x * x).sum::<f64>().sqrt()
         };
-        let rows = (0..column.values.len() / components).into_par_iter().with_min_len(ROWS);
-        let own = rows.map(size).reduce(|| 0.0, f64::max);
+        let own = parallel::largest(column.values.len() / components, ROWS, size);
         let all = part.ranks.gather_counted(&[own], &vec![1; part.ranks.size()]);
         (column.name, all.into_iter().fold(0.0, f64::max))
     };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State};
+use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::control::{OutputControl, Unit};
 use super::format::{OutputFormat, OutputFormatEntry, Shown};
@@ -152,11 +152,14 @@ impl VtkOutput {
 
 /// When output is wanted next, and what the format remembers.
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Self")]
 struct VtkOutputState {
     next: f64,
     clears: bool,
     format: Option<Box<dyn State>>,
 }
+
+stored_as_bytes!(VtkOutputState);
 
 #[typetag::serde(name = "vtk_output")]
 impl State for VtkOutputState {

@@ -1,9 +1,7 @@
 //! The preconditioner: conditions first, then what is left, then the multipliers.
 
-use rayon::prelude::*;
-
-use super::group::Group;
 use super::{Constrained, NONE};
+use crate::parallel;
 use crate::system::System;
 use crate::vector::{self, CHUNK};
 
@@ -27,13 +25,13 @@ impl Constrained {
             self.groups.iter().map(|group| group.rows().map(|e| r[e as usize]).collect()).collect();
         if prescribes {
             // Only unknowns that groups prescribe differ from zero.
-            let beside = self.beside.par_iter().with_min_len(64);
-            let changes: Vec<f64> = beside.map(|&e| system.row_product(e as usize, &z)).collect();
+            let change = |at: usize| system.row_product(self.beside[at] as usize, &z);
+            let changes: Vec<f64> = parallel::map(self.beside.len(), 64, change);
             self.beside.iter().zip(changes).for_each(|(&e, change)| r[e as usize] -= change);
         }
         self.ghosts.spread(r, 1);
-        let all = self.equation.par_iter().with_min_len(CHUNK);
-        let mut b: Vec<f64> = all.map(|&e| if e == NONE { 0.0 } else { r[e as usize] }).collect();
+        let at_equation = |e: u32| if e == NONE { 0.0 } else { r[e as usize] };
+        let mut b: Vec<f64> = parallel::map(self.equation.len(), CHUNK, |at| at_equation(self.equation[at]));
         let mut multipliers = vec![0.0; if self.groups.is_empty() { 0 } else { r.len() }];
         for group in &self.groups {
             let s = group.equations();
@@ -52,16 +50,18 @@ impl Constrained {
         }
         solve(&mut b[..self.blocks.own() * self.width]);
         self.blocks.spread(&mut b, self.width);
-        let places = self.place.par_iter().zip(&self.group_of).zip(&mut z).with_min_len(CHUNK);
-        let free = places.filter(|((place, group), _)| **place != NONE && **group == NONE);
-        free.for_each(|((place, _), z)| *z = b[*place as usize]);
+        parallel::parts_mut(&mut z, CHUNK, &|first, z| {
+            let places = self.place[first..].iter().zip(&self.group_of[first..]).zip(z);
+            let free = places.filter(|((place, group), _)| **place != NONE && **group == NONE);
+            free.for_each(|((place, _), z)| *z = b[*place as usize]);
+        });
         for group in &self.groups {
             for (&e, follows) in group.own.iter().zip(&group.follows) {
                 z[e as usize] += follows.iter().map(|&(place, factor)| factor * b[place as usize]).sum::<f64>();
             }
         }
-        let recovered = |(group, kept): (&Group, &Vec<f64>)| -> Vec<f64> {
-            let mut kept = kept.iter();
+        let recovered = |at: usize| -> Vec<f64> {
+            let (group, mut kept) = (&self.groups[at], kept[at].iter());
             let known = group.stack(|e| {
                 let known = kept.next().expect("as many as the group has rows");
                 known - system.row_product(e as usize, &z)
@@ -69,7 +69,7 @@ impl Constrained {
             let rows = group.elimination.recovery.chunks_exact(group.equations());
             rows.map(|row| row.iter().zip(&known).map(|(a, b)| a * b).sum::<f64>() / group.action).collect()
         };
-        let found: Vec<Vec<f64>> = self.groups.par_iter().zip(&kept).with_min_len(16).map(recovered).collect();
+        let found: Vec<Vec<f64>> = parallel::map(self.groups.len(), 16, recovered);
         for (group, found) in self.groups.iter().zip(found) {
             group.multipliers.iter().zip(found).for_each(|(&m, value)| z[m as usize] = value);
         }

@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::group::Group;
 use super::{Constrained, NONE};
 use crate::csr::are_same;
 use crate::memory;
+use crate::parallel;
 use crate::precondition::block_matrix::BlockMatrix;
 use crate::precondition::block_row::BlockRow;
 use crate::precondition::blocks::Blocks;
@@ -82,13 +81,14 @@ impl Constrained {
 
     /// The largest entry on the diagonal of the bulk, one where all are zero; collective.
     fn largest_diagonal(&self, system: &System<'_>) -> f64 {
-        let rows = (0..system.bulk.rows).into_par_iter().with_min_len(1024);
-        let is_left = |i: &usize| !system.layout.multiplier[*i] && !system.layout.is_held(*i);
-        let diagonal = rows.filter(is_left).map(|i| {
+        let largest = parallel::largest(system.bulk.rows, 1024, |i| {
+            if system.layout.multiplier[i] || system.layout.is_held(i) {
+                return 0.0;
+            }
             system.bulk.prefetch_diagonal(i + ROWS_AHEAD);
             system.bulk.get(i, i).abs()
         });
-        let largest = self.ghosts.largest(diagonal.reduce(|| 0.0, f64::max));
+        let largest = self.ghosts.largest(largest);
         if largest > 0.0 { largest } else { 1.0 }
     }
 
@@ -105,8 +105,8 @@ impl Constrained {
         // Block and slot of each equation that has one.
         let blocks = self.equation.len() / w;
         let of_place = |place: u32| (place / w as u32, place % w as u32);
-        let of_equation = |&place: &u32| if place == NONE { (NONE, 0) } else { of_place(place) };
-        let at: Vec<(u32, u32)> = self.place.par_iter().with_min_len(CHUNK).map(of_equation).collect();
+        let of_equation = |place: u32| if place == NONE { (NONE, 0) } else { of_place(place) };
+        let at: Vec<(u32, u32)> = parallel::map(self.place.len(), CHUNK, |e| of_equation(self.place[e]));
         let coupled = |i: usize| {
             let rows = system.active_coupling().into_iter().map(move |coupling| coupling.row(i));
             rows.flat_map(|(columns, values)| columns.iter().zip(values))
@@ -114,7 +114,7 @@ impl Constrained {
                 .map(|(&j, &value)| (j as usize, value))
         };
         let recovery = |group: &Group| group.multipliers.iter().map(|&m| self.recovery(m)).collect::<Vec<_>>();
-        let recoveries: Vec<_> = self.groups.par_iter().map(recovery).collect();
+        let recoveries = parallel::map(self.groups.len(), 16, |at| recovery(&self.groups[at]));
         let recovery = |m: u32| {
             let group = self.group_of[m as usize] as usize;
             &recoveries[group][self.groups[group].slot_of_multiplier(m)][..]
@@ -123,7 +123,7 @@ impl Constrained {
             let mut equations = self.equation[b * w..(b + 1) * w].iter().filter(|&&e| e != NONE).map(|&e| e as usize);
             equations.all(|i| plain[i] && self.group_of[i] == NONE && coupled(i).next().is_none())
         };
-        let of_bulk: Vec<bool> = (0..self.blocks.own()).into_par_iter().with_min_len(CHUNK).map(of_bulk).collect();
+        let of_bulk: Vec<bool> = parallel::map(self.blocks.own(), CHUNK, of_bulk);
         let fill = |b: usize, row: &mut BlockRow, scratch: &mut Scratch| {
             let equations = &self.equation[b * w..(b + 1) * w];
             if of_bulk[b] && !equations.contains(&NONE) {
@@ -239,18 +239,17 @@ impl Constrained {
         let mut on_blocks: Vec<Vec<f64>> = if system.layout.near_null_space.is_empty() {
             let alike = |k: usize| {
                 let is_set = |at: usize| at % self.width == k && self.equation[at] != NONE;
-                let places = (0..self.equation.len()).into_par_iter().with_min_len(CHUNK);
-                places.map(|at| f64::from(u8::from(is_set(at)))).collect()
+                parallel::map(self.equation.len(), CHUNK, |at| f64::from(u8::from(is_set(at))))
             };
             (0..self.width).map(alike).collect()
         } else {
             let of = |vector: &Vec<f64>| {
-                let equations = self.equation.par_iter().with_min_len(CHUNK);
-                equations.map(|&e| if e == NONE { 0.0 } else { vector[e as usize] }).collect()
+                let value = |e: u32| if e == NONE { 0.0 } else { vector[e as usize] };
+                parallel::map(self.equation.len(), CHUNK, |at| value(self.equation[at]))
             };
             system.layout.near_null_space.iter().map(of).collect()
         };
-        on_blocks.par_iter_mut().for_each(|vector| {
+        parallel::each_mut(&mut on_blocks, 1, |_, vector| {
             for group in &self.groups {
                 let free = group.tangential();
                 let motion: Vec<f64> = group.own.iter().map(|&e| vector[self.place[e as usize] as usize]).collect();

@@ -17,12 +17,11 @@ mod elimination;
 mod group;
 mod left;
 
-use rayon::prelude::*;
-
 use super::blocks::Blocks;
 use super::multigrid::Multigrid;
 use crate::components::Components;
 use crate::ghosts::{Ghosts, Owned};
+use crate::parallel;
 use crate::system::System;
 use group::Group;
 
@@ -157,8 +156,8 @@ impl Constrained {
         }
         // What follows from conditions alone, what nothing here determines, and the group of the rest.
         type Found = (Vec<(u32, f64, f64)>, Vec<u32>, Option<Result<Group, usize>>);
-        let find = |(node, multipliers): (u32, Vec<u32>)| -> Found {
-            let own: Vec<u32> = match block[node as usize] {
+        let find = |(node, multipliers): &(u32, Vec<u32>)| -> Found {
+            let own: Vec<u32> = match block[*node as usize] {
                 NONE => Vec::new(),
                 b => {
                     (0..self.width).map(|k| self.equation[b as usize * self.width + k]).filter(|&e| e != NONE).collect()
@@ -183,7 +182,7 @@ impl Constrained {
             (idle, lone, group)
         };
         let nodes: Vec<(u32, Vec<u32>)> = of_node.into_iter().collect();
-        let found: Vec<Found> = nodes.into_par_iter().with_min_len(16).map(find).collect();
+        let found: Vec<Found> = parallel::map(nodes.len(), 16, |at| find(&nodes[at]));
         let mut lone = Vec::new();
         for (idle, more, group) in found {
             for (m, diagonal, scale) in idle {
@@ -285,7 +284,7 @@ impl Constrained {
             }
             rows
         };
-        let all: Vec<Vec<Vec<(u32, f64)>>> = self.groups.par_iter().with_min_len(16).map(of_group).collect();
+        let all: Vec<Vec<Vec<(u32, f64)>>> = parallel::map(self.groups.len(), 16, |at| of_group(&self.groups[at]));
         // Patterns are symmetric: what stands in a column stands in the row, too.
         let near = |of: fn(&Group) -> &[u32]| -> Vec<u32> {
             let mut is_near = vec![false; system.equations()];
@@ -317,7 +316,7 @@ impl Constrained {
     /// What the unknowns of groups follow.
     fn find_follows(&mut self) {
         let (place, w) = (&self.place, self.width);
-        self.groups.par_iter_mut().with_min_len(16).for_each(|group| {
+        parallel::each_mut(&mut self.groups, 16, |_, group| {
             let (free, a) = (group.tangential(), group.elimination.prescribed);
             let of_row = |row: usize| {
                 let own = (0..free).map(|k| (place[group.own[k] as usize], group.elimination.free[row * free + k]));
@@ -372,8 +371,8 @@ impl Constrained {
             blocks.iter().copied().chain(others).map(|near| near as usize).filter(|&near| near < own)
         };
         let components = Components::new(own);
-        (0..own).into_par_iter().with_min_len(BLOCKS).for_each(|block| {
-            near(block).for_each(|next| components.join(block as u32, next as u32));
+        parallel::ranges(own, BLOCKS, &|blocks| {
+            blocks.for_each(|block| near(block).for_each(|next| components.join(block as u32, next as u32)));
         });
         let mut bodies = vec![NONE; own];
         let mut count = 0;

@@ -85,7 +85,13 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             return Motion { u: displacement, ahead: None, temperatures, band };
         }
         let (x, initial) = (&entity.current, &entity.initial);
-        let nodes = |of: &dyn Fn(usize, usize) -> f64| std::array::from_fn(|i| std::array::from_fn(|c| of(i, c)));
+        let nodes = |of: &dyn Fn(usize, usize) -> f64| {
+            let mut out = [[0.0; 3]; NODES];
+            for (i, out) in out.iter_mut().enumerate() {
+                (0..3).for_each(|c| out[c] = of(i, c));
+            }
+            out
+        };
         let trails = (0..NODES).any(|i| (0..3).any(|c| x[i][c] != initial[i][c] + displacement[i][c]));
         let ahead = (F::PRESENT && trails).then(|| {
             let old: [[f64; 3]; NODES] = match view.nodes.history.values(&DISPLACEMENT, 1) {
@@ -203,7 +209,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             if r <= 0.0 || r.is_nan() {
                 return Err(format!("the radius at Gauss point {} is {r}, not positive", g + 1));
             }
-            hoop = n.map(|n| n / r);
+            hoop.iter_mut().zip(n).for_each(|(hoop, n)| *hoop = n / r);
             turn = 2.0 * PI * r;
         }
         if (F::FINITE || !material.law.is_linear()) && (det_f <= 0.0 || det_f.is_nan()) {

@@ -50,8 +50,9 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         shape_functions(self.shape, point.local, &mut n);
         let mut local = [[0.0; 3]; 27];
         local_gradients(self.shape, point.local, &mut local);
-        let local: [[f64; DIM]; NODES] = std::array::from_fn(|i| std::array::from_fn(|k| local[i][k]));
-        let (dn, _) = physical_gradients(&entity.initial, &local);
+        let mut own = [[0.0; DIM]; NODES];
+        own.iter_mut().zip(&local).for_each(|(own, local)| own.copy_from_slice(&local[..DIM]));
+        let (dn, _) = physical_gradients(&entity.initial, &own);
         let mean = Self::mean_gradients(material, entity);
         let (Deformation { strain, f, det_f }, excess) =
             Self::deformation(&n, &dn, &gradient(u, &dn), u, &mean, &entity.initial);
@@ -64,7 +65,10 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         let stress = along(&stress_tensor(&stress), point.normal).map(|t| t * material.thickness);
         if let Some(by) = by {
             let r = radius(&n, &entity.initial);
-            let around = if Self::AXISYMMETRIC { n.map(|n| n / r) } else { [0.0; NODES] };
+            let mut around = [0.0; NODES];
+            if Self::AXISYMMETRIC {
+                around.iter_mut().zip(&n).for_each(|(around, n)| *around = n / r);
+            }
             for (r, by) in by.iter_mut().enumerate() {
                 let (i, a) = (r / DIM, r % DIM);
                 let mut change = Tensor::zeros();
