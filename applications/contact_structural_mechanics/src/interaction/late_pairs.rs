@@ -2,10 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use rayon::iter::Either;
-use rayon::prelude::*;
 use zelus_core::Result;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_core::vector3::{add, dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
@@ -75,11 +74,12 @@ pub(super) fn late_pairs(
     let near = near.filter_map(|(key, within_reach)| (within_reach && !known.contains(&key)).then_some(key));
     let near: Vec<PairKey> = near.collect();
     let pairs_of = |keys: &[PairKey]| -> (Vec<Pair>, Vec<Pair>) {
-        keys.par_iter().with_min_len(PAIRS).partition_map(|&key| {
-            let pair = pairing.pair(part, key);
-            let has_crossed = have_crossed(part, pairing.slave(key), pairing.master(key));
-            if has_crossed { Either::Left(pair) } else { Either::Right(pair) }
-        })
+        let found = parallel::map(keys.len(), PAIRS, |at| {
+            let key = keys[at];
+            (pairing.pair(part, key), have_crossed(part, pairing.slave(key), pairing.master(key)))
+        });
+        let (crossed, rest): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, has_crossed)| *has_crossed);
+        [crossed, rest].map(|pairs| pairs.into_iter().map(|(pair, _)| pair).collect()).into()
     };
     // All ranks know what is near; each makes pairs of what it evaluates.
     let is_own = |key: &PairKey| part.evaluates_pair(&pairing.slave(*key).nodes);

@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::{EntityBlock, require_kind};
 use zelus_core::model::{ModelPart, Role};
+use zelus_core::parallel;
 use zelus_core::vector3::dot;
 
 use super::contact_settings::ContactSettings;
@@ -263,7 +263,8 @@ impl Pairing {
         if part.info.is(AVERAGED_EDGES) {
             return all;
         }
-        all.into_par_iter().with_min_len(PAIRS).filter(|(key, _)| self.meet(part, *key)).collect()
+        let meeting = parallel::select(all.len(), PAIRS, |at| self.meet(part, all[at].0));
+        meeting.into_iter().map(|at| all[at as usize]).collect()
     }
 
     /// Whether the facets face each other. A facet across an edge of the slave is at right angles to the master: its overlap is

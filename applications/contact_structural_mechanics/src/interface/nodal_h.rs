@@ -2,13 +2,13 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use rayon::prelude::*;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_core::vector3::{dot, sub};
 
 use crate::variables::NODAL_H;
 
-/// Elements that a thread takes at a time, at least.
+/// Elements that a thread takes at a time.
 const CHUNK: usize = 1 << 12;
 
 /// Writes NODAL_H: the distance to the nearest other node of any element of the node, initial configuration (length);
@@ -23,7 +23,7 @@ pub fn find_nodal_h(part: &mut ModelPart) {
         }
     };
     let (elements, initial) = (&part.elements, &part.nodes.initial);
-    (0..elements.len() as u32).into_par_iter().with_min_len(CHUNK).for_each(|element| {
+    let of_element = |element: u32| {
         let nodes = elements.nodes(element);
         for (i, &a) in nodes.iter().enumerate() {
             let (x, mut nearest) = (initial[a as usize], f64::MAX);
@@ -35,7 +35,8 @@ pub fn find_nodal_h(part: &mut ModelPart) {
             }
             lower(a, nearest);
         }
-    });
+    };
+    parallel::ranges(elements.len(), CHUNK, &|range| range.for_each(|element| of_element(element as u32)));
     let squares = squares.into_iter().map(|bits| f64::from_bits(bits.into_inner()));
     let mut sizes: Vec<f64> = squares.map(|s| if s < f64::MAX { s.sqrt() } else { s }).collect();
     if let Some(share) = &part.share {

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use zelus_core::geometry::FacetShape;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_structural_mechanics::variables::NORMAL;
 
+use super::grouping::PAIRS;
 use super::pair::PairKey;
 use crate::interface::{Facet, Interface};
 use crate::mortar::operators::SLIVER;
@@ -118,15 +119,16 @@ pub fn overlapping_pairs(
     let mut pairs = Vec::new();
     for (at, interface) in interfaces.iter().enumerate() {
         let slave_nodes = |pair: &FacetPair| &interface.facets[pair.key.slave as usize].nodes;
-        let found = candidates(part, interface, search).into_par_iter().with_min_len(32).filter_map(|candidate| {
-            let Candidate { slave, master, .. } = candidate;
+        let near = candidates(part, interface, search);
+        let found = parallel::map(near.len(), PAIRS, |place| {
+            let Candidate { slave, master, .. } = near[place];
             let key = PairKey { interface: at as u32, slave, master };
             let (slave, master) = (&interface.facets[slave as usize], &interface.facets[master as usize]);
             let own = |local: usize| normals(key, local);
             let operators = if known(&key) { None } else { facet_operators(part, slave, master, &own, segmentation) };
             Some(FacetPair { key, operators: operators? })
         });
-        let found: Vec<FacetPair> = found.collect();
+        let found: Vec<FacetPair> = found.into_iter().flatten().collect();
         let whole = found.iter().filter(|pair| !pair.operators.sliver);
         let covered: BTreeSet<u32> = whole.flat_map(slave_nodes).copied().collect();
         let counts = |pair: &FacetPair| !pair.operators.sliver || slave_nodes(pair).iter().all(|n| covered.contains(n));

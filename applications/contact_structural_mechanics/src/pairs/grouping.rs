@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use zelus_core::geometry::Shape;
+use zelus_core::parallel;
 
 use super::pair::PairKey;
 use crate::interface::Interface;
@@ -45,16 +45,15 @@ pub fn group_by_surroundings<T: Sync>(
     nodes: &[u32],
 ) -> BTreeMap<usize, (Vec<T>, Vec<u32>)> {
     let size = nodes.len() / pairs.len().max(1);
-    let surroundings = |(pair, own): (&T, &[u32])| {
-        let mut around = around(pair);
+    let surroundings = parallel::map(pairs.len(), PAIRS, |at| {
+        let own = &nodes[at * size..(at + 1) * size];
+        let mut around = around(&pairs[at]);
         around.retain(|node| !own.contains(node));
         around.sort_unstable();
         around.dedup();
         around.resize(around.len().next_multiple_of(PLACES), own[0]);
         around
-    };
-    let of_pairs = pairs.par_iter().zip(nodes.par_chunks_exact(size.max(1))).with_min_len(PAIRS);
-    let surroundings: Vec<Vec<u32>> = of_pairs.map(surroundings).collect();
+    });
     let mut groups: BTreeMap<usize, (Vec<T>, Vec<u32>)> = BTreeMap::new();
     for ((pair, own), around) in pairs.into_iter().zip(nodes.chunks_exact(size.max(1))).zip(surroundings) {
         let (group, nodes) = groups.entry(around.len()).or_default();

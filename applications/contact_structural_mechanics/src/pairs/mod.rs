@@ -5,7 +5,6 @@ mod facet_operators;
 mod facing_points;
 mod family;
 mod grouping;
-mod in_parallel;
 mod kinematics;
 mod known_operators;
 mod local_system;

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use zelus_core::entities::{LocalUnknown, StepView};
 use zelus_core::geometry::{FacetShape, Nodal};
 use zelus_core::model::{EntityKind, ScalarVariable};
+use zelus_core::parallel;
 use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_block::Present;
 use super::family::PairRequest;
-use super::in_parallel::in_parallel;
+use super::grouping::PAIRS;
 use super::kinematics::PairHistory;
 use super::known_operators::KnownOperators;
 use super::pair::{Integral, Pair, Previous};
@@ -248,14 +249,14 @@ impl PairsOfShapes {
 
     /// Computes the operators of this rank's pairs in the present state.
     pub(super) fn find_operators(&mut self, present: Present<'_>) {
-        self.known = in_parallel(self.pairs.len(), &|at| {
+        self.known = parallel::map(self.pairs.len(), PAIRS, |at| {
             self.operators_now(at, present).map(|(geometry, found)| KnownOperators::new(&geometry, &found))
         });
     }
 
     /// Gap and area of every pair, and the contribution of a law to those that overlap.
     pub(super) fn integrate(&self, present: Present<'_>, add: Addition<'_>) -> Vec<Integral> {
-        in_parallel(self.pairs.len(), &|at| {
+        parallel::map(self.pairs.len(), PAIRS, |at| {
             let mut out = Integral::default();
             let Some((geometry, found)) = self.operators_now(at, present) else { return out };
             out.facing = !matches!(found, Overlap::None);
@@ -278,7 +279,7 @@ impl PairsOfShapes {
             let found = self.operators_now(at, present).and_then(|(_, found)| found.cells());
             found.map_or_else(Previous::default, |found| Previous::of(&found))
         };
-        let kept = in_parallel(self.pairs.len(), &kept);
+        let kept = parallel::map(self.pairs.len(), PAIRS, kept);
         self.pairs.iter_mut().zip(kept).for_each(|(pair, operators)| pair.previous = operators);
     }
 
@@ -289,7 +290,7 @@ impl PairsOfShapes {
             Some(choices_of(&geometry, &self.parameters.segmentation, &found.cells()?))
         };
         let choices = |at: usize| choices(at).unwrap_or(self.pairs[at].choices);
-        let choices = in_parallel(self.pairs.len(), &choices);
+        let choices = parallel::map(self.pairs.len(), PAIRS, choices);
         self.pairs.iter_mut().zip(choices).for_each(|(pair, choices)| pair.choices = choices);
     }
 }

@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use zelus_core::Result;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_core::parameters::{Node, Settings};
 use zelus_core::processes::NamedSurface;
 
@@ -15,7 +15,7 @@ use super::interface_settings::{check_slaves, integration_order};
 use super::touching;
 use crate::interface::{Facet, Interface, Roles, interfaces};
 use crate::mortar::SegmentationSettings;
-use crate::pairs::{FacingPoint, PairKey, facing_points};
+use crate::pairs::{FacingPoint, PAIRS, PairKey, facing_points};
 use crate::search::{Candidate, GapCheck, SearchDistance, SearchSettings, WithinStep, candidates};
 
 #[derive(Debug, Deserialize)]
@@ -98,11 +98,12 @@ impl FacingSurfaces {
         let normals = &own.normals_of(part, Roles::Slave).into_iter().collect();
         let segmentation = &self.segmentation;
         let near = candidates(part, own, &self.search);
-        let found = near.par_iter().with_min_len(32).flat_map_iter(|&Candidate { slave, master, .. }| {
+        let found = parallel::map(near.len(), PAIRS, |at| {
+            let Candidate { slave, master, .. } = near[at];
             let key = PairKey { interface: interface as u32, slave, master };
             let facets = [slave, master].map(|at| &own.facets[at as usize]);
-            of_pair(FacingPair { key, facets, part, normals, segmentation })
+            of_pair(FacingPair { key, facets, part, normals, segmentation }).into_iter().collect::<Vec<T>>()
         });
-        found.collect()
+        found.into_iter().flatten().collect()
     }
 }

@@ -1,11 +1,14 @@
 //! Pairs of facets that are near each other and do not face the same way.
 
-use rayon::prelude::*;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_core::vector3::{dot, norm, scale, sub};
 
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles};
+
+/// Facets or nodes that a thread looks around at a time.
+pub(super) const AT_A_TIME: usize = 64;
 
 /// Radii within which circles count as meeting.
 const SLACK: f64 = 1.1;
@@ -97,30 +100,28 @@ pub(super) fn among(
     let place = |f: u32| Place::of(part, &interface.facets[f as usize]);
     let places: Vec<Place> = masters.iter().map(|&m| place(m)).collect();
     let tree = Tree::new(places.iter().map(|p| p.bounds).collect());
-    slaves
-        .par_iter()
-        .with_min_len(64)
-        .flat_map_iter(|&slave| {
-            let own = place(slave);
-            let reach = settings.factor * own.radius;
-            let near = tree.meeting(&own.bounds.grown(reach));
-            let found: Vec<Candidate> = near
-                .into_iter()
-                .map(|m| (masters[m as usize], &places[m as usize]))
-                .filter(|(_, other)| norm(sub(own.normal, other.normal)) >= settings.normal_orientation_threshold)
-                .filter(|(_, other)| !overlapping || own.may_overlap(other))
-                .filter_map(|(master, other)| {
-                    let within_reach = match settings.distance {
-                        SearchDistance::BetweenFacets => true,
-                        SearchDistance::BetweenCentres => norm(sub(own.centre, other.centre)) <= reach,
-                    };
-                    let meets = within_reach || own.bounds.grown(0.1 * own.radius).meets(&other.bounds);
-                    meets.then_some(Candidate { slave, master, within_reach })
-                })
-                .collect();
-            found
-        })
-        .collect()
+    let of_slave = |at: usize| {
+        let slave = slaves[at];
+        let own = place(slave);
+        let reach = settings.factor * own.radius;
+        let near = tree.meeting(&own.bounds.grown(reach));
+        let found: Vec<Candidate> = near
+            .into_iter()
+            .map(|m| (masters[m as usize], &places[m as usize]))
+            .filter(|(_, other)| norm(sub(own.normal, other.normal)) >= settings.normal_orientation_threshold)
+            .filter(|(_, other)| !overlapping || own.may_overlap(other))
+            .filter_map(|(master, other)| {
+                let within_reach = match settings.distance {
+                    SearchDistance::BetweenFacets => true,
+                    SearchDistance::BetweenCentres => norm(sub(own.centre, other.centre)) <= reach,
+                };
+                let meets = within_reach || own.bounds.grown(0.1 * own.radius).meets(&other.bounds);
+                meets.then_some(Candidate { slave, master, within_reach })
+            })
+            .collect();
+        found
+    };
+    parallel::map(slaves.len(), AT_A_TIME, of_slave).concat()
 }
 
 /// Where a facet is.

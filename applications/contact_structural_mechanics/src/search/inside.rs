@@ -1,13 +1,16 @@
 //! Which points lie inside bodies.
 
-use rayon::prelude::*;
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 
 use super::tree::{Bounds, Tree};
 
 /// Share of a cell by which a point must be inside.
 const INSIDE: f64 = 1e-6;
+/// Elements and points that a thread takes at a time.
+const ELEMENTS: usize = 1 << 10;
+const POINTS: usize = 16;
 
 /// Of each point, whether it is inside an element of this rank that its node is not part of.
 ///
@@ -20,13 +23,15 @@ pub fn inside(part: &ModelPart, points: &[(u32, [f64; 3], f64)]) -> Vec<bool> {
         part.elements.nodes(at).iter().map(|&node| part.nodes.current[node as usize]).collect()
     };
     let around = Bounds::of(&points.iter().map(|point| point.1).collect::<Vec<_>>());
-    let is_near = |&at: &u32| {
+    let is_near = |at: usize| {
+        let at = at as u32;
         part.elements.kinds[at as usize].cell.is_some_and(|shape| shape.dim() == part.info.domain_size)
             && Bounds::of(&corners(at)).meets(&around)
     };
-    let cells: Vec<u32> = (0..part.elements.len() as u32).into_par_iter().filter(is_near).collect();
+    let cells = parallel::select(part.elements.len(), ELEMENTS, is_near);
     let tree = Tree::new(cells.iter().map(|&at| Bounds::of(&corners(at))).collect());
-    let is_inside = |&(node, x, size): &(u32, [f64; 3], f64)| {
+    let is_inside = |at: usize| {
+        let (node, x, size) = points[at];
         tree.meeting(&Bounds::of(&[x])).into_iter().map(|near| cells[near as usize]).any(|at| {
             let Some(shape) = part.elements.kinds[at as usize].cell else { return false };
             !part.elements.nodes(at).contains(&node)
@@ -34,5 +39,5 @@ pub fn inside(part: &ModelPart, points: &[(u32, [f64; 3], f64)]) -> Vec<bool> {
                     .is_some_and(|found| shape.cell().contains(found.xi, INSIDE) && found.distance < INSIDE * size)
         })
     };
-    points.par_iter().with_min_len(16).map(is_inside).collect()
+    parallel::map(points.len(), POINTS, is_inside)
 }

@@ -1,10 +1,11 @@
 //! How the sides of contact lie to each other before anything runs: nodes inside other bodies, and moving them out without strain.
 
-use rayon::prelude::*;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
+use zelus_core::parallel;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
+use super::candidates::AT_A_TIME;
 use super::direct_check::{distance_along, meets};
 use super::inside::inside;
 use super::tree::{Bounds, Tree};
@@ -155,7 +156,8 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
     let tree = Tree::new(bounds);
     let nodes = interface.normals_of(part, Roles::Slave);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let place = |&(node, normal): &(u32, [f64; 3])| {
+    let place = |at: usize| {
+        let (node, normal) = nodes[at];
         let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
         let way = |reach: f64| {
             let line = Bounds::of(&[add(x, scale(normal, -reach)), add(x, scale(normal, reach))]);
@@ -174,5 +176,5 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
         let (distance, master) = way(NEAR * size).or_else(|| way(extent))?;
         distance.is_finite().then_some(Place { node, master, normal, distance, size })
     };
-    nodes.par_iter().with_min_len(64).filter_map(place).collect()
+    parallel::map(nodes.len(), AT_A_TIME, place).into_iter().flatten().collect()
 }
