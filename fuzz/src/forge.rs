@@ -68,28 +68,41 @@ impl Value {
 
     /// Appends the value to `out`.
     pub fn write(&self, out: &mut Vec<u8>) {
-        let head = |mark: u8, length: usize, out: &mut Vec<u8>| {
-            out.push(mark);
-            out.extend((length as u32).to_be_bytes());
+        // As short as the program writes it: where the bytes of entities end is said elsewhere.
+        let head = |few: u8, limit: usize, marks: [u8; 3], length: usize, out: &mut Vec<u8>| match length {
+            _ if length < limit => out.push(few | length as u8),
+            0..=0xff if marks[0] > 0 => out.extend([marks[0], length as u8]),
+            0..=0xffff => {
+                out.push(marks[1]);
+                out.extend((length as u16).to_be_bytes());
+            }
+            _ => {
+                out.push(marks[2]);
+                out.extend((length as u32).to_be_bytes());
+            }
+        };
+        let bytes_of = |bytes: &[u8], out: &mut Vec<u8>| {
+            head(0, 0, [0xc4, 0xc5, 0xc6], bytes.len(), out);
+            out.extend(bytes);
         };
         match self {
             Self::Plain(bytes) => out.extend(bytes),
-            Self::Long(text, bytes) => {
-                head(if *text { 0xdb } else { 0xc6 }, bytes.len(), out);
+            Self::Long(true, bytes) => {
+                head(0xa0, 32, [0xd9, 0xda, 0xdb], bytes.len(), out);
                 out.extend(bytes);
             }
+            Self::Long(false, bytes) => bytes_of(bytes, out),
             Self::Inner(value) => {
                 let mut bytes = Vec::new();
                 value.write(&mut bytes);
-                head(0xc6, bytes.len(), out);
-                out.extend(bytes);
+                bytes_of(&bytes, out);
             }
             Self::Array(items) => {
-                head(0xdd, items.len(), out);
+                head(0x90, 16, [0, 0xdc, 0xdd], items.len(), out);
                 items.iter().for_each(|item| item.write(out));
             }
             Self::Map(items) => {
-                head(0xdf, items.len() / 2, out);
+                head(0x80, 16, [0, 0xde, 0xdf], items.len() / 2, out);
                 items.iter().for_each(|item| item.write(out));
             }
         }
