@@ -178,7 +178,7 @@ impl<T: Real> Operators<T> {
         let mut out = *self;
         for (rows, before) in [(&mut out.d, &previous.d), (&mut out.m, &previous.m)] {
             rows.iter_mut().zip(before.iter()).for_each(|(row, before)| {
-                row.iter_mut().zip(before.iter()).for_each(|(x, before)| *x = *x - *before);
+                row.iter_mut().zip(before.iter()).for_each(|(x, before)| *x -= *before);
             });
         }
         out
