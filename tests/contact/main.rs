@@ -19,6 +19,8 @@ mod refinement;
 #[path = "../support/renumber.rs"]
 mod renumber;
 mod renumbering;
+#[path = "../support/scene.rs"]
+mod scene;
 mod second_order;
 mod sizes;
 mod slivers;

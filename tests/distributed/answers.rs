@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::boxes::Boxes;
 use crate::runs::*;
+use crate::scene::{COMPONENTS, Corner, FRICTIONLESS, Scene, corner, die};
 use crate::support::{Results, contents, read_json, root, said, scratch_copy, zelus};
 
 /// Makes the channel of slug flow one whose heat is carried along paths, in time.
@@ -28,6 +29,30 @@ fn pairs_of_full_ranks_are_evaluated_by_others() {
     let folder = scratch_copy(&deck);
     let output = distributed(folder.path(), 2, &["run", DECK]);
     assert!(said(&output).contains("pairs moved to other ranks"), "{}", said(&output));
+}
+
+/// Nodes with slave nodes of several patches, of pairs and of ties.
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
+fn corners_between_bodies() {
+    let write = |scene: &Scene| {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        scene.write(folder.path());
+        folder
+    };
+    let equal = |scene: &Scene| {
+        let folder = write(scene);
+        equals_serial(&folder.path().to_string_lossy(), &[], EQUAL, true);
+    };
+    for ties in [false, true] {
+        let Corner { mut scene, .. } = corner(5);
+        let both = vec![["Bottom", "FloorTop"], ["Left", "WallFace"]];
+        scene.loads = vec![("Right", [if ties { 1.0 } else { -0.5 }, 0.0, 0.0]), ("Top", [0.0, -1.0, 0.0])];
+        *if ties { &mut scene.ties } else { &mut scene.pairs } = both;
+        equal(&scene);
+    }
+    equal(&die(2, 0.3, 1.0, COMPONENTS, true).0);
+    equal(&die(3, 0.3, 1.0, FRICTIONLESS, true).0);
 }
 
 #[test]

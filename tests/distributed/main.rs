@@ -3,12 +3,16 @@
 //! They need the feature `mpi`, without which they are ignored, and mpirun.
 
 mod answers;
+#[path = "../support/blocks.rs"]
+mod blocks;
 #[path = "../support/boxes.rs"]
 mod boxes;
 mod ends;
 mod engines;
 mod files;
 mod runs;
+#[path = "../support/scene.rs"]
+mod scene;
 #[path = "../support/mod.rs"]
 mod support;
 #[path = "../support/vtu.rs"]

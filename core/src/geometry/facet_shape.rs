@@ -287,6 +287,8 @@ impl FacetShape {
     /// The search of [`FacetShape::closest_point`]: local coordinates and the derivatives there.
     fn closest(&self, x: &[[f64; 3]], p: [f64; 3], guess: [f64; 2]) -> ([f64; 2], HalfSquare) {
         let mut xi = guess;
+        // Shape functions of these are of the second degree in all.
+        let constant_bend = matches!(self.shape, Shape::Line3 | Shape::Tri6);
         let mut bend = self.bend_at(x, xi);
         let mut state = HalfSquare::new(self, x, p, xi, &bend);
         for _ in 0..MAX_STEPS {
@@ -296,7 +298,7 @@ impl FacetShape {
             if step[0].abs().max(step[1].abs()) < 1e-13 {
                 break;
             }
-            if self.curved {
+            if self.curved && !constant_bend {
                 bend = self.bend_at(x, xi);
             }
             state = HalfSquare::new(self, x, p, xi, &bend);

@@ -11,14 +11,14 @@
 //! of the facet D = ∫ Φ⊗N¹ is not diagonal: entries beside the diagonal are a few times smaller.
 
 use super::choices::Choices;
-use super::geometry::PairGeometry;
+use super::geometry::{Active, LANES, PairGeometry};
 use super::operators::{Operators, inverse};
 use super::points::Point;
 use super::segmentation_2d;
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
 use zelus_core::geometry::{FacetShape, LINE_2, Nodal, ShapeTable, TRIANGLE_3, combine, interpolate};
-use zelus_core::scalar::Real;
+use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{cross, dot, norm, normalised, value};
 
 /// Gauss rule of cells: exact for functions of the fourth degree, as those of quadrilaterals with nine nodes are.
@@ -218,10 +218,15 @@ impl<T: Real> Curved<'_, T> {
         let x = interpolate(&slave, &pair.slave);
         let weight = self.settings.revolution().map_or(measure, |per_radius| measure * x[0] * per_radius);
         let direction = interpolate(&slave, &pair.nodal_normals);
-        let along = master.point_along(&pair.master, x, direction, master.centre);
-        let found = along.unwrap_or_else(|| master.closest_point(&pair.master, x, master.centre));
-        visit(&Point { local, slave, master: master.values(found), weight });
+        let master = on_master(master, &pair.master, x, direction);
+        visit(&Point { local, slave, master, weight });
     }
+}
+
+/// Shape functions of a master where a point `x` of the slave goes along a direction.
+fn on_master<T: Real>(shape: &FacetShape, nodes: &[[T; 3]], x: [T; 3], direction: [T; 3]) -> Nodal<T> {
+    let along = shape.point_along(nodes, x, direction, shape.centre);
+    shape.values(along.unwrap_or_else(|| shape.closest_point(nodes, x, shape.centre)))
 }
 
 /// Integrals over the overlap of a sub-facet of the slave: Me, ∫ L⊗N¹ and ∫ L⊗N².
@@ -233,18 +238,22 @@ struct Sums<T: Real> {
 }
 
 impl<T: Real> Sums<T> {
+    fn zero(slave: &FacetShape, master: &FacetShape, piece: usize) -> Self {
+        let zero = T::zero();
+        Self {
+            nodes: slave.pieces[piece],
+            me: [[zero; PIECE]; PIECE],
+            slave: [slave.nodal(|_| zero); PIECE],
+            master: [master.nodal(|_| zero); PIECE],
+        }
+    }
+
     /// Integrals over a sub-facet of the slave, whose length or area is added to `covered`.
     fn of(pair: &PairGeometry<T>, settings: &SegmentationSettings, piece: usize, covered: &mut f64) -> Self {
-        let (zero, nodes) = (T::zero(), pair.slave_shape.pieces[piece]);
-        let mut sums = Self {
-            nodes,
-            me: [[zero; PIECE]; PIECE],
-            slave: [pair.slave_shape.nodal(|_| zero); PIECE],
-            master: [pair.master_shape.nodal(|_| zero); PIECE],
-        };
-        let count = nodes.len();
+        let mut sums = Self::zero(pair.slave_shape, pair.master_shape, piece);
+        let count = sums.nodes.len();
         Curved { pair, settings }.of_piece(piece, covered, &mut |point| {
-            let linear = linear_functions(pair.slave_shape, nodes, point.local);
+            let linear = linear_functions(pair.slave_shape, sums.nodes, point.local);
             for i in 0..count {
                 let weighted = linear[i] * point.weight;
                 (0..count).for_each(|j| sums.me[i][j].add_product(weighted, linear[j]));
@@ -259,6 +268,50 @@ impl<T: Real> Sums<T> {
         });
         sums
     }
+}
+
+impl Sums<Active> {
+    /// As [`Sums::of`] in space, with derivatives by components of the nodal normals, [`LANES`] of them from the one numbered `first` on.
+    ///
+    /// Normals of nodes say where points meet the master and nothing else, each point by the one interpolated there.
+    fn by_normals(
+        pair: &PairGeometry<f64>,
+        settings: &SegmentationSettings,
+        [piece, first]: [usize; 2],
+        covered: &mut f64,
+    ) -> Self {
+        let mut sums = Self::zero(pair.slave_shape, pair.master_shape, piece);
+        let count = sums.nodes.len();
+        let still = pair.master.map(|x| x.map(Dual::<3>::constant));
+        Curved { pair, settings }.of_piece(piece, covered, &mut |point| {
+            let normal = interpolate(&point.slave, &pair.nodal_normals);
+            let normal = std::array::from_fn(|c| Dual::variable(normal[c], c));
+            let x = interpolate(&point.slave, &pair.slave).map(Dual::constant);
+            let master = on_master(pair.master_shape, &still, x, normal);
+            let moved = master.map(|shape| by_nodal_normals(shape, &point.slave, first));
+            let linear = linear_functions(pair.slave_shape, sums.nodes, point.local);
+            for i in 0..count {
+                let weighted = linear[i] * point.weight;
+                (0..count).for_each(|j| sums.me[i][j].value += weighted * linear[j]);
+                let own = sums.slave[i].iter_mut().zip(point.slave.iter());
+                own.for_each(|(sum, shape)| sum.value += weighted * shape);
+                let others = sums.master[i].iter_mut().zip(moved.iter());
+                others.for_each(|(sum, shape)| sum.add_scaled(*shape, weighted));
+            }
+        });
+        sums
+    }
+}
+
+/// A number with derivatives by the normal interpolated at a point of the slave, as one with those by the normals of nodes: [`LANES`]
+/// components from the one numbered `first` on, node by node.
+pub(super) fn by_nodal_normals(number: Dual<3>, slave: &Nodal<f64>, first: usize) -> Active {
+    let mut out = Active::constant(number.value);
+    for lane in 0..LANES.min((3 * slave.len()).saturating_sub(first)) {
+        let (node, c) = ((first + lane) / 3, (first + lane) % 3);
+        out.gradient[lane] = slave[node] * number.gradient[c];
+    }
+    out
 }
 
 /// L at local coordinates of the facet. Sub-facets are parallelograms and triangles there.
@@ -311,11 +364,23 @@ pub(super) fn find_operators<T: Real>(
     let mut covered = 0.0;
     for at in 0..pair.slave_shape.pieces.len() {
         let sums = Sums::of(pair, settings, at, &mut covered);
-        let standard = pair.choices.plain & (1 << at) != 0;
-        match Some(&sums).filter(|_| !standard).and_then(Sums::inverse) {
-            Some(inverse) => sums.add_dual(pair.slave_shape, &inverse, out),
-            None => sums.add_standard(pair.slave_shape, out),
-        }
+        sums.add_to(pair.slave_shape, pair.choices.plain & (1 << at) != 0, out);
+    }
+    covered
+}
+
+/// As [`find_operators`] in space, with derivatives by components of the nodal normals, [`LANES`] of them from the one numbered
+/// `first` on.
+pub(super) fn find_operators_by_normals(
+    pair: &PairGeometry<f64>,
+    settings: &SegmentationSettings,
+    first: usize,
+    out: &mut Operators<Active>,
+) -> f64 {
+    let mut covered = 0.0;
+    for at in 0..pair.slave_shape.pieces.len() {
+        let sums = Sums::by_normals(pair, settings, [at, first], &mut covered);
+        sums.add_to(pair.slave_shape, pair.choices.plain & (1 << at) != 0, out);
     }
     covered
 }
@@ -343,6 +408,14 @@ impl<T: Real> Sums<T> {
         });
         let inverse = inverse(&me)?;
         Some(std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j])))
+    }
+
+    /// Adds to D and M, with standard functions where that is chosen or there are no dual ones.
+    fn add_to(&self, slave: &FacetShape, standard: bool, out: &mut Operators<T>) {
+        match Some(self).filter(|_| !standard).and_then(Sums::inverse) {
+            Some(inverse) => self.add_dual(slave, &inverse, out),
+            None => self.add_standard(slave, out),
+        }
     }
 
     fn add_standard(&self, slave: &FacetShape, out: &mut Operators<T>) {

@@ -8,7 +8,7 @@
 
 use super::choices::Choices;
 use super::curved;
-use super::geometry::{Active, LANES, PairGeometry};
+use super::geometry::{Active, PairGeometry};
 use super::points::{EXACT_MOTION, MasterMotion, Point, Points};
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
@@ -87,7 +87,7 @@ pub fn find_operators<T: Real>(
     out.finish(covered, pair)
 }
 
-/// Writes D and M to `out`, whose entries are zero, with derivatives by components of the nodal normals, [`LANES`] of them from the
+/// Writes D and M to `out`, whose entries are zero, with derivatives by components of the nodal normals, [`LANES`](super::geometry::LANES) of them from the
 /// one numbered `first` on, node by node.
 ///
 /// In space the overlap of facets of first order is cut along the slave's normal: those of nodes say where points meet the master
@@ -98,10 +98,14 @@ pub fn find_operators_by_normals(
     first: usize,
     out: &mut Operators<Active>,
 ) -> Overlap<()> {
-    if pair.space() == 2 || pair.is_curved() {
+    if pair.space() == 2 {
         return find_operators(&pair.seeded_by_normals(first), settings, &EXACT_MOTION, out);
     }
-    let still: PairGeometry<Active> = pair.as_constants();
+    if pair.is_curved() {
+        let covered = curved::find_operators_by_normals(pair, settings, first, out);
+        return if out.is_finite() { overlap_of(covered, pair) } else { Overlap::None };
+    }
+    let still: PairGeometry<Dual<3>> = pair.as_constants();
     let still = Points { pair: &still, motion: &EXACT_MOTION };
     let covered = Points { pair, motion: &EXACT_MOTION }.visit(settings, &mut |point| {
         let normal = interpolate(&point.slave, &pair.nodal_normals);
@@ -282,19 +286,14 @@ impl<T: Real> Operators<T> {
 
 impl Operators<Active> {
     /// Adds a point whose shape functions on the master have derivatives by the normal that is interpolated there.
-    fn add_point_by_normals(&mut self, point: &Point<f64>, master: &[Active], first: usize) {
-        let (nodes, dim) = (point.slave.len(), 3);
+    fn add_point_by_normals(&mut self, point: &Point<f64>, master: &[Dual<3>], first: usize) {
+        let nodes = point.slave.len();
         let weighted = point.slave.map(|shape| shape * point.weight);
         for j in 0..nodes {
             (j..nodes).for_each(|k| self.d[j][k].value += weighted[j] * point.slave[k]);
         }
-        let known = LANES.min(dim * nodes - first);
         for (l, shape) in master.iter().enumerate() {
-            let mut moved = Dual::constant(shape.value);
-            for lane in 0..known {
-                let (node, c) = ((first + lane) / dim, (first + lane) % dim);
-                moved.gradient[lane] = point.slave[node] * shape.gradient[c];
-            }
+            let moved = curved::by_nodal_normals(*shape, &point.slave, first);
             (0..nodes).for_each(|j| self.m[j][l].add_scaled(moved, weighted[j]));
         }
     }
