@@ -1,169 +1,157 @@
-//! Saved runs that no program has written: MessagePack taken apart, changed here and there, and put together again.
+//! Saved runs that no program has written: numbers, texts and lists changed here and there, the lengths of the states around them put
+//! right.
+//!
+//! Nothing in the file says which byte is what. States are found by their tags, and lists by what follows a number that may be how
+//! many items there are.
 
-/// A value of MessagePack.
+/// The contents of a saved run, or of a state.
 #[derive(Clone)]
-pub enum Value {
-    /// Bytes that stand for themselves: numbers, truth values, nothing.
+pub struct Contents(Vec<Part>);
+
+#[derive(Clone)]
+enum Part {
+    /// Bytes that stand for themselves.
     Plain(Vec<u8>),
-    /// Text or bytes, without their length.
-    Long(bool, Vec<u8>),
-    /// Bytes that are a value of their own, as states are.
-    Inner(Box<Value>),
-    /// A list.
-    Array(Vec<Value>),
-    /// Keys and values, one after the other.
-    Map(Vec<Value>),
+    /// The bytes of a state, without their length.
+    State(Contents),
 }
 
-/// Numbers that are rarely right, as MessagePack has them.
-const ODD: [&[u8]; 12] = [
-    &[0],
-    &[1],
-    &[0xff],
-    &[0xcc, 0xff],
-    &[0xcd, 0xff, 0xff],
-    &[0xce, 0xff, 0xff, 0xff, 0xff],
-    &[0xcf, 0x7f, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff],
-    &[0xcb, 0x7f, 0xf8, 0, 0, 0, 0, 0, 0],
-    &[0xcb, 0x7f, 0xf0, 0, 0, 0, 0, 0, 0],
-    &[0xcb, 0xff, 0xe0, 0, 0, 0, 0, 0, 0],
-    &[0xc0],
-    &[0xc3],
-];
+/// Tags of states whose fields follow without a length.
+const WITHOUT_LENGTH: [&str; 6] =
+    ["contact", "mesh_tying", "mpc_contact", "simple_mortar_mapper", "constraints", "iterate_output"];
+/// Single bytes that are rarely right.
+const ODD_BYTES: [u8; 6] = [0, 1, 2, 0x7f, 0x80, 0xff];
+/// Numbers that are rarely right.
+const ODD: [f64; 7] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 5e-324];
+/// Bytes of an item of a list: small whole numbers, texts and pairs of them, numbers, points.
+const WIDTHS: [usize; 6] = [1, 1, 2, 8, 8, 24];
 
-impl Value {
-    /// The value that `bytes` begin with; `None` where they are no MessagePack.
-    pub fn read(bytes: &mut &[u8]) -> Option<Self> {
-        let mark = take(bytes, 1)?[0];
-        let plain = |bytes: &mut &[u8], more: usize| Some(Self::Plain([&[mark][..], take(bytes, more)?].concat()));
-        match mark {
-            0x80..=0x8f => Self::items(bytes, 2 * usize::from(mark & 0xf)).map(Self::Map),
-            0x90..=0x9f => Self::items(bytes, usize::from(mark & 0xf)).map(Self::Array),
-            0xa0..=0xbf => Some(Self::Long(true, take(bytes, usize::from(mark & 0x1f))?.to_vec())),
-            0xc4..=0xc6 | 0xd9..=0xdb => {
-                let text = mark > 0xd0;
-                let length = length(bytes, 1 << (mark - if text { 0xd9 } else { 0xc4 }))?;
-                let own = take(bytes, length)?;
-                let mut rest = own;
-                let inner = Self::read(&mut rest).filter(|inner| !text && rest.is_empty() && inner.is_list());
-                Some(inner.map_or_else(|| Self::Long(text, own.to_vec()), |inner| Self::Inner(Box::new(inner))))
-            }
-            0xdc | 0xdd => length(bytes, 2 << (mark - 0xdc)).and_then(|n| Self::items(bytes, n)).map(Self::Array),
-            0xde | 0xdf => length(bytes, 2 << (mark - 0xde)).and_then(|n| Self::items(bytes, 2 * n)).map(Self::Map),
-            0xca | 0xce | 0xd2 => plain(bytes, 4),
-            0xcb | 0xcf | 0xd3 => plain(bytes, 8),
-            0xcc | 0xd0 => plain(bytes, 1),
-            0xcd | 0xd1 => plain(bytes, 2),
-            _ => plain(bytes, 0),
+impl Contents {
+    /// The contents that are these bytes.
+    pub fn read(bytes: &[u8]) -> Self {
+        let (mut parts, mut from, mut at) = (Vec::new(), 0, 0);
+        while at < bytes.len() {
+            let Some((start, end)) = state(bytes, at) else {
+                at += 1;
+                continue;
+            };
+            let length = varint(end - start).len();
+            parts.push(Part::Plain(bytes[from..start - length].to_vec()));
+            parts.push(Part::State(Self::read(&bytes[start..end])));
+            (from, at) = (end, end);
         }
+        parts.push(Part::Plain(bytes[from..].to_vec()));
+        Self(parts)
     }
 
-    fn is_list(&self) -> bool {
-        matches!(self, Self::Array(_) | Self::Map(_))
-    }
-
-    fn items(bytes: &mut &[u8], count: usize) -> Option<Vec<Self>> {
-        (0..count).map(|_| Self::read(bytes)).collect()
-    }
-
-    /// Appends the value to `out`.
-    pub fn write(&self, out: &mut Vec<u8>) {
-        // As short as the program writes it: where the bytes of entities end is said elsewhere.
-        let head = |few: u8, limit: usize, marks: [u8; 3], length: usize, out: &mut Vec<u8>| match length {
-            _ if length < limit => out.push(few | length as u8),
-            0..=0xff if marks[0] > 0 => out.extend([marks[0], length as u8]),
-            0..=0xffff => {
-                out.push(marks[1]);
-                out.extend((length as u16).to_be_bytes());
-            }
-            _ => {
-                out.push(marks[2]);
-                out.extend((length as u32).to_be_bytes());
-            }
-        };
-        let bytes_of = |bytes: &[u8], out: &mut Vec<u8>| {
-            head(0, 0, [0xc4, 0xc5, 0xc6], bytes.len(), out);
-            out.extend(bytes);
-        };
-        match self {
-            Self::Plain(bytes) => out.extend(bytes),
-            Self::Long(true, bytes) => {
-                head(0xa0, 32, [0xd9, 0xda, 0xdb], bytes.len(), out);
-                out.extend(bytes);
-            }
-            Self::Long(false, bytes) => bytes_of(bytes, out),
-            Self::Inner(value) => {
-                let mut bytes = Vec::new();
-                value.write(&mut bytes);
-                bytes_of(&bytes, out);
-            }
-            Self::Array(items) => {
-                head(0x90, 16, [0, 0xdc, 0xdd], items.len(), out);
-                items.iter().for_each(|item| item.write(out));
-            }
-            Self::Map(items) => {
-                head(0x80, 16, [0, 0xde, 0xdf], items.len() / 2, out);
-                items.iter().for_each(|item| item.write(out));
+    /// The contents as bytes.
+    pub fn write(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        for part in &self.0 {
+            match part {
+                Part::Plain(bytes) => out.extend(bytes),
+                Part::State(state) => {
+                    let bytes = state.write();
+                    out.extend(varint(bytes.len()));
+                    out.extend(bytes);
+                }
             }
         }
-    }
-
-    /// The value that `steps` lead to from here: which of those inside, at each list; where that ends early, by itself.
-    fn find(&mut self, steps: &mut impl Iterator<Item = usize>) -> &mut Self {
-        if let Self::Inner(value) = self {
-            return value.find(steps);
-        }
-        let is_list = matches!(self, Self::Array(items) | Self::Map(items) if !items.is_empty());
-        let Some(step) = steps.next().filter(|step| is_list && *step % 8 != 7) else { return self };
-        match self {
-            // Keys stay: a name that is not known is refused at once.
-            Self::Map(items) => {
-                let count = items.len() / 2;
-                items[2 * (step / 8 % count) + 1].find(steps)
-            }
-            Self::Array(items) => {
-                let count = items.len();
-                items[step / 8 % count].find(steps)
-            }
-            Self::Plain(_) | Self::Long(..) | Self::Inner(_) => self,
-        }
+        out
     }
 
     /// Changes one value, which `dice` choose.
     pub fn forge(&mut self, dice: &mut impl FnMut() -> usize) {
-        let steps: Vec<usize> = (0..24).map(|_| dice()).collect();
-        let (how, which) = (dice(), dice());
-        match self.find(&mut steps.into_iter()) {
-            Self::Plain(bytes) if how % 4 == 0 && bytes.len() == 1 => bytes[0] = bytes[0].wrapping_add(1),
-            Self::Plain(bytes) => *bytes = ODD[which % ODD.len()].to_vec(),
-            Self::Long(_, bytes) => bytes.truncate(which % (bytes.len() + 1)),
-            Self::Inner(_) => {}
-            Self::Map(items) => {
-                let at = which % (items.len() / 2).max(1);
-                items.drain((2 * at).min(items.len())..(2 * at + 2).min(items.len()));
-            }
-            Self::Array(items) => {
-                let at = which % items.len().max(1);
-                match how % 4 {
-                    0 if at < items.len() => drop(items.remove(at)),
-                    1 if at < items.len() => items.push(items[at].clone()),
-                    2 if at + 1 < items.len() => items.swap(at, at + 1),
-                    3 => items.truncate(at),
-                    _ => {}
+        let at = dice() % self.0.len();
+        match &mut self.0[at] {
+            Part::State(state) => state.forge(dice),
+            Part::Plain(bytes) if bytes.is_empty() => {}
+            Part::Plain(bytes) => {
+                let (at, which) = (dice() % bytes.len(), dice());
+                match dice() % 4 {
+                    0 => bytes[at] = bytes[at].wrapping_add(1),
+                    1 => bytes[at] = ODD_BYTES[which % ODD_BYTES.len()],
+                    2 => {
+                        let found = (at..bytes.len()).find(|&at| bytes.get(at..at + 8).is_some_and(is_number));
+                        if let Some(at) = found {
+                            bytes[at..at + 8].copy_from_slice(&ODD[which % ODD.len()].to_le_bytes());
+                        }
+                    }
+                    _ => change_list(bytes, at, dice),
                 }
             }
         }
     }
 }
 
-fn take<'b>(bytes: &mut &'b [u8], count: usize) -> Option<&'b [u8]> {
-    let (first, rest) = bytes.split_at_checked(count)?;
-    *bytes = rest;
-    Some(first)
+/// Takes items from the first list at or after a place, or gives it more.
+fn change_list(bytes: &mut Vec<u8>, from: usize, dice: &mut impl FnMut() -> usize) {
+    let (width, which, how) = (WIDTHS[dice() % WIDTHS.len()], dice(), dice());
+    let list = |at: usize| {
+        let (count, start) = number(bytes, at)?;
+        let items = bytes.get(start..start.checked_add(count.checked_mul(width)?)?)?;
+        let fits = match width {
+            1 | 2 => items.iter().all(|&byte| byte < 0x80),
+            _ => items.chunks(8).all(is_number),
+        };
+        (fits && count > 0).then_some((at, start, count))
+    };
+    let Some((at, start, count)) = (from..bytes.len()).find_map(list) else { return };
+    let item = start + which % count * width;
+    let count = match how % 3 {
+        0 => {
+            bytes.drain(item..item + width);
+            count - 1
+        }
+        1 => {
+            let copy = bytes[item..item + width].to_vec();
+            bytes.splice(item..item, copy);
+            count + 1
+        }
+        _ => {
+            bytes.drain(item..start + count * width);
+            which % count
+        }
+    };
+    bytes.splice(at..start, varint(count));
 }
 
-fn length(bytes: &mut &[u8], count: usize) -> Option<usize> {
-    take(bytes, count).map(|bytes| bytes.iter().fold(0, |sum, &byte| sum << 8 | usize::from(byte)))
+/// Whether eight bytes may be a number of a run.
+fn is_number(bytes: &[u8]) -> bool {
+    let value = bytes.try_into().map_or(f64::NAN, f64::from_le_bytes);
+    value == 0.0 || (1e-30..1e30).contains(&value.abs())
+}
+
+/// Where the bytes of a state begin and end whose tag stands at a place: a map of one name.
+fn state(bytes: &[u8], at: usize) -> Option<(usize, usize)> {
+    let [1, length, rest @ ..] = &bytes[at..] else { return None };
+    let tag = rest.get(..usize::from(*length)).filter(|tag| tag.len() > 2)?;
+    let is_tag = tag.iter().all(|byte| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'_'));
+    if !is_tag || WITHOUT_LENGTH.iter().any(|other| other.as_bytes() == tag) {
+        return None;
+    }
+    let (length, start) = number(bytes, at + 2 + tag.len())?;
+    let end = start.checked_add(length)?;
+    (end <= bytes.len()).then_some((start, end))
+}
+
+/// The whole number at a place, as it is written, and where it ends.
+fn number(bytes: &[u8], at: usize) -> Option<(usize, usize)> {
+    let last = bytes.get(at..)?.iter().take(5).position(|byte| *byte < 0x80)?;
+    let own = &bytes[at..=at + last];
+    let value = own.iter().rev().fold(0, |sum, byte| sum << 7 | usize::from(byte & 0x7f));
+    (varint(value) == own).then_some((value, at + last + 1))
+}
+
+/// A whole number: seven bits a byte, the lowest first.
+fn varint(mut value: usize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while value >= 0x80 {
+        bytes.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    bytes.push(value as u8);
+    bytes
 }
 
 /// Bytes of a saved run of one process before the length of its contents: mark, version, number of processes.

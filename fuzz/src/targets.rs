@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use super::forge::{Value, contents, with_contents};
-use zelus::core::io::{SavedFile, read_mesh, results::vtu_of};
+use super::forge::{Contents, contents, with_contents};
+use zelus::core::io::{read_mesh, results::vtu_of};
 use zelus::core::model::ModelPart;
 use zelus::core::parameters::{Document, Expression};
 use zelus::{RunOptions, Silent, Simulation};
@@ -70,19 +70,17 @@ pub fn checkpoint(bytes: &[u8]) {
     let loaded = open(folder()).load(&path, &mut Silent);
     assert_eq!(loaded.is_ok(), bytes == contents(&whole), "what is damaged is refused");
     std::fs::write(&path, with_contents(&whole, bytes)).expect("a file");
-    let _ = SavedFile::open(&path).and_then(|file| file.read::<serde::de::IgnoredAny>(0));
+    let _ = open(folder()).load(&path, &mut Silent);
 }
 
 /// A saved run forged as the bytes say, with a checksum that is right: it is refused, or goes on.
 pub fn forged(bytes: &[u8]) {
     let whole = whole();
-    let mut value = Value::read(&mut contents(&whole)).expect("MessagePack");
+    let mut value = Contents::read(contents(&whole));
     let mut dice = bytes.chunks(2).map(|two| two.iter().fold(0, |sum, &byte| sum << 8 | usize::from(byte)));
     value.forge(&mut || dice.next().unwrap_or(7));
-    let mut forged = Vec::new();
-    value.write(&mut forged);
     let path = folder().join("forged.saved");
-    std::fs::write(&path, with_contents(&whole, &forged)).expect("a file");
+    std::fs::write(&path, with_contents(&whole, &value.write())).expect("a file");
     let mut simulation = open(folder());
     if simulation.load(&path, &mut Silent).is_ok() {
         let _ = simulation.step(&mut Silent);

@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::forge::{Value, contents, with_contents};
+use crate::forge::{Contents, contents, with_contents};
 use crate::support::{root, scratch_copy};
 use serde_json::json;
 use zelus::{RunOptions, Silent, Simulation};
@@ -34,12 +34,10 @@ fn attack(folder: &str, steps: usize, change: impl Fn(&mut serde_json::Value)) {
     simulation.save(&saved).expect("a saved run");
     drop(simulation);
     let whole = std::fs::read(&saved).expect("the saved run");
-    let read = Value::read(&mut contents(&whole)).expect("MessagePack");
+    let read = Contents::read(contents(&whole));
     let forged = scratch.path().join("forged");
-    let go_on = |value: &Value| {
-        let mut bytes = Vec::new();
-        value.write(&mut bytes);
-        std::fs::write(&forged, with_contents(&whole, &bytes)).expect("a file");
+    let go_on = |value: &Contents| {
+        std::fs::write(&forged, with_contents(&whole, &value.write())).expect("a file");
         let mut simulation = open(scratch.path());
         let begun = Instant::now();
         let ended = catch_unwind(AssertUnwindSafe(|| {

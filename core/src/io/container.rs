@@ -22,7 +22,7 @@ const MARK: &str = "zelus saved run\n";
 /// How a saved run is known.
 pub(crate) const SAVED: Mark = Mark::Begins(&[MARK]);
 /// Version of the contents: one more with every change of what is saved.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 /// Bytes before the lengths.
 const HEAD: usize = MARK.len() + 4 + 4;
 /// Bytes of the head for each rank: length and checksum.
@@ -192,7 +192,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run");
         let numbers = [0.1, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, -f64::NAN, 5e-324, f64::MAX];
-        write(&path, &numbers);
+        write(&path, &numbers.to_vec());
         let read: Vec<f64> = read(&path).unwrap();
         assert_eq!(numbers.map(f64::to_bits).to_vec(), read.into_iter().map(f64::to_bits).collect::<Vec<_>>());
     }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::left_out::left_out_of_json;
+
 /// Balance of forces, states of contact and energies at the end of an accepted step.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
@@ -16,6 +18,7 @@ pub struct Balance {
 /// Sums of what acts on one unknown, over all nodes: loads + elements + interactions + inertia + reactions = 0 but for what is
 /// out of balance.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 pub struct UnknownBalance {
     /// The unknown, e.g. DISPLACEMENT.
     pub unknown: String,
@@ -26,9 +29,11 @@ pub struct UnknownBalance {
     /// Centre of the box around the initial mesh.
     pub centre: [f64; 3],
     /// What goes through the body, of unknowns that move nothing, e.g. heat (power).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub flows: Option<Flows>,
 }
+
+left_out_of_json!(UnknownBalance, "flows");
 
 /// What goes in, out and stays: entering − leaving + elements + interactions = stored but for what is out of balance.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

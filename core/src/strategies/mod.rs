@@ -21,6 +21,7 @@ mod places;
 mod shared_rows;
 mod gathered;
 mod generalized_alpha_scheme;
+mod left_out;
 mod line_search;
 mod linear_solve;
 mod linear_solvers;

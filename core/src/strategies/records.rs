@@ -2,6 +2,7 @@
 
 use super::balance::Balance;
 use super::criterion::Check;
+use super::left_out::left_out_of_json;
 use super::linear_solve::Solved;
 use crate::entities::SetChange;
 
@@ -15,6 +16,7 @@ const NAMED_NODES: usize = 12;
 
 /// One Newton iteration.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(remote = "Self")]
 pub struct IterationRecord {
     /// From 1.
     pub iteration: usize,
@@ -33,9 +35,11 @@ pub struct IterationRecord {
     /// Engine of the linear solve.
     pub engine: String,
     /// Condition number of the system, where it is asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub condition_number: Option<f64>,
 }
+
+left_out_of_json!(IterationRecord, "condition_number");
 
 impl IterationRecord {
     /// What the criteria measured after an iteration with this solve, in which the interactions changed so.
@@ -57,6 +61,7 @@ impl IterationRecord {
 
 /// One step, or one attempt at it.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(remote = "Self")]
 pub struct StepRecord {
     /// Number of the step.
     pub step: usize,
@@ -79,9 +84,11 @@ pub struct StepRecord {
     /// Numbers of interactions and processes by name, e.g. active nodes.
     pub interactions: Vec<(String, f64)>,
     /// What acts, holds and is left over, where it converged by iteration.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub balance: Option<Balance>,
 }
+
+left_out_of_json!(StepRecord, "balance");
 
 impl StepRecord {
     /// Whether it failed within its iteration, and not because a state that had converged was refused.
