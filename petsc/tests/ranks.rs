@@ -2,7 +2,18 @@
 
 #[cfg(not(feature = "petsc"))]
 fn main() {
-    println!("skipped: built without the feature `petsc`");
+    if !lists() {
+        println!("skipped: built without the feature `petsc`");
+    }
+}
+
+/// Answers a runner that asks which tests there are.
+fn lists() -> bool {
+    let asks = |word: &str| std::env::args().any(|argument| argument == word);
+    if asks("--list") && !asks("--ignored") {
+        println!("distributed_solves: test");
+    }
+    asks("--list")
 }
 
 #[cfg(feature = "petsc")]
@@ -12,6 +23,7 @@ mod support;
 fn main() {
     match std::env::var("ZELUS_PETSC_WORKER") {
         Ok(_) => cases::all(),
+        Err(_) if lists() => (),
         Err(_) => launch(),
     }
 }
