@@ -127,13 +127,17 @@ impl Scene {
             contact.push(process("alm_contact_process", parameters));
             (mortar, criterion) = (self.kind.0, "contact_residual_criterion");
         }
+        let mut settings = json!({"mortar_type": mortar});
+        if !self.pairs.is_empty() {
+            settings["contact_residual_relative_tolerance"] = json!(1e-10);
+        }
         let deck = json!({
             "problem_data": {"problem_name": "corners", "parallel_type": "OpenMP", "start_time": 0.0, "end_time": 1.0},
             "solver_settings": {"solver_type": "Static", "model_part_name": "Structure", "domain_size": space,
                 "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},
                 "material_import_settings": {"materials_filename": "StructuralMaterials.json"},
                 "time_stepping": {"time_step": 1.0 / self.steps as f64}, "convergence_criterion": criterion,
-                "residual_relative_tolerance": 1e-9, "contact_settings": {"mortar_type": mortar}},
+                "residual_relative_tolerance": 1e-10, "contact_settings": settings},
             "processes": {
                 "constraints_process_list": self.supports.iter().map(support).collect::<Vec<_>>(),
                 "loads_process_list": self.loads.iter().map(load).collect::<Vec<_>>(),
