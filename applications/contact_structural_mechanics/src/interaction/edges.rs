@@ -1,8 +1,9 @@
 //! Normals of slave nodes on rims of patches and on sharp edges.
 //!
 //! An edge or a corner of a body that is pressed on a surface has no normal of its own: the force acts along the normal of the
-//! surface it lies on. Slave nodes where their patch ends at an edge of the body, and those on sharp folds within a patch, take
-//! the normal of the master that they overlap, turned round, once it differs from that of their facets.
+//! surface it lies on. Slave nodes where their patch ends at an edge of the body, unless a facet there is in contact with all of
+//! its nodes, and those on sharp folds within a patch take the normal of the master that they overlap, turned round, once it
+//! differs from that of their facets.
 
 use std::collections::BTreeMap;
 
@@ -38,6 +39,20 @@ pub(super) fn take_normals_of_masters(part: &ModelPart, states: &mut SlaveStates
     }
 }
 
+/// Of each slave node, whether a facet around it is in contact with all of its nodes: there the face presses, not its edge.
+fn on_closed_facets(states: &SlaveStates, pairing: &Pairing) -> Vec<bool> {
+    let mut out = vec![false; states.len()];
+    for (i, interface) in pairing.interfaces.iter().enumerate() {
+        for (f, facet) in interface.facets.iter().enumerate() {
+            let own = pairing.patches.of_facet(i as u32, f as u32, facet.nodes.len());
+            if own.iter().all(|&slave| states[slave].active) {
+                own.iter().for_each(|slave| out[slave.place()] = true);
+            }
+        }
+    }
+    out
+}
+
 /// Sums of the normals into the masters that slave nodes on rims and sharp folds overlap, by their areas, and the areas.
 fn opposite_normals(
     part: &ModelPart,
@@ -45,7 +60,8 @@ fn opposite_normals(
     pairing: &Pairing,
 ) -> BTreeMap<SlaveIndex, ([f64; 3], f64)> {
     let mut found: BTreeMap<SlaveIndex, ([f64; 3], f64)> = BTreeMap::new();
-    let rims = pairing.patches.all().filter(|&slave| pairing.patches.is_rim(slave));
+    let closed = on_closed_facets(states, pairing);
+    let rims = pairing.patches.all().filter(|&slave| pairing.patches.is_rim(slave) && !closed[slave.place()]);
     found.extend(rims.map(|slave| (slave, ([0.0; 3], 0.0))));
     for (i, interface) in pairing.interfaces.iter().enumerate() {
         for (f, facet) in interface.facets.iter().enumerate() {

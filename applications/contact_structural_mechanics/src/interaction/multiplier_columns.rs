@@ -7,7 +7,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, scale};
 
 use crate::law::Multiplier;
-use crate::slave_states::{Shown, SlaveStates};
+use crate::slave_states::{Shown, SlaveStates, SlaveTable};
 
 /// Columns of mesh nodes with the multipliers of slave nodes: node, and the three components of its entry.
 fn shown(part: &ModelPart, states: &SlaveStates, multiplier: Multiplier) -> Vec<(u32, [f64; 3])> {
@@ -35,6 +35,22 @@ pub(super) fn export(part: &mut ModelPart, states: &SlaveStates, multiplier: Mul
     for (node, value) in shown {
         let at = components * node as usize;
         field.levels[0][at..at + components].copy_from_slice(&value[..components]);
+    }
+}
+
+/// Writes the column of mesh nodes for slave nodes that have no state: the mean of several at a mesh node.
+pub(super) fn export_of(part: &mut ModelPart, table: &SlaveTable, multiplier: Multiplier) {
+    let Some((name, components)) = multiplier.column() else { return };
+    let values: Vec<[f64; 3]> = table.owners.iter().map(|&owner| multiplier.value(&part.slave_nodes, owner)).collect();
+    let Some(field) = part.nodes.history.get_mut(name) else { return };
+    for (at, node) in table.nodes.iter().enumerate() {
+        let first = table.nodes.partition_point(|other| other < node);
+        let count = table.nodes[first..].partition_point(|other| other == node);
+        let entry = components * *node as usize;
+        for c in 0..components {
+            let before = if at == first { 0.0 } else { field.levels[0][entry + c] };
+            field.levels[0][entry + c] = before + values[at][c] / count as f64;
+        }
     }
 }
 

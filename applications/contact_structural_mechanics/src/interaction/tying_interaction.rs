@@ -14,6 +14,7 @@ use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::holding::{FacetsOfPair, Holding};
+use super::multiplier_columns;
 use super::owners::{feature_angle, owners_name};
 use super::pair_states::{joins, name};
 use crate::flags::CONTACT;
@@ -350,6 +351,11 @@ impl Interaction for TyingInteraction {
         if self.settings.mind_supports {
             self.hold(part);
         }
+        Ok(())
+    }
+
+    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        multiplier_columns::export_of(part, &self.table, self.settings.family.multiplier);
         Ok(())
     }
 
