@@ -24,7 +24,9 @@ fn check_die(space: usize, angle: f64, size: f64, kind: Kind, block_is_slave: bo
         let u = turned(-angle)(fields.displacement[node - 1]);
         for c in 0..space {
             let right = if c == up { -shortening * x[up] } else { 0.0 };
-            let what = format!("{kind:?} in {space} dimensions, turned by {angle}, size {size}: u[{c}] of node {node}");
+            let what = format!(
+                "{kind:?} in {space} dimensions, turned by {angle}, size {size}, block slave {block_is_slave}: u[{c}] of node {node}"
+            );
             close(u[c], right, 1e-6 * 2.0 * size * shortening, &what);
         }
     }

@@ -47,9 +47,10 @@ const PHYSICS: [&str; 25] = [
 /// What a global that changes is made of.
 const CHANGEABLE: [&str; 6] = ["Mutex", "RwLock", "Cell<", "Lock<", "Atomic", "static mut"];
 
-/// Globals that hold no state of a run: what is read or computed once and never changes, and the lock of a library that
-/// takes one caller at a time.
-const CONSTANT: [&str; 8] = ["VARIABLES", "FLAGS", "RATES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS", "NAMES"];
+/// Globals that hold no state of a run: what is read or computed once and never changes, the lock of a library that
+/// takes one caller at a time, and how deep a reader of states within states is on its thread.
+const CONSTANT: [&str; 9] =
+    ["DEPTH", "VARIABLES", "FLAGS", "RATES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS", "NAMES"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -206,7 +207,8 @@ fn nothing_of_a_run_is_global() {
                 let name = word_at(&line[at + "static ".len()..]);
                 (is_changeable && !CONSTANT.contains(&name)).then_some(line)
             });
-            let threads = text.lines().filter(|line| line.contains("thread_local!"));
+            // A reader of states within states counts how deep it is, so that a forged file ends in an error.
+            let threads = text.lines().filter(|line| line.contains("thread_local!") && !file.ends_with("packed.rs"));
             // MPI's own world is named in one file.
             let worlds = text.lines().filter(|line| line.contains("world()") && !file.ends_with("mpi_world.rs"));
             let worlds = worlds.filter(|_| name != "petsc/src");

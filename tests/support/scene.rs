@@ -59,9 +59,7 @@ impl Scene {
         place: &dyn Fn(Vec3) -> Vec3,
     ) -> Sides {
         self.bodies.push(name);
-        self.mesh.block(name, [count; 3], |x| {
-            place(std::array::from_fn(|c| if c < 3 { low[c] + (high[c] - low[c]) * x[c] } else { 0.0 }))
-        })
+        self.mesh.block(name, [count; 3], |x| place(std::array::from_fn(|c| low[c] + (high[c] - low[c]) * x[c])))
     }
 
     /// A part of some sides.
@@ -210,7 +208,6 @@ pub fn held(space: usize) -> [Value; 3] {
 
 pub fn turned(angle: f64) -> impl Fn(Vec3) -> Vec3 {
     let (sin, cos) = angle.sin_cos();
-    // About the last axis of the plane, and about x too in space: no face lies along an axis.
     move |[x, y, z]| [cos * x - sin * y, sin * x + cos * y, z]
 }
 
@@ -237,7 +234,9 @@ pub fn die(space: usize, angle: f64, size: f64, kind: Kind, block_is_slave: bool
     let (mut nodes, mut facets) = (Vec::new(), Vec::new());
     let names = ["Floor", "West", "East", "South", "North"];
     for (name, (axis, end)) in names.into_iter().zip([(up, 0)].into_iter().chain(lateral)) {
-        let (mut low, mut high) = ([-1.0; 3], [3.0; 3]);
+        // A die that is the slave ends where the block does: a slave node beside the block would be in no contact.
+        let beyond = if block_is_slave { 1.0 } else { 0.0 };
+        let (mut low, mut high) = ([-beyond; 3], [2.0 + beyond; 3]);
         if axis != up {
             low[up] = 0.0;
         }

@@ -175,7 +175,8 @@ impl ContactState {
         write_nodal_normals(part, &self.pairing, &self.holding);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         if !part.info.is(AVERAGED_EDGES) {
-            take_normals_of_masters(part, &mut self.states, &self.pairing);
+            let planes = self.holding.planes();
+            take_normals_of_masters(part, &mut self.states, &self.pairing, &|node| planes.contains_key(&node));
         }
     }
 

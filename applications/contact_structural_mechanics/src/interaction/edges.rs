@@ -19,13 +19,23 @@ use crate::slave_states::SlaveStates;
 const SHARP: f64 = 0.82;
 /// Angle between the facets of a rim and the master, in radians, up to which both lie flat on each other.
 const FLAT: f64 = 1e-3;
+/// Cosine of the angle between two normals up to which they are one direction.
+const SAME: f64 = 0.9;
 /// Length of the mean of unit normals of masters below which they have no normal in common.
 const NO_COMMON_NORMAL: f64 = 0.1;
 
 /// Gives slave nodes on rims and sharp folds the normal of the master that they overlap.
-pub(super) fn take_normals_of_masters(part: &ModelPart, states: &mut SlaveStates, pairing: &Pairing) {
+///
+/// `on_plane` says which mesh nodes lie on planes of symmetry, where a patch ends and its body does not.
+pub(super) fn take_normals_of_masters(
+    part: &ModelPart,
+    states: &mut SlaveStates,
+    pairing: &Pairing,
+    on_plane: &dyn Fn(u32) -> bool,
+) {
     states.for_all(|state| state.normal_of_master = false);
-    for (slave, (sum, area)) in opposite_normals(part, states, pairing) {
+    let rims = open_rims(part, states, pairing, on_plane);
+    for (slave, (sum, area)) in opposite_normals(part, states, pairing, &rims) {
         let size = norm(sum);
         if size < NO_COMMON_NORMAL * area {
             continue;
@@ -39,18 +49,46 @@ pub(super) fn take_normals_of_masters(part: &ModelPart, states: &mut SlaveStates
     }
 }
 
-/// Of each slave node, whether a facet around it is in contact with all of its nodes: there the face presses, not its edge.
-fn on_closed_facets(states: &SlaveStates, pairing: &Pairing) -> Vec<bool> {
-    let mut out = vec![false; states.len()];
+/// Of each slave node, whether it lies at an edge of its body that may press as an edge: no facet around it is in contact with all of
+/// its nodes.
+fn open_rims(part: &ModelPart, states: &SlaveStates, pairing: &Pairing, on_plane: &dyn Fn(u32) -> bool) -> Vec<bool> {
+    let patches = &pairing.patches;
+    let (mut closed, mut beyond) = (vec![false; states.len()], vec![false; states.len()]);
     for (i, interface) in pairing.interfaces.iter().enumerate() {
         for (f, facet) in interface.facets.iter().enumerate() {
-            let own = pairing.patches.of_facet(i as u32, f as u32, facet.nodes.len());
+            let own = patches.of_facet(i as u32, f as u32, facet.nodes.len());
             if own.iter().all(|&slave| states[slave].active) {
-                own.iter().for_each(|slave| out[slave.place()] = true);
+                own.iter().for_each(|slave| closed[slave.place()] = true);
+            }
+            // In space an edge may leave the plane; in the plane edges are nodes.
+            let leaves = |&slave: &SlaveIndex| patches.is_rim(slave) && !on_plane(patches.mesh_node(slave));
+            if part.info.domain_size == 3 && own.iter().any(leaves) {
+                own.iter().for_each(|slave| beyond[slave.place()] = true);
             }
         }
     }
-    out
+    let is_open_rim = |slave: SlaveIndex| {
+        let ends = !on_plane(patches.mesh_node(slave)) || beyond[slave.place()];
+        patches.is_rim(slave) && ends && !closed[slave.place()]
+    };
+    patches.all().map(is_open_rim).collect()
+}
+
+/// Isolates slave nodes that share their mesh node and the normal of a master with another of a larger area: two multipliers of one direction
+/// are a null mode.
+pub(super) fn keep_one_of_a_normal(states: &mut SlaveStates) {
+    let facing: Vec<SlaveIndex> = states.all().filter(|&slave| !states[slave].isolated).collect();
+    let is_less = |&slave: &SlaveIndex| {
+        let own = &states[slave];
+        let others = states.at(states.mesh_node(slave)).filter(|&other| other != slave && !states[other].isolated);
+        own.normal_of_master
+            && others.into_iter().any(|other| {
+                let larger = states[other].area > own.area || (states[other].area == own.area && other < slave);
+                larger && dot(states[other].normal, own.normal) > SAME
+            })
+    };
+    let less: Vec<SlaveIndex> = facing.into_iter().filter(is_less).collect();
+    less.into_iter().for_each(|slave| states[slave].isolated = true);
 }
 
 /// Sums of the normals into the masters that slave nodes on rims and sharp folds overlap, by their areas, and the areas.
@@ -58,11 +96,10 @@ fn opposite_normals(
     part: &ModelPart,
     states: &SlaveStates,
     pairing: &Pairing,
+    rims: &[bool],
 ) -> BTreeMap<SlaveIndex, ([f64; 3], f64)> {
     let mut found: BTreeMap<SlaveIndex, ([f64; 3], f64)> = BTreeMap::new();
-    let closed = on_closed_facets(states, pairing);
-    let rims = pairing.patches.all().filter(|&slave| pairing.patches.is_rim(slave) && !closed[slave.place()]);
-    found.extend(rims.map(|slave| (slave, ([0.0; 3], 0.0))));
+    found.extend(pairing.patches.all().filter(|slave| rims[slave.place()]).map(|slave| (slave, ([0.0; 3], 0.0))));
     for (i, interface) in pairing.interfaces.iter().enumerate() {
         for (f, facet) in interface.facets.iter().enumerate() {
             let points = facet.positions(part);

@@ -4,6 +4,7 @@ use zelus_core::model::ModelPart;
 
 use super::coverage::isolate_beside;
 use super::decision::resolution;
+use super::edges::keep_one_of_a_normal;
 use super::pairing::Pairing;
 use super::setup::Setup;
 use super::slave_sums::SlaveSums;
@@ -62,5 +63,6 @@ pub(super) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
     let around = setup.parameters.segmentation.revolution();
     let weight = |n: u32| around.map_or(1.0, |per_radius| per_radius * part.nodes.current[n as usize][0]);
     isolate_beside(part, states, pairing, setup.settings.least_coverage, weight);
+    keep_one_of_a_normal(states);
     setup.resolution = resolution(part, &pairing.nodes(), states, family, &setup.parameters);
 }
