@@ -17,8 +17,9 @@ use crate::slave_states::SlaveStates;
 
 /// Cosine of the angle between a facet and the mean normal of its node, beyond which the node is on a sharp fold: 35°.
 const SHARP: f64 = 0.82;
-/// Angle between the facets of a rim and the master, in radians, up to which both lie flat on each other.
-const FLAT: f64 = 1e-3;
+/// Angle between the facets of a rim and the master, in radians, up to which both lie flat on each other: strains and coarse facets
+/// tilt faces that press by less.
+const FLAT: f64 = 0.05;
 /// Cosine of the angle between two normals up to which they are one direction.
 const SAME: f64 = 0.9;
 /// Length of the mean of unit normals of masters below which they have no normal in common.
@@ -34,7 +35,7 @@ pub(super) fn take_normals_of_masters(
     on_plane: &dyn Fn(u32) -> bool,
 ) {
     states.for_all(|state| state.normal_of_master = false);
-    let rims = open_rims(part, states, pairing, on_plane);
+    let rims = open_rims(states, pairing, on_plane);
     for (slave, (sum, area)) in opposite_normals(part, states, pairing, &rims) {
         let size = norm(sum);
         if size < NO_COMMON_NORMAL * area {
@@ -51,31 +52,24 @@ pub(super) fn take_normals_of_masters(
 
 /// Of each slave node, whether it lies at an edge of its body that may press as an edge: no facet around it is in contact with all of
 /// its nodes.
-fn open_rims(part: &ModelPart, states: &SlaveStates, pairing: &Pairing, on_plane: &dyn Fn(u32) -> bool) -> Vec<bool> {
+fn open_rims(states: &SlaveStates, pairing: &Pairing, on_plane: &dyn Fn(u32) -> bool) -> Vec<bool> {
     let patches = &pairing.patches;
-    let (mut closed, mut beyond) = (vec![false; states.len()], vec![false; states.len()]);
+    let mut closed = vec![false; states.len()];
     for (i, interface) in pairing.interfaces.iter().enumerate() {
         for (f, facet) in interface.facets.iter().enumerate() {
             let own = patches.of_facet(i as u32, f as u32, facet.nodes.len());
             if own.iter().all(|&slave| states[slave].active) {
                 own.iter().for_each(|slave| closed[slave.place()] = true);
             }
-            // In space an edge may leave the plane; in the plane edges are nodes.
-            let leaves = |&slave: &SlaveIndex| patches.is_rim(slave) && !on_plane(patches.mesh_node(slave));
-            if part.info.domain_size == 3 && own.iter().any(leaves) {
-                own.iter().for_each(|slave| beyond[slave.place()] = true);
-            }
         }
     }
-    let is_open_rim = |slave: SlaveIndex| {
-        let ends = !on_plane(patches.mesh_node(slave)) || beyond[slave.place()];
-        patches.is_rim(slave) && ends && !closed[slave.place()]
-    };
+    let is_open_rim =
+        |slave: SlaveIndex| patches.is_rim(slave) && !on_plane(patches.mesh_node(slave)) && !closed[slave.place()];
     patches.all().map(is_open_rim).collect()
 }
 
-/// Isolates slave nodes that share their mesh node and the normal of a master with another of a larger area: two multipliers of one direction
-/// are a null mode.
+/// Isolates slave nodes that share their mesh node and the normal of a master with another that is in contact or has the larger area: two
+/// multipliers of one direction are a null mode.
 pub(super) fn keep_one_of_a_normal(states: &mut SlaveStates) {
     let facing: Vec<SlaveIndex> = states.all().filter(|&slave| !states[slave].isolated).collect();
     let is_less = |&slave: &SlaveIndex| {
@@ -83,8 +77,8 @@ pub(super) fn keep_one_of_a_normal(states: &mut SlaveStates) {
         let others = states.at(states.mesh_node(slave)).filter(|&other| other != slave && !states[other].isolated);
         own.normal_of_master
             && others.into_iter().any(|other| {
-                let larger = states[other].area > own.area || (states[other].area == own.area && other < slave);
-                larger && dot(states[other].normal, own.normal) > SAME
+                let order = states[other].active.cmp(&own.active).then(states[other].area.total_cmp(&own.area));
+                order.then(slave.cmp(&other)).is_gt() && dot(states[other].normal, own.normal) > SAME
             })
     };
     let less: Vec<SlaveIndex> = facing.into_iter().filter(is_less).collect();
