@@ -1,8 +1,8 @@
 //! Normals of slave nodes on rims of patches and on sharp edges.
 //!
 //! An edge or a corner of a body that is pressed on a surface has no normal of its own: the force acts along the normal of the
-//! surface it lies on. Slave nodes where their patch ends at an edge of the body, unless a facet there is in contact with all of
-//! its nodes, and those on sharp folds within a patch take the normal of the master that they overlap, turned round, once it
+//! surface it lies on. Slave nodes where their patch ends at an edge of the body, unless a facet there is in contact beside
+//! the edge, and those on sharp folds within a patch take the normal of the master that they overlap, turned round, once it
 //! differs from that of their facets.
 
 use std::collections::BTreeMap;
@@ -51,14 +51,15 @@ pub(super) fn take_normals_of_masters(
 }
 
 /// Of each slave node, whether it lies at an edge of its body that may press as an edge: no facet around it is in contact with all of
-/// its nodes.
+/// its nodes, or with one beside the edge.
 fn open_rims(states: &SlaveStates, pairing: &Pairing, on_plane: &dyn Fn(u32) -> bool) -> Vec<bool> {
     let patches = &pairing.patches;
     let mut closed = vec![false; states.len()];
     for (i, interface) in pairing.interfaces.iter().enumerate() {
         for (f, facet) in interface.facets.iter().enumerate() {
             let own = patches.of_facet(i as u32, f as u32, facet.nodes.len());
-            if own.iter().all(|&slave| states[slave].active) {
+            let inner = own.iter().any(|&slave| states[slave].active && !patches.is_rim(slave));
+            if inner || own.iter().all(|&slave| states[slave].active) {
                 own.iter().for_each(|slave| closed[slave.place()] = true);
             }
         }
