@@ -15,7 +15,7 @@ use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, scale, sub};
 
-use super::facet::Roles;
+use super::facet::{Facet, Roles};
 use super::facets::Interface;
 use crate::node_state::SlaveIndex;
 
@@ -85,7 +85,7 @@ impl Patches {
                 for (edge, around) in meeting.iter().filter(|(edge, _)| sharp.contains(*edge)) {
                     for &at in around {
                         let patch = sets.find(at) as u32;
-                        edge.iter().for_each(|&node| _ = rims.insert((node, patch)));
+                        rims.extend(nodes_on(facet(at), edge).map(|node| (node, patch)));
                     }
                 }
                 master_edges = interfaces.iter().map(|own| nodes_of_edges(part, own, &sharp)).collect();
@@ -253,6 +253,14 @@ fn sharp_edges(part: &ModelPart, interfaces: &[Interface], least: f64) -> FxHash
         dot(*one, *other) <= least && dot(*one, sub(*centre, mean(&places))) < 0.0
     };
     around.into_iter().filter(|(edge, faces)| is_sharp(edge, faces)).map(|(edge, _)| edge).collect()
+}
+
+/// Nodes of a facet on one of its edges: the corners, and of second order the one between them.
+fn nodes_on<'a>(facet: &'a Facet, edge: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
+    let corners = facet.corners();
+    let between = edges(corners).iter().position(|own| own == edge).map(|at| corners.len() + at);
+    let between = between.filter(|_| edge.len() == 2).and_then(|at| facet.nodes.get(at));
+    edge.iter().chain(between).copied()
 }
 
 /// Nodes of the master facets of an interface on these edges, ascending. Collective.
