@@ -265,7 +265,9 @@ fn what_cannot_be_condensed_is_named_once_and_solved_whole() {
         for name in names {
             assert!(run.said.contains(name), "{case}: {name:?} is not in {}", run.said);
         }
-        assert_eq!(run.engines, direct.engines, "{case}");
+        // Condensation ends with the first system that it does not fit.
+        assert_eq!(run.engines.len(), direct.engines.len(), "{case}");
+        assert_eq!(run.engines.last(), direct.engines.last(), "{case}");
         let (difference, field) = direct.difference(&run);
         assert!(difference < AGREE, "{case}: {field} differs by {difference:e}");
 
