@@ -109,14 +109,23 @@ pub(crate) fn all_shapes() -> impl Iterator<Item = [&'static FacetShape; 2]> {
 
 fn derivative_matches_differences(slave: &'static FacetShape, master: &'static FacetShape) {
     let shapes = [slave, master];
+    // Pieces of facets of second order are integrated by the fourth order at least, and take long.
+    let curved = slave.curved || master.curved;
+    let orders = if curved { vec![2, 5] } else { (1..=5).collect() };
     for axisymmetric in [None, (slave.space == 2).then_some(0.7)] {
-        for order in 1..=5 {
+        for &order in &orders {
             let settings = SegmentationSettings {
                 axisymmetric,
                 integration_order: IntegrationOrder::new(order).unwrap(),
                 ..Default::default()
             };
-            for seed in 0..if order == 2 { 40 } else { 4 } {
+            for seed in 0..if curved {
+                2
+            } else if order == 2 {
+                40
+            } else {
+                4
+            } {
                 let pair = random_pair(slave, master, seed);
                 let dual = |first| operators(&pair.seeded_from(first), &settings).cells().map(|dual| flat(&dual));
                 let Some(values) = dual(0) else { continue };
@@ -155,9 +164,8 @@ fn operators_have_exact_derivatives() {
 #[test]
 fn normals_of_nodes_move_points_on_the_master() {
     let settings = SegmentationSettings::default();
-    let first_order = |[slave, master]: &[&FacetShape; 2]| slave.space == 3 && !slave.curved && !master.curved;
-    for [slave, master] in all_shapes().filter(first_order) {
-        for seed in 0..8 {
+    for [slave, master] in all_shapes().filter(|[slave, _]| slave.space == 3) {
+        for seed in 0..if slave.curved || master.curved { 2 } else { 8 } {
             let pair = random_pair(slave, master, seed);
             for first in (0..pair.normal_components()).step_by(LANES) {
                 let whole = operators(&pair.seeded_by_normals(first), &settings).cells();
