@@ -86,7 +86,7 @@ pub fn append_with(bytes: &mut Vec<u8>, write: impl FnOnce(&mut Writer<'_>) -> p
     write(&mut Writer { output: ser_flavors::io::WriteFlavor::new(bytes) }).map_err(Error::Writing)
 }
 
-/// What `read` makes of all of these bytes.
+/// The value that `read` makes of all of these bytes.
 ///
 /// # Errors
 /// As [`from_bytes`].

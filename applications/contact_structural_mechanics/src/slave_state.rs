@@ -40,7 +40,7 @@ pub struct SlaveState {
     pub dynamic_factor: f64,
     /// Limit of the tangential traction.
     pub friction: Bound,
-    /// What becomes of each component of its multiplier; of a scalar one the first.
+    /// How supports hold each component of its multiplier; of a scalar one the first.
     pub held: [Held; 3],
     /// Weight of its multiplier's equation where that states a traction (force times area).
     pub multiplier_weight: f64,
@@ -58,11 +58,11 @@ pub struct SlaveState {
     pub pressure: f64,
     /// Tangential traction for output.
     pub traction: [f64; 3],
-    /// What it was in the last accepted state.
+    /// Its state that was accepted last.
     pub last: Accepted,
 }
 
-/// What of a slave node is compared with its last accepted state.
+/// The part of a slave node that is compared with its last accepted state.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Accepted {
     /// Weighted gap.

@@ -146,7 +146,7 @@ impl BlockMatrix {
 /// No earlier matrix to take rows from.
 pub(super) const NOTHING_EARLIER: Option<(&BlockMatrix, fn(usize) -> bool)> = None;
 
-/// What is done with the product of a part: its first row, the product, and the numbers at its rows.
+/// The work on the product of a part: its first row, the product, and the numbers at its rows.
 type WithProduct<'a> = &'a (dyn Fn(usize, &[f32], &mut [f32]) + Sync);
 
 /// What a product does to what stands where it is written.

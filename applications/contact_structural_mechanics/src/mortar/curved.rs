@@ -150,7 +150,7 @@ impl<T: Real> Curved<'_, T> {
 
     /// Points of a sub-facet of the slave before those of the master.
     ///
-    /// What cannot overlap is found on values, before anything is computed with derivatives.
+    /// Pieces that cannot overlap are found on values, before anything is computed with derivatives.
     fn over_surface(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&Point<T>)) {
         let pair = self.pair;
         let (slave_shape, master_shape) = (pair.slave_shape, pair.master_shape);
