@@ -255,7 +255,7 @@ FILES = {
     "applications/structural_mechanics/src/elements/reference_elements.txt": element,
     "applications/structural_mechanics/src/conditions/reference_loads.txt": load,
     "applications/contact_structural_mechanics/src/mortar/reference_pairs.txt": mortar_pair,
-    "applications/contact_structural_mechanics/src/law/reference_residuals.txt": residual,
+    "applications/contact_structural_mechanics/src/pairs/reference_residuals.txt": residual,
 }
 
 
