@@ -5,13 +5,12 @@
 //! the edge, and those on sharp folds within a patch take the normal of the master that they overlap, turned round, once it
 //! differs from that of their facets.
 
-use std::collections::BTreeMap;
-
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale};
 
 use super::pairing::Pairing;
+use super::slave_sums::SlaveSums;
 use crate::node_state::SlaveIndex;
 use crate::slave_states::SlaveStates;
 
@@ -25,7 +24,7 @@ const SAME: f64 = 0.9;
 /// Length of the mean of unit normals of masters below which they have no normal in common.
 const NO_COMMON_NORMAL: f64 = 0.1;
 
-/// Gives slave nodes on rims and sharp folds the normal of the master that they overlap.
+/// Gives slave nodes on rims and sharp folds the normal of the master that they overlap. Collective.
 ///
 /// `on_plane` says which mesh nodes lie on planes of symmetry, where a patch ends and its body does not.
 pub(super) fn take_normals_of_masters(
@@ -36,7 +35,7 @@ pub(super) fn take_normals_of_masters(
 ) {
     states.for_all(|state| state.normal_of_master = false);
     let rims = open_rims(states, pairing, on_plane);
-    for (slave, (sum, area)) in opposite_normals(part, states, pairing, &rims) {
+    for (slave, sum, area) in opposite_normals(part, states, pairing, &rims) {
         let size = norm(sum);
         if size < NO_COMMON_NORMAL * area {
             continue;
@@ -86,38 +85,37 @@ pub(super) fn keep_one_of_a_normal(states: &mut SlaveStates) {
     less.into_iter().for_each(|slave| states[slave].isolated = true);
 }
 
-/// Sums of the normals into the masters that slave nodes on rims and sharp folds overlap, by their areas, and the areas.
+/// Sums of the normals into the masters that slave nodes on rims and sharp folds overlap, by their areas, and the areas. Collective.
 fn opposite_normals(
     part: &ModelPart,
     states: &SlaveStates,
     pairing: &Pairing,
     rims: &[bool],
-) -> BTreeMap<SlaveIndex, ([f64; 3], f64)> {
-    let mut found: BTreeMap<SlaveIndex, ([f64; 3], f64)> = BTreeMap::new();
-    found.extend(pairing.patches.all().filter(|slave| rims[slave.place()]).map(|slave| (slave, ([0.0; 3], 0.0))));
+) -> Vec<(SlaveIndex, [f64; 3], f64)> {
+    let mut wanted = rims.to_vec();
     for (i, interface) in pairing.interfaces.iter().enumerate() {
         for (f, facet) in interface.facets.iter().enumerate() {
             let points = facet.positions(part);
             for (local, &slave) in pairing.patches.of_facet(i as u32, f as u32, facet.nodes.len()).iter().enumerate() {
                 let own = unit_normal(facet.shape, &points, facet.shape.cell().points[local]);
-                if own.is_some_and(|own| dot(own, states[slave].normal) < SHARP) {
-                    found.entry(slave).or_insert(([0.0; 3], 0.0));
-                }
+                wanted[slave.place()] |= own.is_some_and(|own| dot(own, states[slave].normal) < SHARP);
             }
         }
     }
-    if found.is_empty() {
-        return found;
+    if !wanted.contains(&true) {
+        return Vec::new();
     }
+    let mut sums = SlaveSums::<4>::new(states);
     for pair in pairing.blocks.iter().flat_map(|block| block.pairs()).filter(|pair| pair.overlapping) {
         let into = scale(pairing.master(pair.key).normal(part), -1.0);
-        for (local, slave) in pairing.slaves_of_pair(pair.key).iter().enumerate() {
-            let Some((sum, whole)) = found.get_mut(slave) else { continue };
+        for (local, &slave) in pairing.slaves_of_pair(pair.key).iter().enumerate().filter(|(_, s)| wanted[s.place()]) {
+            // A rank knows the areas of the pairs that it evaluates.
             let area = pair.area[local].abs();
-            *sum = add(*sum, scale(into, area));
-            *whole += area;
+            let [x, y, z] = add([sums[slave][0], sums[slave][1], sums[slave][2]], scale(into, area));
+            sums[slave] = [x, y, z, sums[slave][3] + area];
         }
     }
-    found.retain(|_, (_, area)| *area > 0.0);
-    found
+    sums.over_ranks(part, states);
+    let found = pairing.patches.all().filter(|slave| wanted[slave.place()]).map(|slave| (slave, sums[slave]));
+    found.filter(|(_, [.., area])| *area > 0.0).map(|(slave, [x, y, z, area])| (slave, [x, y, z], area)).collect()
 }

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rustc_hash::{FxHashMap, FxHashSet};
+use zelus_core::Components;
 use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::model::ModelPart;
@@ -62,11 +63,11 @@ impl Patches {
             .collect();
         let facet = |at: usize| &interfaces[facets[at].0].facets[facets[at].1];
         let normals: Vec<[f64; 3]> = (0..facets.len()).map(|at| facet(at).initial_normal(part)).collect();
-        let mut sets = DisjointSets::new(facets.len());
+        let sets = Components::new(facets.len());
         let mut rims: FxHashSet<(u32, u32)> = FxHashSet::default();
         let mut master_edges: Vec<Vec<u32>> = vec![Vec::new(); interfaces.len()];
         match angle {
-            None => (1..facets.len()).for_each(|at| sets.join(0, at)),
+            None => (1..facets.len()).for_each(|at| sets.join(0, at as u32)),
             Some(angle) => {
                 let least = angle.to_radians().cos();
                 let mut meeting: BTreeMap<Vec<u32>, Vec<usize>> = BTreeMap::new();
@@ -78,13 +79,13 @@ impl Patches {
                 for around in meeting.values() {
                     for (k, &one) in around.iter().enumerate() {
                         let smooth = around[k + 1..].iter().filter(|&&other| dot(normals[one], normals[other]) > least);
-                        smooth.for_each(|&other| sets.join(one, other));
+                        smooth.for_each(|&other| sets.join(one as u32, other as u32));
                     }
                 }
                 let sharp = sharp_edges(part, interfaces, least);
                 for (edge, around) in meeting.iter().filter(|(edge, _)| sharp.contains(*edge)) {
                     for &at in around {
-                        let patch = sets.find(at) as u32;
+                        let patch = sets.first(at as u32);
                         rims.extend(nodes_on(facet(at), edge).map(|node| (node, patch)));
                     }
                 }
@@ -92,10 +93,10 @@ impl Patches {
             }
         }
         // Patches are numbered in the order of their first facets.
-        let mut numbers: BTreeMap<usize, u32> = BTreeMap::new();
-        let patch_of: Vec<(usize, u32)> = (0..facets.len())
+        let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
+        let patch_of: Vec<(u32, u32)> = (0..facets.len())
             .map(|at| {
-                let root = sets.find(at);
+                let root = sets.first(at as u32);
                 let next = numbers.len() as u32;
                 (root, *numbers.entry(root).or_insert(next))
             })
@@ -105,7 +106,7 @@ impl Patches {
             nodes.extend(facet(at).nodes.iter().map(|&node| PatchNode {
                 node,
                 patch,
-                rim: rims.contains(&(node, root as u32)),
+                rim: rims.contains(&(node, root)),
             }));
         }
         nodes.sort_unstable_by_key(|own| (own.node, own.patch));
@@ -292,32 +293,4 @@ pub(super) fn edges(corners: &[u32]) -> Vec<Vec<u32>> {
         vec![a.min(b), a.max(b)]
     };
     (0..count).map(side).collect()
-}
-
-/// Sets of numbers that are joined one by one.
-struct DisjointSets(Vec<usize>);
-
-impl DisjointSets {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    /// The least member of the set of a number.
-    fn find(&mut self, at: usize) -> usize {
-        let mut root = at;
-        while self.0[root] != root {
-            root = self.0[root];
-        }
-        let mut next = at;
-        while self.0[next] != root {
-            next = std::mem::replace(&mut self.0[next], root);
-        }
-        root
-    }
-
-    fn join(&mut self, one: usize, other: usize) {
-        let (one, other) = (self.find(one), self.find(other));
-        let (least, most) = (one.min(other), one.max(other));
-        self.0[most] = least;
-    }
 }
