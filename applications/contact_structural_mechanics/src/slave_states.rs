@@ -108,6 +108,11 @@ impl IndexMut<SlaveIndex> for SlaveStates {
 }
 
 impl SlaveStates {
+    /// Mesh nodes and owners of the slave nodes.
+    pub fn table(&self) -> &SlaveTable {
+        &self.table
+    }
+
     /// The states that flags and columns of a part hold at the mesh nodes of a table; all of them count as slaves.
     pub fn of(part: &ModelPart, table: SlaveTable, columns: Columns) -> Self {
         let states = table.nodes.iter().map(|&node| imported(&part.nodes, node as usize, columns)).collect();

@@ -21,6 +21,7 @@ use super::set_stage::SetStage;
 use super::setup::Setup;
 use crate::flags::{MASTER, SLAVE};
 use crate::interface::{NormalPatches, Roles, add_contact_part, interfaces, warnings_of_pairs};
+use crate::node_state::SlaveIndex;
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
 use crate::search::{GapCheck, assign_roles};
@@ -252,7 +253,8 @@ impl ContactState {
     pub(super) fn publish(&mut self, part: &mut ModelPart) {
         self.pairing.set_states(&self.states);
         self.states.export(&mut part.nodes);
-        multiplier_columns::export(part, &self.states, self.setup.settings.family.multiplier);
+        let area = |slave: SlaveIndex| self.states[slave].area;
+        multiplier_columns::export(part, self.states.table(), &area, self.setup.settings.family.multiplier);
         if self.setup.settings.family.frictional() {
             write_status(part, &self.states);
         }

@@ -7,50 +7,42 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, scale};
 
 use crate::law::Multiplier;
+use crate::node_state::SlaveIndex;
 use crate::slave_states::{Shown, SlaveStates, SlaveTable};
 
-/// Columns of mesh nodes with the multipliers of slave nodes: node, and the three components of its entry.
-fn shown(part: &ModelPart, states: &SlaveStates, multiplier: Multiplier) -> Vec<(u32, [f64; 3])> {
-    let mut out: Vec<(u32, [f64; 3])> = Vec::with_capacity(states.len());
-    for slave in states.all() {
-        let node = states.mesh_node(slave);
-        if out.last().is_some_and(|(last, _)| *last == node) {
-            continue;
-        }
-        let own =
-            states.at(node).map(|slave| (multiplier.value(&part.slave_nodes, states.owner(slave)), states[slave].area));
-        let several = states.at(node).nth(1).is_some();
-        let value =
-            if several { Shown::Mean.combined(own) } else { multiplier.value(&part.slave_nodes, states.owner(slave)) };
-        out.push((node, value));
+/// Column of mesh nodes with the multipliers of slave nodes, which count by their areas: node, and the three components of its entry.
+fn shown(
+    part: &ModelPart,
+    table: &SlaveTable,
+    area: &dyn Fn(SlaveIndex) -> f64,
+    multiplier: Multiplier,
+) -> Vec<(u32, [f64; 3])> {
+    let value = |place: usize| multiplier.value(&part.slave_nodes, table.owners[place]);
+    let mut out: Vec<(u32, [f64; 3])> = Vec::with_capacity(table.nodes.len());
+    let mut first = 0;
+    for own in table.nodes.chunk_by(|a, b| a == b) {
+        let places = first..first + own.len();
+        first = places.end;
+        let several = places.len() > 1;
+        let of = places.clone().map(|place| (value(place), area(SlaveIndex(place as u32))));
+        out.push((own[0], if several { Shown::Mean.combined(of) } else { value(places.start) }));
     }
     out
 }
 
-/// Writes the column of mesh nodes.
-pub(super) fn export(part: &mut ModelPart, states: &SlaveStates, multiplier: Multiplier) {
+/// Writes the column of mesh nodes; slave nodes at one of them count by their areas, all alike where none has one.
+pub(super) fn export(
+    part: &mut ModelPart,
+    table: &SlaveTable,
+    area: &dyn Fn(SlaveIndex) -> f64,
+    multiplier: Multiplier,
+) {
     let Some((name, components)) = multiplier.column() else { return };
-    let shown = shown(part, states, multiplier);
+    let shown = shown(part, table, area, multiplier);
     let Some(field) = part.nodes.history.get_mut(name) else { return };
     for (node, value) in shown {
         let at = components * node as usize;
         field.levels[0][at..at + components].copy_from_slice(&value[..components]);
-    }
-}
-
-/// Writes the column of mesh nodes for slave nodes that have no state: the mean of several at a mesh node.
-pub(super) fn export_of(part: &mut ModelPart, table: &SlaveTable, multiplier: Multiplier) {
-    let Some((name, components)) = multiplier.column() else { return };
-    let values: Vec<[f64; 3]> = table.owners.iter().map(|&owner| multiplier.value(&part.slave_nodes, owner)).collect();
-    let Some(field) = part.nodes.history.get_mut(name) else { return };
-    for (at, node) in table.nodes.iter().enumerate() {
-        let first = table.nodes.partition_point(|other| other < node);
-        let count = table.nodes[first..].partition_point(|other| other == node);
-        let entry = components * *node as usize;
-        for c in 0..components {
-            let before = if at == first { 0.0 } else { field.levels[0][entry + c] };
-            field.levels[0][entry + c] = before + values[at][c] / count as f64;
-        }
     }
 }
 
@@ -63,7 +55,7 @@ pub(super) fn import(part: &mut ModelPart, states: &SlaveStates, multiplier: Mul
         let at = components * node as usize;
         std::array::from_fn(|c| if c < components { field.levels[0][at + c] } else { 0.0 })
     };
-    let changed: Vec<(u32, [f64; 3])> = shown(part, states, multiplier)
+    let changed: Vec<(u32, [f64; 3])> = shown(part, states.table(), &|slave| states[slave].area, multiplier)
         .into_iter()
         .map(|(node, shown)| (node, shown, given(node)))
         .filter(|(_, shown, given)| shown != given)

@@ -355,7 +355,7 @@ impl Interaction for TyingInteraction {
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        multiplier_columns::export_of(part, &self.table, self.settings.family.multiplier);
+        multiplier_columns::export(part, &self.table, &|_| 0.0, self.settings.family.multiplier);
         Ok(())
     }
 
