@@ -43,6 +43,9 @@ pub trait Real:
     /// The number itself, derivatives dropped.
     fn value(self) -> f64;
 
+    /// Whether all derivatives are zero.
+    fn is_constant(&self) -> bool;
+
     /// Applies a function of one variable, given its value and derivative at `self.value()`.
     fn chain(self, value: f64, derivative: f64) -> Self;
 
@@ -184,6 +187,10 @@ impl Real for f64 {
         self
     }
     #[inline]
+    fn is_constant(&self) -> bool {
+        true
+    }
+    #[inline]
     fn chain(self, value: f64, _derivative: f64) -> Self {
         value
     }
@@ -257,6 +264,10 @@ impl<const N: usize> Real for Dual<N> {
     #[inline(always)]
     fn value(self) -> f64 {
         self.value
+    }
+    #[inline(always)]
+    fn is_constant(&self) -> bool {
+        self.gradient.iter().all(|&derivative| derivative == 0.0)
     }
     #[inline(always)]
     fn chain(mut self, value: f64, derivative: f64) -> Self {

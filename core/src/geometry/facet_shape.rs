@@ -8,12 +8,27 @@ use std::fmt;
 use super::Shape;
 use super::nodal::Nodal;
 use super::pieces::pieces;
-use super::shape_functions::{barycentric, linear, product, quadratic, quadratic_simplex, serendipity};
+use super::shape_functions::{
+    barycentric, linear, product, quadratic, quadratic_corner, quadratic_middle, serendipity,
+};
 use crate::scalar::{Dual, Real};
 use crate::vector3::{cross, dot, norm, normalised, sub, value};
 
 /// Newton steps of the closest-point search; it is quadratic, three or four are the rule.
 const MAX_STEPS: usize = 25;
+/// Step of a search in local coordinates after which nothing is left but round-off.
+const SETTLED: f64 = 1e-9;
+
+/// The point in which a straight line meets a facet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Local coordinates on the facet.
+    pub local: [f64; 2],
+    /// Way along the line from where it starts, in lengths of its direction.
+    pub distance: f64,
+    /// ∂ξ/∂x and ∂η/∂x: the change of the local coordinates when the line moves by x (one by length).
+    pub rows: [[f64; 3]; 2],
+}
 
 /// A shape of facets: the constant facts of its reference cell.
 pub struct FacetShape {
@@ -142,7 +157,12 @@ impl FacetShape {
             Shape::Line2 => Nodal::new(2, |i| product(&points[i], &xi[..1], linear)),
             Shape::Line3 => Nodal::new(3, |i| product(&points[i], &xi[..1], quadratic)),
             Shape::Tri3 => Nodal::new(3, |i| barycentric(&xi, i)),
-            Shape::Tri6 => Nodal::new(6, |i| quadratic_simplex(self.shape.cell(), &xi, i)),
+            Shape::Tri6 => {
+                let l: [T; 3] = std::array::from_fn(|i| barycentric(&xi, i));
+                let [a, b, c] = l.map(quadratic_corner);
+                let middle = |i: usize, j: usize| quadratic_middle(l[i], l[j]);
+                [a, b, c, middle(0, 1), middle(1, 2), middle(2, 0)].into()
+            }
             Shape::Quad4 => Nodal::new(4, |i| product(&points[i], &xi, linear)),
             Shape::Quad8 => Nodal::new(8, |i| serendipity(&points[i], &xi)),
             _ => Nodal::new(9, |i| product(&points[i], &xi, quadratic)),
@@ -201,6 +221,33 @@ impl FacetShape {
         self.across([t, s])
     }
 
+    /// The point in which the straight line through `p` along `n` meets the facet with nodes `x`, extended beyond its edges;
+    /// `None` where the search for it does not settle.
+    pub fn crossing(&self, x: &[[f64; 3]], p: [f64; 3], n: [f64; 3], guess: [f64; 2]) -> Option<Crossing> {
+        let (mut local, mut distance) = (guess, 0.0);
+        for _ in 0..MAX_STEPS {
+            let at = self.values([Dual::<2>::variable(local[0], 0), Dual::variable(local[1], 1)]);
+            let (mut apart, mut t, mut s) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+            for (shape, x) in at.iter().zip(x) {
+                for c in 0..3 {
+                    apart[c] += shape.value * x[c];
+                    t[c] += shape.gradient[0] * x[c];
+                    s[c] += shape.gradient[1] * x[c];
+                }
+            }
+            (0..3).for_each(|c| apart[c] -= p[c] + distance * n[c]);
+            let columns = [t, if self.space == 2 { [0.0, 0.0, 1.0] } else { s }, n.map(|n| -n)];
+            let [a, b, d] = solve(&columns, apart);
+            local = [local[0] - a, local[1] - b];
+            distance -= d;
+            // The error after a step is about the square of the step.
+            if a.abs().max(b.abs()) < SETTLED {
+                return Some(Crossing { local, distance, rows: rows(&columns) });
+            }
+        }
+        None
+    }
+
     /// Local coordinates of the point in which the straight line through `point` along `direction` meets the facet, extended
     /// beyond its edges; `None` where the search for it does not settle.
     ///
@@ -213,35 +260,12 @@ impl FacetShape {
         guess: [f64; 2],
     ) -> Option<[T; 2]> {
         let (x, p, n) = (Nodal::of(nodes).map(value), value(point), value(direction));
-        let (mut xi, mut distance) = (guess, 0.0);
-        let mut settled = false;
-        let columns = |xi: [f64; 2]| {
-            let [t, s] = self.tangents(&x, xi);
-            [t, if self.space == 2 { [0.0, 0.0, 1.0] } else { s }, n.map(|n| -n)]
-        };
-        for _ in 0..MAX_STEPS {
-            let on = combine(&self.values(xi), &x);
-            let apart: [f64; 3] = std::array::from_fn(|c| on[c] - p[c] - distance * n[c]);
-            let [a, b, d] = solve(&columns(xi), apart);
-            xi = [xi[0] - a, xi[1] - b];
-            distance -= d;
-            settled = a.abs().max(b.abs()) < 1e-13;
-            if settled {
-                break;
-            }
-        }
-        if !settled {
-            return None;
-        }
-        let on = combine(&self.values(xi), nodes);
-        let apart: [T; 3] = std::array::from_fn(|c| on[c] - point[c] - direction[c] * distance);
-        let inverse = [0, 1, 2].map(|c| {
-            let unit: [f64; 3] = std::array::from_fn(|k| f64::from(u8::from(k == c)));
-            solve(&columns(xi), unit)
-        });
-        let mut local = xi.map(T::constant);
+        let found = self.crossing(&x, p, n, guess)?;
+        let on = combine(&self.values(found.local), nodes);
+        let apart: [T; 3] = std::array::from_fn(|c| on[c] - point[c] - direction[c] * found.distance);
+        let mut local = found.local.map(T::constant);
         for a in 0..self.space - 1 {
-            (0..3).for_each(|c| local[a].add_scaled(apart[c], -inverse[c][a]));
+            (0..3).for_each(|c| local[a].add_scaled(apart[c], -found.rows[a][c]));
         }
         Some(local)
     }
@@ -284,11 +308,14 @@ impl FacetShape {
         local
     }
 
+    /// Whether the second derivatives are the same everywhere on the facet.
+    pub fn has_constant_bend(&self) -> bool {
+        matches!(self.shape, Shape::Line3 | Shape::Tri6) || self.nodes == self.corners
+    }
+
     /// The search of [`FacetShape::closest_point`]: local coordinates and the derivatives there.
     fn closest(&self, x: &[[f64; 3]], p: [f64; 3], guess: [f64; 2]) -> ([f64; 2], HalfSquare) {
         let mut xi = guess;
-        // Shape functions of these are of the second degree in all.
-        let constant_bend = matches!(self.shape, Shape::Line3 | Shape::Tri6);
         let mut bend = self.bend_at(x, xi);
         let mut state = HalfSquare::new(self, x, p, xi, &bend);
         for _ in 0..MAX_STEPS {
@@ -298,7 +325,7 @@ impl FacetShape {
             if step[0].abs().max(step[1].abs()) < 1e-13 {
                 break;
             }
-            if self.curved && !constant_bend {
+            if !self.has_constant_bend() {
                 bend = self.bend_at(x, xi);
             }
             state = HalfSquare::new(self, x, p, xi, &bend);
@@ -308,8 +335,7 @@ impl FacetShape {
 
     /// ∂²x/∂ξ², ∂²x/∂ξ∂η and ∂²x/∂η². No shape function is of higher degree than two in one coordinate, where central
     /// differences are exact; of bilinear ones, the mixed derivative is that of their values at the corners.
-    #[inline]
-    fn bend_at(&self, x: &[[f64; 3]], [xi, eta]: [f64; 2]) -> [[f64; 3]; 3] {
+    pub fn bend_at(&self, x: &[[f64; 3]], [xi, eta]: [f64; 2]) -> [[f64; 3]; 3] {
         if self.affine {
             return [[0.0; 3]; 3];
         }
@@ -331,6 +357,13 @@ impl FacetShape {
 fn solve([a, b, c]: &[[f64; 3]; 3], sum: [f64; 3]) -> [f64; 3] {
     let whole = 1.0 / dot(*a, cross(*b, *c));
     [dot(sum, cross(*b, *c)) * whole, dot(*a, cross(sum, *c)) * whole, dot(*a, cross(*b, sum)) * whole]
+}
+
+/// The first two rows of the inverse of the matrix with these columns.
+fn rows([a, b, c]: &[[f64; 3]; 3]) -> [[f64; 3]; 2] {
+    let (first, second) = (cross(*b, *c), cross(*c, *a));
+    let whole = 1.0 / dot(*a, first);
+    [first.map(|x| x * whole), second.map(|x| x * whole)]
 }
 
 /// First and second derivatives of half the squared distance, at one local point.

@@ -19,8 +19,8 @@ mod shape_table;
 mod tests;
 
 pub use facet_shape::{
-    FacetShape, LINE_2, LINE_3, QUADRILATERAL_4, QUADRILATERAL_8, QUADRILATERAL_9, TRIANGLE_3, TRIANGLE_6, combine,
-    interpolate,
+    Crossing, FacetShape, LINE_2, LINE_3, QUADRILATERAL_4, QUADRILATERAL_8, QUADRILATERAL_9, TRIANGLE_3, TRIANGLE_6,
+    combine, interpolate,
 };
 pub use nodal::{MOST_FACET_NODES, Nodal};
 pub use pieces::{parts, pieces, reversed};

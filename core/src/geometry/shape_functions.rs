@@ -76,11 +76,23 @@ pub(super) fn serendipity<T: Real>(node: &[f64; 3], xi: &[T]) -> T {
     product * (sum - (xi.len() as f64 - 1.0))
 }
 
-/// Corners L(2L − 1), edge middles 4 L_a L_b, with L the barycentric coordinates.
-pub(super) fn quadratic_simplex<T: Real>(cell: &ReferenceCell, xi: &[T], i: usize) -> T {
+/// Quadratic functions of a simplex: L(2L − 1) at a corner, with L its barycentric coordinate.
+#[inline(always)]
+pub(super) fn quadratic_corner<T: Real>(l: T) -> T {
+    l * (l * 2.0 - 1.0)
+}
+
+/// Quadratic functions of a simplex: 4 L_a L_b in the middle of the edge between two corners.
+#[inline(always)]
+pub(super) fn quadratic_middle<T: Real>(a: T, b: T) -> T {
+    a * b * 4.0
+}
+
+/// Quadratic functions of a simplex, corners and edge middles.
+fn quadratic_simplex<T: Real>(cell: &ReferenceCell, xi: &[T], i: usize) -> T {
     match cell.edges.iter().find(|edge| edge.nodes[2] == i) {
-        Some(edge) => barycentric(xi, edge.nodes[0]) * barycentric(xi, edge.nodes[1]) * 4.0,
-        None => barycentric(xi, i) * (barycentric(xi, i) * 2.0 - 1.0),
+        Some(edge) => quadratic_middle(barycentric(xi, edge.nodes[0]), barycentric(xi, edge.nodes[1])),
+        None => quadratic_corner(barycentric(xi, i)),
     }
 }
 

@@ -9,7 +9,7 @@ use zelus_core::model::ModelPart;
 
 use super::flat_master::FlatMaster;
 use crate::mortar::{
-    Active, EXACT_MOTION, Operators, Overlap, PairGeometry, SegmentationSettings, find_operators, operators,
+    Active, EXACT_MOTION, Operators, Overlap, PairGeometry, PairPoints, SegmentationSettings, find_operators, operators,
 };
 
 /// The knowledge that a tangent has of the motion of the operators D and M.
@@ -43,12 +43,15 @@ impl FirstIterateTangent {
         self,
         pair: &PairGeometry<Active>,
         settings: &SegmentationSettings,
+        points: &PairPoints,
         out: &mut Operators<Active>,
     ) -> Overlap<()> {
         match self {
             // Kratos has no facets of second order.
-            Self::FlatMaster if !pair.is_curved() => find_operators(pair, settings, &FlatMaster::new(pair), out),
-            Self::Exact | Self::FlatMaster => find_operators(pair, settings, &EXACT_MOTION, out),
+            Self::FlatMaster if !pair.is_curved() => {
+                find_operators(pair, settings, points, &FlatMaster::new(pair), out)
+            }
+            Self::Exact | Self::FlatMaster => find_operators(pair, settings, points, &EXACT_MOTION, out),
             Self::Constant => operators(&pair.values(), settings).map(|plain| *out = plain.as_constants()),
         }
     }

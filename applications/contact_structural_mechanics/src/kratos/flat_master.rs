@@ -72,7 +72,9 @@ impl<T: Real> MasterMotion<T> for FlatMaster<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mortar::{Active, Choices, LANES, Operators, SegmentationSettings, find_operators, operators};
+    use crate::mortar::{
+        Active, Choices, LANES, Operators, PairPoints, SegmentationSettings, find_operators, operators,
+    };
     use zelus_core::geometry::QUADRILATERAL_4;
 
     /// A unit square below one shifted aside whose far side is higher by `rise`.
@@ -99,7 +101,9 @@ mod tests {
             let seeded = plain.seeded_from(first);
             let exact = operators(&seeded, &settings).cells().expect("they overlap");
             let mut flat = Operators::<Active>::zero(&QUADRILATERAL_4, &QUADRILATERAL_4);
-            find_operators(&seeded, &settings, &FlatMaster::new(&seeded), &mut flat).cells().expect("they overlap");
+            let points = PairPoints::new(&plain, &settings);
+            let found = find_operators(&seeded, &settings, &points, &FlatMaster::new(&seeded), &mut flat);
+            found.cells().expect("they overlap");
             let rows = exact.m.iter().zip(flat.m.iter()).chain(exact.d.iter().zip(flat.d.iter()));
             let entries = rows.flat_map(|(a, b)| a.iter().copied().zip(b.iter().copied()).collect::<Vec<_>>());
             most = entries.fold(most, |[value, gradient], (a, b)| {

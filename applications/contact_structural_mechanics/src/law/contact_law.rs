@@ -8,6 +8,7 @@ use super::{Multiplier, SlaveNode, StepParameters};
 use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
 use crate::mortar::{Active, OperatorThreshold};
 use zelus_core::scalar::Real;
+use zelus_core::vector3::constant;
 
 /// Active inputs of a law at one slave node: the share of one pair, with derivatives where the scalar has them.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +25,21 @@ pub struct NodeInputs<T> {
     pub history: [T; 3],
     /// Area that the pair has of the node.
     pub area: T,
+}
+
+impl NodeInputs<f64> {
+    /// The same inputs, those that follow from the positions of nodes as variables: gap, slip, normal, history traction, area.
+    pub fn seeded(&self) -> NodeInputs<Active> {
+        let vector = |first: usize, v: [f64; 3]| std::array::from_fn(|c| Active::variable(v[c], first + c));
+        NodeInputs {
+            gap: Active::variable(self.gap, 0),
+            slip: vector(1, self.slip),
+            normal: vector(4, self.normal),
+            multiplier: constant(self.multiplier),
+            history: vector(7, self.history),
+            area: Active::variable(self.area, 10),
+        }
+    }
 }
 
 /// Result of a law at one slave node.

@@ -17,6 +17,13 @@ pub struct Choices {
     pub slivers: bool,
 }
 
+impl Choices {
+    /// Whether plain functions stand in for dual ones on a piece of the slave.
+    pub fn is_plain(&self, piece: usize) -> bool {
+        self.plain & (1 << piece) != 0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::{Overlap, PairGeometry, SegmentationSettings, choices_of, operators};

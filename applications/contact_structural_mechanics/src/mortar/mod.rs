@@ -41,7 +41,7 @@ pub mod slip;
 pub mod rotation;
 
 pub use choices::Choices;
-pub use curved::nodal_shares;
+pub use curved::{PairPoints, nodal_shares};
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{Active, LANES, PairGeometry, variables_from};
 pub use inner::{inner_point, inner_values};

@@ -7,8 +7,8 @@
 //! quadrilateral slave whose overlap is a single triangle: three points cannot tell four functions apart.
 
 use super::choices::Choices;
-use super::curved;
-use super::geometry::{Active, PairGeometry};
+use super::curved::{self, PairPoints};
+use super::geometry::{Active, LANES, PairGeometry};
 use super::points::{EXACT_MOTION, MasterMotion, Point, Points};
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
@@ -67,20 +67,23 @@ impl<O> Overlap<O> {
 /// long as the kinds of the overlap's vertices do not change.
 pub fn operators<T: Real>(pair: &PairGeometry<T>, settings: &SegmentationSettings) -> Overlap<Operators<T>> {
     let mut out = Operators::zero(pair.slave_shape, pair.master_shape);
-    find_operators(pair, settings, &EXACT_MOTION, &mut out).map(|()| out)
+    let points = PairPoints::new(&pair.values(), settings);
+    find_operators(pair, settings, &points, &EXACT_MOTION, &mut out).map(|()| out)
 }
 
-/// Writes D and M of a pair to `out`, whose entries are zero; `motion` is that of points on the master.
+/// Writes D and M of a pair to `out`, whose entries are zero; `points` are those of the pair's values, `motion` is that of points on the
+/// master.
 ///
 /// Large numbers with derivatives are not moved about: the caller gives the memory.
 pub fn find_operators<T: Real>(
     pair: &PairGeometry<T>,
     settings: &SegmentationSettings,
+    points: &PairPoints,
     motion: &dyn MasterMotion<T>,
     out: &mut Operators<T>,
 ) -> Overlap<()> {
     if pair.is_curved() {
-        let covered = curved::find_operators(pair, settings, out);
+        let covered = curved::find_operators(pair, settings, points, out);
         return if out.is_finite() { overlap_of(covered, pair) } else { Overlap::None };
     }
     let covered = Points { pair, motion }.visit(settings, &mut |point| out.add_point(point));
@@ -95,14 +98,15 @@ pub fn find_operators<T: Real>(
 pub fn find_operators_by_normals(
     pair: &PairGeometry<f64>,
     settings: &SegmentationSettings,
+    points: &PairPoints,
     first: usize,
     out: &mut Operators<Active>,
 ) -> Overlap<()> {
     if pair.space() == 2 {
-        return find_operators(&pair.seeded_by_normals(first), settings, &EXACT_MOTION, out);
+        return find_operators(&pair.seeded_by_normals(first), settings, points, &EXACT_MOTION, out);
     }
     if pair.is_curved() {
-        let covered = curved::find_operators_by_normals(pair, settings, first, out);
+        let covered = curved::find_operators_by_normals(pair, points, first, out);
         return if out.is_finite() { overlap_of(covered, pair) } else { Overlap::None };
     }
     let still: PairGeometry<Dual<3>> = pair.as_constants();
@@ -293,10 +297,21 @@ impl Operators<Active> {
             (j..nodes).for_each(|k| self.d[j][k].value += weighted[j] * point.slave[k]);
         }
         for (l, shape) in master.iter().enumerate() {
-            let moved = curved::by_nodal_normals(*shape, &point.slave, first);
+            let moved = by_nodal_normals(*shape, &point.slave, first);
             (0..nodes).for_each(|j| self.m[j][l].add_scaled(moved, weighted[j]));
         }
     }
+}
+
+/// A number with derivatives by the normal interpolated at a point of the slave, as one with those by the normals of nodes: [`LANES`]
+/// components from the one numbered `first` on, node by node.
+pub(super) fn by_nodal_normals(number: Dual<3>, slave: &[f64], first: usize) -> Active {
+    let mut out = Active::constant(number.value);
+    for lane in 0..LANES.min((3 * slave.len()).saturating_sub(first)) {
+        let (node, c) = ((first + lane) / 3, (first + lane) % 3);
+        out.gradient[lane] = slave[node] * number.gradient[c];
+    }
+    out
 }
 
 /// Square root of the sum of the squares of a matrix.

@@ -1,6 +1,6 @@
 //! The integration points of the overlap of a pair: Gauss points on its cells, and where they go on the master.
 
-use super::curved;
+use super::curved::{self, PairPoints};
 use super::geometry::PairGeometry;
 use super::segmentation_2d;
 use super::segmentation_3d::{Polygon, Vertex};
@@ -33,7 +33,8 @@ pub fn for_each_point<T: Real>(
     visit: &mut dyn FnMut(&Point<T>),
 ) -> f64 {
     if pair.is_curved() {
-        curved::for_each_point(pair, settings, &mut |_, point| visit(point))
+        let found = PairPoints::new(&pair.values(), settings);
+        curved::for_each_point(pair, settings, &found, &mut |_, point| visit(point))
     } else {
         Points { pair, motion: &EXACT_MOTION }.visit(settings, visit)
     }

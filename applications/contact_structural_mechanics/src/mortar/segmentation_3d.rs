@@ -32,7 +32,6 @@ pub(super) enum Vertex {
 /// The vertices of an overlap, anticlockwise about the slave's normal.
 pub(super) struct Polygon<T: Real> {
     slave_shape: &'static FacetShape,
-    plane: Plane<T>,
     slave: Nodal<[T; 2]>,
     master: Nodal<[T; 2]>,
     vertices: [Vertex; CAPACITY],
@@ -43,8 +42,7 @@ impl<T: Real> Polygon<T> {
     /// Intersects the flattened facets; `None` if they are too far apart or share no area.
     pub(super) fn new(pair: &PairGeometry<T>, settings: &SegmentationSettings) -> Option<Self> {
         let plane = Plane::new(pair);
-        let height = |x: [T; 3]| dot(sub(value(x), plane.origin), value(pair.slave_normal));
-        if pair.master.iter().any(|&x| height(x) > settings.distance_threshold) {
+        if plane.is_beyond(&pair.master, settings.distance_threshold) {
             return None;
         }
         let slave = pair.slave.map(|x| plane.coordinates(x));
@@ -54,13 +52,13 @@ impl<T: Real> Polygon<T> {
         let corners = |nodes: &[[T; 2]], count: usize| Nodal::new(count, |n| nodes[n].map(T::value));
         let mut list =
             PointList::new(corners(&slave, slave_shape.corners), corners(&master, pair.master_shape.corners));
-        list.tolerance *= (settings.zero_tolerance_factor * f64::EPSILON / TOLERANCE).max(1.0);
+        list.tolerance = tolerance(&list.slave, settings.zero_tolerance_factor);
         list.collect();
         if list.len < 3 {
             return None;
         }
         list.sort();
-        let mut polygon = Self { slave_shape, plane, slave, master, vertices: list.vertices, len: list.len };
+        let mut polygon = Self { slave_shape, slave, master, vertices: list.vertices, len: list.len };
         if let Some(origin) = pair.choices.origin {
             polygon.begin_near(origin);
         }
@@ -82,13 +80,7 @@ impl<T: Real> Polygon<T> {
     /// Where on the slave's edge it crosses the master's, from 0 to 1.
     #[inline]
     fn crossing(&self, slave: usize, master: usize) -> T {
-        let (a, b) = (self.slave[slave], self.slave[(slave + 1) % self.slave.len()]);
-        let (c, d) = (self.master[master], self.master[(master + 1) % self.master.len()]);
-        let (along, across) = (minus(b, a), minus(d, c));
-        let denominator = cross2(along, across);
-        let t = cross2(minus(c, a), across) / denominator;
-        let grazing = denominator.value().abs() < GRAZING * length(along.map(T::value)) * length(across.map(T::value));
-        if grazing { T::constant(t.value()) } else { t }
+        crossing(&self.slave, &self.master, slave, master)
     }
 
     /// Mean of numbers at the slave nodes that a vertex lies on or between; zero at nodes of the master.
@@ -100,25 +92,6 @@ impl<T: Real> Polygon<T> {
                 numbers[slave] * (1.0 - t) + numbers[(slave + 1) % self.slave_shape.corners] * t
             }
             Vertex::Master(_) => T::zero(),
-        }
-    }
-
-    /// A point in coordinates of the plane, projected along its normal.
-    pub(super) fn flattened(&self, x: [T; 3]) -> [T; 3] {
-        let [a, b] = self.plane.coordinates(x);
-        [a, b, T::zero()]
-    }
-
-    /// Where a vertex is in the plane.
-    pub(super) fn place(&self, vertex: Vertex) -> [T; 2] {
-        match vertex {
-            Vertex::Slave(n) => self.slave[n],
-            Vertex::Master(n) => self.master[n],
-            Vertex::Crossing { slave, master } => {
-                let t = self.crossing(slave, master);
-                let (start, end) = (self.slave[slave], self.slave[(slave + 1) % self.slave.len()]);
-                std::array::from_fn(|c| start[c] + (end[c] - start[c]) * t)
-            }
         }
     }
 
@@ -141,8 +114,33 @@ impl<T: Real> Polygon<T> {
     }
 }
 
+/// Where on the slave's edge, between its corners, the line of a master's edge crosses it, from 0 to 1.
+#[inline]
+fn crossing<T: Real>(slaves: &[[T; 2]], masters: &[[T; 2]], slave: usize, master: usize) -> T {
+    let (a, b) = (slaves[slave], slaves[(slave + 1) % slaves.len()]);
+    let (c, d) = (masters[master], masters[(master + 1) % masters.len()]);
+    let (along, across) = (minus(b, a), minus(d, c));
+    let denominator = cross2(along, across);
+    let t = cross2(minus(c, a), across) / denominator;
+    let grazing = denominator.value().abs() < GRAZING * length(along.map(T::value)) * length(across.map(T::value));
+    if grazing { T::constant(t.value()) } else { t }
+}
+
+/// Where a vertex is in the plane, of polygons with these corners.
+pub(super) fn place<T: Real>(vertex: Vertex, slaves: &[[T; 2]], masters: &[[T; 2]]) -> [T; 2] {
+    match vertex {
+        Vertex::Slave(n) => slaves[n],
+        Vertex::Master(n) => masters[n],
+        Vertex::Crossing { slave, master } => {
+            let t = crossing(slaves, masters, slave, master);
+            let (start, end) = (slaves[slave], slaves[(slave + 1) % slaves.len()]);
+            std::array::from_fn(|c| start[c] + (end[c] - start[c]) * t)
+        }
+    }
+}
+
 /// The plane of the slave: its origin, in-plane axes (constant, any will do) and normal.
-struct Plane<T> {
+pub(super) struct Plane<T> {
     origin: [f64; 3],
     axes: [[f64; 3]; 2],
     normal: [T; 3],
@@ -150,7 +148,7 @@ struct Plane<T> {
 }
 
 impl<T: Real> Plane<T> {
-    fn new(pair: &PairGeometry<T>) -> Self {
+    pub(super) fn new(pair: &PairGeometry<T>) -> Self {
         let values = pair.values();
         let share = 1.0 / values.slave.len() as f64;
         let origin = combine(&values.slave.map(|_| share), &values.slave);
@@ -168,9 +166,14 @@ impl<T: Real> Plane<T> {
         Self { origin, axes, normal: pair.slave_normal, turn }
     }
 
+    /// Whether any of these points is in front of the plane by more than a distance.
+    pub(super) fn is_beyond(&self, points: &[[T; 3]], distance: f64) -> bool {
+        points.iter().any(|&x| dot(sub(value(x), self.origin), value(self.normal)) > distance)
+    }
+
     /// In-plane coordinates of a point projected along the normal.
     #[inline]
-    fn coordinates(&self, x: [T; 3]) -> [T; 2] {
+    pub(super) fn coordinates(&self, x: [T; 3]) -> [T; 2] {
         let from_origin: [T; 3] = std::array::from_fn(|c| x[c] - self.origin[c]);
         let height = dot(from_origin, self.normal);
         std::array::from_fn(|a| {
@@ -199,7 +202,7 @@ impl PointList {
         Self {
             slave,
             master,
-            tolerance: TOLERANCE * area(&slave).abs().sqrt(),
+            tolerance: tolerance(&slave, 1.0),
             points: [[0.0; 2]; CAPACITY],
             vertices: [Vertex::Slave(0); CAPACITY],
             len: 0,
@@ -286,23 +289,28 @@ impl PointList {
     }
 }
 
+/// Distance below which points of an overlap coincide; `factor` is that of the settings.
+pub(super) fn tolerance(slave: &[[f64; 2]], factor: f64) -> f64 {
+    TOLERANCE * area(slave).abs().sqrt() * (factor * f64::EPSILON / TOLERANCE).max(1.0)
+}
+
 #[inline]
-fn minus<T: Real>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+pub(super) fn minus<T: Real>(a: [T; 2], b: [T; 2]) -> [T; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
 #[inline]
-fn cross2<T: Real>(a: [T; 2], b: [T; 2]) -> T {
+pub(super) fn cross2<T: Real>(a: [T; 2], b: [T; 2]) -> T {
     a[0] * b[1] - a[1] * b[0]
 }
 
 #[inline]
-fn length(a: [f64; 2]) -> f64 {
+pub(super) fn length(a: [f64; 2]) -> f64 {
     (a[0] * a[0] + a[1] * a[1]).sqrt()
 }
 
 /// Signed area, positive if the nodes run anticlockwise.
-fn area(polygon: &[[f64; 2]]) -> f64 {
+pub(super) fn area(polygon: &[[f64; 2]]) -> f64 {
     let count = polygon.len();
     0.5 * (0..count).map(|n| cross2(polygon[n], polygon[(n + 1) % count])).sum::<f64>()
 }

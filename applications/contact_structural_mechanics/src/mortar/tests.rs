@@ -170,7 +170,8 @@ fn normals_of_nodes_move_points_on_the_master() {
             for first in (0..pair.normal_components()).step_by(LANES) {
                 let whole = operators(&pair.seeded_by_normals(first), &settings).cells();
                 let mut found = Operators::zero(slave, master);
-                let overlap = find_operators_by_normals(&pair, &settings, first, &mut found);
+                let points = PairPoints::new(&pair, &settings);
+                let overlap = find_operators_by_normals(&pair, &settings, &points, first, &mut found);
                 assert_eq!(whole.is_some(), overlap.cells().is_some());
                 let Some(whole) = whole else { continue };
                 for (a, b) in flat(&whole).iter().zip(&flat(&found)) {

@@ -3,12 +3,15 @@
 //! Order of local unknowns: displacements of master nodes, displacements of slave nodes, multipliers of slave nodes; node by node,
 //! each with its components. The law states forces and rows at each slave node; b_slave += Dᵀp and b_master −= Mᵀp stand here.
 
+use std::cell::OnceCell;
+
 use super::kinematics::{PairHistory, PairKinematics};
 use crate::kratos::FirstIterateTangent;
 use crate::law::constrained_multiplier::constrain;
 use crate::law::{ContactLaw, Multiplier, NodeForces, NodeInputs, SlaveNode};
 use crate::mortar::{
-    Active, LANES, Operators, Overlap, PairGeometry, SegmentationSettings, find_operators_by_normals, variables_from,
+    Active, LANES, Operators, Overlap, PairGeometry, PairPoints, SegmentationSettings, find_operators_by_normals,
+    variables_from,
 };
 use zelus_core::geometry::Nodal;
 use zelus_core::model::SlaveNodes;
@@ -46,6 +49,8 @@ pub struct PairSystem<'a> {
     pub multipliers: &'a [[f64; 3]],
     /// Its past.
     pub history: &'a PairHistory,
+    /// Points of its overlap, once they have been looked for.
+    pub points: OnceCell<PairPoints>,
 }
 
 /// Right-hand side of a pair, by node.
@@ -136,13 +141,14 @@ impl PairSystem<'_> {
     }
 
     /// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns); zero without overlap.
-    /// `seeded` gives the pair with [`LANES`] of its displacement unknowns as variables, from a number on. `lhs` has a row for each
-    /// unknown, each of `width` numbers that begin with those of the unknowns.
+    /// `found` gives the operators without derivatives, `seeded` the pair with [`LANES`] of its displacement unknowns as variables,
+    /// from a number on. `lhs` has a row for each unknown, each of `width` numbers that begin with those of the unknowns.
     ///
     /// # Panics
     /// If `rhs` does not have [`PairSystem::size`] entries, or `lhs` not `width` for each of them.
     pub fn tangent(
         &self,
+        found: &dyn Fn() -> Overlap<Operators<f64>>,
         seeded: &dyn Fn(usize) -> PairGeometry<Active>,
         knows: FirstIterateTangent,
         (lhs, width): (&mut [f64], usize),
@@ -153,6 +159,10 @@ impl PairSystem<'_> {
         assert_eq!(lhs.len(), n * width, "one row per local unknown");
         lhs.fill(0.0);
         rhs.fill(0.0);
+        if let Some(operators) = self.inert_operators(found) {
+            self.visit_rows(self.geometry, &operators, &mut |row, value| rhs[row] = *value);
+            return self.add_multiplier_columns(&operators, (lhs, width));
+        }
         let unknowns = self.geometry.unknowns();
         let mut operators = Operators::zero(self.geometry.slave_shape, self.geometry.master_shape);
         for first in (0..unknowns).step_by(LANES) {
@@ -160,7 +170,7 @@ impl PairSystem<'_> {
                 operators.clear();
             }
             let geometry = seeded(first);
-            if knows.find_operators(&geometry, self.settings, &mut operators).cells().is_none() {
+            if knows.find_operators(&geometry, self.settings, self.points(), &mut operators).cells().is_none() {
                 return;
             }
             let lanes = LANES.min(unknowns - first);
@@ -171,6 +181,26 @@ impl PairSystem<'_> {
             });
         }
         self.add_multiplier_columns(&operators.values(), (lhs, width));
+    }
+
+    /// Points of the overlap.
+    fn points(&self) -> &PairPoints {
+        self.points.get_or_init(|| PairPoints::new(self.geometry, self.settings))
+    }
+
+    /// The operators of a pair without force whose rows do not change with the place of its nodes, so that their derivatives are
+    /// not needed: one that is open and has no multiplier left.
+    fn inert_operators(&self, found: &dyn Fn() -> Overlap<Operators<f64>>) -> Option<Operators<f64>> {
+        if self.nodes.iter().any(|node| node.state.is_active()) {
+            return None;
+        }
+        let operators = found().cells()?;
+        let pair = PairKinematics::new(self.law, self.geometry, &operators, self.nodes, self.history);
+        let is_inert = |(j, node): (usize, &SlaveNode)| {
+            let forces = self.law.derivatives(node, &pair.inputs(j, self.multipliers[j]).seeded());
+            forces.force.is_none() && forces.multiplier.iter().all(Real::is_constant)
+        };
+        self.nodes.iter().enumerate().all(is_inert).then_some(operators)
     }
 
     /// Writes the columns of the multipliers: rows are affine in them, so that operators need no derivatives.
@@ -218,7 +248,7 @@ impl PairSystem<'_> {
             if first > 0 {
                 operators.clear();
             }
-            let found = find_operators_by_normals(self.geometry, self.settings, first, &mut operators);
+            let found = find_operators_by_normals(self.geometry, self.settings, self.points(), first, &mut operators);
             if found.cells().is_none() {
                 return;
             }

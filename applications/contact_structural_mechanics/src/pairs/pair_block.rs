@@ -1,5 +1,6 @@
 //! A block of pairs of two shapes under one law.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -108,6 +109,7 @@ impl EntityBlock for PairBlock {
                 nodes: &nodes,
                 multipliers: &multipliers,
                 history: &history,
+                points: OnceCell::new(),
             };
             let (width, rows) = (out.size, self.equations());
             let (lhs, rhs) = out.entity(slot);
@@ -115,7 +117,8 @@ impl EntityBlock for PairBlock {
             if want == Want::Both {
                 let lhs = &mut lhs[..rows * width];
                 let knows = FirstIterateTangent::of(view, geometry.space());
-                system.tangent(&|first| pairs.seeded(&geometry, first), knows, (lhs, width), rhs);
+                let found = || pairs.operators_of(at, &geometry);
+                system.tangent(&found, &|first| pairs.seeded(&geometry, first), knows, (lhs, width), rhs);
                 let acts = nodes.iter().any(|node| node.state.is_active());
                 if acts && pairs.parameters.normal_variation.knows_nodes() {
                     self.add_turning(at, view, &system, (lhs, width));
@@ -159,6 +162,7 @@ impl ContactBlock for PairBlock {
                 nodes: &self.pairs.slave_constants(at, states),
                 multipliers: &Nodal::new(geometry.slave.len(), |_| [0.0; 3]),
                 history: &self.history(at, view),
+                points: OnceCell::new(),
             };
             system.slip_and_trial(operators, &mut |j, slip, trial| {
                 out.slip[j] = slip;

@@ -62,7 +62,7 @@ fn residual(
     history: &PairHistory,
 ) -> Vec<f64> {
     let settings = &SegmentationSettings::default();
-    let system = PairSystem { law, geometry: pair, settings, nodes, multipliers, history };
+    let system = PairSystem { law, geometry: pair, settings, nodes, multipliers, history, points: Default::default() };
     let mut rhs = vec![0.0; system.size()];
     system.residual(&operators(pair, settings), &mut rhs);
     rhs
@@ -77,10 +77,11 @@ fn tangent(
     history: &PairHistory,
 ) -> (Vec<f64>, Vec<f64>) {
     let settings = &SegmentationSettings::default();
-    let system = PairSystem { law, geometry: pair, settings, nodes, multipliers, history };
+    let system = PairSystem { law, geometry: pair, settings, nodes, multipliers, history, points: Default::default() };
     let n = system.size();
     let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
-    system.tangent(&|first| pair.seeded_from(first), FirstIterateTangent::Exact, (&mut lhs, n), &mut rhs);
+    let found = || operators(pair, settings);
+    system.tangent(&found, &|first| pair.seeded_from(first), FirstIterateTangent::Exact, (&mut lhs, n), &mut rhs);
     (lhs, rhs)
 }
 
