@@ -12,7 +12,7 @@ use super::deck::{Folders, StageDeck, open, stages};
 use super::driver::{Driver, Unattended};
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of, whole};
-use super::stage::{Stage, Systems};
+use super::stage::{RunContext, Stage, StageRequest, Systems};
 use super::threads;
 use crate::assembly::System;
 use crate::communication::Ranks;
@@ -405,10 +405,17 @@ impl Simulation {
         }
         let more = std::mem::take(&mut self.more);
         self.before = (self.over > 0).then(|| self.model.clone());
-        let (stages, like) = (&self.stages[self.over..], self.like.as_deref());
-        let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
-        let (driver, folders, outputs) = (self.driver.as_mut(), &self.folders, &self.outputs);
-        let stage = Stage::prepare(stages, folders, like, model, systems, report, monitor, driver, more, outputs)?;
+        let stages = &self.stages[self.over..];
+        let (folders, outputs) = (&self.folders, &self.outputs);
+        let request = StageRequest { stages, folders, like: self.like.as_deref(), more, outputs };
+        let mut run = RunContext {
+            model: &mut self.model,
+            systems: &mut self.systems,
+            report: &mut self.report,
+            monitor,
+            driver: self.driver.as_mut(),
+        };
+        let stage = Stage::prepare(request, &mut run)?;
         stage.root().clone_into(&mut self.root);
         monitor.begin_stage(&stage.plan(stages.len(), self.stages.len()));
         self.stage = Some(stage);

@@ -24,7 +24,7 @@ impl Stage {
         driver: &mut dyn Driver,
     ) -> Result<()> {
         let whole = target - model.root(&self.root)?.info.time;
-        let mut lengths = Lengths::new(self.cutting, whole, self.first_length.take());
+        let mut lengths = Lengths::new(self.schedule.cutting, whole, self.first_length.take());
         let mut failed: Option<StepRecord> = None;
         loop {
             let from = model.root(&self.root)?.info.time;
@@ -33,7 +33,7 @@ impl Stage {
             let saved = self.strategy.can_retry().then(|| Saved::of(part, &mut self.system));
             let record = self.attempt(to, model, report, monitor, driver)?;
             if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
-                let factor = self.cutting.factor;
+                let factor = self.schedule.cutting.factor;
                 monitor
                     .note(&format!("step {} to time {to}: {why}; made anew with 1/{factor} of the step", record.step));
                 saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);
@@ -50,7 +50,7 @@ impl Stage {
                 continue;
             }
             let failure = record.failure.clone().unwrap_or_default();
-            let can_cut = saved.is_some() && self.cutting.times > 0;
+            let can_cut = saved.is_some() && self.schedule.cutting.times > 0;
             let other_way = if can_cut { self.strategy.other_way(&record) } else { None };
             if let Some(how) = other_way {
                 monitor.note(&format!("step {} to time {to}: {failure}; retried {how}", record.step));
@@ -60,7 +60,7 @@ impl Stage {
             let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
                 && !self.system.interactions.iter_mut().filter_map(|i| i.retry()).any(|own| own.has_alternative());
             let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
-                let tried = match self.cutting {
+                let tried = match self.schedule.cutting {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),
                     _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
                     Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
@@ -72,7 +72,7 @@ impl Stage {
                         record.step
                     )));
                 }
-                let written = match from > self.start_time {
+                let written = match from > self.schedule.start_time {
                     true => format!("results up to time {from} are written"),
                     false => "no step has converged".to_owned(),
                 };
@@ -82,7 +82,7 @@ impl Stage {
                     self.strategy.remedy()
                 )));
             };
-            let factor = self.cutting.factor;
+            let factor = self.schedule.cutting.factor;
             monitor.note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
             saved.restore(model.root_mut(&self.root)?, &mut self.system);
             failed = Some(record);
