@@ -6,7 +6,6 @@
 //! stages one after another on one model.
 
 mod bodies;
-mod carrier;
 mod checkpoints;
 mod cutting;
 mod deck;
@@ -14,6 +13,8 @@ mod driver;
 mod like;
 mod mesh;
 mod older_decks;
+mod rank_layout;
+mod regrouping;
 mod report;
 mod saved;
 mod saved_run;

@@ -6,10 +6,11 @@ use std::time::Instant;
 
 use zelus_linear_algebra::parallel::Pool;
 
-use super::carrier::{OfRank, Regrouping};
 use super::checkpoints::{Checkpoints, Pointer};
 use super::deck::{Folders, StageDeck, open, stages};
 use super::driver::{Driver, Unattended};
+use super::rank_layout::RankLayout;
+use super::regrouping::Regrouping;
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of, whole};
 use super::stage::{RunContext, Stage, StageRequest, Systems};
@@ -349,8 +350,8 @@ impl Simulation {
         self.over = runs[0].over;
         let root = runs[0].root.clone();
         let report = std::mem::take(&mut runs[0].report);
-        let were: Vec<OfRank> = if regrouped {
-            runs.iter().enumerate().filter_map(|(rank, run)| run.of_rank(rank)).collect()
+        let were: Vec<RankLayout> = if regrouped {
+            runs.iter().enumerate().filter_map(|(rank, run)| run.layout_of(rank)).collect()
         } else {
             Vec::new()
         };
