@@ -11,9 +11,8 @@ use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::strategy::{
-    SolutionStrategy, StrategyEntry, accept, after_prediction, recorded, relaxation, update_interactions,
-};
+use super::strategy::{SolutionStrategy, accept, after_prediction, recorded, relaxation, update_interactions};
+use super::strategy_entry::StrategyEntry;
 use crate::assembly::{Assembler, System};
 use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::model::ModelPart;

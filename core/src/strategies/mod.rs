@@ -29,6 +29,7 @@ mod meaning;
 mod measure;
 mod memory;
 mod newton;
+mod newton_strategies;
 #[cfg(feature = "petsc")]
 mod owned_condensation;
 #[cfg(feature = "petsc")]
@@ -40,6 +41,7 @@ mod records;
 mod residual_criterion;
 mod scheme;
 mod strategy;
+mod strategy_entry;
 mod whereabouts;
 
 pub use arc_length::{ARC_LENGTH, ArcLength, ArcLengthSettings};
@@ -69,5 +71,6 @@ pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use reactions::write_reactions;
 pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
-pub use strategy::{Linearized, SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest, accept, recorded};
+pub use strategy::{Linearized, SolutionStrategy, accept, recorded};
+pub use strategy_entry::{StrategyEntry, StrategyFactory, StrategyRequest};
 pub(crate) use whereabouts::body_of;
