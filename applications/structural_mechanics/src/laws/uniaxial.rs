@@ -17,7 +17,7 @@ struct Uniaxial {
 }
 
 impl BarLaw for Uniaxial {
-    /// What is remembered is the plastic strain and its sum.
+    /// The history holds the plastic strain and its sum.
     fn response(&self, strain: f64, prestress: f64, [plastic, sum]: [f64; 2]) -> (f64, f64, [f64; 2]) {
         let trial = self.young * (strain - plastic) + prestress;
         let Some([yield_stress, hardening]) = self.plastic else { return (trial, self.young, [plastic, sum]) };

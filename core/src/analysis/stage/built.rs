@@ -129,7 +129,7 @@ fn initialize(
     problems.absorb(system.make_blocks(part));
     problems = problems_of_ranks(&part.ranks, problems)?;
     if !problems.has_errors() {
-        warn_of_lonely_nodes(part, system, &mut problems);
+        warn_of_unreferenced_nodes(part, system, &mut problems);
         warn_of_extensions(solver_settings, system, &mut problems);
     }
     for interaction in &mut system.interactions {
@@ -139,7 +139,7 @@ fn initialize(
 }
 
 /// The warning that nodes belong to nothing; collective.
-fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report) {
+fn warn_of_unreferenced_nodes(part: &ModelPart, system: &System, problems: &mut Report) {
     let mut used = vec![0.0; part.nodes.len()];
     for blocks in [&system.elements, &system.conditions] {
         for block in blocks {
@@ -149,14 +149,15 @@ fn warn_of_lonely_nodes(part: &ModelPart, system: &System, problems: &mut Report
     if let Some(share) = &part.share {
         share.halo.sum(&mut used);
     }
-    let lonely = (0..used.len()).filter(|&n| used[n] == 0.0 && part.owns_node(n)).map(|n| part.nodes.ids[n] as f64);
-    let mut lonely = part.ranks.gather_numbers(&lonely.collect::<Vec<f64>>()).concat();
-    lonely.sort_by(f64::total_cmp);
-    if let Some(first) = lonely.first() {
+    let unreferenced =
+        (0..used.len()).filter(|&n| used[n] == 0.0 && part.owns_node(n)).map(|n| part.nodes.ids[n] as f64);
+    let mut unreferenced = part.ranks.gather_numbers(&unreferenced.collect::<Vec<f64>>()).concat();
+    unreferenced.sort_by(f64::total_cmp);
+    if let Some(first) = unreferenced.first() {
         problems.push(
             Diagnostic::warning(
                 "unreferenced-node",
-                format!("{} nodes belong to no element, the first is node {first}", lonely.len()),
+                format!("{} nodes belong to no element, the first is node {first}", unreferenced.len()),
             )
             .remedy("they are left where they are; remove them from the mesh if that is not meant"),
         );

@@ -32,7 +32,7 @@ impl<'a> ReadStage<'a> {
     pub fn read(mut parsed: ParsedStage<'a>, folder: &Path, model: &mut Model) -> Result<Self> {
         let ranks = model.ranks.clone();
         read_the_same_deck(&ranks, &parsed.deck)?;
-        // What the deck begins with is read by rank 0 alone, which shares it out.
+        // Rank 0 alone reads the mesh of a first stage, and shares it out.
         let by_root = ranks.size() > 1 && model.parts.is_empty();
         let [mut has_mesh, mut is_whole] = [true; 2];
         if ranks.is_root() || !by_root {
