@@ -35,7 +35,6 @@ pub use mesh::{DeckMesh, read_deck_mesh};
 pub use report::{RunReport, Sizes};
 pub use simulation::{RunOptions, Simulation};
 pub use solver::{
-    EXPLICIT, ExtensionDefinition, INCOMPLETE, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry,
-    SolverSettings,
+    ExtensionDefinition, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry, SolverSettings,
 };
 pub use time_stepping::TimeStepping;

@@ -24,7 +24,9 @@ mod properties;
 mod rates;
 mod share;
 mod slave_nodes;
+mod solver_info;
 mod soundness;
+mod step_mark;
 mod sub_part;
 mod table;
 #[cfg(test)]
@@ -55,6 +57,8 @@ pub use properties::{Properties, PropertyValue};
 pub use rates::{ColumnOf, FIRST, Rates, SECOND, UNKNOWN};
 pub use share::{MeshSizes, Share};
 pub use slave_nodes::SlaveNodes;
+pub use solver_info::SolverInfo;
+pub use step_mark::StepMark;
 pub use sub_part::SubPart;
 pub use table::Table;
 pub use usual_results::UsualResults;

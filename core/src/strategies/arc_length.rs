@@ -19,9 +19,6 @@ use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::register;
 
-/// Mark of the step data: the load factor is an unknown.
-pub const ARC_LENGTH: &str = "ARC_LENGTH";
-
 const DEFAULTS: &str = include_str!("../../../configs/strategies/arc_length.json");
 
 /// How the path is followed.
@@ -329,5 +326,5 @@ register! { StrategyEntry "arc_length",
         }
         Ok(Box::new(ArcLength::new(settings, request.newton()?)))
     },
-    marks: &[ARC_LENGTH],
+    unknown_load_factor: true,
 }

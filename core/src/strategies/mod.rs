@@ -44,7 +44,7 @@ mod strategy;
 mod strategy_entry;
 mod whereabouts;
 
-pub use arc_length::{ARC_LENGTH, ArcLength, ArcLengthSettings};
+pub use arc_length::{ArcLength, ArcLengthSettings};
 pub use balance::{Balance, Energies, Flows, PairBalance, Sums, UnknownBalance};
 pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
@@ -65,7 +65,7 @@ pub(crate) use linear_solvers::{
     frugal as frugal_linear_solver, make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all,
 };
 pub use measure::{Form, Measure, Tolerance};
-pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
+pub use newton::{ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use phases::Phases;
 pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use reactions::write_reactions;

@@ -35,9 +35,6 @@ use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::model::ModelPart;
 
-/// Mark of the step data: the condition number of every system is computed.
-pub const CONDITION_NUMBER: &str = "CONDN_CONVERGENCE_CRITERION";
-
 /// Nodes that a message of a failure describes.
 const DESCRIBED: usize = 4;
 

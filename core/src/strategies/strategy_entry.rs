@@ -88,7 +88,7 @@ registered_kind! {
     /// A strategy that decks name.
     pub struct StrategyEntry("strategy", "unknown-name") {
         build: StrategyFactory;
-        /// Marks of the step data that say of it what interactions must know.
-        marks: &'static [&'static str] = &[],
+        /// Whether the load factor is an unknown, which interactions must know.
+        unknown_load_factor: bool = false,
     }
 }

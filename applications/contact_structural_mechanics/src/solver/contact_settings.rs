@@ -3,7 +3,7 @@
 use zelus_core::analysis::{Cutting, ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::register;
 use zelus_core::strategies::{
-    CONDENSE_MULTIPLIERS, CONDITION_NUMBER, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,
+    CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,
 };
 
 use crate::pairs::variables_of;
@@ -63,7 +63,6 @@ register! { SolverExtensionEntry "contact_settings",
                 ("ensure_contact", true, ENSURE_CONTACT),
                 ("adjust_initial", true, ADJUST_INITIAL),
                 ("compute_dynamic_factor", true, COMPUTE_DYNAMIC_FACTOR),
-                ("condn_convergence_criterion", true, CONDITION_NUMBER),
                 ("use_mixed_ulm_solver", true, CONDENSE_MULTIPLIERS),
                 ("use_mixed_ulm_solver", false, KEEP_MULTIPLIERS),
                 ("fallback_if_dual_lm_not_valid", false, ONLY_CONDENSED),
@@ -74,6 +73,7 @@ register! { SolverExtensionEntry "contact_settings",
             }
             Ok(marks)
         },
+        condition_number: |settings| settings.get_bool("condn_convergence_criterion"),
         cutting: |settings| {
             if !settings.get_bool("adaptative_strategy")? {
                 return Ok(None);
