@@ -428,7 +428,14 @@ impl Simulation {
             self.prepare_stage(monitor)?;
             // A saved run may have been at its end.
             let Some(stage) = self.stage.as_mut() else { break };
-            let stepped = stage.step(&mut self.model, &mut self.report, monitor, self.driver.as_mut());
+            let mut run = RunContext {
+                model: &mut self.model,
+                systems: &mut self.systems,
+                report: &mut self.report,
+                monitor: &mut *monitor,
+                driver: self.driver.as_mut(),
+            };
+            let stepped = stage.step(&mut run);
             if matches!(stepped, Ok(true)) {
                 let wanted = stage.saves(&self.model);
                 return match wanted.iter().try_for_each(|path| self.save_named(path)) {

@@ -27,7 +27,7 @@ use crate::diagnostics::{Report, Result, unfit};
 use crate::io::{Claim, FileUse};
 use crate::model::Model;
 use crate::processes::{Process, largest_results};
-use crate::strategies::{Monitor, Plan, SolutionStrategy};
+use crate::strategies::{Plan, SolutionStrategy};
 
 use self::built::BuiltStage;
 use self::check::check;
@@ -118,17 +118,17 @@ impl Stage {
         Ok(())
     }
 
-    fn begin(&mut self, model: &mut Model, report: &mut RunReport, driver: &mut dyn Driver) -> Result<()> {
+    fn begin(&mut self, run: &mut RunContext<'_>) -> Result<()> {
         self.begun = true;
-        report.stages.push(self.name.clone());
+        run.report.stages.push(self.name.clone());
         let processes = &mut self.processes;
-        driver.at(Point::BeforeLoop, &self.root, model, &self.system, &mut |model| {
+        run.driver.at(Point::BeforeLoop, &self.root, run.model, &self.system, &mut |model| {
             let ranks = model.ranks.clone();
             processes.iter_mut().try_for_each(|process| ranks.agree(process.before_loop(model)))
         })?;
-        model.root_mut(&self.root)?.info.time = self.schedule.start_time;
+        run.model.root_mut(&self.root)?.info.time = self.schedule.start_time;
         for process in &mut self.processes {
-            model.ranks.clone().agree(process.print_start(model, &self.system))?;
+            run.model.ranks.clone().agree(process.print_start(run.model, &self.system))?;
         }
         Ok(())
     }
@@ -179,40 +179,35 @@ impl Stage {
     ///
     /// # Errors
     /// A step that does not converge, however short; a failed solver, process or file.
-    pub(super) fn step(
-        &mut self,
-        model: &mut Model,
-        report: &mut RunReport,
-        monitor: &mut dyn Monitor,
-        driver: &mut dyn Driver,
-    ) -> Result<bool> {
+    pub(super) fn step(&mut self, run: &mut RunContext<'_>) -> Result<bool> {
         if self.claims.is_none() {
-            self.claim(&model.ranks)?;
+            self.claim(&run.model.ranks)?;
         }
         if !self.begun {
-            self.begin(model, report, driver)?;
+            self.begin(run)?;
         }
-        let part = model.root_mut(&self.root)?;
+        let part = run.model.root_mut(&self.root)?;
         let time = part.info.time;
         if time >= self.schedule.end_time {
             if time > self.schedule.end_time {
                 let ends = format!("the last step ends at {time}, after \"end_time\" {}", self.schedule.end_time);
-                monitor.note(&format!("{ends}: \"last_step\": \"shortened\" in \"time_stepping\" would end it there"));
+                run.monitor
+                    .note(&format!("{ends}: \"last_step\": \"shortened\" in \"time_stepping\" would end it there"));
             }
             let last = self.system.interactions.iter().flat_map(|interaction| interaction.last_messages(part));
             let last = last.chain(self.strategy.last_messages(part)).collect();
-            tell(part.ranks.problems_of_all(last), report, monitor);
+            tell(part.ranks.problems_of_all(last), run.report, run.monitor);
             return Ok(false);
         }
         let length = self.strategy.step_length(part, &self.system, self.schedule.stepping.next(time)?)?;
         let (target, is_shortened) = self.schedule.stepping.target(time, length, self.schedule.interval());
         if is_shortened {
-            monitor.note(&format!(
+            run.monitor.note(&format!(
                 "the last step is shortened from {length} to {:.6e}, to end at {target}",
                 target - time
             ));
         }
-        self.reach(target, model, report, monitor, driver).map(|()| true)
+        self.reach(target, run).map(|()| true)
     }
 
     /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; what elements remember
@@ -255,9 +250,9 @@ impl Stage {
     }
 
     /// Hands on what processes, interactions and the strategy have to tell; collective.
-    fn pass_on_messages(&mut self, ranks: &Ranks, report: &mut RunReport, monitor: &mut dyn Monitor) {
+    fn pass_on_messages(&mut self, run: &mut RunContext<'_>) {
         let mut own = self.strategy.messages();
         own.extend(messages_of(&mut self.processes, &mut self.system));
-        tell(ranks.problems_of_all(own), report, monitor);
+        tell(run.model.ranks.problems_of_all(own), run.report, run.monitor);
     }
 }

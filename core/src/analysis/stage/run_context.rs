@@ -1,4 +1,4 @@
-//! The run that a stage is prepared in.
+//! The run that a stage is part of.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::strategies::Monitor;
 /// The systems of earlier stages by their root parts; their elements keep their states.
 pub(in crate::analysis) type Systems = BTreeMap<String, System>;
 
-/// Parts of a run that the preparation of a stage reads and changes.
+/// Parts of a run that a stage reads and changes while it is prepared and steps.
 pub(in crate::analysis) struct RunContext<'a> {
     /// Parts of earlier stages; the stage adds its own.
     pub model: &'a mut Model,
