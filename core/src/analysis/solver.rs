@@ -8,7 +8,7 @@ use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::{Interaction, find_kind};
-use crate::model::{EntityKind, ModelPart, Named, Rates, Role, SolverInfo, named};
+use crate::model::{EntityKind, ModelPart, MultiplierRequest, Named, Rates, Role, SolverInfo, named};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
 use crate::registry::{self, Registered};
@@ -94,6 +94,10 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub condition_number: fn(&Settings) -> Result<bool>,
+    /// Treatment of multipliers by iterative linear solvers.
+    ///
+    /// An error names a setting that does not fit.
+    pub multipliers: fn(&Settings) -> Result<MultiplierRequest>,
     /// How steps that fail are cut, where the nested object says so.
     ///
     /// An error names a setting that does not fit.
@@ -127,6 +131,7 @@ impl ExtensionDefinition {
         variables: |_| Ok(Vec::new()),
         marks: |_| Ok(Vec::new()),
         condition_number: |_| Ok(false),
+        multipliers: |_| Ok(MultiplierRequest::default()),
         cutting: |_| Ok(None),
         values: |_| Ok(Vec::new()),
         adopt: |_, _, _, _| Ok(()),
@@ -157,6 +162,7 @@ pub struct SolverSettings {
     variables: Vec<NodalVariable>,
     marks: Vec<&'static str>,
     condition_number: bool,
+    multipliers: MultiplierRequest,
     cutting: Option<Cutting>,
     values: Vec<(&'static str, f64)>,
     extensions: Vec<(&'static ExtensionDefinition, Settings)>,
@@ -195,6 +201,7 @@ impl SolverSettings {
         let mut variables = definition.variables.to_vec();
         let mut marks = Vec::new();
         let mut condition_number = false;
+        let mut multipliers = MultiplierRequest::default();
         let mut cutting = None;
         let mut values = Vec::new();
         let mut present = Vec::new();
@@ -213,6 +220,8 @@ impl SolverSettings {
                 marks.extend(more);
             }
             condition_number |= problems.absorb((factory.condition_number)(&checked)).unwrap_or_default();
+            let more = problems.absorb((factory.multipliers)(&checked));
+            multipliers = multipliers.and(more.unwrap_or_default());
             cutting = problems.absorb((factory.cutting)(&checked)).flatten().or(cutting);
             if let Some(more) = problems.absorb((factory.values)(&checked)) {
                 values.extend(more);
@@ -234,6 +243,7 @@ impl SolverSettings {
             variables,
             marks,
             condition_number,
+            multipliers,
             cutting,
             values,
             extensions: present,
@@ -264,6 +274,7 @@ impl SolverSettings {
             unknown_load_factor: earlier.unknown_load_factor
                 || strategy.is_some_and(|strategy| strategy.unknown_load_factor),
             condition_number: earlier.condition_number || self.condition_number || condition_number,
+            multipliers: earlier.multipliers.and(self.multipliers),
         };
         self.add_variables(part)?;
         for mark in &self.marks {

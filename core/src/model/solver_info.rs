@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::multiplier_request::MultiplierRequest;
+
 /// Facts about the solver of a model part.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverInfo {
@@ -13,4 +15,6 @@ pub struct SolverInfo {
     pub unknown_load_factor: bool,
     /// Whether the condition number of every system is computed.
     pub condition_number: bool,
+    /// Treatment of multipliers by iterative linear solvers.
+    pub multipliers: MultiplierRequest,
 }

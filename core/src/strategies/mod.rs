@@ -51,7 +51,7 @@ pub use bossak_scheme::BossakScheme;
 pub use builder::{Builder, BuilderEntry};
 pub use central_differences::CentralDifferences;
 pub(crate) use condensing::multipliers;
-pub use condensing::{CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE};
+pub use condensing::{OFF_NODE_TOLERANCE, ZERO_ROW_TOLERANCE};
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Norm, Verdict,
     both, either, is_last_digit, is_round_off,
