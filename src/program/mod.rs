@@ -14,6 +14,7 @@ mod progress;
 mod report;
 mod results;
 mod run;
+mod run_arguments;
 mod say;
 mod schema;
 mod skin;
@@ -57,7 +58,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a deck.
-    Run(run::Arguments),
+    Run(run_arguments::RunArguments),
     /// Check everything about a deck that can be known without solving.
     Check {
         /// The deck, e.g. ProjectParameters.json.

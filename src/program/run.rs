@@ -11,58 +11,18 @@ use zelus_core::strategies::{Monitor, Silent};
 
 use super::log::Log;
 use super::report::{Report, made_folder};
+use super::run_arguments::RunArguments;
 use super::say::say;
 use super::stop::Stop;
 use super::terminal::{Level, Terminal};
 use super::{changes, explain, sweep};
 
-/// The command line of `zelus run`.
-#[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
-    /// The deck, e.g. ProjectParameters.json.
-    pub file: PathBuf,
-    /// Threads; all of the machine when not given. Results do not depend on it.
-    #[arg(long)]
-    pub threads: Option<usize>,
-    /// Write the report of the run (sizes, iterations, contact state, timings, warnings) to this JSON file.
-    #[arg(long, conflicts_with = "sweep")]
-    report: Option<PathBuf>,
-    /// Take the defaults of this program where the deck names nothing, e.g. kratos.
-    #[arg(long, value_name = "PROGRAM")]
-    pub like: Option<String>,
-    /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Write results below this folder, not beside the deck; it is made where it is not there.
-    #[arg(short, long, value_name = "FOLDER")]
-    pub output: Option<PathBuf>,
-    /// Run the deck once for each row of this table (CSV): its first row names keys as --set does, each other gives their values.
-    #[arg(long, value_name = "TABLE")]
-    pub sweep: Option<PathBuf>,
-    /// Rows of the sweep that run at a time, which share the cores; as many as there are cores when not given.
-    #[arg(short, long, value_name = "N", requires = "sweep")]
-    pub jobs: Option<usize>,
-    /// Go on from the latest saved run of the deck, with the bits of a run that was not stopped; from the start where
-    /// none was saved. Of a sweep, make the rows that are not done.
-    #[arg(long)]
-    pub resume: bool,
-    /// Say nothing but warnings and errors.
-    #[arg(short, long, conflicts_with = "verbose")]
-    pub quiet: bool,
-    /// Also say who solved how, which nodes changed their state, and where the time went.
-    #[arg(short, long, conflicts_with = "sweep")]
-    verbose: bool,
-    /// Write all that --verbose says, with the seconds since the start, to this file as well.
-    #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
-    log: Option<PathBuf>,
-}
-
 /// Runs; `ran` says afterwards whether a step was made.
 ///
 /// # Errors
 /// What the deck, the system or a step that does not converge ends the run with.
-pub(super) fn run(arguments: &Arguments, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
-    let Arguments { file, threads, like, set, resume, quiet, verbose, .. } = arguments;
+pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
+    let RunArguments { file, threads, like, set, resume, quiet, verbose, .. } = arguments;
     refuse_script(file)?;
     if let Some(table) = &arguments.sweep {
         return sweep::run(arguments, table, ranks);
@@ -117,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, ranks: &Ranks, ran: &mut bool) -> Resul
 }
 
 /// The deck and what of the command line changes its results or their place.
-fn words(arguments: &Arguments) -> String {
+fn words(arguments: &RunArguments) -> String {
     let mut words = vec![arguments.file.display().to_string()];
     words.extend(arguments.like.iter().map(|like| format!("--like {like}")));
     words.extend(arguments.set.iter().map(|change| format!("--set '{change}'")));

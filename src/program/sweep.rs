@@ -15,7 +15,7 @@ use zelus_core::strategies::StepRecord;
 use zelus_core::{Error, Result};
 
 use super::report::{check_output, made_folder};
-use super::run::Arguments;
+use super::run_arguments::RunArguments;
 use super::say::say;
 use super::stop::Stop;
 use super::table::{MARK, Table};
@@ -30,7 +30,7 @@ const LOOKED_AT: [&str; 3] = ["DISPLACEMENT", "CONTACT_PRESSURE", "TEMPERATURE"]
 
 /// The study: what is run, where.
 struct Sweep<'a> {
-    arguments: &'a Arguments,
+    arguments: &'a RunArguments,
     table: Table,
     folder: PathBuf,
     /// Threads of a row.
@@ -53,7 +53,7 @@ struct Ended {
 ///
 /// # Errors
 /// A table that cannot be read, or folders that cannot be made; what a row ends with stands in its row of the results.
-pub(super) fn run(arguments: &Arguments, table: &Path, ranks: &Ranks) -> Result<ExitCode> {
+pub(super) fn run(arguments: &RunArguments, table: &Path, ranks: &Ranks) -> Result<ExitCode> {
     if ranks.size() > 1 {
         let problem = Diagnostic::error("sweep", "a sweep shares out whole runs, and was started on several ranks");
         return Err(problem.remedy("start it without mpirun; -j says how many rows run at a time").into());
@@ -135,7 +135,7 @@ impl Sweep<'_> {
 
     /// What the results of a row depend on, beside its files.
     fn identity(&self, row: usize) -> Value {
-        let Arguments { file, like, .. } = self.arguments;
+        let RunArguments { file, like, .. } = self.arguments;
         json!({ "version": env!("CARGO_PKG_VERSION"), "deck": file, "like": like, "set": self.changes(row) })
     }
 
@@ -152,7 +152,7 @@ impl Sweep<'_> {
 
     /// Runs a row in a process of its own: what ends one does not end the others.
     fn row(&self, row: usize) -> Result<Ended> {
-        let Arguments { file, like, resume, .. } = self.arguments;
+        let RunArguments { file, like, resume, .. } = self.arguments;
         if *resume && let Some(report) = self.done_before(row) {
             return Ok(Ended { row, code: 0, report: Some(report), said: String::new(), kept: true });
         }

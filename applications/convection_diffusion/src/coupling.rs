@@ -34,7 +34,7 @@ pub const EXTENSION: &str = "thermal_solver_settings";
 /// Reads the materials of heat beside those of the structure.
 fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
     let is_round = part.elements.kinds.iter().any(|kind| kind.of_revolution);
-    part.info.marks.insert(ABOUT_Y, is_round);
+    part.info.set(ABOUT_Y, is_round);
     let solver = SolverSettings::new(settings.node(), report)?;
     let mut heat = part.clone();
     heat.name = solver.settings.get_str("model_part_name")?.to_owned();

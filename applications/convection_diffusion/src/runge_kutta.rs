@@ -183,9 +183,9 @@ impl RungeKutta {
         if !self.orthogonal {
             return Ok(());
         }
-        part.info.marks.insert(PROJECTING, true);
+        part.info.set(PROJECTING, true);
         let residual = self.assembler.residual(part, system, None);
-        part.info.marks.insert(PROJECTING, false);
+        part.info.set(PROJECTING, false);
         let residual = residual?;
         let values = part.nodes.history.values_mut(&PROJECTED_SCALAR1, 0);
         for (dof, (r, m)) in system.dofs.dofs().iter().zip(residual.iter().zip(&self.capacity)) {

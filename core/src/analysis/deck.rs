@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::driver::Driver;
 use super::report::RunReport;
-use super::solver::{INCOMPLETE, SolverSettings, flatten_bars};
+use super::solver::{SolverSettings, flatten_bars};
 use crate::diagnostics::{Diagnostic, Error, Report, Result, did_you_mean};
 use crate::io::{self, MeshFormatEntry};
 use crate::model::{Model, ModelPart};
@@ -242,7 +242,7 @@ pub(super) fn add_names_only(solver: &SolverSettings, root: &str, folder: &Path,
     part.tree.children = io::names_of_parts(&file)?;
     // What is wrong with the settings was said when the mesh was to be read.
     let _ = solver.prepare(&mut part);
-    part.info.marks.insert(INCOMPLETE, true);
+    part.info.solver.incomplete = true;
     model.add(part);
     Some(())
 }

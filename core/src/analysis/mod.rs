@@ -6,7 +6,6 @@
 //! stages one after another on one model.
 
 mod bodies;
-mod carrier;
 mod checkpoints;
 mod cutting;
 mod deck;
@@ -14,6 +13,8 @@ mod driver;
 mod like;
 mod mesh;
 mod older_decks;
+mod rank_layout;
+mod regrouping;
 mod report;
 mod saved;
 mod saved_run;
@@ -34,7 +35,6 @@ pub use mesh::{DeckMesh, read_deck_mesh};
 pub use report::{RunReport, Sizes};
 pub use simulation::{RunOptions, Simulation};
 pub use solver::{
-    EXPLICIT, ExtensionDefinition, INCOMPLETE, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry,
-    SolverSettings,
+    ExtensionDefinition, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry, SolverSettings,
 };
 pub use time_stepping::TimeStepping;

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{State, Unknowns};
 
-use super::carrier::OfRank;
 use super::deck::StageDeck;
+use super::rank_layout::RankLayout;
 use super::report::RunReport;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Result};
@@ -78,8 +78,8 @@ impl LoadedRun {
     }
 
     /// Nodes and unknowns of the rank in the stage under way.
-    pub(super) fn of_rank(&self, rank: usize) -> Option<OfRank> {
-        Some(OfRank::new(self.model.parts.get(&self.root)?, rank, self.stage.as_ref()?.unknowns.clone()))
+    pub(super) fn layout_of(&self, rank: usize) -> Option<RankLayout> {
+        Some(RankLayout::new(self.model.parts.get(&self.root)?, rank, self.stage.as_ref()?.unknowns.clone()))
     }
 }
 

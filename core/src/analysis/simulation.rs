@@ -6,13 +6,14 @@ use std::time::Instant;
 
 use zelus_linear_algebra::parallel::Pool;
 
-use super::carrier::{OfRank, Regrouping};
 use super::checkpoints::{Checkpoints, Pointer};
 use super::deck::{Folders, StageDeck, open, stages};
 use super::driver::{Driver, Unattended};
+use super::rank_layout::RankLayout;
+use super::regrouping::Regrouping;
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of, whole};
-use super::stage::{Stage, Systems};
+use super::stage::{RunContext, Stage, StageRequest, Systems};
 use super::threads;
 use crate::assembly::System;
 use crate::communication::Ranks;
@@ -349,8 +350,8 @@ impl Simulation {
         self.over = runs[0].over;
         let root = runs[0].root.clone();
         let report = std::mem::take(&mut runs[0].report);
-        let were: Vec<OfRank> = if regrouped {
-            runs.iter().enumerate().filter_map(|(rank, run)| run.of_rank(rank)).collect()
+        let were: Vec<RankLayout> = if regrouped {
+            runs.iter().enumerate().filter_map(|(rank, run)| run.layout_of(rank)).collect()
         } else {
             Vec::new()
         };
@@ -405,10 +406,17 @@ impl Simulation {
         }
         let more = std::mem::take(&mut self.more);
         self.before = (self.over > 0).then(|| self.model.clone());
-        let (stages, like) = (&self.stages[self.over..], self.like.as_deref());
-        let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
-        let (driver, folders, outputs) = (self.driver.as_mut(), &self.folders, &self.outputs);
-        let stage = Stage::prepare(stages, folders, like, model, systems, report, monitor, driver, more, outputs)?;
+        let stages = &self.stages[self.over..];
+        let (folders, outputs) = (&self.folders, &self.outputs);
+        let request = StageRequest { stages, folders, like: self.like.as_deref(), more, outputs };
+        let mut run = RunContext {
+            model: &mut self.model,
+            systems: &mut self.systems,
+            report: &mut self.report,
+            monitor,
+            driver: self.driver.as_mut(),
+        };
+        let stage = Stage::prepare(request, &mut run)?;
         stage.root().clone_into(&mut self.root);
         monitor.begin_stage(&stage.plan(stages.len(), self.stages.len()));
         self.stage = Some(stage);
@@ -420,7 +428,14 @@ impl Simulation {
             self.prepare_stage(monitor)?;
             // A saved run may have been at its end.
             let Some(stage) = self.stage.as_mut() else { break };
-            let stepped = stage.step(&mut self.model, &mut self.report, monitor, self.driver.as_mut());
+            let mut run = RunContext {
+                model: &mut self.model,
+                systems: &mut self.systems,
+                report: &mut self.report,
+                monitor: &mut *monitor,
+                driver: self.driver.as_mut(),
+            };
+            let stepped = stage.step(&mut run);
             if matches!(stepped, Ok(true)) {
                 let wanted = stage.saves(&self.model);
                 return match wanted.iter().try_for_each(|path| self.save_named(path)) {

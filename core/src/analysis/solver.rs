@@ -8,15 +8,15 @@ use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::{Interaction, find_kind};
-use crate::model::{EntityKind, ModelPart, Named, Rates, Role, named};
+use crate::model::{EntityKind, ModelPart, MultiplierRequest, Named, Rates, Role, SolverInfo, named};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
 use crate::registry::{self, Registered};
 
 use crate::strategies::{
-    Builder, BuilderEntry, CONDITION_NUMBER, CentralDifferences, ConvergenceCriterion, CriterionEntry,
-    CriterionRequest, ExplicitSettings, ExplicitStrategy, LineSearch, LinearSolverRequest, NewtonSettings, Scheme,
-    SchemeEntry, SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
+    Builder, BuilderEntry, CentralDifferences, ConvergenceCriterion, CriterionEntry, CriterionRequest,
+    ExplicitSettings, ExplicitStrategy, LineSearch, LinearSolverRequest, NewtonSettings, Scheme, SchemeEntry,
+    SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
     linear_tolerance, make_linear_solver, multipliers,
 };
 
@@ -28,14 +28,8 @@ const AUXILIARY: &str = "auxiliary_variables_list";
 const STRATEGY: &str = "solving_strategy_settings";
 const BUILDER: &str = "builder_and_solver_settings";
 
-/// Mark of a part that is not what the deck asks for, since what it is made from has errors: only other errors are looked for.
-pub const INCOMPLETE: &str = "INCOMPLETE";
-
 /// A variable with history on the nodes: name and number of components.
 pub type NodalVariable = (&'static str, usize);
-
-/// Mark of the step data: steps are explicit.
-pub const EXPLICIT: &str = "EXPLICIT";
 
 registered_kind! {
     /// A `solver_type` that decks name.
@@ -96,6 +90,14 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub marks: fn(&Settings) -> Result<Vec<&'static str>>,
+    /// Whether the condition number of every system is computed.
+    ///
+    /// An error names a setting that does not fit.
+    pub condition_number: fn(&Settings) -> Result<bool>,
+    /// Treatment of multipliers by iterative linear solvers.
+    ///
+    /// An error names a setting that does not fit.
+    pub multipliers: fn(&Settings) -> Result<MultiplierRequest>,
     /// How steps that fail are cut, where the nested object says so.
     ///
     /// An error names a setting that does not fit.
@@ -128,6 +130,8 @@ impl ExtensionDefinition {
     pub const NOTHING: Self = Self {
         variables: |_| Ok(Vec::new()),
         marks: |_| Ok(Vec::new()),
+        condition_number: |_| Ok(false),
+        multipliers: |_| Ok(MultiplierRequest::default()),
         cutting: |_| Ok(None),
         values: |_| Ok(Vec::new()),
         adopt: |_, _, _, _| Ok(()),
@@ -157,6 +161,8 @@ pub struct SolverSettings {
     definition: &'static SolverDefinition,
     variables: Vec<NodalVariable>,
     marks: Vec<&'static str>,
+    condition_number: bool,
+    multipliers: MultiplierRequest,
     cutting: Option<Cutting>,
     values: Vec<(&'static str, f64)>,
     extensions: Vec<(&'static ExtensionDefinition, Settings)>,
@@ -194,6 +200,8 @@ impl SolverSettings {
         };
         let mut variables = definition.variables.to_vec();
         let mut marks = Vec::new();
+        let mut condition_number = false;
+        let mut multipliers = MultiplierRequest::default();
         let mut cutting = None;
         let mut values = Vec::new();
         let mut present = Vec::new();
@@ -211,6 +219,9 @@ impl SolverSettings {
             if let Some(more) = problems.absorb((factory.marks)(&checked)) {
                 marks.extend(more);
             }
+            condition_number |= problems.absorb((factory.condition_number)(&checked)).unwrap_or_default();
+            let more = problems.absorb((factory.multipliers)(&checked));
+            multipliers = multipliers.and(more.unwrap_or_default());
             cutting = problems.absorb((factory.cutting)(&checked)).flatten().or(cutting);
             if let Some(more) = problems.absorb((factory.values)(&checked)) {
                 values.extend(more);
@@ -231,6 +242,8 @@ impl SolverSettings {
             definition,
             variables,
             marks,
+            condition_number,
+            multipliers,
             cutting,
             values,
             extensions: present,
@@ -250,20 +263,22 @@ impl SolverSettings {
             return Err(problem.remedy(format!("write at most {MOST_LEVELS}; schemes take what they need")).into());
         }
         part.set_levels(levels);
-        part.info.marks.insert(EXPLICIT, self.definition.explicit);
-        part.info.marks.insert(INCOMPLETE, !self.is_whole);
         // Names that are not registered are reported where the strategy is made.
-        let named = self.named::<StrategyEntry>(STRATEGY).ok();
-        for strategy in registry::all::<StrategyEntry>() {
-            let is_it = named.is_some_and(|named| named.name == strategy.name);
-            strategy.marks.iter().for_each(|mark| *part.info.marks.entry(mark).or_default() |= is_it);
-        }
+        let strategy = self.named::<StrategyEntry>(STRATEGY).ok();
+        let condition_number =
+            self.settings.node().get("condn_convergence_criterion").and_then(Node::as_bool) == Some(true);
+        let earlier = part.info.solver;
+        part.info.solver = SolverInfo {
+            explicit: self.definition.explicit,
+            incomplete: !self.is_whole,
+            unknown_load_factor: earlier.unknown_load_factor
+                || strategy.is_some_and(|strategy| strategy.unknown_load_factor),
+            condition_number: earlier.condition_number || self.condition_number || condition_number,
+            multipliers: earlier.multipliers.and(self.multipliers),
+        };
         self.add_variables(part)?;
         for mark in &self.marks {
             part.info.marks.insert(mark, true);
-        }
-        if self.settings.node().get("condn_convergence_criterion").and_then(Node::as_bool) == Some(true) {
-            part.info.marks.insert(CONDITION_NUMBER, true);
         }
         for &(name, value) in &self.values {
             part.info.values.insert(name, value);

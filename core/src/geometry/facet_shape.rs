@@ -8,9 +8,7 @@ use std::fmt;
 use super::Shape;
 use super::nodal::Nodal;
 use super::pieces::pieces;
-use super::shape_functions::{
-    barycentric, linear, product, quadratic, quadratic_corner, quadratic_middle, serendipity,
-};
+use super::shape_formulas::{barycentric, linear, product, quadratic, quadratic_corner, quadratic_middle, serendipity};
 use crate::scalar::{Dual, Real};
 use crate::vector3::{cross, dot, norm, normalised, sub, value};
 

@@ -13,6 +13,7 @@ mod pieces;
 mod quadrature;
 mod reference_cell;
 mod shape;
+mod shape_formulas;
 mod shape_functions;
 mod shape_table;
 #[cfg(test)]

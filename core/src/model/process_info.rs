@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::solver_info::SolverInfo;
+use super::step_mark::StepMark;
 use crate::names;
 
 /// Time, step and iteration counters, and named values set by processes.
@@ -25,12 +27,24 @@ pub struct ProcessInfo {
     /// Named marks, e.g. ADAPT_PENALTY.
     #[serde(deserialize_with = "names::read_keys")]
     pub marks: BTreeMap<&'static str, bool>,
+    /// Facts about the solver.
+    pub solver: SolverInfo,
 }
 
 impl ProcessInfo {
     /// The named number, or `default`.
     pub fn value_or(&self, name: &str, default: f64) -> f64 {
         self.values.get(name).copied().unwrap_or(default)
+    }
+
+    /// Whether a mark is set.
+    pub fn has(&self, mark: StepMark) -> bool {
+        self.is(mark.name())
+    }
+
+    /// Sets a mark, or takes it away.
+    pub fn set(&mut self, mark: StepMark, is_set: bool) {
+        self.marks.insert(mark.name(), is_set);
     }
 
     /// Whether the named mark is set.

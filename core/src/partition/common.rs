@@ -2,10 +2,10 @@
 
 use super::faces::{faces, outer_and_shared};
 use super::interfaces::Surface;
+use super::listed_processes::each_process;
 use crate::model::{EntityKind, ModelPart};
 use crate::parameters::{Node, Value};
 use crate::processes::ProcessEntry;
-use crate::registry;
 
 /// Marks the nodes of surfaces that may touch, of constraints, and of parts that processes of the deck need whole
 /// ([`ProcessEntry::common`]); all nodes of a mesh of points and lines.
@@ -47,20 +47,5 @@ fn whole(value: &Node, part: &ModelPart, mark: &mut impl FnMut(u32)) {
             Some(name) => part.part(name).iter().flat_map(|found| &found.nodes).for_each(|&node| mark(node)),
             None => value.as_f64().and_then(|id| part.nodes.find(id as usize)).into_iter().for_each(mark),
         },
-    }
-}
-
-/// Calls `see` with the entry and the parameters of every process listed below `node`.
-pub(super) fn each_process(node: &Node, see: &mut impl FnMut(&'static ProcessEntry, Option<&Node>)) {
-    match &node.value {
-        Value::Array(items) => items.iter().for_each(|item| each_process(item, see)),
-        Value::Object(members) => {
-            let name = members.get("python_module").or(members.get("name")).and_then(Node::as_str);
-            match name.and_then(|name| registry::find(name.rsplit('.').next().unwrap_or(name))) {
-                Some(entry) => see(entry, members.get("Parameters")),
-                None => members.iter().for_each(|member| each_process(&member.node, see)),
-            }
-        }
-        _ => {}
     }
 }

@@ -1,6 +1,6 @@
 //! The surfaces of a deck that may touch each other, as its processes say.
 
-use super::common::each_process;
+use super::listed_processes::each_process;
 use crate::model::ModelPart;
 use crate::parameters::Node;
 use crate::processes::NamedSurface;

@@ -13,6 +13,7 @@ mod counts;
 mod faces;
 mod facets;
 mod interfaces;
+mod listed_processes;
 mod share;
 #[cfg(test)]
 mod tests;

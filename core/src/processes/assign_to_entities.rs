@@ -4,16 +4,14 @@
 //! the last value stays.
 
 use super::local_axes::LocalAxes;
-use super::prescription::{Load, LoadCarrier};
+use super::prescription::{Load, LoadCarrier, is_load};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result, did_you_mean};
-use crate::entities::ConditionEntry;
 use crate::model::{EntityTable, Fields, Model, ModelPart, Nodes, ScalarVariable};
 use crate::parameters::{Settings, SpaceTime};
-use crate::registry;
 
 /// What a model part holds that can carry data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -187,12 +185,6 @@ impl AssignToEntities {
         }
         Ok(None)
     }
-}
-
-/// Whether conditions of any kind are loaded by that variable.
-pub(super) fn is_load(name: &str) -> bool {
-    let kinds = registry::all::<ConditionEntry>();
-    kinds.iter().any(|kind| kind.loads.is_some_and(|loads| loads.contains(&name)))
 }
 
 impl Process for AssignToEntities {

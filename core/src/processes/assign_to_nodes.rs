@@ -4,9 +4,8 @@
 //! step it is released on all nodes of the part. Between steps all such unknowns are therefore free, a later process on
 //! the same unknown wins, and fixities of the mesh file on the same unknown last one step only.
 
-use super::assign_to_entities::is_load;
 use super::local_axes::LocalAxes;
-use super::prescription::{Load, LoadCarrier, Prescription};
+use super::prescription::{Load, LoadCarrier, Prescription, is_load};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;

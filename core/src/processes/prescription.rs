@@ -1,8 +1,10 @@
 //! What a process prescribes and what it loads, asked before anything runs.
 
 use crate::diagnostics::Place;
+use crate::entities::ConditionEntry;
 use crate::model::ScalarVariable;
 use crate::parameters::Interval;
+use crate::registry;
 
 /// Values of one unknown that a process fixes.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,4 +45,10 @@ pub struct Load {
     pub on: LoadCarrier,
     /// Their places there, ascending.
     pub members: Vec<u32>,
+}
+
+/// Whether conditions of any kind are loaded by that variable.
+pub(super) fn is_load(name: &str) -> bool {
+    let kinds = registry::all::<ConditionEntry>();
+    kinds.iter().any(|kind| kind.loads.is_some_and(|loads| loads.contains(&name)))
 }

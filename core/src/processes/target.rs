@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::assign_to_entities::is_load;
-use super::prescription::{Load, LoadCarrier};
+use super::prescription::{Load, LoadCarrier, is_load};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
 use crate::model::{

@@ -11,17 +11,13 @@ use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::strategy::{
-    SolutionStrategy, StrategyEntry, accept, after_prediction, recorded, relaxation, update_interactions,
-};
+use super::strategy::{SolutionStrategy, accept, after_prediction, recorded, relaxation, update_interactions};
+use super::strategy_entry::StrategyEntry;
 use crate::assembly::{Assembler, System};
 use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Settings};
 use crate::register;
-
-/// Mark of the step data: the load factor is an unknown.
-pub const ARC_LENGTH: &str = "ARC_LENGTH";
 
 const DEFAULTS: &str = include_str!("../../../configs/strategies/arc_length.json");
 
@@ -330,5 +326,5 @@ register! { StrategyEntry "arc_length",
         }
         Ok(Box::new(ArcLength::new(settings, request.newton()?)))
     },
-    marks: &[ARC_LENGTH],
+    unknown_load_factor: true,
 }

@@ -6,10 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::scheme::{SchemeEntry, SchemeFactory};
 use crate::assembly::DofTable;
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND, UNKNOWN};
-use crate::register;
 
 /// The first derivative half a step later.
 const MIDDLE: ColumnOf = |rates| rates.middle;
@@ -75,9 +73,4 @@ impl CentralDifferences {
         }
         self.half_before = half;
     }
-}
-
-register! { SchemeEntry "central_differences",
-    about: "explicit central differences with a lumped mass, for \"time_integration_method\": \"explicit\"",
-    build: SchemeFactory::Explicit(|_| Ok(CentralDifferences::default())),
 }

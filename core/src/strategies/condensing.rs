@@ -1,32 +1,27 @@
-//! Whether iterative engines see multipliers: what a model part's marks ask for, and why it was not to be.
+//! Whether iterative solvers see multipliers: as a model part's step data ask for it, and why it was not to be.
 
 use zelus_linear_algebra::{CondensationSettings, Multipliers, NotCondensable};
 
 use super::meaning::Meanings;
 use crate::diagnostics::{Diagnostic, Place};
-use crate::model::ProcessInfo;
+use crate::model::{MultiplierRequest, ProcessInfo};
 
-/// Mark of the step data: iterative engines solve for the unknowns without multipliers.
-pub const CONDENSE_MULTIPLIERS: &str = "CONDENSE_MULTIPLIERS";
-/// Mark of the step data: iterative engines solve for all unknowns at once.
-pub const KEEP_MULTIPLIERS: &str = "KEEP_MULTIPLIERS";
-/// Mark of the step data: multipliers that cannot be condensed are an error.
-pub const ONLY_CONDENSED: &str = "ONLY_CONDENSED";
 /// Number of the step data: [`CondensationSettings::off_node`].
 pub const OFF_NODE_TOLERANCE: &str = "DUAL_LM_OFF_NODE_TOLERANCE";
 /// Number of the step data: [`CondensationSettings::zero_row`].
 pub const ZERO_ROW_TOLERANCE: &str = "DUAL_LM_ZERO_ROW_TOLERANCE";
 
-/// What iterative engines do with multipliers, by the marks of a model part.
+/// Treatment of multipliers by iterative solvers, as the step data of a model part ask for it.
 pub(crate) fn multipliers(info: &ProcessInfo) -> Multipliers {
     let usual = CondensationSettings::default();
-    if info.is(CONDENSE_MULTIPLIERS) {
+    let MultiplierRequest { condense, keep, only_condensed } = info.solver.multipliers;
+    if condense {
         Multipliers::Condense(CondensationSettings {
             off_node: info.value_or(OFF_NODE_TOLERANCE, usual.off_node),
             zero_row: info.value_or(ZERO_ROW_TOLERANCE, usual.zero_row),
-            fallback: !info.is(ONLY_CONDENSED),
+            fallback: !only_condensed,
         })
-    } else if info.is(KEEP_MULTIPLIERS) {
+    } else if keep {
         Multipliers::Keep
     } else {
         Multipliers::Leave

@@ -12,6 +12,7 @@ use super::critical_step::critical_step;
 use super::meaning::Meaning;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
+use super::scheme::{SchemeEntry, SchemeFactory};
 use super::strategy::{SolutionStrategy, accept, recorded};
 use crate::assembly::{
     Assembler, AssemblerState, Inertia, System, damped_by_properties, impose_constraints, strongest_damping,
@@ -19,6 +20,7 @@ use crate::assembly::{
 use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND};
 use crate::parameters::Settings;
+use crate::register;
 
 /// Longest stable step of the bodies without contact, estimated last (time).
 pub const CRITICAL_STEP: &str = "CRITICAL_STEP";
@@ -344,4 +346,9 @@ impl SolutionStrategy for ExplicitStrategy {
         (self.scheme, self.predicted, self.warned) = (scheme, predicted, warned);
         Ok(())
     }
+}
+
+register! { SchemeEntry "central_differences",
+    about: "explicit central differences with a lumped mass, for \"time_integration_method\": \"explicit\"",
+    build: SchemeFactory::Explicit(|_| Ok(CentralDifferences::default())),
 }

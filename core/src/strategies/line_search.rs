@@ -3,12 +3,11 @@
 //! The work w(s) = Δ · b(u + s Δ) of the increment on the residual vanishes where the energy is stationary along it. The
 //! search looks for an s with |w(s)| ≤ tolerance · |w(0)| by secants, inside a bracket once w has changed its sign.
 
-use super::strategy::StrategyEntry;
 use crate::diagnostics::Result;
 use crate::parameters::{Defaults, Node, Settings};
-use crate::register;
 
-const DEFAULTS: &str = include_str!("../../../configs/strategies/line_search.json");
+/// Default settings.
+pub(super) const DEFAULTS: &str = include_str!("../../../configs/strategies/line_search.json");
 
 /// Settings of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,18 +89,6 @@ impl LineSearch {
         }
         Ok(if best.1.is_some() { best.0 } else { self.least })
     }
-}
-
-register! { StrategyEntry "line_search",
-    about: "Newton's iteration that takes the part of each increment where its work on the residual is small",
-    defaults: DEFAULTS,
-    build: |mut request| {
-        // One linear solve takes its increment whole.
-        if !request.iteration.linear {
-            request.iteration.line_search = Some(LineSearch::new(request.advanced)?);
-        }
-        Ok(Box::new(request.newton()?))
-    },
 }
 
 #[cfg(test)]

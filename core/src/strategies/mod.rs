@@ -29,6 +29,7 @@ mod meaning;
 mod measure;
 mod memory;
 mod newton;
+mod newton_strategies;
 #[cfg(feature = "petsc")]
 mod owned_condensation;
 #[cfg(feature = "petsc")]
@@ -40,16 +41,17 @@ mod records;
 mod residual_criterion;
 mod scheme;
 mod strategy;
+mod strategy_entry;
 mod whereabouts;
 
-pub use arc_length::{ARC_LENGTH, ArcLength, ArcLengthSettings};
+pub use arc_length::{ArcLength, ArcLengthSettings};
 pub use balance::{Balance, Energies, Flows, PairBalance, Sums, UnknownBalance};
 pub use bdf_scheme::BdfScheme;
 pub use bossak_scheme::BossakScheme;
 pub use builder::{Builder, BuilderEntry};
 pub use central_differences::CentralDifferences;
 pub(crate) use condensing::multipliers;
-pub use condensing::{CONDENSE_MULTIPLIERS, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE};
+pub use condensing::{OFF_NODE_TOLERANCE, ZERO_ROW_TOLERANCE};
 pub use criterion::{
     Block, Check, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Norm, Verdict,
     both, either, is_last_digit, is_round_off,
@@ -63,11 +65,12 @@ pub(crate) use linear_solvers::{
     frugal as frugal_linear_solver, make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all,
 };
 pub use measure::{Form, Measure, Tolerance};
-pub use newton::{CONDITION_NUMBER, ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
+pub use newton::{ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use phases::Phases;
 pub use pseudo_static_scheme::PseudoStaticScheme;
 pub use reactions::write_reactions;
 pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
-pub use strategy::{Linearized, SolutionStrategy, StrategyEntry, StrategyFactory, StrategyRequest, accept, recorded};
+pub use strategy::{Linearized, SolutionStrategy, accept, recorded};
+pub use strategy_entry::{StrategyEntry, StrategyFactory, StrategyRequest};
 pub(crate) use whereabouts::body_of;

@@ -28,16 +28,12 @@ use super::meaning::Meaning;
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::Scheme;
-use super::strategy::{Linearized, SolutionStrategy, StrategyEntry, accept, is_of_entities, recorded};
+use super::strategy::{Linearized, SolutionStrategy, accept, is_of_entities, recorded};
 use super::whereabouts::whereabouts;
 use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::model::ModelPart;
-use crate::register;
-
-/// Mark of the step data: the condition number of every system is computed.
-pub const CONDITION_NUMBER: &str = "CONDN_CONVERGENCE_CRITERION";
 
 /// Nodes that a message of a failure describes.
 const DESCRIBED: usize = 4;
@@ -491,9 +487,4 @@ fn state_of(part: &ModelPart, system: &System, id: usize) -> Option<String> {
     let node = part.nodes.ids.binary_search(&id).ok()? as u32;
     let state = system.interactions.iter().find_map(|interaction| interaction.node_state(node))?;
     Some(format!("node {id}{} {state}", whereabouts(part, node)))
-}
-
-register! { StrategyEntry "newton_raphson",
-    about: "Newton's iteration with whole increments",
-    build: |request| Ok(Box::new(request.newton()?)),
 }

@@ -14,6 +14,7 @@ mod ilu0;
 mod latest_blocks;
 mod multigrid;
 mod shared_levels;
+mod single_precision;
 mod workspaces;
 
 pub(crate) use constrained::Constrained;

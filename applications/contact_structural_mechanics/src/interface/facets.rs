@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
-use zelus_core::analysis::INCOMPLETE;
 use zelus_core::diagnostics::{Diagnostic, Report, unfit};
 use zelus_core::geometry::mapping::{domain_size, unit_normal};
 use zelus_core::geometry::{Shape, reversed};
@@ -142,7 +141,7 @@ pub fn interfaces(
     slaves: &BTreeMap<String, Vec<String>>,
 ) -> Result<Vec<Interface>> {
     check_parts(part, parts, slaves)?;
-    if part.info.is(INCOMPLETE) {
+    if part.info.solver.incomplete {
         return Ok(Vec::new());
     }
     let mut named: Vec<(&String, &Vec<String>)> = parts.iter().filter(|(_, list)| !list.is_empty()).collect();

@@ -3,13 +3,11 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use zelus_core::analysis::{EXPLICIT, INCOMPLETE};
 use zelus_core::diagnostics::{Diagnostic, Report, Severity};
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
-use zelus_core::strategies::ARC_LENGTH;
 use zelus_core::{Error, Result};
 
 use super::friction_settings::friction_law;
@@ -177,7 +175,7 @@ fn interaction(
     let named = named.expect("it is known");
     let family = match named.by_node {
         Some(by_node) if !whole.parameters.penalty_of_weighted_gaps => {
-            if part.info.is(EXPLICIT) {
+            if part.info.solver.explicit {
                 by_node.explicit
             } else {
                 by_node.implicit
@@ -323,8 +321,8 @@ fn check_use(part: &ModelPart, family: &Family, settings: &Settings) -> Result<(
     let wanted = Use {
         dimension: part.info.domain_size,
         axisymmetric: settings.get_bool(key)?,
-        explicit: part.info.is(EXPLICIT),
-        arc_length: part.info.is(ARC_LENGTH),
+        explicit: part.info.solver.explicit,
+        arc_length: part.info.solver.unknown_load_factor,
     };
     let Some(Refusal { reason, remedy }) = refusal(family, wanted) else { return Ok(()) };
     let key = if wanted.explicit || wanted.arc_length { "contact_type" } else { key };
@@ -347,7 +345,7 @@ fn warn_of_revolution(part: &ModelPart, settings: &Settings) -> Result<Option<Di
 fn check_variables(part: &ModelPart, family: &Family, settings: &Settings) -> Result<()> {
     match family.variables.iter().find(|(name, _)| !part.nodes.history.has(name)) {
         None => Ok(()),
-        Some(_) if part.info.is(INCOMPLETE) => Ok(()),
+        Some(_) if part.info.solver.incomplete => Ok(()),
         Some((name, _)) => {
             let fact = format!(
                 "\"contact_type\" asks for {}, but the solver's \"mortar_type\" brings no {name}",

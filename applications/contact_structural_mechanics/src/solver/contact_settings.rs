@@ -1,10 +1,9 @@
 //! `contact_settings` of the solver: the family decides which variables the nodes carry.
 
 use zelus_core::analysis::{Cutting, ExtensionDefinition, SolverExtensionEntry};
+use zelus_core::model::MultiplierRequest;
 use zelus_core::register;
-use zelus_core::strategies::{
-    CONDENSE_MULTIPLIERS, CONDITION_NUMBER, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,
-};
+use zelus_core::strategies::{OFF_NODE_TOLERANCE, ZERO_ROW_TOLERANCE};
 
 use crate::pairs::variables_of;
 
@@ -59,20 +58,22 @@ register! { SolverExtensionEntry "contact_settings",
                     }
                 }
             }
-            for (key, wanted, mark) in [
-                ("ensure_contact", true, ENSURE_CONTACT),
-                ("adjust_initial", true, ADJUST_INITIAL),
-                ("compute_dynamic_factor", true, COMPUTE_DYNAMIC_FACTOR),
-                ("condn_convergence_criterion", true, CONDITION_NUMBER),
-                ("use_mixed_ulm_solver", true, CONDENSE_MULTIPLIERS),
-                ("use_mixed_ulm_solver", false, KEEP_MULTIPLIERS),
-                ("fallback_if_dual_lm_not_valid", false, ONLY_CONDENSED),
+            for (key, mark) in [
+                ("ensure_contact", ENSURE_CONTACT),
+                ("adjust_initial", ADJUST_INITIAL),
+                ("compute_dynamic_factor", COMPUTE_DYNAMIC_FACTOR),
             ] {
-                if settings.get_bool(key)? == wanted {
+                if settings.get_bool(key)? {
                     marks.push(mark);
                 }
             }
             Ok(marks)
+        },
+        condition_number: |settings| settings.get_bool("condn_convergence_criterion"),
+        multipliers: |settings| {
+            let condense = settings.get_bool("use_mixed_ulm_solver")?;
+            let only_condensed = !settings.get_bool("fallback_if_dual_lm_not_valid")?;
+            Ok(MultiplierRequest { condense, keep: !condense, only_condensed })
         },
         cutting: |settings| {
             if !settings.get_bool("adaptative_strategy")? {

@@ -12,6 +12,7 @@ use zelus_core::model::ProcessInfo;
 use zelus_core::scalar::Real;
 
 use super::contribution::Pointwise;
+use super::marks::{ABOUT_Y, AT_REST, LINEAR};
 use crate::coefficient::Local;
 
 /// What the whole step shares.
@@ -39,27 +40,16 @@ pub const DYNAMIC_TAU: &str = "DYNAMIC_TAU";
 pub const CROSS_WIND: &str = "CROSS_WIND_STABILIZATION_FACTOR";
 /// Value of the step data: gradients below it have no cross-wind diffusion.
 pub const LEAST_GRADIENT: &str = "CROSS_WIND_LEAST_GRADIENT";
-/// Mark of the step data: bodies of revolution are about the y axis, x is the radius.
-pub const ABOUT_Y: &str = "HEAT_ABOUT_Y";
-/// Mark of the step data: nothing is conducted after the temperature has been carried along.
-pub const PURE_CONVECTION: &str = "PURE_CONVECTION";
-/// Mark of the step data: elements that are carried through take gradients at their centre for all points.
-pub const AT_CENTRE: &str = "GRADIENTS_AT_CENTRE";
-/// Mark of the step data: nothing is stored.
-pub const AT_REST: &str = "HEAT_AT_REST";
-/// Mark of the step data: each step is one linear solve.
-pub const LINEAR: &str = "LINEAR_HEAT";
-
 impl Step {
     /// As the step data say.
     pub fn of(info: &ProcessInfo) -> Self {
         Self {
-            length: if info.is(AT_REST) { f64::INFINITY } else { info.delta_time },
+            length: if info.has(AT_REST) { f64::INFINITY } else { info.delta_time },
             theta: info.value_or(THETA, 0.5),
             dynamic_tau: info.value_or(DYNAMIC_TAU, 1.0),
             cross_wind: info.value_or(CROSS_WIND, 0.0),
             least_gradient: info.value_or(LEAST_GRADIENT, 0.0),
-            frozen: info.is(LINEAR),
+            frozen: info.has(LINEAR),
         }
     }
 }
@@ -97,7 +87,7 @@ pub struct Point<'a, const NODES: usize> {
 
 /// The coordinate that is the distance from the axis: y, but x beside a structure, whose axis is y.
 pub fn radial(info: &ProcessInfo) -> usize {
-    if info.is(ABOUT_Y) { 0 } else { 1 }
+    if info.has(ABOUT_Y) { 0 } else { 1 }
 }
 
 /// What volumes are multiplied by: the way round the axis, where there is one.

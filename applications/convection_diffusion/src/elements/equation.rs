@@ -10,8 +10,9 @@ use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView,
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_structural_mechanics::elements::physical_gradients;
 
-use super::balance::{AT_CENTRE, PURE_CONVECTION, Point, Step, radial, round};
+use super::balance::{Point, Step, radial, round};
 use super::contribution::{add, slope};
+use super::marks::{AT_CENTRE, PURE_CONVECTION};
 use super::place::{check_volume, full_order, stream_size};
 use super::plastic_heat::{PLASTIC_HEAT_POWER, plastic_heat, volume};
 use crate::coefficient::Local;
@@ -119,13 +120,13 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             false => [[0.0; 3]; NODES],
         };
         let [mut conductivity, density, specific_heat] = self.material.in_element(entity, view, &now);
-        if T::CARRIED && view.info.is(PURE_CONVECTION) {
+        if T::CARRIED && view.info.has(PURE_CONVECTION) {
             conductivity = Local::Nodal([0.0; NODES]);
         } else {
             self.material.check_conductivity(entity, &conductivity)?;
         }
         let size = stream_size(self.rule.shape(), &entity.current);
-        let is_centred = view.info.is(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;
+        let is_centred = view.info.has(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;
         let at_centre = is_centred.then(|| self.at_centre(&entity.current));
         let radial = radial(view.info);
         let radius =

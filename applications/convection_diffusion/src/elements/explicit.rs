@@ -15,6 +15,7 @@ use zelus_structural_mechanics::elements::physical_gradients;
 
 use super::balance::{DYNAMIC_TAU, along};
 use super::contribution::{Pointwise, add, slope};
+use super::marks::PROJECTING;
 use super::place::{check_volume, full_order, stream_size};
 use super::plastic_heat::plastic_heat;
 use crate::coefficient::Local;
@@ -23,8 +24,6 @@ use crate::material::{Material, properties_of};
 
 /// Value of the step data: how far the present stage is from the beginning of the step to its end.
 pub const STAGE: &str = "RUNGE_KUTTA_STAGE";
-/// Mark of the step data: residuals are those of the strong form, to be projected onto the mesh.
-pub const PROJECTING: &str = "PROJECTING_RESIDUALS";
 
 /// Whether subscales go on in time.
 pub trait Subscales: Send + Sync + 'static {
@@ -140,7 +139,7 @@ impl<T: Subscales, const NODES: usize, const DIM: usize> Explicit<T, NODES, DIM>
                 since: share * length,
                 known: value(&projection) + before.map_or(0.0, |[before, length]| before / length),
                 before,
-                projecting: view.info.is(PROJECTING),
+                projecting: view.info.has(PROJECTING),
             };
             act(g, &point, [n, &now], &dn, self.rule.weight(g) * determinant);
         }

@@ -1,5 +1,6 @@
 //! Elements: the balance of heat over a body.
 
+mod marks;
 mod balance;
 mod contribution;
 mod place;
@@ -8,11 +9,9 @@ mod equation;
 mod explicit;
 mod registered;
 
-pub use balance::{
-    ABOUT_Y, AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, PURE_CONVECTION, Point, Step, THETA,
-    radial,
-};
+pub use balance::{CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, Point, Step, THETA, radial};
 pub use equation::{Equation, Terms};
-pub use explicit::{Explicit, PROJECTING, STAGE, Subscales};
+pub use explicit::{Explicit, STAGE, Subscales};
+pub use marks::{ABOUT_Y, AT_CENTRE, AT_REST, LINEAR, PROJECTING, PURE_CONVECTION};
 pub use place::full_order;
 pub use plastic_heat::PLASTIC_HEAT_POWER;

@@ -25,9 +25,9 @@ fn take_up(
 ) -> Result<()> {
     adoption::adopt(settings, part, report)?;
     part.info.values.extend([(THETA, theta), (DYNAMIC_TAU, tau), (CROSS_WIND, cross_wind), (LEAST_GRADIENT, least)]);
-    part.info.marks.insert(LINEAR, settings.get_str("analysis_type")? == "linear");
-    part.info.marks.insert(AT_REST, false);
-    part.info.marks.insert(AT_CENTRE, settings.node().get("gradients").and_then(Node::as_str) == Some("at_centre"));
+    part.info.set(LINEAR, settings.get_str("analysis_type")? == "linear");
+    part.info.set(AT_REST, false);
+    part.info.set(AT_CENTRE, settings.node().get("gradients").and_then(Node::as_str) == Some("at_centre"));
     Ok(())
 }
 

@@ -17,7 +17,7 @@ register! { SolverEntry "stationary",
         adapt: super::adapt,
         adopt: |settings, part, report| {
             super::take_up(settings, [1.0, 0.0, 0.0, 0.0], part, report)?;
-            part.info.marks.insert(AT_REST, !settings.get_bool("stores_heat")?);
+            part.info.set(AT_REST, !settings.get_bool("stores_heat")?);
             Ok(())
         },
         ..SolverDefinition::PLAIN

@@ -42,7 +42,7 @@ register! { SolverEntry "transient",
             let cross_wind = ["cross_wind_stabilization_factor", "cross_wind_least_gradient"];
             let parameters = [theta, read("dynamic_tau")?, read(cross_wind[0])?, read(cross_wind[1])?];
             super::take_up(settings, parameters, part, report)?;
-            part.info.marks.insert(PURE_CONVECTION, settings.get_bool("pure_convection")?);
+            part.info.set(PURE_CONVECTION, settings.get_bool("pure_convection")?);
             warn_of_no_storage(part, "unless a process sets it, they store no heat", report);
             Ok(())
         },

@@ -1,9 +1,10 @@
 //! The width of the band in which an element softens.
 
 use zelus_core::geometry::{Shape, ShapeTable, mapping};
+use zelus_core::model::StepMark;
 
 /// Mark of the step data: bands are as wide as in Kratos.
-pub const BANDS_AS_KRATOS: &str = "BANDS_AS_KRATOS";
+pub const BANDS_AS_KRATOS: StepMark = StepMark::new("BANDS_AS_KRATOS");
 
 /// The edge of the square or cube that has the size of the element, or of those it is a part of: two triangles and prisms, six tetrahedra.
 ///

@@ -139,7 +139,7 @@ where
     fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;
-        material.accepts_band(&|| band::width(table, &entity.initial, view.info.is(BANDS_AS_KRATOS)))?;
+        material.accepts_band(&|| band::width(table, &entity.initial, view.info.has(BANDS_AS_KRATOS)))?;
         if (0..table.len()).all(|g| Self::initial_weight(table, g, entity) > 0.0) {
             Ok(vec![0.0; table.len() * material.law.history()].into())
         } else if Self::AXISYMMETRIC {

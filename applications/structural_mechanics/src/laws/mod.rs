@@ -29,10 +29,10 @@ mod quantity;
 mod plasticity_tests;
 mod small_strain_plasticity;
 mod thermal_elastic;
+mod uniaxial;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use bar_law::positive;
 pub use bar_law::{BarLaw, MakeBarLaw};
 pub use damage::IsotropicDamage;
 pub use elastic::Elasticity;
@@ -49,3 +49,4 @@ pub use linear_elastic::LinearElastic;
 pub use parallel_mixture::ParallelMixture;
 pub use small_strain_plasticity::{PLASTIC_WORK, SmallStrainPlasticity};
 pub use thermal_elastic::ThermalElastic;
+pub(crate) use uniaxial::positive;

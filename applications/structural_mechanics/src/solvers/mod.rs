@@ -36,7 +36,7 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, _report: &mut Report) ->
         let problem = settings.error("crack_bands", "invalid-value", format!("\"crack_bands\" is \"{named}\""));
         return Err(problem.remedy("use \"of_volume\" or \"as_kratos\"").into());
     }
-    part.info.marks.insert(BANDS_AS_KRATOS, named == "as_kratos");
+    part.info.set(BANDS_AS_KRATOS, named == "as_kratos");
     Ok(())
 }
 

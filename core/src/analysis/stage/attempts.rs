@@ -3,44 +3,36 @@
 use std::time::Instant;
 
 use super::super::cutting::{Cutting, Lengths};
-use super::super::driver::{Driver, Point};
-use super::super::report::RunReport;
+use super::super::driver::Point;
 use super::super::saved::Saved;
-use super::Stage;
+use super::{RunContext, Stage};
 use crate::assembly::System;
 use crate::diagnostics::{Error, Result};
 use crate::model::Model;
 use crate::processes::Process;
-use crate::strategies::{Monitor, StepRecord};
+use crate::strategies::StepRecord;
 
 impl Stage {
     /// Solves up to `target`, in one step or, where that does not converge, in shorter ones.
-    pub(super) fn reach(
-        &mut self,
-        target: f64,
-        model: &mut Model,
-        report: &mut RunReport,
-        monitor: &mut dyn Monitor,
-        driver: &mut dyn Driver,
-    ) -> Result<()> {
-        let whole = target - model.root(&self.root)?.info.time;
-        let mut lengths = Lengths::new(self.cutting, whole, self.first_length.take());
+    pub(super) fn reach(&mut self, target: f64, run: &mut RunContext<'_>) -> Result<()> {
+        let whole = target - run.model.root(&self.root)?.info.time;
+        let mut lengths = Lengths::new(self.schedule.cutting, whole, self.first_length.take());
         let mut failed: Option<StepRecord> = None;
         loop {
-            let from = model.root(&self.root)?.info.time;
+            let from = run.model.root(&self.root)?.info.time;
             let (to, last) = lengths.next(from, target);
-            let part = model.root_mut(&self.root)?;
+            let part = run.model.root_mut(&self.root)?;
             let saved = self.strategy.can_retry().then(|| Saved::of(part, &mut self.system));
-            let record = self.attempt(to, model, report, monitor, driver)?;
+            let record = self.attempt(to, run)?;
             if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
-                let factor = self.cutting.factor;
-                monitor
+                let factor = self.schedule.cutting.factor;
+                run.monitor
                     .note(&format!("step {} to time {to}: {why}; made anew with 1/{factor} of the step", record.step));
-                saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);
+                saved.expect("just asked for").restore(run.model.root_mut(&self.root)?, &mut self.system);
                 continue;
             }
             if record.converged {
-                self.accept(model, report, monitor, driver)?;
+                self.accept(run)?;
                 lengths.grow();
                 failed = None;
                 if last {
@@ -50,29 +42,29 @@ impl Stage {
                 continue;
             }
             let failure = record.failure.clone().unwrap_or_default();
-            let can_cut = saved.is_some() && self.cutting.times > 0;
+            let can_cut = saved.is_some() && self.schedule.cutting.times > 0;
             let other_way = if can_cut { self.strategy.other_way(&record) } else { None };
             if let Some(how) = other_way {
-                monitor.note(&format!("step {} to time {to}: {failure}; retried {how}", record.step));
-                saved.expect("just asked for").restore(model.root_mut(&self.root)?, &mut self.system);
+                run.monitor.note(&format!("step {} to time {to}: {failure}; retried {how}", record.step));
+                saved.expect("just asked for").restore(run.model.root_mut(&self.root)?, &mut self.system);
                 continue;
             }
             let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
                 && !self.system.interactions.iter_mut().filter_map(|i| i.retry()).any(|own| own.has_alternative());
             let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
-                let tried = match self.cutting {
+                let tried = match self.schedule.cutting {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),
                     _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
                     Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
                 };
-                let kept = self.keep_last_iterate(model);
+                let kept = self.keep_last_iterate(run.model);
                 if record.singular {
                     return Err(Error::System(format!(
                         "step {} to time {to}: {failure}\n    {tried}{kept}",
                         record.step
                     )));
                 }
-                let written = match from > self.start_time {
+                let written = match from > self.schedule.start_time {
                     true => format!("results up to time {from} are written"),
                     false => "no step has converged".to_owned(),
                 };
@@ -82,9 +74,10 @@ impl Stage {
                     self.strategy.remedy()
                 )));
             };
-            let factor = self.cutting.factor;
-            monitor.note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
-            saved.restore(model.root_mut(&self.root)?, &mut self.system);
+            let factor = self.schedule.cutting.factor;
+            run.monitor
+                .note(&format!("step {} to time {to}: {failure}; retried with 1/{factor} of the step", record.step));
+            saved.restore(run.model.root_mut(&self.root)?, &mut self.system);
             failed = Some(record);
         }
     }
@@ -102,56 +95,43 @@ impl Stage {
         said
     }
 
-    fn attempt(
-        &mut self,
-        to: f64,
-        model: &mut Model,
-        report: &mut RunReport,
-        monitor: &mut dyn Monitor,
-        driver: &mut dyn Driver,
-    ) -> Result<StepRecord> {
-        let part = model.root_mut(&self.root)?;
+    fn attempt(&mut self, to: f64, run: &mut RunContext<'_>) -> Result<StepRecord> {
+        let part = run.model.root_mut(&self.root)?;
         part.info.step += 1;
         part.clone_time_step(to);
         let announced = (part.info.step - 1) % self.strategy.announce_every() == 0;
         if announced {
-            monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
+            run.monitor.begin_step(part.info.step, part.info.time, part.info.delta_time);
         }
-        let ranks = model.ranks.clone();
+        let ranks = run.model.ranks.clone();
         let processes = &mut self.processes;
-        driver.at(Point::BeginStep, &self.root, model, &self.system, &mut |model| {
+        run.driver.at(Point::BeginStep, &self.root, run.model, &self.system, &mut |model| {
             processes.iter_mut().try_for_each(|process| ranks.agree(process.begin_step(model)))
         })?;
         let start = Instant::now();
-        let record = self.strategy.solve_step(model.root_mut(&self.root)?, &mut self.system, monitor)?;
-        report.add_seconds("solve steps", start.elapsed().as_secs_f64());
-        self.pass_on_messages(&ranks, report, monitor);
+        let record = self.strategy.solve_step(run.model.root_mut(&self.root)?, &mut self.system, run.monitor)?;
+        run.report.add_seconds("solve steps", start.elapsed().as_secs_f64());
+        self.pass_on_messages(run);
         if announced || !record.converged {
-            monitor.end_step(&record);
+            run.monitor.end_step(&record);
         }
-        report.record(record.clone());
+        run.report.record(record.clone());
         Ok(record)
     }
 
-    fn accept(
-        &mut self,
-        model: &mut Model,
-        report: &mut RunReport,
-        monitor: &mut dyn Monitor,
-        driver: &mut dyn Driver,
-    ) -> Result<()> {
-        self.strategy.accept_step(model.root_mut(&self.root)?, &mut self.system)?;
-        monitor.phase("output");
+    fn accept(&mut self, run: &mut RunContext<'_>) -> Result<()> {
+        self.strategy.accept_step(run.model.root_mut(&self.root)?, &mut self.system)?;
+        run.monitor.phase("output");
         let start = Instant::now();
-        let ranks = model.ranks.clone();
+        let ranks = run.model.ranks.clone();
         let Self { processes, system, root, .. } = self;
-        driver.at(Point::EndStep, root, model, system, &mut |model| {
+        run.driver.at(Point::EndStep, root, run.model, system, &mut |model| {
             processes.iter_mut().try_for_each(|process| ranks.agree(process.end_step(model, system)))
         })?;
-        report.add_numbers(processes.iter().flat_map(|process| process.summary()));
-        driver.at(Point::Output, root, model, system, &mut |model| write_output(processes, model, system))?;
-        report.add_seconds("output", start.elapsed().as_secs_f64());
-        self.pass_on_messages(&ranks, report, monitor);
+        run.report.add_numbers(processes.iter().flat_map(|process| process.summary()));
+        run.driver.at(Point::Output, root, run.model, system, &mut |model| write_output(processes, model, system))?;
+        run.report.add_seconds("output", start.elapsed().as_secs_f64());
+        self.pass_on_messages(run);
         Ok(())
     }
 }

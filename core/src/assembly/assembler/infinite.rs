@@ -1,6 +1,7 @@
 //! Who gives forces that are no numbers: asked once the residual holds one.
 
-use super::{Assembler, blocks_of};
+use super::Assembler;
+use super::coupling_tangent::blocks_of;
 use crate::assembly::local::{each_of_runs, own_runs};
 use crate::assembly::system::System;
 use crate::entities::{EntityBlock, Want};

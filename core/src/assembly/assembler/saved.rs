@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Assembler, Stamps, bulk_pattern};
+use super::Assembler;
+use super::stamps::Stamps;
 use crate::Carrier;
 use crate::assembly::System;
 use crate::assembly::equations::Equations;
@@ -31,12 +32,13 @@ impl AssemblerState {
 impl Assembler {
     /// What it remembers between steps.
     pub fn state(&self) -> AssemblerState {
+        let (reduced_graph, tangent_key) = self.bulk.origin();
         AssemblerState {
-            equations: self.equations.roles_only(),
+            equations: self.equations.map().roles_only(),
             stamps: self.stamps,
-            reduced_graph: self.reduced_graph,
-            tangent_key: self.tangent_key,
-            redistribution: self.redistribution.clone(),
+            reduced_graph,
+            tangent_key,
+            redistribution: self.inertia.redistribution.clone(),
         }
     }
 
@@ -51,11 +53,11 @@ impl Assembler {
         }
         let groups = redistribution.groups(part);
         if !groups.is_empty() {
-            self.pattern = bulk_pattern(part, system, &groups);
+            self.bulk.lay_out(part, system, &groups);
         }
-        self.incomplete = true;
-        (self.equations, self.stamps, self.redistribution) = (equations, stamps, redistribution);
-        (self.reduced_graph, self.tangent_key) = (reduced_graph, tangent_key);
+        self.equations.resume(equations);
+        (self.stamps, self.inertia.redistribution) = (stamps, redistribution);
+        self.bulk.resume(reduced_graph, tangent_key);
         Ok(())
     }
 }

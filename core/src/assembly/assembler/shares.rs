@@ -1,6 +1,7 @@
 //! What a residual is made of: the forces of loads, and what interactions exchange.
 
-use super::{Assembler, blocks_of};
+use super::Assembler;
+use super::coupling_tangent::blocks_of;
 use crate::assembly::System;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::diagnostics::Result;
@@ -32,24 +33,23 @@ impl Assembler {
     /// An entity that cannot be computed.
     pub fn external_forces(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut out = part.ranks.agree(self.own_external_forces(part, system))?;
-        self.add_up(&mut out);
+        self.parallel.sum(&mut out);
         Ok(out)
     }
 
     fn own_external_forces(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let view = part.view();
         let mut out = vec![0.0; system.dofs.len()];
-        for (block, numbers) in system.elements.iter().zip(&self.element_numbers).filter(|of| of.0.has_external(&view))
-        {
-            add_residual(block.as_ref(), numbers, &view, Want::External, &mut out)?;
+        for (block, numbers) in self.bulk.elements(system).filter(|of| of.0.has_external(&view)) {
+            add_residual(block, numbers, &view, Want::External, &mut out)?;
         }
-        for (block, numbers) in system.conditions.iter().zip(&self.condition_numbers) {
+        for (block, numbers) in self.bulk.conditions(system) {
             match block.tangent() {
                 Tangent::Constant if block.has_external(&view) => {
-                    add_residual(block.as_ref(), numbers, &view, Want::External, &mut out)?;
+                    add_residual(block, numbers, &view, Want::External, &mut out)?;
                 }
                 Tangent::Constant => {}
-                _ => add_residual(block.as_ref(), numbers, &view, Want::Residual, &mut out)?,
+                _ => add_residual(block, numbers, &view, Want::Residual, &mut out)?,
             }
         }
         Ok(out)
@@ -62,11 +62,10 @@ impl Assembler {
     pub fn storage(&self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut out = vec![0.0; system.dofs.len()];
         let view = part.view();
-        let mut stores = system.elements.iter().zip(&self.element_numbers).filter(|(block, _)| block.has_storage());
-        let own = stores
-            .try_for_each(|(block, numbers)| add_residual(block.as_ref(), numbers, &view, Want::Storage, &mut out));
+        let mut stores = self.bulk.elements(system).filter(|(block, _)| block.has_storage());
+        let own = stores.try_for_each(|(block, numbers)| add_residual(block, numbers, &view, Want::Storage, &mut out));
         part.ranks.agree(own.map_err(Into::into))?;
-        self.add_up(&mut out);
+        self.parallel.sum(&mut out);
         Ok(out)
     }
 
@@ -76,7 +75,7 @@ impl Assembler {
     /// An entity that cannot be computed.
     pub fn exchanged(&self, part: &ModelPart, system: &System, push: impl FnMut(Push)) -> Result<Vec<f64>> {
         let mut out = part.ranks.agree(self.own_exchanged(part, system, push))?;
-        self.add_up(&mut out);
+        self.parallel.sum(&mut out);
         Ok(out)
     }
 

@@ -174,7 +174,7 @@ impl NewtonRaphson {
             monitor.note(&format!("linear solver: {why}"));
         }
         let condition =
-            if part.info.is(super::CONDITION_NUMBER) { self.condition_number(part, system, monitor) } else { None };
+            if part.info.solver.condition_number { self.condition_number(part, system, monitor) } else { None };
         monitor.phase("states and residual");
         // What is prescribed must be taken whole.
         let is_still = !has_motion(&part.ranks, &step.prescribed);

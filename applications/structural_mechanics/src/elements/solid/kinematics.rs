@@ -75,7 +75,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
 
     /// What the formulation reads of the motion of the nodes.
     pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
-        let (material, as_kratos) = (self.material(entity), view.info.is(BANDS_AS_KRATOS));
+        let (material, as_kratos) = (self.material(entity), view.info.has(BANDS_AS_KRATOS));
         let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
         let band = (width, as_kratos);
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);

@@ -3,20 +3,12 @@
 use rustc_hash::FxHashMap;
 use zelus_linear_algebra::{Carrier, State, Unknowns};
 
+use super::rank_layout::RankLayout;
 use super::saved_run::{SavedStage, States, other_deck};
 use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::entities::regroup;
 use crate::model::ModelPart;
-
-/// The nodes and unknowns of a rank.
-pub(super) struct OfRank {
-    /// Places of its nodes in the whole mesh.
-    places: Vec<u32>,
-    /// Which of them it owns.
-    owned: Vec<bool>,
-    unknowns: Unknowns,
-}
 
 /// Whose state is shown.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -34,8 +26,8 @@ type Key = (u32, u32);
 
 /// See [`Carrier`].
 pub(super) struct Regrouping {
-    were: Vec<OfRank>,
-    comes: OfRank,
+    were: Vec<RankLayout>,
+    comes: RankLayout,
     /// Node of the rank to come by place.
     nodes: FxHashMap<u32, u32>,
     turn: Turn,
@@ -54,21 +46,10 @@ pub(super) struct Regrouping {
     fault: Option<String>,
 }
 
-impl OfRank {
-    /// Those of a rank that has this of the part, or all of it.
-    pub(super) fn new(part: &ModelPart, rank: usize, unknowns: Unknowns) -> Self {
-        let (places, owned) = match &part.share {
-            Some(share) => (share.places.clone(), share.owners.iter().map(|&owner| owner as usize == rank).collect()),
-            None => ((0..part.nodes.len() as u32).collect(), vec![true; part.nodes.len()]),
-        };
-        Self { places, owned, unknowns }
-    }
-}
-
 impl Regrouping {
     /// From the ranks that were to the present one, which has this of the part.
-    pub(super) fn new(were: Vec<OfRank>, part: &ModelPart, system: &System) -> Self {
-        let comes = OfRank::new(part, part.ranks.rank(), system.dofs.layout());
+    pub(super) fn new(were: Vec<RankLayout>, part: &ModelPart, system: &System) -> Self {
+        let comes = RankLayout::new(part, part.ranks.rank(), system.dofs.layout());
         Self {
             were,
             nodes: comes.places.iter().enumerate().map(|(node, &place)| (place, node as u32)).collect(),
@@ -184,7 +165,7 @@ impl Regrouping {
         match self.turn {
             Turn::Begins => {}
             Turn::Was(rank) => {
-                let OfRank { places, owned, .. } = &self.were[rank];
+                let RankLayout { places, owned, .. } = &self.were[rank];
                 let (places, owned): (_, FxHashMap<u32, bool>) =
                     (places.clone(), places.iter().copied().zip(owned.iter().copied()).collect());
                 if self.shown.len() <= self.at {

@@ -1,0 +1,31 @@
+//! Last phase of a stage's preparation: the stage as built is checked, before its first step.
+
+use super::super::bodies::tell_what_holds;
+use super::super::solver::TimeScheme;
+use super::super::soundness::{prescriptions, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins};
+use super::built::BuiltStage;
+use super::problems::problems_of_all;
+use crate::diagnostics::{Diagnostic, Result};
+use crate::model::Model;
+
+/// Notes and warnings of the stage as built, of all ranks; collective.
+///
+/// # Errors
+/// Contradictions of processes, loads and supports, and other problems that they find, gathered.
+pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>> {
+    let BuiltStage { root, schedule, solver, system, processes, .. } = built;
+    let mut problems = built.warnings.clone();
+    for process in processes {
+        let checked = process.check(model, system, &mut problems);
+        problems.absorb(checked);
+    }
+    let part = model.root(root)?;
+    let middle = 0.5 * (schedule.start_time + schedule.end_time);
+    warn_of_twins(part, &mut problems);
+    warn_of_loads_given_twice(part, processes, &mut problems);
+    warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
+    if matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static()) && part.info.step == 0 {
+        tell_what_holds(part, system, &prescriptions(part, processes, middle), &mut problems);
+    }
+    problems_of_all(&model.ranks, problems)?.finish()
+}

@@ -1,0 +1,22 @@
+//! Registered names of Newton's iteration: with whole increments, and with a line search.
+
+use super::line_search::{DEFAULTS, LineSearch};
+use super::strategy_entry::StrategyEntry;
+use crate::register;
+
+register! { StrategyEntry "newton_raphson",
+    about: "Newton's iteration with whole increments",
+    build: |request| Ok(Box::new(request.newton()?)),
+}
+
+register! { StrategyEntry "line_search",
+    about: "Newton's iteration that takes the part of each increment where its work on the residual is small",
+    defaults: DEFAULTS,
+    build: |mut request| {
+        // One linear solve takes its increment whole.
+        if !request.iteration.linear {
+            request.iteration.line_search = Some(LineSearch::new(request.advanced)?);
+        }
+        Ok(Box::new(request.newton()?))
+    },
+}

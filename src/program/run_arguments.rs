@@ -1,0 +1,44 @@
+//! The command line of `zelus run`.
+
+use std::path::PathBuf;
+
+/// The command line of `zelus run`.
+#[derive(Debug, clap::Args)]
+pub(super) struct RunArguments {
+    /// The deck, e.g. ProjectParameters.json.
+    pub file: PathBuf,
+    /// Threads; all of the machine when not given. Results do not depend on it.
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Write the report of the run (sizes, iterations, contact state, timings, warnings) to this JSON file.
+    #[arg(long, conflicts_with = "sweep")]
+    pub report: Option<PathBuf>,
+    /// Take the defaults of this program where the deck names nothing, e.g. kratos.
+    #[arg(long, value_name = "PROGRAM")]
+    pub like: Option<String>,
+    /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Write results below this folder, not beside the deck; it is made where it is not there.
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// Run the deck once for each row of this table (CSV): its first row names keys as --set does, each other gives their values.
+    #[arg(long, value_name = "TABLE")]
+    pub sweep: Option<PathBuf>,
+    /// Rows of the sweep that run at a time, which share the cores; as many as there are cores when not given.
+    #[arg(short, long, value_name = "N", requires = "sweep")]
+    pub jobs: Option<usize>,
+    /// Go on from the latest saved run of the deck, with the bits of a run that was not stopped; from the start where
+    /// none was saved. Of a sweep, make the rows that are not done.
+    #[arg(long)]
+    pub resume: bool,
+    /// Say nothing but warnings and errors.
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Also say who solved how, which nodes changed their state, and where the time went.
+    #[arg(short, long, conflicts_with = "sweep")]
+    pub verbose: bool,
+    /// Write all that --verbose says, with the seconds since the start, to this file as well.
+    #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
+    pub log: Option<PathBuf>,
+}
