@@ -3,19 +3,17 @@
 
 use std::sync::Arc;
 
-use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
-use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles,
 };
 use zelus::contact_structural_mechanics::law::{
-    Augmentation, Nitsche, NitscheVariant, NormalVariation, StepParameters,
+    Augmentation, COULOMB, Margin, Nitsche, NitscheVariant, NormalVariation, SlipRule, StepParameters,
 };
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Pair, PairKey, PairRequest, condition_name, find_family, group_by_surroundings,
 };
-use zelus::contact_structural_mechanics::slave_states::{SlaveStates, SlaveTable};
+use zelus::contact_structural_mechanics::slave_nodes::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::{LocalSystems, Want, require_kind};

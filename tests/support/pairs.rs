@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::flags::SLIP;
-use zelus::contact_structural_mechanics::friction_law::COULOMB;
-use zelus::contact_structural_mechanics::law::{Augmentation, Nitsche, NormalVariation, StepParameters};
+use zelus::contact_structural_mechanics::law::{
+    Augmentation, COULOMB, Margin, Nitsche, NormalVariation, SlipRule, StepParameters,
+};
 use zelus::contact_structural_mechanics::mortar::{
     IntegrationOrder, MOST_NODES, OperatorThreshold, SegmentationSettings,
 };
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, condition_name,
 };
-use zelus::contact_structural_mechanics::slave_states::{SlaveStates, SlaveTable};
+use zelus::contact_structural_mechanics::slave_nodes::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };

@@ -1,9 +1,9 @@
 //! The walk over families of ties: their block for every two shapes, with operators as a pair might have them.
 
 use zelus::contact_structural_mechanics::pairs::{
-    FacetOperators, FacetPair, Multiplier, PairKey, TyingBlock, TyingFamily, TyingFamilyEntry, TyingRequest,
-    condition_name,
+    FacetOperators, FacetPair, Multiplier, PairKey, TyingFamily, TyingFamilyEntry, condition_name,
 };
+use zelus::contact_structural_mechanics::tying::{TyingBlock, TyingRequest};
 use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::entities::{EntityBlock, Want, find_kind};
 use zelus_core::geometry::Shape;

@@ -13,28 +13,20 @@ use zelus_core::model::{Carriers, ModelPart};
 use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
-use super::activation::Start;
-use super::bearable_penalty::BearablePenalty;
-use super::contact_settings::ContactSettings;
 use super::contact_state::{ContactState, RememberedContact};
-use super::decision::slip;
-use super::friction;
-use super::impact::near_nodes;
-use super::meetings::Meetings;
 use super::outer_loops::OuterLoops;
-use super::pair_states::{heat, joins, pair_states};
-use super::points;
-use super::reach::Reach;
-use super::results::{write_forces, write_states};
-use super::set_stage::SetStage;
-use super::setup::Setup;
-use super::step_parameters::StepParameters;
+use crate::active_set::{SetStage, Start, forced_points};
+use crate::adaptation::{BearablePenalty, Growth};
 use crate::flags::CONTACT;
-use crate::interface::{Bodies, check_nodes, find_nodal_h};
+use crate::friction;
+use crate::friction::slip;
+use crate::interface::{Bodies, SlaveIndex, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
-use crate::node_state::SlaveIndex;
-use crate::penalty_adaptation::Growth;
-use crate::slave_state::SlaveState;
+use crate::law::StepParameters;
+use crate::results::{heat, joins, pair_states, write_forces, write_states};
+use crate::safeguards::{FreeBodies, Meetings, near_nodes};
+use crate::settings::{ContactSettings, Setup};
+use crate::slave_nodes::SlaveState;
 use crate::solver::{COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, KEEP_MASS};
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
@@ -54,7 +46,7 @@ pub struct ContactInteraction {
     growth: Option<Growth>,
     bearable: BearablePenalty,
     /// Nodes of interfaces without contact that this step has activated because a body was free to move.
-    reach: Reach,
+    free_bodies: FreeBodies,
     warned_of_friction: bool,
     /// Nodes that contact is near to.
     near_nodes: Vec<u32>,
@@ -97,7 +89,7 @@ impl ContactInteraction {
             acting: true,
             growth: None,
             bearable: BearablePenalty::default(),
-            reach: Reach::default(),
+            free_bodies: FreeBodies::default(),
             warned_of_friction: false,
             near_nodes: Vec::new(),
             shape: 0,
@@ -170,7 +162,7 @@ impl Interaction for ContactInteraction {
         }
         self.contact.begin_step(part);
         self.set.begin_step();
-        self.reach = Reach::default();
+        self.free_bodies = FreeBodies::default();
         self.loops.begin_step(part, &mut self.contact);
         self.contact.states.read_friction(&part.nodes, self.contact.setup.settings.friction.law);
         if self.acting {
@@ -372,7 +364,7 @@ impl ActiveSet for ContactInteraction {
             self.contact.pairing.refresh_normals(part, true);
         }
         if self.contact.setup.by_points() {
-            points::release(&mut self.contact.states);
+            forced_points::release(&mut self.contact.states);
         }
         let (adaptation, explicit) =
             (self.contact.setup.settings.adaptation, self.contact.setup.settings.explicit.is_some());
@@ -420,13 +412,13 @@ impl ActiveSet for ContactInteraction {
         if !self.acting || self.contact.setup.settings.explicit.is_some() {
             return false;
         }
-        let mut any = self.contact.setup.by_points() && points::hold_active(&mut self.contact.states);
+        let mut any = self.contact.setup.by_points() && forced_points::hold_active(&mut self.contact.states);
         if !any {
             let slaves = self.contact.pairing.slaves_by_interface();
-            let near = self.reach.next(&part.nodes, &self.contact.states, &slaves);
+            let near = self.free_bodies.next(&part.nodes, &self.contact.states, &slaves);
             self.contact.activate(part, Start::Touching(&near));
             if self.contact.setup.by_points() {
-                points::hold(&mut self.contact.states, &near);
+                forced_points::hold(&mut self.contact.states, &near);
             }
             self.set.find_tangents(part, &mut self.contact.states, &self.contact.setup);
             any = !near.is_empty();

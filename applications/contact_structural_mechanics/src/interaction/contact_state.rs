@@ -5,29 +5,20 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 use zelus_core::{Carrier, Result};
 
-use super::activation::{self, Start};
-use super::contact_settings::ContactSettings;
-use super::edges::take_normals_of_masters;
-use super::friction;
-use super::holding::{FacetsOfPair, Holding};
-use super::integration::integrate;
-use super::multiplier_columns;
-use super::owners::{feature_angle, owners_name};
-use super::pair_states::settle_all;
-use super::pairing::{Pairing, PairingState};
-use super::points;
-use super::results::write_states;
-use super::set_stage::SetStage;
-use super::setup::Setup;
+use crate::active_set::activation::{self, Start};
+use crate::active_set::{FacetsOfPair, Holding, SetStage, forced_points};
 use crate::flags::{MASTER, SLAVE};
-use crate::interface::{NormalPatches, Roles, add_contact_part, interfaces, warnings_of_pairs};
-use crate::node_state::SlaveIndex;
+use crate::friction;
+use crate::interface::{NormalPatches, Roles, SlaveIndex, add_contact_part, interfaces, warnings_of_pairs};
+use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
+use crate::results::write_states;
+use crate::safeguards::settle_all;
 use crate::search::{GapCheck, assign_roles};
-use crate::slave_states::SlaveStates;
-use crate::slave_status::write_status;
-use crate::solver::AVERAGED_EDGES;
+use crate::settings::{ContactSettings, Setup};
+use crate::slave_nodes::{SlaveStates, multiplier_columns, owners_name, write_status};
+use crate::solver::{AVERAGED_EDGES, feature_angle};
 
 /// Contact at a moment.
 pub(super) struct ContactState {
@@ -165,7 +156,7 @@ impl ContactState {
         let RememberedContact { pairing, states, holding, resolution, steps_since_search } = state;
         holding.check(part.nodes.len())?;
         (self.holding, self.setup.resolution, self.steps_since_search) = (holding, resolution, steps_since_search);
-        self.pairing.resume(&self.holding, &self.setup, pairing)?;
+        self.pairing.resume(self.holding.planes(), &self.setup, pairing)?;
         self.states.resume(states)?;
         self.pairing.set_states(&self.states);
         Ok(())
@@ -198,7 +189,7 @@ impl ContactState {
         self.states.set_slaves(self.pairing.slaves());
         let (all, multiplier) = (self.states.all(), self.setup.settings.family.multiplier);
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, all);
-        self.pairing.find_normal_patches(&self.holding);
+        self.pairing.find_normal_patches(self.holding.planes());
         write_nodal_normals(part, &self.pairing, &self.holding);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
     }
@@ -274,7 +265,7 @@ impl ContactState {
         self.clear_inactive(part);
         if self.setup.settings.mind_supports {
             self.holding.begin_step(part, &self.pairing.interfaces);
-            self.pairing.find_normal_patches(&self.holding);
+            self.pairing.find_normal_patches(self.holding.planes());
         }
         self.find_normals(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
@@ -297,7 +288,11 @@ impl ContactState {
         let rule = self.setup.parameters.slip_rule;
         activation::start(&part.nodes, &mut self.states, start, rule);
         if self.setup.by_points() {
-            points::hold_open_interfaces(&mut self.states, &self.pairing.slaves_by_interface(), self.setup.resolution);
+            forced_points::hold_open_interfaces(
+                &mut self.states,
+                &self.pairing.slaves_by_interface(),
+                self.setup.resolution,
+            );
         }
         friction::start_in_stick(part.info.step, &mut self.states, rule, &settings.friction);
         self.pairing.refresh_normals(part, self.setup.updates_normals());

@@ -6,19 +6,12 @@ use zelus_core::model::ModelPart;
 use zelus_core::{Carrier, Result};
 
 use super::contact_state::ContactState;
-use super::friction_ramp::FrictionRamp;
-use super::impact::coarse_impact;
-use super::penalty_ramp::PenaltyRamp;
-use super::piercing::pierced;
-use super::set_stage::SetStage;
-use super::step_search::StepSearch;
-use super::unseen::Unseen;
-use super::uzawa::Uzawa;
-use super::work::ContactWork;
+use crate::active_set::{Rules, SetStage};
+use crate::adaptation::{FrictionRamp, PenaltyRamp, Uzawa};
 use crate::pairs::Multiplier;
-use crate::slave_states::SlaveStates;
+use crate::safeguards::{ContactWork, StepSearch, Unseen, coarse_impact, pierced, too_deep};
+use crate::slave_nodes::SlaveStates;
 use crate::solver::{ENSURE_CONTACT, LARGEST_PENETRATION};
-use crate::variables::NODAL_H;
 
 /// The loops of a step.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -121,7 +114,7 @@ impl OuterLoops {
         }
         // Points in the master press in every state that has converged.
         if !contact.setup.by_points()
-            && let Some(why) = contact.setup.rules().passed_through(part, &contact.states)
+            && let Some(why) = Rules::of(&contact.setup).passed_through(part, &contact.states)
         {
             return Ok(Outer::Failed(why));
         }
@@ -176,23 +169,4 @@ impl OuterLoops {
     pub(super) fn has_alternative(&self, contact: &ContactState) -> bool {
         self.unseen.depends_on_step || contact.setup.ramps_friction() && self.friction_ramp.comes_next()
     }
-}
-
-/// Why a state cannot be accepted in which a node in contact is too deep in the master; depths up to `least` are round-off.
-fn too_deep(part: &ModelPart, states: &SlaveStates, least: f64) -> Option<String> {
-    let most = Some(part.info.value_or(LARGEST_PENETRATION, 0.0)).filter(|most| *most > 0.0)?;
-    let sizes = part.nodes.values.values(&NODAL_H, 0);
-    // A node without a mesh size has no share that could be judged.
-    let share = |node: u32, depth: f64| if sizes[node as usize] > 0.0 { depth / sizes[node as usize] } else { 0.0 };
-    let depths = states.iter().filter(|(_, state)| state.active);
-    let depths = depths.map(|(slave, state)| (states.mesh_node(slave), -state.gap().unwrap_or(0.0)));
-    let deep: Vec<(u32, f64)> = depths.filter(|&(node, depth)| depth > least && share(node, depth) > most).collect();
-    let (node, depth) = deep.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
-    let [x, y, z] = part.nodes.initial[node as usize];
-    Some(format!(
-        "{} slave nodes in contact are inside the master by more than {most} of their mesh size, node {} at ({x}, {y}, {z}) by {depth:.3e} ({:.2} of it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
-        deep.len(),
-        part.nodes.ids[node as usize],
-        share(node, depth)
-    ))
 }

@@ -10,22 +10,18 @@ use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::vector3::add;
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
-use super::decision::Rules;
-use super::sliding::find_tangents;
-use crate::active_set::{Margin, SlipRule};
+use crate::active_set::{Rules, find_tangents};
 use crate::flags::SLIP;
-use crate::friction_law::COULOMB;
-use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles};
-use crate::law::{Augmentation, Nitsche, NormalVariation, StepParameters};
+use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex};
+use crate::law::{Augmentation, COULOMB, Margin, Nitsche, NormalVariation, SlipRule, StepParameters};
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
-use crate::node_state::SlaveIndex;
 use crate::pairs::{
     ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Present, condition_name, find_family, group_by_shapes,
     group_by_surroundings,
 };
 use crate::resolution::Resolution;
-use crate::slave_states::{SlaveStates, SlaveTable};
+use crate::slave_nodes::{SlaveStates, SlaveTable};
 use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA};
 
 /// Facets of two sides that overlap in several pairs a node, and all that their forces depend on.

@@ -8,6 +8,7 @@ mod nodal_h;
 mod patches;
 mod normals;
 mod parameters;
+mod slave_index;
 mod supports;
 
 pub use bodies::{Bodies, Tractions};
@@ -20,4 +21,5 @@ pub use nodal_h::find_nodal_h;
 pub use normals::{Corner, NodalNormals, NormalPatches, nodal_normals};
 pub use parameters::{AlmParameters, alm_parameters};
 pub use patches::{FEATURE_ANGLE, Patches};
+pub use slave_index::SlaveIndex;
 pub use supports::{Fixed, fixed_components, symmetry_planes};

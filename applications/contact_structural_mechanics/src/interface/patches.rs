@@ -18,7 +18,7 @@ use zelus_core::vector3::{dot, scale, sub};
 
 use super::facet::{Facet, Roles};
 use super::facets::Interface;
-use crate::node_state::SlaveIndex;
+use super::slave_index::SlaveIndex;
 
 /// Angle between the normals of two facets, in degrees, from which on their common edge is one of the body. An octagon that
 /// stands for a circle turns by 45° a facet and is one surface, a cube turns by 90°.

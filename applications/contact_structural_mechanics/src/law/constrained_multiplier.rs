@@ -8,8 +8,8 @@
 //! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
 //!   vectors, and e is at right angles to m and n.
 
+use super::node_state::{Held, NodeState};
 use super::{Multiplier, SlaveNode};
-use crate::node_state::{Held, NodeState};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, normalised, scale, sub};
 

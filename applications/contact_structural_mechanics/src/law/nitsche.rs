@@ -18,7 +18,7 @@
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
 
-use crate::friction_law::Bound;
+use super::friction_law::Bound;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
 use crate::mortar::{

@@ -1,10 +1,9 @@
 //! What every pair of a run shares.
 
-use crate::active_set::SlipRule;
-use crate::friction_law::FrictionLaw;
+use super::friction_law::FrictionLaw;
+use super::rules::SlipRule;
 use crate::law::{Augmentation, Nitsche};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
-use crate::slave_state::SlaveState;
 
 /// When normals follow the iteration, and whether the tangent knows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
@@ -84,16 +83,5 @@ impl StepParameters {
             Augmentation::Node => self.stiffness,
             Augmentation::Pair => self.stiffness.max(penalty * area),
         }
-    }
-
-    /// Weighted gap that the pressure of a node counts. Where a penalty counts weighted gaps each pair acts by its own, and
-    /// their mean is what the node bears.
-    pub fn counted_gap(&self, state: &SlaveState) -> f64 {
-        if self.weighted_penalty { state.mean_weighted_gap } else { state.weighted_gap }
-    }
-
-    /// k² A/c: the weight of the equation of a node's multiplier where that states a traction (force times area).
-    pub fn multiplier_weight(&self, state: &SlaveState) -> f64 {
-        self.scale_factor.powi(2) * state.area / self.nodal_stiffness(state.penalty, state.area)
     }
 }

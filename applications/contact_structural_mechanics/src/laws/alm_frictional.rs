@@ -21,7 +21,7 @@
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, scale, sub, value};
 
-use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
+use crate::law::rules::{self, Decision, SlaveNumbers, SlipRule};
 use crate::law::{
     Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState, SlaveNode, SlipMeasure, StepParameters,
     Turning,
@@ -104,7 +104,7 @@ impl NodeLaw for AlmFrictional {
     }
 
     fn decide(node: &SlaveNumbers, rule: SlipRule) -> Decision {
-        active_set::alm_frictional(node, rule)
+        rules::alm_frictional(node, rule)
     }
 
     fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T> {

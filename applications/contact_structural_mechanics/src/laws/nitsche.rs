@@ -1,7 +1,6 @@
 //! Contact by Nitsche's method, without friction and with it; its forces are stated in [`crate::law::nitsche`].
 
-use crate::active_set;
-use crate::law::Multiplier;
+use crate::law::{Multiplier, rules};
 use crate::pairs::{Family, Friction, nitsche_block};
 use crate::register_contact_family;
 
@@ -13,7 +12,7 @@ register_contact_family! { "NitscheContactFrictionless",
         "NitscheFrictionlessMortarContactCondition",
         &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
         Multiplier::Body,
-        |node, _| active_set::of_points(node),
+        |node, _| rules::of_points(node),
         |request| nitsche_block(request, false),
     ),
 }
@@ -27,7 +26,7 @@ register_contact_family! { "NitscheContactFrictional",
             "NitscheFrictionalMortarContactCondition",
             &[("NORMAL", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_SLIP", 3), ("CARRIED_TRACTION", 3)],
             Multiplier::Body,
-            |node, _| active_set::of_points(node),
+            |node, _| rules::of_points(node),
             |request| nitsche_block(request, true),
         )
     },

@@ -10,7 +10,7 @@ use zelus_core::vector3::{add, scale};
 
 use super::alm_frictional::AlmFrictional;
 use super::penalty_by_node::PenaltyByNode;
-use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
+use crate::law::rules::{self, Decision, SlaveNumbers, SlipRule};
 use crate::law::{Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState, SlaveNode, SlipMeasure, StepParameters};
 use crate::pairs::{ByNode, Family, Friction};
 use crate::register_contact_family;
@@ -56,7 +56,7 @@ impl NodeLaw for PenaltyFrictional {
     }
 
     fn decide(node: &SlaveNumbers, rule: SlipRule) -> Decision {
-        active_set::penalty_frictional(node, rule)
+        rules::penalty_frictional(node, rule)
     }
 
     fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T> {
@@ -96,7 +96,7 @@ static IMPLICIT: Family = Family {
 /// By node, in explicit steps.
 static EXPLICIT: Family = Family {
     friction: Friction::Coulomb,
-    decide: active_set::penalty_frictional,
+    decide: rules::penalty_frictional,
     ..Family::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables)
 };
 

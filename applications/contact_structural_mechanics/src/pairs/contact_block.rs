@@ -5,8 +5,8 @@ use std::sync::Arc;
 use zelus_core::entities::{EntityBlock, StepView};
 
 use super::pair::{Integral, Pair};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::interface::SlaveIndex;
+use crate::slave_nodes::SlaveStates;
 
 /// The present state, as pairs are integrated in it.
 #[derive(Clone, Copy)]

@@ -13,11 +13,9 @@ use zelus_core::registry;
 use super::contact_block::ContactBlock;
 use super::pair::Pair;
 use super::pair_block::PairBlock;
-use crate::active_set::{Decision, SlaveNumbers, SlipRule};
-use crate::interface::{Bodies, NormalPatches};
-use crate::law::{ContactLaw, Multiplier, NodeLaw, StepParameters};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::{Columns, SlaveStates};
+use crate::interface::{Bodies, NormalPatches, SlaveIndex};
+use crate::law::{ContactLaw, Decision, Multiplier, NodeLaw, SlaveNumbers, SlipRule, StepParameters};
+use crate::slave_nodes::{Columns, SlaveStates};
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
 
 /// What a family does about friction.

@@ -12,7 +12,6 @@ mod nitsche_block;
 mod pair;
 mod pair_block;
 mod pairs_of_shapes;
-mod tying_block;
 
 pub use crate::law::Multiplier;
 pub use crate::mortar::condition_name;
@@ -28,7 +27,6 @@ pub use kinematics::{PairHistory, PairKinematics};
 pub use local_system::PairSystem;
 pub use nitsche_block::nitsche_block;
 pub use pair::{Integral, Pair, PairKey, Previous, check_pairs};
-pub use tying_block::{TyingBlock, TyingRequest};
 
 #[cfg(test)]
 mod tests;

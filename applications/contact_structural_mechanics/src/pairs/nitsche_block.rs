@@ -13,11 +13,10 @@ use super::contact_block::{ContactBlock, Present};
 use super::family::PairRequest;
 use super::pair::{Integral, Pair};
 use super::pairs_of_shapes::PairsOfShapes;
-use crate::interface::{Bodies, Tractions};
+use crate::interface::{Bodies, SlaveIndex, Tractions};
 use crate::law::{Multiplier, Nitsche, NodeOfPoints, PointForces};
 use crate::mortar::{Active, LANES, PairGeometry, rotated_slip, variables_from};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::slave_nodes::SlaveStates;
 
 /// The block of Nitsche's method, with friction or without.
 pub fn nitsche_block(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {

@@ -13,10 +13,10 @@ use super::kinematics::PairHistory;
 use super::local_system::{PairSystem, multipliers_of};
 use super::pair::{Integral, Pair};
 use super::pairs_of_shapes::PairsOfShapes;
+use crate::interface::SlaveIndex;
 use crate::kratos::FirstIterateTangent;
 use crate::law::{ContactLaw, SlipMeasure};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::slave_nodes::SlaveStates;
 
 /// Pairs of two shapes under one law.
 pub(super) struct PairBlock {

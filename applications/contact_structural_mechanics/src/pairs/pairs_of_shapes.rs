@@ -16,11 +16,10 @@ use super::grouping::PAIRS;
 use super::kinematics::PairHistory;
 use super::known_operators::KnownOperators;
 use super::pair::{Integral, Pair, Previous};
-use crate::interface::{Corner, NormalPatches};
+use crate::interface::{Corner, NormalPatches, SlaveIndex};
 use crate::law::{Augmentation, Multiplier, NormalVariation, SlaveNode, StepParameters};
 use crate::mortar::{Active, Operators, Overlap, PairGeometry, choices_of, operators, weighted_gap};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::slave_nodes::SlaveStates;
 
 /// Pairs of two shapes.
 ///

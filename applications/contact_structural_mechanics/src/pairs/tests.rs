@@ -1,9 +1,8 @@
 //! Tangents against central differences, balance of forces, and the algebra of single families.
 
 use super::*;
-use crate::friction_law::Bound;
 use crate::kratos::FirstIterateTangent;
-use crate::law::{Augmentation, ContactLaw, Held, MeshTying, NodeState, SlaveNode, Turning};
+use crate::law::{Augmentation, Bound, ContactLaw, Held, MeshTying, NodeState, SlaveNode, Turning};
 use crate::laws::alm_frictional::AlmFrictional;
 use crate::laws::alm_frictionless::AlmFrictionless;
 use crate::laws::alm_frictionless_components::AlmFrictionlessComponents;

@@ -15,17 +15,16 @@ use zelus_core::{Error, Result};
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search, segmentation, without_computing_part};
-use crate::active_set::Margin;
+use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaSettings};
 use crate::compatibility::{Refusal, Use, refusal};
-use crate::interaction::{
-    AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, UzawaSettings,
-};
+use crate::friction::FrictionSettings;
+use crate::interaction::ContactInteraction;
 use crate::interface::{AlmParameters, NodalNormals, check_parts};
-use crate::law::{Augmentation, Nitsche, NitscheVariant, NormalVariation};
+use crate::law::{Augmentation, Margin, Nitsche, NitscheVariant, NormalVariation};
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Family, find_family};
-use crate::penalty_adaptation::PenaltyRule;
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use crate::settings::ContactSettings;
 
 #[derive(Debug, Deserialize)]
 struct Search {

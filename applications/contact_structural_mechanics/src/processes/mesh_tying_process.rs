@@ -11,9 +11,9 @@ use zelus_core::register;
 
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
-use crate::interaction::{TyingInteraction, TyingSettings};
 use crate::pairs::find_tying_family;
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use crate::tying::{TyingInteraction, TyingSettings};
 
 #[derive(Debug, Deserialize)]
 struct Search {

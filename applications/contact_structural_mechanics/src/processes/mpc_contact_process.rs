@@ -11,8 +11,8 @@ use zelus_core::register;
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
-use crate::interaction::{FrictionSettings, MpcInteraction, MpcSettings, Weights};
-use crate::mpc_kind::{MpcKind, mpc_contact_type};
+use crate::friction::FrictionSettings;
+use crate::mpc::{MpcInteraction, MpcKind, MpcSettings, Weights, mpc_contact_type};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 
 #[derive(Debug, Deserialize)]

@@ -1,11 +1,13 @@
 //! `contact_settings` of the solver: the family decides which variables the nodes carry.
 
 use zelus_core::analysis::{Cutting, ExtensionDefinition, SolverExtensionEntry};
+use zelus_core::model::ModelPart;
 use zelus_core::register;
 use zelus_core::strategies::{
     CONDENSE_MULTIPLIERS, CONDITION_NUMBER, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,
 };
 
+use crate::interface::FEATURE_ANGLE;
 use crate::pairs::variables_of;
 
 /// No node in contact is an error.
@@ -30,6 +32,11 @@ pub const ADJUST_INITIAL: &str = "ADJUST_INITIAL";
 pub const ADJUST_TOLERANCE: &str = "ADJUST_TOLERANCE";
 /// Factor of explicit steps while there is contact.
 pub const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
+
+/// Feature angle of a model part, in degrees; `None` where all facets at a node share its normal, as in Kratos.
+pub(crate) fn feature_angle(part: &ModelPart) -> Option<f64> {
+    (!part.info.is(AVERAGED_EDGES)).then(|| part.info.value_or(CONTACT_FEATURE_ANGLE, FEATURE_ANGLE))
+}
 
 register! { SolverExtensionEntry "contact_settings",
     about: "what the solver needs to know of contact",
