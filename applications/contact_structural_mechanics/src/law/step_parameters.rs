@@ -1,8 +1,9 @@
 //! What every pair of a run shares.
 
+use super::augmentation::Augmentation;
 use super::friction_law::FrictionLaw;
+use super::nitsche::Nitsche;
 use super::rules::SlipRule;
-use crate::law::{Augmentation, Nitsche};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 
 /// When normals follow the iteration, and whether the tangent knows it.

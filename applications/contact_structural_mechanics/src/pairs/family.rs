@@ -1,21 +1,17 @@
 //! Families of contact conditions: what a `mortar_type` brings along.
 
-use std::sync::Arc;
-
 use zelus_core::Result;
 use zelus_core::analysis::NodalVariable;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
-use zelus_core::geometry::Shape;
-use zelus_core::model::{EntityKind, Variable};
+use zelus_core::model::Variable;
 use zelus_core::registered_kind;
 use zelus_core::registry;
 
 use super::contact_block::ContactBlock;
-use super::pair::Pair;
 use super::pair_block::PairBlock;
-use crate::interface::{Bodies, NormalPatches, SlaveIndex};
-use crate::law::{ContactLaw, Decision, Multiplier, NodeLaw, SlaveNumbers, SlipRule, StepParameters};
-use crate::slave_nodes::{Columns, SlaveStates};
+use super::pair_request::PairRequest;
+use crate::law::{ContactLaw, Decision, Multiplier, NodeLaw, SlaveNumbers, SlipRule};
+use crate::slave_nodes::Columns;
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
 
 /// What a family does about friction.
@@ -27,34 +23,6 @@ pub enum Friction {
     Coulomb,
     /// Coulomb's law where contact always slides.
     PureSlip,
-}
-
-/// Pairs of two shapes of facets, to make a block of.
-pub struct PairRequest {
-    /// Shape of the slave facets.
-    pub slave: Shape,
-    /// Shape of the master facets.
-    pub master: Shape,
-    /// The registered condition of this shape.
-    pub entry: &'static EntityKind,
-    /// The pairs.
-    pub pairs: Vec<Pair>,
-    /// Node indices of each pair: those around it, master nodes, slave nodes.
-    pub nodes: Vec<u32>,
-    /// Slave nodes of each pair, in the order of its slave's nodes.
-    pub slaves: Vec<SlaveIndex>,
-    /// Their owners of unknowns; none for laws without multipliers.
-    pub owners: Vec<u32>,
-    /// Number of nodes around each pair, which turn the normals of its slave nodes with it or are of the slave's element.
-    pub around: usize,
-    /// The elements behind slaves, where the family takes tractions from them.
-    pub bodies: Arc<Bodies>,
-    /// The facets around slave nodes.
-    pub patches: Arc<NormalPatches>,
-    /// Settings and numbers of the step.
-    pub parameters: Arc<StepParameters>,
-    /// The states of slave nodes.
-    pub states: Arc<SlaveStates>,
 }
 
 /// A penalty method by node: the traction of a node is the penalty times its gap and slip over all its pairs.

@@ -10,8 +10,8 @@ use zelus_core::scalar::Real;
 use zelus_core::vector3::dot;
 
 use super::contact_block::{ContactBlock, Present};
-use super::family::PairRequest;
 use super::pair::{Integral, Pair};
+use super::pair_request::PairRequest;
 use super::pairs_of_shapes::PairsOfShapes;
 use crate::interface::{Bodies, SlaveIndex, Tractions};
 use crate::law::{Multiplier, Nitsche, NodeOfPoints, PointForces};

@@ -11,11 +11,11 @@ use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_block::Present;
-use super::family::PairRequest;
 use super::grouping::PAIRS;
 use super::kinematics::PairHistory;
 use super::known_operators::KnownOperators;
 use super::pair::{Integral, Pair, Previous};
+use super::pair_request::PairRequest;
 use crate::interface::{Corner, NormalPatches, SlaveIndex};
 use crate::law::{Augmentation, Multiplier, NormalVariation, SlaveNode, StepParameters};
 use crate::mortar::{Active, Operators, Overlap, PairGeometry, choices_of, operators, weighted_gap};

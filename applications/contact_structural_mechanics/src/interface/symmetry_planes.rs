@@ -1,44 +1,13 @@
-//! What supports hold at the nodes of contact surfaces, and which of them lie on planes of symmetry.
+//! Planes of symmetry: supports at which contact surfaces end at right angles.
 
 use std::collections::BTreeMap;
 
-use zelus_core::model::{ModelPart, NodeUnknown};
+use zelus_core::model::ModelPart;
 use zelus_core::vector3::norm;
-use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::facets::Interface;
+use super::fixed::Fixed;
 use super::normals::{NodalNormals, NormalPatches};
-
-/// Which components of a node's displacement are prescribed, directly or by constraints on prescribed unknowns.
-pub type Fixed = [bool; 3];
-
-/// What is prescribed at the nodes of interfaces; nodes that are free are left out.
-pub fn fixed_components(part: &ModelPart, interfaces: &[Interface]) -> BTreeMap<u32, Fixed> {
-    let constraints = part.constraints.iter().filter(|c| c.active).map(|c| (c.slave, &c.masters[..])).collect();
-    let dimension = part.info.domain_size;
-    let fixed = |&node: &u32| -> (u32, Fixed) {
-        (
-            node,
-            std::array::from_fn(|c| {
-                c < dimension && is_fixed(part, &constraints, (node, DISPLACEMENT.component(c as u8)), 0)
-            }),
-        )
-    };
-    interfaces.iter().flat_map(|i| &i.nodes).map(fixed).filter(|(_, fixed)| fixed.contains(&true)).collect()
-}
-
-/// Constraints by what they eliminate.
-type Constraints<'a> = BTreeMap<NodeUnknown, &'a [(NodeUnknown, f64)]>;
-
-fn is_fixed(part: &ModelPart, constraints: &Constraints<'_>, unknown: NodeUnknown, depth: usize) -> bool {
-    let (node, variable) = unknown;
-    match constraints.get(&unknown) {
-        Some(masters) if depth <= constraints.len() => {
-            masters.iter().all(|&(master, _)| is_fixed(part, constraints, master, depth + 1))
-        }
-        _ => part.nodes.is_fixed(variable, node),
-    }
-}
 
 /// Sine of an angle at which a surface meets a plane at right angles.
 const LEVEL: f64 = 1e-6;
