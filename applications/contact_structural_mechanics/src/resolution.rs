@@ -1,4 +1,4 @@
-//! What contact can tell apart: the one rule by which all families take their decisions.
+//! What contact can tell apart: the one rule by which all formulations take their decisions.
 //!
 //! Numbers that are equal in exact arithmetic differ in their last digits, and those depend on the unit system, on the
 //! numbers of the nodes and on the order in which ranks add up. A decision that hangs on them makes the iteration go another

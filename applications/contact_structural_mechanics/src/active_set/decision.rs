@@ -14,16 +14,16 @@ use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::rules::{self, Decision, SlaveNumbers};
 use crate::law::{Augmentation, Held, NodeState, StepParameters};
 use crate::mortar::{tangent, tangential};
-use crate::pairs::{Family, Multiplier};
+use crate::pairs::{Formulation, Multiplier};
 use crate::resolution::Resolution;
 use crate::settings::Setup;
 use crate::slave_nodes::SlaveStates;
 
-/// What decisions are taken by: the rules of a family with the numbers of the step.
+/// What decisions are taken by: the rules of a formulation with the numbers of the step.
 #[derive(Clone, Copy)]
 pub(crate) struct Rules<'a> {
-    /// The family.
-    pub family: &'a Family,
+    /// The formulation.
+    pub formulation: &'a Formulation,
     /// Settings and numbers of the step.
     pub parameters: &'a StepParameters,
     /// What is too small to decide on.
@@ -33,7 +33,7 @@ pub(crate) struct Rules<'a> {
 impl<'a> Rules<'a> {
     /// Rules with the settings and numbers of a setup.
     pub(crate) fn of(setup: &'a Setup) -> Self {
-        Self { family: setup.settings.family, parameters: &setup.parameters, resolution: setup.resolution }
+        Self { formulation: setup.settings.formulation, parameters: &setup.parameters, resolution: setup.resolution }
     }
 
     /// What they want of every slave node, and the states the nodes are in.
@@ -50,11 +50,11 @@ impl<'a> Rules<'a> {
         let (mut decisions, mut before, mut pushed) = (Vec::new(), Vec::new(), Vec::new());
         for (node, state) in states.iter() {
             let numbers = self.numbers(part, states, node);
-            let mut decision = (self.family.decide)(&numbers, rule);
+            let mut decision = (self.formulation.decide)(&numbers, rule);
             if state.isolated {
                 decision = rules::inactive(&numbers, decision.pressure);
             }
-            let multipliers = self.family.frictional() && self.family.multiplier.is_unknown();
+            let multipliers = self.formulation.frictional() && self.formulation.multiplier.is_unknown();
             if multipliers && !released.contains(&node) && rules::is_pushed(&numbers, rule) {
                 pushed.push(decisions.len());
             }
@@ -100,7 +100,7 @@ impl<'a> Rules<'a> {
         before: &[NodeState],
     ) -> SetChange {
         let mut change = SetChange::default();
-        let frictional = self.family.frictional();
+        let frictional = self.formulation.frictional();
         for ((node, decision), &was) in decisions.iter().zip(before) {
             let (id, active) = (part.nodes.ids[states.mesh_node(*node) as usize], decision.state.is_active());
             match (decision.changed, active) {
@@ -126,15 +126,15 @@ impl<'a> Rules<'a> {
             if frictional {
                 state.traction = decision.traction;
                 // By Nitsche's method points carry what the integration finds.
-                if !matches!(self.family.multiplier, Multiplier::Body) {
+                if !matches!(self.formulation.multiplier, Multiplier::Body) {
                     state.carried = decision.traction;
                 }
             }
             if let Some(multiplier) = decision.multiplier {
                 let along_normal = [decision.pressure / self.parameters.scale_factor, 0.0, 0.0];
-                let scalar = matches!(self.family.multiplier, Multiplier::Scalar(_));
+                let scalar = matches!(self.formulation.multiplier, Multiplier::Scalar(_));
                 let value = if scalar { along_normal } else { multiplier };
-                self.family.multiplier.set(&mut part.slave_nodes, states.owner(*node), value);
+                self.formulation.multiplier.set(&mut part.slave_nodes, states.owner(*node), value);
             }
         }
         change
@@ -146,7 +146,7 @@ impl<'a> Rules<'a> {
             let pressure = self.acting_pressure(part, states, *node, decision);
             let state = &mut states[*node];
             state.pressure = pressure;
-            if self.family.frictional() {
+            if self.formulation.frictional() {
                 state.traction = decision.traction;
             }
         }
@@ -155,7 +155,7 @@ impl<'a> Rules<'a> {
     /// The pressure that acts at a slave node: k λ·n + ε g̃ where pairs augment, else that of the decision.
     fn acting_pressure(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex, decision: &Decision) -> f64 {
         let state = &states[slave];
-        match (self.family.multiplier, self.parameters.augmentation) {
+        match (self.formulation.multiplier, self.parameters.augmentation) {
             (Multiplier::None | Multiplier::Body, _) | (_, Augmentation::Node) => decision.pressure,
             (multiplier, Augmentation::Pair) => {
                 let augmentation = state.penalty * state.weighted_gap;
@@ -171,20 +171,20 @@ impl<'a> Rules<'a> {
     /// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
     /// kept until the next update, also of a node that is not in contact meanwhile.
     fn numbers(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex) -> SlaveNumbers {
-        let Self { family, parameters, resolution } = self;
+        let Self { formulation, parameters, resolution } = self;
         let (state, owner) = (&states[slave], states.owner(slave));
         let (normal, area, penalty, held) = (state.normal, state.area, state.penalty, state.held);
         let by_area = if area > 0.0 { area.recip() } else { 0.0 };
         let kept = if state.kept_pressure == 0.0 { 0.0 } else { state.kept_pressure / penalty };
-        let slip = resolution.vector_of(slip(part, states, slave, family.multiplier, parameters));
-        let stiffness = match family.multiplier {
+        let slip = resolution.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
+        let stiffness = match formulation.multiplier {
             Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
             Multiplier::None if parameters.weighted_penalty => penalty * area,
             Multiplier::None | Multiplier::Body => penalty,
         };
-        let whole = family.multiplier.vector(&part.slave_nodes, owner, normal);
+        let whole = formulation.multiplier.vector(&part.slave_nodes, owner, normal);
         let driven = held.contains(&Held::KeptInStick);
-        let multiplier = match family.multiplier {
+        let multiplier = match formulation.multiplier {
             // No multiplier holds what supports move: the slip itself says what would.
             Multiplier::Vector(_) if driven => {
                 let along = |c: usize| held[c] == Held::KeptInStick && norm(slip) > 0.0;
@@ -203,7 +203,7 @@ impl<'a> Rules<'a> {
             state: state.contact(),
             normal,
             multiplier,
-            solved: family.multiplier.is_unknown(),
+            solved: formulation.multiplier.is_unknown(),
             gap: resolution.length_of(state.counted_gap(parameters) * by_area + kept),
             slip,
             trial: state.trial,

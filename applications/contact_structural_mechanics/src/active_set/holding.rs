@@ -16,7 +16,7 @@ use crate::interface::{Facet, Fixed, Interface, SlaveIndex, check_nodes, fixed_c
 use crate::law::Held;
 use crate::law::constrained_multiplier::free_normal;
 use crate::mortar::MOST_NODES;
-use crate::pairs::{Family, Multiplier};
+use crate::pairs::{Formulation, Multiplier};
 use crate::slave_nodes::SlaveStates;
 
 /// Share of a master facet by which a node may lie beyond its edge and still face it.
@@ -138,16 +138,16 @@ impl Holding {
         }
     }
 
-    /// Decides what becomes of the multipliers of the slave nodes by this family; gives the note of it.
+    /// Decides what becomes of the multipliers of the slave nodes by this formulation; gives the note of it.
     pub(crate) fn hold<'a>(
         &mut self,
         part: &ModelPart,
         states: &mut SlaveStates,
-        family: &Family,
+        formulation: &Formulation,
         pairs: impl Iterator<Item = FacetsOfPair<'a>> + Clone,
     ) -> Option<Diagnostic> {
         states.for_all(|state| state.held = [Held::Free; 3]);
-        let held = if family.multiplier.is_unknown() {
+        let held = if formulation.multiplier.is_unknown() {
             self.nodes(part, &|slave| states[slave].normal, pairs.clone())
         } else {
             BTreeMap::new()
@@ -167,8 +167,8 @@ impl Holding {
             };
             let rules: [Held; 3] = std::array::from_fn(rule);
             let held_normal = free_normal(normal, rules) == [0.0; 3] && rules.iter().any(|rule| rule.is_still());
-            let rules = match family.multiplier {
-                Multiplier::Vector(_) if family.frictional() || held_normal => rules,
+            let rules = match formulation.multiplier {
+                Multiplier::Vector(_) if formulation.frictional() || held_normal => rules,
                 Multiplier::Scalar(_) if held_normal => {
                     // Along the normal alone.
                     let most = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
@@ -179,7 +179,7 @@ impl Holding {
             states[node].held = rules;
             dropped.insert(states.mesh_node(node), rules.map(Held::is_still));
         }
-        let scalar = matches!(family.multiplier, Multiplier::Scalar(_));
+        let scalar = matches!(formulation.multiplier, Multiplier::Scalar(_));
         self.say(part, &dropped, scalar)
     }
 

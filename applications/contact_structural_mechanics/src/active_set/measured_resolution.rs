@@ -5,7 +5,7 @@ use zelus_core::vector3::{norm, sub};
 
 use crate::interface::SlaveIndex;
 use crate::law::StepParameters;
-use crate::pairs::{Family, Multiplier};
+use crate::pairs::{Formulation, Multiplier};
 use crate::resolution::Resolution;
 use crate::slave_nodes::{SlaveState, SlaveStates};
 
@@ -16,11 +16,11 @@ pub(crate) fn resolution(
     part: &ModelPart,
     nodes: &[u32],
     states: &SlaveStates,
-    family: &Family,
+    formulation: &Formulation,
     parameters: &StepParameters,
 ) -> Resolution {
     let motion = farthest(nodes, |at| norm(sub(part.nodes.current[at], part.nodes.initial[at])));
-    let traction = |slave: SlaveIndex, state: &SlaveState| match family.multiplier {
+    let traction = |slave: SlaveIndex, state: &SlaveState| match formulation.multiplier {
         Multiplier::Body => norm(state.trial),
         Multiplier::None => {
             let by_area = if state.area > 0.0 && !parameters.weighted_penalty { state.area.recip() } else { 1.0 };
@@ -31,7 +31,7 @@ pub(crate) fn resolution(
     let in_contact = states.iter().filter(|(_, state)| state.active);
     let largest = in_contact.map(|(slave, state)| traction(slave, state)).fold(0.0, f64::max);
     let mut found = Resolution::of(extent(part, nodes), largest, parameters.stiffness * motion);
-    if matches!(family.multiplier, Multiplier::Body) {
+    if matches!(formulation.multiplier, Multiplier::Body) {
         // Where points decide, a length makes a pressure.
         found.traction += parameters.nitsche.factor * parameters.stiffness * found.length;
     }

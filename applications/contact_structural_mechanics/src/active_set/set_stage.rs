@@ -53,7 +53,7 @@ impl SetStage {
         if !setup.by_points() {
             self.cycles.restrict(&mut decisions, &before);
             messages.extend(self.cycles.keep(&decisions, &ids(part, states), part.info.step));
-        } else if setup.settings.family.frictional() {
+        } else if setup.settings.formulation.frictional() {
             // What points decide they decide in each evaluation of forces: nodes only tell of it.
             forced_points::hold_turned(states, &mut decisions, &before, setup.resolution);
         }
@@ -89,7 +89,7 @@ impl SetStage {
 
     /// Finds the directions of sliding, where nodes have them.
     pub(crate) fn find_tangents(&mut self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
-        if setup.settings.family.frictional() && !setup.by_points() {
+        if setup.settings.formulation.frictional() && !setup.by_points() {
             let keeps = setup.settings.friction.keeps_direction;
             find_tangents(part, states, Rules::of(setup), keeps, &mut self.reversals);
         }

@@ -34,7 +34,7 @@ pub(crate) fn find_tangents(
     keeps_direction: bool,
     reversals: &mut BTreeMap<SlaveIndex, usize>,
 ) {
-    let Rules { family, parameters, resolution } = rules;
+    let Rules { formulation, parameters, resolution } = rules;
     let dimension = part.info.domain_size;
     let pure = parameters.slip_rule == SlipRule::Pure;
     let decided = |traction: [f64; 3]| if resolution.exceeds(norm(traction), 0.0, false) { traction } else { [0.0; 3] };
@@ -42,12 +42,12 @@ pub(crate) fn find_tangents(
         let state = &states[slave];
         let (contact, normal, before) = (state.contact(), state.normal, state.tangent);
         let by_slip = || {
-            let slip = resolution.vector_of(slip(part, states, slave, family.multiplier, parameters));
+            let slip = resolution.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
             // Bodies that stand still keep the direction in which they came.
-            let pressure = match family.multiplier {
+            let pressure = match formulation.multiplier {
                 Multiplier::Vector(_) => {
                     parameters.scale_factor
-                        * dot(family.multiplier.value(&part.slave_nodes, states.owner(slave)), normal)
+                        * dot(formulation.multiplier.value(&part.slave_nodes, states.owner(slave)), normal)
                 }
                 _ => 0.0,
             };
@@ -55,14 +55,14 @@ pub(crate) fn find_tangents(
             if parameters.nodal_stiffness(state.penalty, state.area) * norm(slip) > least { slip } else { [0.0; 3] }
         };
         let mut turning = Turning::default();
-        let direction = match family.multiplier {
+        let direction = match formulation.multiplier {
             Multiplier::Vector(_) => {
-                let whole = family.multiplier.value(&part.slave_nodes, states.owner(slave));
+                let whole = formulation.multiplier.value(&part.slave_nodes, states.owner(slave));
                 let sliding = along_free_tangents(tangential(whole, normal), normal, state.held);
                 let multiplier = add(scale(normal, dot(whole, normal)), sliding);
                 match contact {
                     NodeState::Slip if dimension == 3 => {
-                        let slip = slip(part, states, slave, family.multiplier, parameters);
+                        let slip = slip(part, states, slave, formulation.multiplier, parameters);
                         let trial = Trial::new(state, slip, parameters, multiplier);
                         turning = trial.turning(state.pairs, pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }

@@ -19,7 +19,7 @@ use crate::mortar::tangential;
 use crate::slave_nodes::SlaveStatus;
 use crate::variables::MULTIPLIER_WEIGHT;
 
-/// The criterion of the families with friction.
+/// The criterion of the formulations with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionalCriterion {
     primary: Measure,

@@ -111,7 +111,7 @@ impl ContactInteraction {
 
     /// Writes what is looked at of the present state.
     fn write_results(&self, part: &mut ModelPart) -> Result<()> {
-        let frictional = self.contact.setup.settings.family.frictional();
+        let frictional = self.contact.setup.settings.formulation.frictional();
         write_states(&mut part.nodes, &self.contact.states, frictional);
         // explicit steps are many and short: the forces would cost as much as the steps
         match self.contact.setup.settings.explicit {
@@ -131,10 +131,10 @@ impl Interaction for ContactInteraction {
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
-        let (family, explicit) = (self.contact.setup.settings.family, self.contact.setup.settings.explicit);
+        let (formulation, explicit) = (self.contact.setup.settings.formulation, self.contact.setup.settings.explicit);
         part.nodes.history.add(&NORMAL);
         part.nodes.history.add(&WEIGHTED_GAP);
-        if family.frictional() {
+        if formulation.frictional() {
             part.nodes.history.add(&WEIGHTED_SLIP);
         }
         let levels = part.nodes.history.levels().max(self.contact.setup.parameters.levels_back + 1);
@@ -191,18 +191,19 @@ impl Interaction for ContactInteraction {
         }
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         self.contact.clear_inactive(part);
-        let (family, clears) = (self.contact.setup.settings.family, self.contact.setup.settings.clear_inactive);
+        let (formulation, clears) =
+            (self.contact.setup.settings.formulation, self.contact.setup.settings.clear_inactive);
         self.contact.states.for_each(|_, state| {
             if clears && !state.active {
                 (state.pressure, state.traction) = (0.0, [0.0; 3]);
             }
         });
-        if family.frictional() {
+        if formulation.frictional() {
             let parameters = &self.contact.setup.parameters;
             let states = &self.contact.states;
-            friction::meet_bounds(&mut part.slave_nodes, states, family.multiplier, parameters.scale_factor);
+            friction::meet_bounds(&mut part.slave_nodes, states, formulation.multiplier, parameters.scale_factor);
             if !self.warned_of_friction {
-                let warning = friction::warn_of_pushing(part, &self.contact.states, family.multiplier, parameters);
+                let warning = friction::warn_of_pushing(part, &self.contact.states, formulation.multiplier, parameters);
                 self.warned_of_friction = warning.is_some();
                 self.contact.messages.extend(warning);
             }
@@ -257,7 +258,7 @@ impl Interaction for ContactInteraction {
         if self.contact.setup.parameters.dynamic {
             out.push(("work of contact", self.loops.work.done()));
         }
-        if self.contact.setup.settings.family.updated {
+        if self.contact.setup.settings.formulation.updated {
             out.extend([("multiplier updates", self.loops.uzawa.updates as f64), ("rate", self.loops.uzawa.rate)]);
         }
         out
@@ -265,11 +266,11 @@ impl Interaction for ContactInteraction {
 
     fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
         let ContactState { setup: Setup { settings, parameters, resolution, .. }, pairing, states, .. } = &self.contact;
-        let multiplier = settings.family.multiplier;
+        let multiplier = settings.formulation.multiplier;
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
             heat(state.traction, slip(part, states, slave, multiplier, parameters), state.area)
         };
-        let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.family.frictional());
+        let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.formulation.frictional());
         let slaves = pairing.slaves_by_interface();
         pair_states(&pairing.interfaces, parts, (states, &slaves), frictional, resolution.length, of_node)
     }
@@ -279,7 +280,7 @@ impl Interaction for ContactInteraction {
     }
 
     fn joins(&self, part: &ModelPart) -> Option<Vec<Join>> {
-        joins(part, &self.contact.pairing.interfaces, false, self.contact.setup.settings.family.frictional())
+        joins(part, &self.contact.pairing.interfaces, false, self.contact.setup.settings.formulation.frictional())
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {
@@ -314,7 +315,7 @@ impl Interaction for ContactInteraction {
 
 impl Coupling for ContactInteraction {
     fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
-        let unknowns = self.contact.setup.settings.family.multiplier.unknowns(part.info.domain_size);
+        let unknowns = self.contact.setup.settings.formulation.multiplier.unknowns(part.info.domain_size);
         let owners = self.contact.states.owners();
         unknowns.into_iter().map(|variable| Carriers::of_slaves(variable, owners.iter().copied())).collect()
     }
@@ -404,7 +405,7 @@ impl ActiveSet for ContactInteraction {
         let outer = self.loops.judge(part, &mut self.contact, &mut self.set)?;
         self.contact.publish(part);
         // Others that look at the converged state, as heat does, read pressures and slips.
-        write_states(&mut part.nodes, &self.contact.states, self.contact.setup.settings.family.frictional());
+        write_states(&mut part.nodes, &self.contact.states, self.contact.setup.settings.formulation.frictional());
         Ok(outer)
     }
 

@@ -80,11 +80,11 @@ impl ContactState {
         let name = self.owners_name();
         let table = self.pairing.make_patches(part, angle, &name);
         write_nodal_normals(part, &self.pairing, &self.holding);
-        let family = self.setup.settings.family;
-        if let Some((name, components)) = family.multiplier.column() {
+        let formulation = self.setup.settings.formulation;
+        if let Some((name, components)) = formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }
-        self.states = SlaveStates::of(part, table, family.columns());
+        self.states = SlaveStates::of(part, table, formulation.columns());
         self.states.for_all(|state| state.active = false);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         self.states.set_slaves(self.pairing.slaves());
@@ -99,7 +99,7 @@ impl ContactState {
 
     /// Takes multipliers that the columns of mesh nodes were given from outside, as by a deck.
     fn import_multipliers(&self, part: &mut ModelPart) {
-        multiplier_columns::import(part, &self.states, self.setup.settings.family.multiplier);
+        multiplier_columns::import(part, &self.states, self.setup.settings.formulation.multiplier);
     }
 
     /// Whether the step began with a search.
@@ -187,7 +187,7 @@ impl ContactState {
             }
         }
         self.states.set_slaves(self.pairing.slaves());
-        let (all, multiplier) = (self.states.all(), self.setup.settings.family.multiplier);
+        let (all, multiplier) = (self.states.all(), self.setup.settings.formulation.multiplier);
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, all);
         self.pairing.find_normal_patches(self.holding.planes());
         write_nodal_normals(part, &self.pairing, &self.holding);
@@ -196,7 +196,7 @@ impl ContactState {
 
     /// Sets the multipliers of slave nodes without contact to zero.
     pub(super) fn clear_inactive(&mut self, part: &mut ModelPart) {
-        let (slaves, multiplier) = (self.states.slaves(), self.setup.settings.family.multiplier);
+        let (slaves, multiplier) = (self.states.slaves(), self.setup.settings.formulation.multiplier);
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, slaves.iter().copied());
     }
 
@@ -210,7 +210,7 @@ impl ContactState {
         let (states, resolution, overlaps) = (self.states.clone(), self.setup.resolution, self.pairing.overlaps());
         self.integrate(part);
         set.find_tractions(part, &mut self.states, &self.setup);
-        write_states(&mut part.nodes, &self.states, self.setup.settings.family.frictional());
+        write_states(&mut part.nodes, &self.states, self.setup.settings.formulation.frictional());
         (self.states, self.setup.resolution) = (states, resolution);
         self.pairing.set_overlaps(&overlaps);
     }
@@ -235,7 +235,7 @@ impl ContactState {
                 slaves: self.pairing.slaves_of_pair(key),
                 master: self.pairing.master(key),
             });
-            let said = self.holding.hold(part, &mut self.states, self.setup.settings.family, facets);
+            let said = self.holding.hold(part, &mut self.states, self.setup.settings.formulation, facets);
             self.messages.extend(said);
         }
     }
@@ -245,8 +245,8 @@ impl ContactState {
         self.pairing.set_states(&self.states);
         self.states.export(&mut part.nodes);
         let area = |slave: SlaveIndex| self.states[slave].area;
-        multiplier_columns::export(part, self.states.table(), &area, self.setup.settings.family.multiplier);
-        if self.setup.settings.family.frictional() {
+        multiplier_columns::export(part, self.states.table(), &area, self.setup.settings.formulation.multiplier);
+        if self.setup.settings.formulation.frictional() {
             write_status(part, &self.states);
         }
     }

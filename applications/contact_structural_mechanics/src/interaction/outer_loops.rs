@@ -77,8 +77,8 @@ impl OuterLoops {
         contact: &mut ContactState,
         set: &mut SetStage,
     ) -> Result<Outer> {
-        let (family, scale_factor) = (contact.setup.settings.family, contact.setup.parameters.scale_factor);
-        if family.updated {
+        let (formulation, scale_factor) = (contact.setup.settings.formulation, contact.setup.parameters.scale_factor);
+        if formulation.updated {
             let outer =
                 self.uzawa.update(&part.slave_nodes, &mut contact.states, scale_factor, contact.setup.settings.uzawa);
             if outer != Outer::Done {
@@ -144,16 +144,16 @@ impl OuterLoops {
             }
         }
         let start = (&*self.start_gaps, &mut self.impact_error);
-        Ok(coarse_impact(part, &contact.states, family, scale_factor, start))
+        Ok(coarse_impact(part, &contact.states, formulation, scale_factor, start))
     }
 
     /// The step is accepted.
     pub(super) fn accept(&mut self, part: &ModelPart, contact: &mut ContactState) {
         self.impact_error = 0.0;
         if contact.setup.parameters.dynamic {
-            let family = contact.setup.settings.family;
-            let stores = family.compliant || matches!(family.multiplier, Multiplier::None);
-            let conserves = !stores && !family.frictional();
+            let formulation = contact.setup.settings.formulation;
+            let stores = formulation.compliant || matches!(formulation.multiplier, Multiplier::None);
+            let conserves = !stores && !formulation.frictional();
             contact.messages.extend(self.work.accept(part, conserves));
         }
         self.friction_ramp.accept();

@@ -18,7 +18,7 @@ use crate::mortar::inner_point;
 /// Share of the size of an element by which it is moved for second derivatives.
 const STEP: f64 = 1e-5;
 
-/// The elements behind slave facets; none for families with tractions of their own.
+/// The elements behind slave facets; none for formulations with tractions of their own.
 #[derive(Default)]
 pub struct Bodies {
     blocks: Vec<Box<dyn EntityBlock>>,
@@ -92,7 +92,7 @@ impl Bodies {
         (face, self.blocks[face.block].as_ref())
     }
 
-    /// Nodes of the element behind a facet; none for families without.
+    /// Nodes of the element behind a facet; none for formulations without.
     pub fn nodes(&self, key: [u32; 2]) -> &[u32] {
         self.faces.get(&key).map_or(&[], |face| self.blocks[face.block].nodes(face.at))
     }

@@ -70,7 +70,7 @@ pub struct StepParameters {
     pub compliant: bool,
     /// Whether the step has inertia, so that friction must make no energy.
     pub dynamic: bool,
-    /// Nitsche's method, of families whose tractions are those of bodies.
+    /// Nitsche's method, of formulations whose tractions are those of bodies.
     pub nitsche: Nitsche,
 }
 

@@ -39,18 +39,18 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
     }
     sums.over_ranks(part, states);
 
-    let family = setup.settings.family;
+    let formulation = setup.settings.formulation;
     states.for_each(|node, state| {
         let [gap, area, mean, rest @ ..] = sums[node];
         let vector = |first: usize| [rest[first], rest[first + 1], rest[first + 2]];
         let by_area = |sum: [f64; 3]| if area > 0.0 { sum.map(|t| t / area) } else { [0.0; 3] };
         (state.area, state.weighted_gap, state.isolated) = (area, gap, state.pairs == 0);
         state.mean_weighted_gap = if area > 0.0 { mean / area } else { 0.0 };
-        if family.frictional() {
+        if formulation.frictional() {
             let slip = vector(0);
             let is_held = state.held.iter().any(|held| held.is_still());
             state.weighted_slip = if is_held { along_free_tangents(slip, state.normal, state.held) } else { slip };
-            if family.multiplier.is_unknown() {
+            if formulation.multiplier.is_unknown() {
                 state.multiplier_weight = state.equation_weight(&setup.parameters);
             }
         }
@@ -63,5 +63,5 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
     let weight = |n: u32| around.map_or(1.0, |per_radius| per_radius * part.nodes.current[n as usize][0]);
     isolate_beside(part, states, pairing, setup.settings.least_coverage, weight);
     keep_one_of_a_normal(states);
-    setup.resolution = resolution(part, &pairing.nodes(), states, family, &setup.parameters);
+    setup.resolution = resolution(part, &pairing.nodes(), states, formulation, &setup.parameters);
 }

@@ -34,7 +34,7 @@ const FACING: f64 = 0.1;
 pub(crate) struct Pairing {
     /// The interfaces the facets belong to.
     pub interfaces: Vec<Interface>,
-    /// The elements behind slaves, where the family takes tractions from them.
+    /// The elements behind slaves, where the formulation takes tractions from them.
     pub bodies: Arc<Bodies>,
     /// The patches of slave facets.
     pub patches: Patches,
@@ -307,10 +307,10 @@ impl Pairing {
                 let (bodies, patches, parameters) = (self.bodies.clone(), self.normals.clone(), parameters.clone());
                 let slaves: Vec<SlaveIndex> =
                     pairs.iter().flat_map(|pair| self.slaves_of_pair(pair.key)).copied().collect();
-                let has_owners = settings.family.multiplier.is_unknown();
+                let has_owners = settings.formulation.multiplier.is_unknown();
                 let owners = slaves.iter().filter(|_| has_owners).map(|slave| self.owners[slave.place()]).collect();
                 let states = self.states.clone();
-                blocks.push((settings.family.block)(PairRequest {
+                blocks.push((settings.formulation.block)(PairRequest {
                     entry,
                     slave,
                     master,

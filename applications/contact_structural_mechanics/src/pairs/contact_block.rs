@@ -1,4 +1,4 @@
-//! What the interaction asks of a block of pairs, whatever their family and their shapes.
+//! What the interaction asks of a block of pairs, whatever their formulation and their shapes.
 
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 mod contact_block;
 mod facet_operators;
 mod facing_points;
-mod family;
+mod formulation;
 mod grouping;
 mod kinematics;
 mod known_operators;
@@ -19,8 +19,9 @@ pub use crate::mortar::condition_name;
 pub use contact_block::{ContactBlock, Present};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, nodal_normals, overlapping_pairs};
 pub use facing_points::{FacingPoint, facing_points};
-pub use family::{
-    ByNode, Family, FamilyEntry, Friction, TyingFamily, TyingFamilyEntry, find_family, find_tying_family, variables_of,
+pub use formulation::{
+    ByNode, Formulation, FormulationEntry, Friction, TyingFormulation, TyingFormulationEntry, find_formulation,
+    find_tying_formulation, variables_of,
 };
 pub use grouping::{Groups, PAIRS, group_by_shapes, group_by_surroundings};
 pub use kinematics::{PairHistory, PairKinematics};

@@ -28,7 +28,7 @@ pub struct PairRequest {
     pub owners: Vec<u32>,
     /// Number of nodes around each pair, which turn the normals of its slave nodes with it or are of the slave's element.
     pub around: usize,
-    /// The elements behind slaves, where the family takes tractions from them.
+    /// The elements behind slaves, where the formulation takes tractions from them.
     pub bodies: Arc<Bodies>,
     /// The facets around slave nodes.
     pub patches: Arc<NormalPatches>,

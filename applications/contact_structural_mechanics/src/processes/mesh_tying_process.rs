@@ -11,7 +11,7 @@ use zelus_core::register;
 
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
-use crate::pairs::find_tying_family;
+use crate::pairs::find_tying_formulation;
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 use crate::tying::{TyingInteraction, TyingSettings};
 
@@ -46,15 +46,15 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;
     let part = request.model.root_mut(&whole.model_part_name)?;
     let (mortar_type, tied) = tied(&settings, part.info.domain_size)?;
-    let family = find_tying_family(mortar_type)?;
-    for (name, components) in family.variables {
+    let formulation = find_tying_formulation(mortar_type)?;
+    for (name, components) in formulation.variables {
         part.nodes.history.add_named(name, *components);
     }
     let manual = &whole.scale_factor_parameters;
     let chosen = TyingSettings {
         parts: whole.mesh_tying_model_part,
         slaves: whole.assume_master_slave,
-        family,
+        formulation,
         tied,
         interval: Interval::from_node(settings.get("interval")?)?,
         search: SearchSettings {

@@ -13,7 +13,7 @@ use zelus_structural_mechanics::variables::VELOCITY;
 
 use crate::interface::SlaveIndex;
 use crate::pairing::Pairing;
-use crate::pairs::{Family, Multiplier};
+use crate::pairs::{Formulation, Multiplier};
 use crate::slave_nodes::{SlaveState, SlaveStates};
 use crate::solver::IMPACT_TOLERANCE;
 use crate::variables::NODAL_H;
@@ -52,7 +52,7 @@ const LEAST_GAIN: f64 = 0.1;
 pub(crate) fn coarse_impact(
     part: &ModelPart,
     states: &SlaveStates,
-    family: &Family,
+    formulation: &Formulation,
     scale_factor: f64,
     (start, before): (&[f64], &mut f64),
 ) -> Outer {
@@ -60,7 +60,7 @@ pub(crate) fn coarse_impact(
     if tolerance == 0.0 || energy == 0.0 {
         return Outer::Done;
     }
-    let pressure = |slave: SlaveIndex, level: usize| match family.multiplier {
+    let pressure = |slave: SlaveIndex, level: usize| match formulation.multiplier {
         Multiplier::None | Multiplier::Body => 0.0,
         multiplier => scale_factor * norm(multiplier.value_at(&part.slave_nodes, states.owner(slave), level)),
     };

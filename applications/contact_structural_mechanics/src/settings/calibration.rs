@@ -36,7 +36,7 @@ pub(crate) fn calibrate(
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
     let unit = PenaltyUnit::of(&part.ranks, &part.nodes.initial, part.info.domain_size == 2 && !settings.axisymmetric);
     // Only penalties of weighted gaps hold an area.
-    let pairwise = settings.family.weighted_gaps && settings.augmentation == Augmentation::Pair;
+    let pairwise = settings.formulation.weighted_gaps && settings.augmentation == Augmentation::Pair;
     let weighted = pairwise || settings.weighted_penalty;
     let mut chosen = settings.manual.unwrap_or(AlmParameters {
         penalty: estimate.penalty * settings.penalty_factor / if weighted { unit.measure } else { 1.0 },
@@ -73,7 +73,7 @@ pub(crate) fn calibrate(
             ..settings.operator_threshold
         },
         stiffness: of_bodies,
-        slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.family.friction, messages)?,
+        slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.formulation.friction, messages)?,
         ..before.clone()
     };
     Ok((threshold, parameters))

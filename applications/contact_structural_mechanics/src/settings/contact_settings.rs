@@ -9,7 +9,7 @@ use crate::friction::FrictionSettings;
 use crate::interface::{AlmParameters, NodalNormals};
 use crate::law::{Augmentation, Nitsche, NormalVariation};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
-use crate::pairs::Family;
+use crate::pairs::Formulation;
 use crate::search::SearchSettings;
 
 /// What a deck chooses about contact.
@@ -19,8 +19,8 @@ pub struct ContactSettings {
     pub parts: BTreeMap<String, Vec<String>>,
     /// Parts on the slave side by key.
     pub slaves: BTreeMap<String, Vec<String>>,
-    /// The family of conditions.
-    pub family: &'static Family,
+    /// The formulation of conditions.
+    pub formulation: &'static Formulation,
     /// Times in which contact acts.
     pub interval: Interval,
     /// When normals follow the iteration.
@@ -29,7 +29,7 @@ pub struct ContactSettings {
     pub nodal_normals: NodalNormals,
     /// Where gaps augment the forces of augmented Lagrangians.
     pub augmentation: Augmentation,
-    /// Nitsche's method, of families whose tractions are those of bodies.
+    /// Nitsche's method, of formulations whose tractions are those of bodies.
     pub nitsche: Nitsche,
     /// Which facets are looked at.
     pub search: SearchSettings,
@@ -45,7 +45,7 @@ pub struct ContactSettings {
     pub manual: Option<AlmParameters>,
     /// Factor of E/h in eq. 4.11, and ratio of scale factor and penalty.
     pub estimate: [f64; 2],
-    /// Factor of the estimated penalty; the penalty families need a stiffer spring.
+    /// Factor of the estimated penalty; the penalty formulations need a stiffer spring.
     pub penalty_factor: f64,
     /// Whether penalties act pair by pair on weighted gaps.
     pub weighted_penalty: bool,
@@ -69,7 +69,7 @@ pub struct ContactSettings {
     pub least_coverage: f64,
     /// Whether augmented pressures of inactive nodes are zero after a step.
     pub clear_inactive: bool,
-    /// How far Uzawa's outer loop goes, where the family has one.
+    /// How far Uzawa's outer loop goes, where the formulation has one.
     pub uzawa: UzawaSettings,
     /// How explicit steps adapt the penalty; `None` in implicit ones.
     pub explicit: Option<ExplicitPenalty>,
@@ -82,7 +82,7 @@ pub struct ContactSettings {
 impl ContactSettings {
     /// Name of the conditions up to the shape.
     pub(crate) fn condition_stem(&self) -> String {
-        let stem = self.family.condition;
+        let stem = self.formulation.condition;
         if self.axisymmetric { stem.replace("MortarContact", "AxisymMortarContact") } else { stem.to_owned() }
     }
 }

@@ -42,7 +42,7 @@ impl Setup {
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
             augmentation: settings.augmentation,
-            compliant: settings.family.compliant,
+            compliant: settings.formulation.compliant,
             dynamic: false,
             nitsche: settings.nitsche,
         };
@@ -88,13 +88,13 @@ impl Setup {
 
     /// Whether integration points decide on contact.
     pub(crate) fn by_points(&self) -> bool {
-        matches!(self.settings.family.multiplier, Multiplier::Body)
+        matches!(self.settings.formulation.multiplier, Multiplier::Body)
     }
 
     /// Whether a stiff penalty that nothing else changes may begin soft.
     pub(crate) fn ramps_penalty(&self) -> bool {
         let constant = self.settings.adaptation.rule.is_none() && self.settings.explicit.is_none();
-        constant && matches!(self.settings.family.multiplier, Multiplier::None)
+        constant && matches!(self.settings.formulation.multiplier, Multiplier::None)
     }
 
     /// Whether friction may join contact later: where forces are multipliers alone.
@@ -103,7 +103,7 @@ impl Setup {
         bounded
             && self.settings.explicit.is_none()
             && self.settings.augmentation == Augmentation::Node
-            && matches!(self.settings.family.multiplier, Multiplier::Vector(_))
+            && matches!(self.settings.formulation.multiplier, Multiplier::Vector(_))
     }
 
     /// Distance within which nodes start in contact, and depth beyond which facets are in each other (length).

@@ -29,7 +29,7 @@ pub struct SlaveState {
     pub weighted_slip: [f64; 3],
     /// Tangential traction before the law of friction limits it; where points decide, their mean traction (force per area).
     pub trial: [f64; 3],
-    /// Tangential traction carried from step to step, in families that do (force per area).
+    /// Tangential traction carried from step to step, in formulations that do (force per area).
     pub carried: [f64; 3],
     /// Normal pressure that Uzawa's iteration keeps between updates, negative in compression (force per area).
     pub kept_pressure: f64,

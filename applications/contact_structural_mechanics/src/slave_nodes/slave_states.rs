@@ -33,7 +33,7 @@ pub struct Columns {
     pub tractions: bool,
     /// Whether directions, slips and tractions of friction do.
     pub friction: bool,
-    /// The column of tractions that are carried from step to step, in families that do.
+    /// The column of tractions that are carried from step to step, in formulations that do.
     pub carried: Option<&'static Variable<[f64; 3]>>,
 }
 

@@ -1,4 +1,4 @@
-//! `contact_settings` of the solver: the family decides which variables the nodes carry.
+//! `contact_settings` of the solver: the formulation decides which variables the nodes carry.
 
 use zelus_core::analysis::{Cutting, ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::model::ModelPart;

@@ -22,7 +22,8 @@ use crate::interface::{
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
-    FacetOperators, FacetPair, PairKey, TyingFamily, check_pairs, condition_name, group_by_shapes, overlapping_pairs,
+    FacetOperators, FacetPair, PairKey, TyingFormulation, check_pairs, condition_name, group_by_shapes,
+    overlapping_pairs,
 };
 use crate::results::{joins, name};
 use crate::search::SearchSettings;
@@ -36,7 +37,7 @@ pub struct TyingSettings {
     /// Parts on the slave side by key.
     pub slaves: BTreeMap<String, Vec<String>>,
     /// The multipliers.
-    pub family: &'static TyingFamily,
+    pub formulation: &'static TyingFormulation,
     /// What is tied, one number a multiplier.
     pub tied: Vec<ScalarVariable>,
     /// Times in which the tie holds.
@@ -163,11 +164,11 @@ impl TyingInteraction {
 
     /// Multipliers of a slave node, one an unknown.
     fn unknowns(&self, part: &ModelPart) -> Vec<ScalarVariable> {
-        self.settings.family.multiplier.unknowns(part.info.domain_size)
+        self.settings.formulation.multiplier.unknowns(part.info.domain_size)
     }
 
     fn make_blocks(&mut self, part: &ModelPart) -> Result<()> {
-        let multipliers = self.settings.family.multiplier.unknowns(part.info.domain_size);
+        let multipliers = self.settings.formulation.multiplier.unknowns(part.info.domain_size);
         let pairs = self.pairs.iter().map(|(&key, &operators)| FacetPair { key, operators });
         let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
         self.blocks.clear();
@@ -200,7 +201,7 @@ impl TyingInteraction {
         self.blocks.clear();
         self.graph += 1;
         for &owner in &self.table.owners {
-            self.settings.family.multiplier.set(&mut part.slave_nodes, owner, [0.0; 3]);
+            self.settings.formulation.multiplier.set(&mut part.slave_nodes, owner, [0.0; 3]);
         }
         self.mark(part, false);
     }
@@ -312,7 +313,7 @@ impl Interaction for TyingInteraction {
         let angle = feature_angle(part);
         self.patches = Patches::new(part, &self.interfaces, angle);
         self.table = SlaveTable::of_patches(part, &self.patches, &self.owners_name());
-        if let Some((name, components)) = self.settings.family.multiplier.column() {
+        if let Some((name, components)) = self.settings.formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }
         self.find_normals(part);
@@ -353,7 +354,7 @@ impl Interaction for TyingInteraction {
     }
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        multiplier_columns::export(part, &self.table, &|_| 0.0, self.settings.family.multiplier);
+        multiplier_columns::export(part, &self.table, &|_| 0.0, self.settings.formulation.multiplier);
         Ok(())
     }
 
@@ -413,7 +414,7 @@ impl Interaction for TyingInteraction {
 
 impl Coupling for TyingInteraction {
     fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
-        let unknowns = self.settings.family.multiplier.unknowns(part.info.domain_size);
+        let unknowns = self.settings.formulation.multiplier.unknowns(part.info.domain_size);
         let owners = &self.table.owners;
         unknowns.into_iter().map(|variable| Carriers::of_slaves(variable, owners.iter().copied())).collect()
     }

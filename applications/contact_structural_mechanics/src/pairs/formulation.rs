@@ -1,4 +1,4 @@
-//! Families of contact conditions: what a `mortar_type` brings along.
+//! Contact and tying formulations, by their `mortar_type`.
 
 use zelus_core::Result;
 use zelus_core::analysis::NodalVariable;
@@ -14,7 +14,7 @@ use crate::law::{ContactLaw, Decision, Multiplier, NodeLaw, SlaveNumbers, SlipRu
 use crate::slave_nodes::Columns;
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
 
-/// What a family does about friction.
+/// Friction of a formulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Friction {
     /// Nothing.
@@ -29,27 +29,27 @@ pub enum Friction {
 #[derive(Clone, Copy)]
 pub struct ByNode {
     /// For steps that iterate: the traction is a multiplier, which couples the pairs of a node.
-    pub implicit: &'static Family,
+    pub implicit: &'static Formulation,
     /// For explicit steps, which have the tractions before they look at pairs.
-    pub explicit: &'static Family,
+    pub explicit: &'static Formulation,
 }
 
 registered_kind! {
-    /// A family of contact, by its `mortar_type`.
-    pub struct FamilyEntry("contact_family", "mortar-type") {
-        build: Family;
+    /// A contact formulation, by its `mortar_type`.
+    pub struct FormulationEntry("contact_formulation", "mortar-type") {
+        build: Formulation;
     }
 }
 
 registered_kind! {
-    /// A family of ties, by its `mortar_type`.
-    pub struct TyingFamilyEntry("tying_family", "mortar-type") {
-        build: TyingFamily;
+    /// A tying formulation, by its `mortar_type`.
+    pub struct TyingFormulationEntry("tying_formulation", "mortar-type") {
+        build: TyingFormulation;
     }
 }
 
-/// A family of contact.
-pub struct Family {
+/// A contact formulation.
+pub struct Formulation {
     /// Beginning of the names of its conditions, up to the shape, e.g. `ALMFrictionlessMortarContactCondition`.
     pub condition: &'static str,
     /// Its multipliers.
@@ -66,13 +66,13 @@ pub struct Family {
     pub compliant: bool,
     /// Whether an outer loop takes away by how much, by Uzawa's iteration.
     pub updated: bool,
-    /// The families that take its place where its penalty is that of whole nodes.
+    /// The formulations that take its place where its penalty is that of whole nodes.
     pub by_node: Option<ByNode>,
     /// Makes a block of pairs.
     pub block: fn(PairRequest) -> Box<dyn ContactBlock>,
 }
 
-impl Family {
+impl Formulation {
     /// A formulation without friction whose forces are those of a law, and whose conditions begin with a name.
     pub const fn of<L: NodeLaw>(condition: &'static str, variables: &'static [NodalVariable]) -> Self {
         let block = |request: PairRequest| -> Box<dyn ContactBlock> {
@@ -120,46 +120,46 @@ impl Family {
     }
 }
 
-/// A family of ties.
-pub struct TyingFamily {
+/// A tying formulation.
+pub struct TyingFormulation {
     /// Its multipliers.
     pub multiplier: Multiplier,
     /// Further nodal variables with history.
     pub variables: &'static [NodalVariable],
 }
 
-fn unknown(mortar_type: &str, families: &[&str]) -> Diagnostic {
-    let hint = did_you_mean(mortar_type, families.iter().copied());
-    Diagnostic::error("mortar-type", format!("there is no contact family {mortar_type:?}"))
-        .remedy(hint.unwrap_or_else(|| format!("families: {}", families.join(", "))))
+fn unknown(mortar_type: &str, formulations: &[&str]) -> Diagnostic {
+    let hint = did_you_mean(mortar_type, formulations.iter().copied());
+    Diagnostic::error("mortar-type", format!("there is no contact formulation {mortar_type:?}"))
+        .remedy(hint.unwrap_or_else(|| format!("formulations: {}", formulations.join(", "))))
 }
 
-/// The family of a `mortar_type`.
+/// The formulation of a `mortar_type`.
 ///
 /// # Errors
-/// A name that no family has.
-pub fn find_family(mortar_type: &str) -> Result<&'static Family, Diagnostic> {
-    let found = registry::find::<FamilyEntry>(mortar_type).map(|entry| &entry.build);
-    found.ok_or_else(|| unknown(mortar_type, &registry::names::<FamilyEntry>()))
+/// A name that no formulation has.
+pub fn find_formulation(mortar_type: &str) -> Result<&'static Formulation, Diagnostic> {
+    let found = registry::find::<FormulationEntry>(mortar_type).map(|entry| &entry.build);
+    found.ok_or_else(|| unknown(mortar_type, &registry::names::<FormulationEntry>()))
 }
 
-/// The family of ties of a `mortar_type`.
+/// The tying formulation of a `mortar_type`.
 ///
 /// # Errors
-/// A name that no such family has.
-pub fn find_tying_family(mortar_type: &str) -> Result<&'static TyingFamily, Diagnostic> {
-    let found = registry::find::<TyingFamilyEntry>(mortar_type).map(|entry| &entry.build);
-    found.ok_or_else(|| unknown(mortar_type, &registry::names::<TyingFamilyEntry>()))
+/// A name that no such formulation has.
+pub fn find_tying_formulation(mortar_type: &str) -> Result<&'static TyingFormulation, Diagnostic> {
+    let found = registry::find::<TyingFormulationEntry>(mortar_type).map(|entry| &entry.build);
+    found.ok_or_else(|| unknown(mortar_type, &registry::names::<TyingFormulationEntry>()))
 }
 
 /// The nodal variables that a `mortar_type` of either sort brings along.
 ///
 /// # Errors
-/// A name that no family has.
+/// A name that no formulation has.
 pub fn variables_of(mortar_type: &str) -> Result<&'static [NodalVariable], Diagnostic> {
-    if let Ok(family) = find_tying_family(mortar_type) {
-        return Ok(family.variables);
+    if let Ok(formulation) = find_tying_formulation(mortar_type) {
+        return Ok(formulation.variables);
     }
-    let known = || [registry::names::<FamilyEntry>(), registry::names::<TyingFamilyEntry>()].concat();
-    find_family(mortar_type).map(|family| family.variables).map_err(|_| unknown(mortar_type, &known()))
+    let known = || [registry::names::<FormulationEntry>(), registry::names::<TyingFormulationEntry>()].concat();
+    find_formulation(mortar_type).map(|formulation| formulation.variables).map_err(|_| unknown(mortar_type, &known()))
 }

@@ -6,8 +6,8 @@
 use zelus::contact_structural_mechanics::law::{
     Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters,
 };
-use zelus::contact_structural_mechanics::pairs::Family;
-use zelus::contact_structural_mechanics::register_contact_family;
+use zelus::contact_structural_mechanics::pairs::Formulation;
+use zelus::contact_structural_mechanics::register_contact_formulation;
 use zelus::contact_structural_mechanics::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE as PRESSURE;
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
@@ -36,11 +36,11 @@ impl NodeLaw for SoftLayer {
     }
 }
 
-register_contact_family! { "ALMContactSoftLayer",
+register_contact_formulation! { "ALMContactSoftLayer",
     about: "frictionless contact through a soft layer",
     source: "p = c g",
     conditions: ["SoftLayerMortarContactCondition", "SoftLayerAxisymMortarContactCondition"],
-    build: Family::of::<SoftLayer>(
+    build: Formulation::of::<SoftLayer>(
         "SoftLayerMortarContactCondition",
         &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],
     ),
