@@ -11,9 +11,9 @@ use zelus_core::model::ModelPart;
 use zelus_core::strategies::CRITICAL_STEP;
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NODAL_MASS};
 
+use crate::flags::CONTACT;
 use crate::interface::Interface;
 use crate::slave_nodes::SlaveStates;
-use crate::solver::DELTA_TIME_FACTOR;
 use crate::variables::INITIAL_PENALTY;
 
 /// Share of ω² that contact has even where bodies leave it less: longer steps are warned of anyway.
@@ -30,7 +30,7 @@ pub(crate) struct BearablePenalty {
 impl BearablePenalty {
     /// Step start: lowers the penalty of all nodes to what the step carries, and never raises it: a spring that stiffens under
     /// load makes energy. `revolution` is the area of a facet by length and radius where the plane is rotated. One that is `given`, or `weighted` and so by area, stays and is warned of. `stiffened` is the factor by
-    /// which it grows with the gap.
+    /// which it grows with the gap, `delta_time_factor` that of steps with contact.
     pub(crate) fn begin_step(
         &mut self,
         part: &mut ModelPart,
@@ -40,9 +40,10 @@ impl BearablePenalty {
         stiffened: f64,
         given: bool,
         weighted: bool,
+        delta_time_factor: f64,
     ) -> Option<Diagnostic> {
         let [load, area] = *self.load.get_or_insert_with(|| load(part, interfaces, revolution));
-        let factor = if part.info.is("CONTACT") { 1.0 } else { part.info.value_or(DELTA_TIME_FACTOR, 1.0) };
+        let factor = if part.info.is(CONTACT) { 1.0 } else { delta_time_factor };
         let step = part.info.delta_time * factor;
         let critical = part.info.value_or(CRITICAL_STEP, f64::INFINITY);
         let square = 4.0 / (step * step) * (1.0 - (step / critical).powi(2)).max(LEAST);

@@ -27,7 +27,6 @@ use crate::results::{heat, joins, pair_states, write_forces, write_states};
 use crate::safeguards::{FreeBodies, Meetings, near_nodes};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::SlaveState;
-use crate::solver::{COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, KEEP_MASS};
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
 /// Iterations after which the choices of the integration are frozen: most steps have converged by then, as in Kratos.
@@ -109,6 +108,11 @@ impl ContactInteraction {
         Ok(())
     }
 
+    /// Whether other nodes carry the mass of those of contact in motion.
+    fn takes_mass(&self) -> bool {
+        self.acting && !self.contact.setup.settings.solver.keeps_mass
+    }
+
     /// Writes what is looked at of the present state.
     fn write_results(&self, part: &mut ModelPart) -> Result<()> {
         let frictional = self.contact.setup.settings.formulation.frictional();
@@ -127,7 +131,7 @@ impl Interaction for ContactInteraction {
     }
 
     fn step_factor(&self, part: &ModelPart) -> f64 {
-        if part.info.is(CONTACT) { part.info.value_or(DELTA_TIME_FACTOR, 1.0) } else { 1.0 }
+        if part.info.is(CONTACT) { self.contact.setup.settings.solver.delta_time_factor } else { 1.0 }
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
@@ -147,7 +151,7 @@ impl Interaction for ContactInteraction {
         // Forces of a spring by node have a potential, and keep the energy as long as nothing scales them.
         self.contact.setup.settings.adaptation.dynamic_factor = (explicit.is_some()
             && self.contact.setup.settings.weighted_penalty)
-            || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
+            || (self.contact.setup.settings.solver.dynamic_factor && part.nodes.history.has(VELOCITY.name()));
         self.contact.setup.calibrate(part, &self.contact.pairing.interfaces, &mut self.contact.messages)?;
         self.growth = explicit.map(|explicit| explicit.growth(part));
         self.find_bodies(part)?;
@@ -171,8 +175,9 @@ impl Interaction for ContactInteraction {
                 let (given, weighted) = (settings.manual.is_some(), settings.weighted_penalty);
                 let revolution = self.contact.setup.parameters.segmentation.revolution();
                 let (states, interfaces) = (&mut self.contact.states, &self.contact.pairing.interfaces);
-                let most = 1.0 + explicit.most;
-                let said = self.bearable.begin_step(part, states, interfaces, revolution, most, given, weighted);
+                let (most, factor) = (1.0 + explicit.most, settings.solver.delta_time_factor);
+                let said =
+                    self.bearable.begin_step(part, states, interfaces, revolution, most, given, weighted, factor);
                 self.contact.messages.extend(said);
             }
             self.contact.find_contact(part)?;
@@ -443,16 +448,22 @@ impl FirstIterate for ContactInteraction {
 }
 
 impl Massless for ContactInteraction {
-    fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes {
+    fn begin_dynamic_step(&mut self, part: &ModelPart) {
         if !self.contact.setup.parameters.dynamic {
             self.contact.setup.parameters =
                 Arc::new(StepParameters { dynamic: true, ..(*self.contact.setup.parameters).clone() });
         }
-        if !self.acting || part.info.is(KEEP_MASS) {
-            return MasslessNodes::default();
+        if self.takes_mass() {
+            self.near_nodes = near_nodes(part, &self.contact.pairing, &self.contact.states, &self.near_nodes);
         }
-        self.near_nodes = near_nodes(part, &self.contact.pairing, &self.contact.states, &self.near_nodes);
-        MasslessNodes { surface: self.contact.pairing.nodes(), near: self.near_nodes.clone() }
+    }
+
+    fn massless_nodes(&self) -> MasslessNodes {
+        if self.takes_mass() {
+            MasslessNodes { surface: self.contact.pairing.nodes(), near: self.near_nodes.clone() }
+        } else {
+            MasslessNodes::default()
+        }
     }
 }
 

@@ -18,7 +18,6 @@ use crate::safeguards::settle_all;
 use crate::search::{GapCheck, assign_roles};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, multiplier_columns, owners_name, write_status};
-use crate::solver::{AVERAGED_EDGES, feature_angle};
 
 /// Contact at a moment.
 pub(super) struct ContactState {
@@ -62,7 +61,7 @@ impl ContactState {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
-        messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
+        messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves), &settings.solver));
         Ok(Self {
             messages,
             pairing: Pairing::new(interfaces, settings.nodal_normals),
@@ -76,7 +75,7 @@ impl ContactState {
 
     /// Makes the states of all nodes that may carry multipliers, none of them in contact.
     pub(super) fn make_states(&mut self, part: &mut ModelPart) {
-        let angle = feature_angle(part);
+        let angle = self.setup.settings.solver.feature_angle;
         let name = self.owners_name();
         let table = self.pairing.make_patches(part, angle, &name);
         write_nodal_normals(part, &self.pairing, &self.holding);
@@ -166,7 +165,7 @@ impl ContactState {
     pub(super) fn find_normals(&mut self, part: &mut ModelPart) {
         write_nodal_normals(part, &self.pairing, &self.holding);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
-        if !part.info.is(AVERAGED_EDGES) {
+        if self.setup.settings.solver.feature_angle.is_some() {
             let planes = self.holding.planes();
             take_normals_of_masters(part, &mut self.states, &self.pairing, &|node| planes.contains_key(&node));
         }

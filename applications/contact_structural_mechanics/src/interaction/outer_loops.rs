@@ -11,7 +11,6 @@ use crate::adaptation::{FrictionRamp, PenaltyRamp, Uzawa};
 use crate::pairs::Multiplier;
 use crate::safeguards::{ContactWork, StepSearch, Unseen, coarse_impact, pierced, too_deep};
 use crate::slave_nodes::SlaveStates;
-use crate::solver::{ENSURE_CONTACT, LARGEST_PENETRATION};
 
 /// The loops of a step.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -78,6 +77,7 @@ impl OuterLoops {
         set: &mut SetStage,
     ) -> Result<Outer> {
         let (formulation, scale_factor) = (contact.setup.settings.formulation, contact.setup.parameters.scale_factor);
+        let solver = contact.setup.settings.solver;
         if formulation.updated {
             let outer =
                 self.uzawa.update(&part.slave_nodes, &mut contact.states, scale_factor, contact.setup.settings.uzawa);
@@ -118,20 +118,23 @@ impl OuterLoops {
         {
             return Ok(Outer::Failed(why));
         }
-        if let Some(why) = too_deep(part, &contact.states, contact.setup.resolution.length) {
+        if let Some(why) = too_deep(part, &contact.states, solver.largest_penetration, contact.setup.resolution.length)
+        {
             return Ok(Outer::Failed(why));
         }
-        if let Some(why) = self.unseen.why(part, &contact.pairing.interfaces, |at| contact.in_contact(at)) {
+        if let Some(why) =
+            self.unseen.why(part, &contact.pairing.interfaces, solver.largest_penetration, |at| contact.in_contact(at))
+        {
             return Ok(Outer::Failed(why));
         }
         // Of bodies in motion the energy that contact makes tells what is too much.
         if !contact.setup.parameters.dynamic
-            && part.info.value_or(LARGEST_PENETRATION, 0.0) > 0.0
+            && solver.largest_penetration > 0.0
             && let Some(why) = pierced(part, &contact.pairing, &contact.states)
         {
             return Ok(Outer::Failed(why));
         }
-        if part.info.is(ENSURE_CONTACT) && contact.states.count_active() == 0 {
+        if solver.ensures_contact && contact.states.count_active() == 0 {
             return Err(zelus_core::Error::NotConverged(
                 "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
             ));
@@ -139,12 +142,12 @@ impl OuterLoops {
         self.friction_ramp.solve();
         if contact.setup.parameters.dynamic {
             self.work.of_step(part, &contact.pairing.as_entities())?;
-            if let Some(why) = self.work.too_much(part) {
+            if let Some(why) = self.work.too_much(part, &solver) {
                 return Ok(Outer::Failed(why));
             }
         }
         let start = (&*self.start_gaps, &mut self.impact_error);
-        Ok(coarse_impact(part, &contact.states, formulation, scale_factor, start))
+        Ok(coarse_impact(part, &contact.states, formulation, scale_factor, solver.impact_tolerance, start))
     }
 
     /// The step is accepted.

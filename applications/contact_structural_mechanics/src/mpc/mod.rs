@@ -9,6 +9,7 @@ mod node_relation;
 mod relations;
 mod slider_forces;
 
+pub use mpc_contact_settings::updates_each_iteration;
 pub use mpc_interaction::MpcInteraction;
 pub use mpc_kind::{MpcKind, mpc_contact_type};
 pub use mpc_settings::MpcSettings;

@@ -1,12 +1,18 @@
 //! `mpc_contact_settings` of the solver: contact by constraints needs no unknowns of its own.
 
 use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry};
+use zelus_core::model::ProcessInfo;
 use zelus_core::register;
 
 use super::mpc_kind::{MpcKind, mpc_contact_type};
 
 /// Mark of the step data: relations are made anew in every iteration.
-pub(crate) const UPDATE_EACH_ITERATION: &str = "UPDATE_EACH_NL_ITERATION";
+const UPDATE_EACH_ITERATION: &str = "UPDATE_EACH_NL_ITERATION";
+
+/// Whether the solver of a part asks for new relations in every iteration.
+pub fn updates_each_iteration(info: &ProcessInfo) -> bool {
+    info.is(UPDATE_EACH_ITERATION)
+}
 
 register! { SolverExtensionEntry "mpc_contact_settings",
     about: "what the solver needs to know of contact by constraints",

@@ -18,7 +18,6 @@ use zelus_core::vector3::{dot, norm, scale};
 use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
-use super::mpc_contact_settings::UPDATE_EACH_ITERATION;
 use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_kind::MpcKind;
 use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
@@ -54,7 +53,6 @@ pub struct MpcInteraction {
     saved: SlaveStates,
     relations: Relations,
     friction: MpcFriction,
-    update_each_iteration: bool,
     young: f64,
     first_id: usize,
     version: u64,
@@ -100,7 +98,7 @@ impl MpcInteraction {
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
         if !settings.ties() {
-            messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
+            messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves), &settings.solver));
         }
         Ok(Self {
             messages,
@@ -110,7 +108,6 @@ impl MpcInteraction {
             saved: SlaveStates::default(),
             relations: Relations::default(),
             friction: MpcFriction::default(),
-            update_each_iteration: false,
             young: 0.0,
             first_id: 0,
             version: 0,
@@ -297,7 +294,6 @@ impl Interaction for MpcInteraction {
         part.nodes.history.add(&REACTION);
         find_nodal_h(part);
         part.info.marks.insert(CONTACT, true);
-        self.update_each_iteration = part.info.is(UPDATE_EACH_ITERATION);
         self.first_id = part.constraints.iter().map(|c| c.id + 1).max().unwrap_or(1);
         let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
         let young = |id| part.properties.get(id).and_then(|properties| properties.number("YOUNG_MODULUS"));
@@ -482,9 +478,9 @@ impl ActiveSet for MpcInteraction {
         if !self.acting {
             return Ok(change);
         }
-        if self.update_each_iteration && !self.settings.ties() && self.settings.update_relations {
+        if self.settings.update_each_iteration && !self.settings.ties() && self.settings.update_relations {
             self.follow(part, iteration);
-        } else if self.update_each_iteration && !(self.settings.ties() && self.settings.consistent()) {
+        } else if self.settings.update_each_iteration && !(self.settings.ties() && self.settings.consistent()) {
             nodal_normals(part, &self.interfaces);
             self.relations.renew(part, &self.interfaces, &self.settings);
         }
@@ -496,7 +492,7 @@ impl ActiveSet for MpcInteraction {
             let stiffness = stiffness(self.young, &part.nodes);
             self.friction.update(part, &self.relations.nodes, &mut self.states, stiffness, &mut change);
         }
-        if self.update_each_iteration || change.count() > 0 || !self.friction.directions.is_empty() {
+        if self.settings.update_each_iteration || change.count() > 0 || !self.friction.directions.is_empty() {
             self.write_constraints(part);
         }
         self.states.export(&mut part.nodes);

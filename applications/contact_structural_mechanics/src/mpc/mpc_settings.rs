@@ -13,6 +13,7 @@ use crate::friction::FrictionSettings;
 use crate::interface::{Facet, Interface, Roles};
 use crate::mortar::SegmentationSettings;
 use crate::search::SearchSettings;
+use crate::solver::ContactSolverSettings;
 
 /// What a deck chooses about contact by constraints.
 pub struct MpcSettings {
@@ -36,6 +37,8 @@ pub struct MpcSettings {
     pub segmentation: SegmentationSettings,
     /// Pressure, in Young's moduli, below which an active node is released.
     pub reaction_check_stiffness_factor: f64,
+    /// Whether relations are made anew in every iteration.
+    pub update_each_iteration: bool,
     /// Whether relations are made anew at each step.
     pub update_relations: bool,
     /// How the rows of a node make up its relation.
@@ -44,6 +47,8 @@ pub struct MpcSettings {
     pub keeps_first_opening: bool,
     /// Whether sides are exchanged where supports hold all slaves of an interface.
     pub swaps_held_slaves: bool,
+    /// Settings of contact at the solver.
+    pub solver: ContactSolverSettings,
 }
 
 impl MpcSettings {

@@ -25,7 +25,6 @@ use crate::pairs::{
 use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, SlaveSums, SlaveTable};
-use crate::solver::AVERAGED_EDGES;
 
 /// Cosine of the angle between normals beyond which facets do not face each other, 84°.
 const FACING: f64 = 0.1;
@@ -199,7 +198,7 @@ impl Pairing {
         let still = predicted_positions(part, settings.search.dynamic);
         let sides = |key: PairKey| (self.slave(key).role, self.master(key).role);
         let of_these_sides = |pair: &Pair| sides(pair.key) == (Roles::Slave, Roles::Master);
-        let edges = !part.info.is(AVERAGED_EDGES);
+        let edges = settings.solver.feature_angle.is_some();
         let known = self.pairs().into_iter().filter(of_these_sides).filter(|pair| !edges || self.meet(part, pair.key));
         let mut known: BTreeMap<PairKey, Pair> = known.map(|pair| (pair.key, pair)).collect();
         let (mut beyond, mut touching) = (BTreeSet::new(), BTreeSet::new());
@@ -259,7 +258,7 @@ impl Pairing {
             })
         };
         let all: Vec<(PairKey, bool)> = self.interfaces.iter().enumerate().flat_map(of_interface).collect();
-        if part.info.is(AVERAGED_EDGES) {
+        if settings.solver.feature_angle.is_none() {
             return all;
         }
         let meeting = parallel::select(all.len(), PAIRS, |at| self.meet(part, all[at].0));

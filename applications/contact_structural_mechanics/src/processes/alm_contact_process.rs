@@ -25,6 +25,7 @@ use crate::mortar::OperatorThreshold;
 use crate::pairs::{Formulation, find_formulation};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 use crate::settings::ContactSettings;
+use crate::solver::ContactSolverSettings;
 
 #[derive(Debug, Deserialize)]
 struct Search {
@@ -174,6 +175,7 @@ fn interaction(
     problems.absorb(check_search(settings));
     problems.absorb(segmentation(settings));
     problems.finish()?;
+    let solver = ContactSolverSettings::of(&part.info);
     let named = named.expect("it is known");
     let formulation = match named.by_node {
         Some(by_node) if !whole.parameters.penalty_of_weighted_gaps => {
@@ -265,6 +267,7 @@ fn interaction(
         least_coverage: whole.least_coverage,
         segmentation: segmentation(settings)?,
         axisymmetric: whole.alternative_formulations.axisymmetric,
+        solver,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     check_use(part, formulation, settings)?;

@@ -13,6 +13,7 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
 use crate::pairs::find_tying_formulation;
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use crate::solver::ContactSolverSettings;
 use crate::tying::{TyingInteraction, TyingSettings};
 
 #[derive(Debug, Deserialize)]
@@ -70,6 +71,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         manual: manual.manual_scale_factor.then_some(manual.scale_factor),
         stiffness_factor: manual.stiffness_factor,
         mind_supports: whole.mind_supports,
+        feature_angle: ContactSolverSettings::of(&part.info).feature_angle,
     };
     let interaction = TyingInteraction::new(chosen, part)?;
     Ok(InteractionProcess::boxed(whole.model_part_name, interaction))

@@ -15,7 +15,6 @@ use crate::interface::SlaveIndex;
 use crate::pairing::Pairing;
 use crate::pairs::{Formulation, Multiplier};
 use crate::slave_nodes::{SlaveState, SlaveStates};
-use crate::solver::IMPACT_TOLERANCE;
 use crate::variables::NODAL_H;
 
 /// Slave nodes within a mesh size of a master, or what they may move in two steps, and the nodes of those masters, ascending.
@@ -47,16 +46,17 @@ const LEAST_GAIN: f64 = 0.1;
 
 /// Whether the step is too coarse for the nodes that closed or opened in it.
 ///
-/// `start` are the weighted gaps at its start. `before` is the error of the last attempt at this step, zero at first: where a
+/// `tolerance` is the share of the energy of motion that it may make or lose; 0: any. `start` are the weighted gaps at its start. `before` is the error of the last attempt at this step, zero at first: where a
 /// shorter step has not helped, as where supports jump, still shorter ones do not either.
 pub(crate) fn coarse_impact(
     part: &ModelPart,
     states: &SlaveStates,
     formulation: &Formulation,
     scale_factor: f64,
+    tolerance: f64,
     (start, before): (&[f64], &mut f64),
 ) -> Outer {
-    let (tolerance, energy) = (part.info.value_or(IMPACT_TOLERANCE, 0.0), part.info.value_or(ENERGY_OF_MOTION, 0.0));
+    let energy = part.info.value_or(ENERGY_OF_MOTION, 0.0);
     if tolerance == 0.0 || energy == 0.0 {
         return Outer::Done;
     }

@@ -6,12 +6,16 @@ use zelus_core::model::{ModelPart, bodies_of_nodes};
 use crate::interface::{Interface, notes_of_bodies};
 use crate::results::{Parts, name};
 use crate::search::settle;
-use crate::solver::{ADJUST_INITIAL, ADJUST_TOLERANCE, LARGEST_PENETRATION};
+use crate::solver::ContactSolverSettings;
 
 /// Before the first step: moves slave nodes onto their masters where the deck asks for it, or tells which lie inside them.
-pub(crate) fn settle_all(part: &mut ModelPart, interfaces: &[Interface], parts: Parts<'_>) -> Vec<Diagnostic> {
-    let tolerance = part.info.is(ADJUST_INITIAL).then(|| part.info.value_or(ADJUST_TOLERANCE, 0.0));
-    let refuses = part.info.value_or(LARGEST_PENETRATION, 0.0) > 0.0;
+pub(crate) fn settle_all(
+    part: &mut ModelPart,
+    interfaces: &[Interface],
+    parts: Parts<'_>,
+    solver: &ContactSolverSettings,
+) -> Vec<Diagnostic> {
+    let (tolerance, refuses) = (solver.adjust_tolerance, solver.largest_penetration > 0.0);
     let mut out = notes_of_bodies(part, parts.0);
     let bodies = bodies_of_nodes(part);
     let settled =

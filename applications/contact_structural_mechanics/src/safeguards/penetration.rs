@@ -3,12 +3,14 @@
 use zelus_core::model::ModelPart;
 
 use crate::slave_nodes::SlaveStates;
-use crate::solver::LARGEST_PENETRATION;
 use crate::variables::NODAL_H;
 
-/// Why a state cannot be accepted in which a node in contact is too deep in the master; depths up to `least` are round-off.
-pub(crate) fn too_deep(part: &ModelPart, states: &SlaveStates, least: f64) -> Option<String> {
-    let most = Some(part.info.value_or(LARGEST_PENETRATION, 0.0)).filter(|most| *most > 0.0)?;
+/// Why a state cannot be accepted in which a node in contact is deeper in the master than `most` of its mesh size, 0: any; depths up to
+/// `least` are round-off.
+pub(crate) fn too_deep(part: &ModelPart, states: &SlaveStates, most: f64, least: f64) -> Option<String> {
+    if most <= 0.0 {
+        return None;
+    }
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     // A node without a mesh size has no share that could be judged.
     let share = |node: u32, depth: f64| if sizes[node as usize] > 0.0 { depth / sizes[node as usize] } else { 0.0 };

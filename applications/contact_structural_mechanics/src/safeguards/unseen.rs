@@ -7,7 +7,6 @@ use zelus_core::vector3::{add, dot, norm, scale, sub};
 use super::late_pairs::{farthest_motion, step_start};
 use crate::interface::{Facet, Interface, Roles};
 use crate::search::{Bounds, Tree, inside};
-use crate::solver::LARGEST_PENETRATION;
 use crate::variables::NODAL_H;
 
 /// Share of the depth that counts by which nodes may move until they are looked at again.
@@ -23,7 +22,7 @@ pub(crate) struct Unseen {
 }
 
 impl Unseen {
-    /// Why a converged state cannot be accepted: bodies are in each other by more than `"largest_penetration"` of their mesh size
+    /// Why a converged state cannot be accepted: bodies are in each other by more than `most` of their mesh size
     /// where no node of an interface is in contact, or nodes have gone through a master in the step. Collective.
     ///
     /// `in_contact` says whether a slave node of an interface is in contact.
@@ -31,9 +30,9 @@ impl Unseen {
         &mut self,
         part: &ModelPart,
         interfaces: &[Interface],
+        most: f64,
         in_contact: impl Fn(usize) -> bool,
     ) -> Option<String> {
-        let most = part.info.value_or(LARGEST_PENETRATION, 0.0);
         let idle = interfaces.iter().enumerate().filter(|(at, interface)| !interface.open && !in_contact(*at));
         let idle: Vec<&Interface> = idle.map(|(_, interface)| interface).collect();
         if most <= 0.0 || idle.is_empty() {

@@ -12,7 +12,7 @@ use zelus_core::strategies::ENERGY_OF_MOTION;
 use zelus_core::{Carrier, Result};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use crate::solver::{KEEP_MASS, LARGEST_ENERGY_GAIN};
+use crate::solver::ContactSolverSettings;
 
 /// Share of the energy of motion that contact may have made, or lost without friction, before a warning says so.
 const WORTH_A_WARNING: f64 = 0.02;
@@ -89,10 +89,10 @@ impl ContactWork {
 
     /// Why the present step cannot be accepted, when contact has made too much energy by its end; where nodes of contact keep
     /// their mass, as a deck may ask, every step can.
-    pub(crate) fn too_much(&self, part: &ModelPart) -> Option<String> {
-        let (gain, most) = (self.gain(part), part.info.value_or(LARGEST_ENERGY_GAIN, 0.0));
+    pub(crate) fn too_much(&self, part: &ModelPart, solver: &ContactSolverSettings) -> Option<String> {
+        let (gain, most) = (self.gain(part), solver.largest_energy_gain);
         let fact = || format!("contact has made {:.1} % of the energy of motion from nothing: {REMEDY}", 100.0 * gain);
-        (most > 0.0 && gain > most && !part.info.is(KEEP_MASS)).then(fact)
+        (most > 0.0 && gain > most && !solver.keeps_mass).then(fact)
     }
 
     /// Work of contact since the run began, the present step included.

@@ -11,6 +11,7 @@ use crate::law::{Augmentation, Nitsche, NormalVariation};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Formulation;
 use crate::search::SearchSettings;
+use crate::solver::ContactSolverSettings;
 
 /// What a deck chooses about contact.
 #[derive(Clone)]
@@ -77,6 +78,8 @@ pub struct ContactSettings {
     pub segmentation: SegmentationSettings,
     /// Whether the plane is rotated about the y axis.
     pub axisymmetric: bool,
+    /// Settings of contact at the solver.
+    pub solver: ContactSolverSettings,
 }
 
 impl ContactSettings {

@@ -1,8 +1,5 @@
 //! What contact adds to the solver's settings.
 
-mod contact_settings;
+mod contact_solver_settings;
 
-pub(crate) use contact_settings::{
-    ADJUST_INITIAL, ADJUST_TOLERANCE, AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, ENSURE_CONTACT,
-    IMPACT_TOLERANCE, KEEP_MASS, LARGEST_ENERGY_GAIN, LARGEST_PENETRATION, feature_angle,
-};
+pub use contact_solver_settings::ContactSolverSettings;

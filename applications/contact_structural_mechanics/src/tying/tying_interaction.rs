@@ -28,7 +28,6 @@ use crate::pairs::{
 use crate::results::{joins, name};
 use crate::search::SearchSettings;
 use crate::slave_nodes::{SlaveTable, multiplier_columns, owners_name, set_name};
-use crate::solver::feature_angle;
 
 /// What a deck chooses about a tie.
 pub struct TyingSettings {
@@ -54,6 +53,8 @@ pub struct TyingSettings {
     pub stiffness_factor: f64,
     /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.
     pub mind_supports: bool,
+    /// Angle between the normals of two slave facets, in degrees, at which their patch ends; `None` where no edge ends it.
+    pub feature_angle: Option<f64>,
 }
 
 /// Share of the scale factor that makes redundant multipliers regular.
@@ -310,8 +311,7 @@ impl Interaction for TyingInteraction {
         part.info.values.insert("SCALE_FACTOR", self.scale_factor);
         debug_assert!(self.interfaces.iter().all(|i| i.facets.iter().all(|f| f.role != Roles::Open)));
         nodal_normals(part, &self.interfaces);
-        let angle = feature_angle(part);
-        self.patches = Patches::new(part, &self.interfaces, angle);
+        self.patches = Patches::new(part, &self.interfaces, self.settings.feature_angle);
         self.table = SlaveTable::of_patches(part, &self.patches, &self.owners_name());
         if let Some((name, components)) = self.settings.formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);

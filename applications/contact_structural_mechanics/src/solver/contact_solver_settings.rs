@@ -1,7 +1,7 @@
 //! `contact_settings` of the solver: the formulation decides which variables the nodes carry.
 
 use zelus_core::analysis::{Cutting, ExtensionDefinition, SolverExtensionEntry};
-use zelus_core::model::ModelPart;
+use zelus_core::model::ProcessInfo;
 use zelus_core::register;
 use zelus_core::strategies::{
     CONDENSE_MULTIPLIERS, CONDITION_NUMBER, KEEP_MULTIPLIERS, OFF_NODE_TOLERANCE, ONLY_CONDENSED, ZERO_ROW_TOLERANCE,
@@ -11,31 +11,71 @@ use crate::interface::FEATURE_ANGLE;
 use crate::pairs::variables_of;
 
 /// No node in contact is an error.
-pub const ENSURE_CONTACT: &str = "ENSURE_CONTACT";
+const ENSURE_CONTACT: &str = "ENSURE_CONTACT";
 /// Contact forces are scaled in the step in which a gap closes.
-pub const COMPUTE_DYNAMIC_FACTOR: &str = "COMPUTE_DYNAMIC_FACTOR";
+const COMPUTE_DYNAMIC_FACTOR: &str = "COMPUTE_DYNAMIC_FACTOR";
 /// Share of the energy of motion that a step may make or lose where contact closes or opens.
-pub const IMPACT_TOLERANCE: &str = "IMPACT_TOLERANCE";
+const IMPACT_TOLERANCE: &str = "IMPACT_TOLERANCE";
 /// Slave nodes on sharp edges have the mean normal of their faces.
-pub const AVERAGED_EDGES: &str = "AVERAGED_EDGES";
+const AVERAGED_EDGES: &str = "AVERAGED_EDGES";
 /// Angle between the normals of two slave facets, in degrees, at which their patch ends.
-pub const CONTACT_FEATURE_ANGLE: &str = "CONTACT_FEATURE_ANGLE";
+const CONTACT_FEATURE_ANGLE: &str = "CONTACT_FEATURE_ANGLE";
 /// Nodes of contact keep their mass in motion.
-pub const KEEP_MASS: &str = "KEEP_MASS";
+const KEEP_MASS: &str = "KEEP_MASS";
 /// Share of the energy of motion that contact may make before a step is refused; 0: any.
-pub const LARGEST_ENERGY_GAIN: &str = "LARGEST_ENERGY_GAIN";
+const LARGEST_ENERGY_GAIN: &str = "LARGEST_ENERGY_GAIN";
 /// Depth of a node in contact, in mesh sizes, beyond which no state is accepted; 0: any.
-pub const LARGEST_PENETRATION: &str = "LARGEST_PENETRATION";
+const LARGEST_PENETRATION: &str = "LARGEST_PENETRATION";
 /// Slave nodes begin on their masters.
-pub const ADJUST_INITIAL: &str = "ADJUST_INITIAL";
+const ADJUST_INITIAL: &str = "ADJUST_INITIAL";
 /// Distance, in mesh sizes, from which they are moved there.
-pub const ADJUST_TOLERANCE: &str = "ADJUST_TOLERANCE";
+const ADJUST_TOLERANCE: &str = "ADJUST_TOLERANCE";
 /// Factor of explicit steps while there is contact.
-pub const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
+const DELTA_TIME_FACTOR: &str = "DELTA_TIME_FACTOR_FOR_CONTACT";
 
-/// Feature angle of a model part, in degrees; `None` where all facets at a node share its normal, as in Kratos.
-pub(crate) fn feature_angle(part: &ModelPart) -> Option<f64> {
-    (!part.info.is(AVERAGED_EDGES)).then(|| part.info.value_or(CONTACT_FEATURE_ANGLE, FEATURE_ANGLE))
+/// `contact_settings` of the solver, as contact takes them.
+///
+/// The solver writes them into the step data, since ranks share a model part and not a deck. [`ContactSolverSettings::of`] is the only
+/// place that reads them there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactSolverSettings {
+    /// Whether a step without a node in contact is an error.
+    pub ensures_contact: bool,
+    /// Whether contact forces are scaled in the step in which a gap closes.
+    pub dynamic_factor: bool,
+    /// Whether nodes of contact keep their mass in motion.
+    pub keeps_mass: bool,
+    /// Share of the energy of motion that a step may make or lose where contact closes or opens; 0: any.
+    pub impact_tolerance: f64,
+    /// Share of the energy of motion that contact may make before a step is refused; 0: any.
+    pub largest_energy_gain: f64,
+    /// Depth of a node in contact, in mesh sizes, beyond which no state is accepted; 0: any.
+    pub largest_penetration: f64,
+    /// Distance, in mesh sizes, from which slave nodes are moved onto their masters before the first step; `None` moves none.
+    pub adjust_tolerance: Option<f64>,
+    /// Angle between the normals of two slave facets, in degrees, at which their patch ends; `None` where all facets at a node share
+    /// its normal, as in Kratos.
+    pub feature_angle: Option<f64>,
+    /// Factor of explicit steps while there is contact.
+    pub delta_time_factor: f64,
+}
+
+impl ContactSolverSettings {
+    /// The settings that a solver has written into the step data; without `contact_settings` no state is refused.
+    pub fn of(info: &ProcessInfo) -> Self {
+        let share = |name| info.value_or(name, 0.0);
+        Self {
+            ensures_contact: info.is(ENSURE_CONTACT),
+            dynamic_factor: info.is(COMPUTE_DYNAMIC_FACTOR),
+            keeps_mass: info.is(KEEP_MASS),
+            impact_tolerance: share(IMPACT_TOLERANCE),
+            largest_energy_gain: share(LARGEST_ENERGY_GAIN),
+            largest_penetration: share(LARGEST_PENETRATION),
+            adjust_tolerance: info.is(ADJUST_INITIAL).then(|| share(ADJUST_TOLERANCE)),
+            feature_angle: (!info.is(AVERAGED_EDGES)).then(|| info.value_or(CONTACT_FEATURE_ANGLE, FEATURE_ANGLE)),
+            delta_time_factor: info.value_or(DELTA_TIME_FACTOR, 1.0),
+        }
+    }
 }
 
 register! { SolverExtensionEntry "contact_settings",
