@@ -31,26 +31,26 @@ pub(crate) fn isolate_beside(
             slaves.map(move |(f, facet)| (facet, pairing.patches.of_facet(i as u32, f as u32, facet.nodes.len())))
         })
     };
-    let mut whole = SlaveSums::<1>::new(states);
+    let mut whole = SlaveSums::<f64>::new(states);
     for (facet, slaves) in facets() {
         let size = norm(vector_area(facet.shape, &facet.positions(part)));
         let mean = facet.nodes.iter().map(|&node| weight(node)).sum::<f64>() / facet.nodes.len() as f64;
         // The shape function of a node integrates this of a weight along a line: on the axis it is not nothing.
         for (local, (&node, &slave)) in facet.nodes.iter().zip(slaves).enumerate() {
-            whole[slave][0] += size / parts(facet.shape, local) * (weight(node) + 2.0 * mean) / 3.0;
+            whole[slave] += size / parts(facet.shape, local) * (weight(node) + 2.0 * mean) / 3.0;
         }
     }
     let share = |slave: SlaveIndex| match whole[slave] {
-        [whole] if whole > 0.0 => states[slave].area / whole,
+        whole if whole > 0.0 => states[slave].area / whole,
         _ => 0.0,
     };
-    let mut best = SlaveSums::<1>::new(states);
+    let mut best = SlaveSums::<f64>::new(states);
     for (_, slaves) in facets() {
         let most = slaves.iter().map(|&slave| share(slave)).fold(0.0, f64::max);
-        slaves.iter().for_each(|&slave| best[slave][0] = best[slave][0].max(most));
+        slaves.iter().for_each(|&slave| best[slave] = best[slave].max(most));
     }
     let bound = |slave: SlaveIndex| least * if states[slave].active { 0.5 } else { 1.0 };
     let slaves = states.slaves();
-    let beside: Vec<bool> = slaves.iter().map(|&slave| share(slave) < bound(slave) * best[slave][0]).collect();
+    let beside: Vec<bool> = slaves.iter().map(|&slave| share(slave) < bound(slave) * best[slave]).collect();
     slaves.iter().zip(beside).for_each(|(&slave, beside)| states[slave].isolated |= beside);
 }

@@ -11,7 +11,7 @@ use zelus_core::vector3::{add, dot, norm, scale};
 
 use super::pairs_of_interfaces::Pairing;
 use crate::interface::SlaveIndex;
-use crate::slave_nodes::{SlaveStates, SlaveSums};
+use crate::slave_nodes::{SlaveStates, SlaveSums, Summands};
 
 /// Cosine of the angle between a facet and the mean normal of its node, beyond which the node is on a sharp fold: 35°.
 const SHARP: f64 = 0.82;
@@ -84,6 +84,24 @@ pub(crate) fn keep_one_of_a_normal(states: &mut SlaveStates) {
     less.into_iter().for_each(|slave| states[slave].isolated = true);
 }
 
+/// Sum of the normals into the masters that a slave node overlaps, by area, and the sum of the areas.
+#[derive(Clone, Copy, Default)]
+struct FacedNormals {
+    normal: [f64; 3],
+    area: f64,
+}
+
+impl Summands<4> for FacedNormals {
+    fn numbers(&self) -> [f64; 4] {
+        let [x, y, z] = self.normal;
+        [x, y, z, self.area]
+    }
+
+    fn of([x, y, z, area]: [f64; 4]) -> Self {
+        Self { normal: [x, y, z], area }
+    }
+}
+
 /// Sums of the normals into the masters that slave nodes on rims and sharp folds overlap, by their areas, and the areas. Collective.
 fn opposite_normals(
     part: &ModelPart,
@@ -104,17 +122,17 @@ fn opposite_normals(
     if !wanted.contains(&true) {
         return Vec::new();
     }
-    let mut sums = SlaveSums::<4>::new(states);
+    let mut sums = SlaveSums::<FacedNormals>::new(states);
     for pair in pairing.blocks.iter().flat_map(|block| block.pairs()).filter(|pair| pair.overlapping) {
         let into = scale(pairing.master(pair.key).normal(part), -1.0);
         for (local, &slave) in pairing.slaves_of_pair(pair.key).iter().enumerate().filter(|(_, s)| wanted[s.place()]) {
             // A rank knows the areas of the pairs that it evaluates.
             let area = pair.area[local].abs();
-            let [x, y, z] = add([sums[slave][0], sums[slave][1], sums[slave][2]], scale(into, area));
-            sums[slave] = [x, y, z, sums[slave][3] + area];
+            let sum = &mut sums[slave];
+            (sum.normal, sum.area) = (add(sum.normal, scale(into, area)), sum.area + area);
         }
     }
     sums.over_ranks(part, states);
     let found = pairing.patches.all().filter(|slave| wanted[slave.place()]).map(|slave| (slave, sums[slave]));
-    found.filter(|(_, [.., area])| *area > 0.0).map(|(slave, [x, y, z, area])| (slave, [x, y, z], area)).collect()
+    found.filter(|(_, sum)| sum.area > 0.0).map(|(slave, sum)| (slave, sum.normal, sum.area)).collect()
 }

@@ -1,20 +1,61 @@
 //! Overlaps, gaps, slips and areas of the slave nodes: sums over their pairs in the present configuration.
 
 use zelus_core::model::ModelPart;
+use zelus_core::vector3::add;
 
 use super::coverage::isolate_beside;
 use super::edges::keep_one_of_a_normal;
 use super::pairs_of_interfaces::Pairing;
 use crate::active_set::resolution;
 use crate::law::constrained_multiplier::along_free_tangents;
+use crate::pairs::Integral;
 use crate::settings::Setup;
-use crate::slave_nodes::{SlaveStates, SlaveSums};
+use crate::slave_nodes::{SlaveStates, SlaveSums, Summands};
+
+/// Integrals of the pairs of a slave node, summed.
+#[derive(Clone, Copy, Default)]
+struct NodeIntegrals {
+    /// Weighted gap (length times area).
+    gap: f64,
+    area: f64,
+    /// Weighted gap of each pair times its area.
+    gap_by_area: f64,
+    /// Weighted slip (length times area).
+    slip: [f64; 3],
+    /// Area times trial traction.
+    trial: [f64; 3],
+    /// Area times history traction.
+    carried: [f64; 3],
+}
+
+impl NodeIntegrals {
+    /// Adds the integral of a pair at one of the nodes of its slave facet.
+    fn add(&mut self, integral: &Integral, local: usize) {
+        let (gap, area) = (integral.gap[local], integral.area[local]);
+        self.gap += gap;
+        self.area += area;
+        self.gap_by_area += gap * area;
+        self.slip = add(self.slip, integral.slip[local]);
+        self.trial = add(self.trial, integral.trial[local]);
+        self.carried = add(self.carried, integral.carried[local]);
+    }
+}
+
+impl Summands<12> for NodeIntegrals {
+    fn numbers(&self) -> [f64; 12] {
+        let [[a, b, c], [d, e, f], [g, h, i]] = [self.slip, self.trial, self.carried];
+        [self.gap, self.area, self.gap_by_area, a, b, c, d, e, f, g, h, i]
+    }
+
+    fn of([gap, area, gap_by_area, a, b, c, d, e, f, g, h, i]: [f64; 12]) -> Self {
+        Self { gap, area, gap_by_area, slip: [a, b, c], trial: [d, e, f], carried: [g, h, i] }
+    }
+}
 
 /// Integrates all pairs, and finds what is too small to decide on.
 pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut SlaveStates, setup: &mut Setup) {
     let (integrals, meetings) = pairing.integrals(part, states);
-    // Gap, area, gap times area, slip, traction, carried traction.
-    let mut sums = SlaveSums::<12>::new(states);
+    let mut sums = SlaveSums::<NodeIntegrals>::new(states);
     states.for_all(|state| {
         (state.pairs, state.area, state.weighted_gap, state.mean_weighted_gap) = (0, 0.0, 0.0, 0.0);
         state.weighted_slip = [0.0; 3];
@@ -30,10 +71,7 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
             }
             for (local, &node) in block.slaves(at).iter().enumerate() {
                 states[node].pairs += 1;
-                let (gap, area) = (integral.gap[local], integral.area[local]);
-                let vectors = [integral.slip[local], integral.trial[local], integral.carried[local]];
-                let numbers = [gap, area, gap * area].into_iter().chain(vectors.into_iter().flatten());
-                sums[node].iter_mut().zip(numbers).for_each(|(sum, number)| *sum += number);
+                sums[node].add(integral, local);
             }
         }
     }
@@ -41,22 +79,20 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
 
     let formulation = setup.settings.formulation;
     states.for_each(|node, state| {
-        let [gap, area, mean, rest @ ..] = sums[node];
-        let vector = |first: usize| [rest[first], rest[first + 1], rest[first + 2]];
+        let NodeIntegrals { gap, area, gap_by_area, slip, trial, carried } = sums[node];
         let by_area = |sum: [f64; 3]| if area > 0.0 { sum.map(|t| t / area) } else { [0.0; 3] };
         (state.area, state.weighted_gap, state.isolated) = (area, gap, state.pairs == 0);
-        state.mean_weighted_gap = if area > 0.0 { mean / area } else { 0.0 };
+        state.mean_weighted_gap = if area > 0.0 { gap_by_area / area } else { 0.0 };
         if formulation.frictional() {
-            let slip = vector(0);
             let is_held = state.held.iter().any(|held| held.is_still());
             state.weighted_slip = if is_held { along_free_tangents(slip, state.normal, state.held) } else { slip };
             if formulation.multiplier.is_unknown() {
                 state.multiplier_weight = state.equation_weight(&setup.parameters);
             }
         }
-        state.trial = by_area(vector(3));
+        state.trial = by_area(trial);
         if setup.by_points() {
-            state.carried = by_area(vector(6));
+            state.carried = by_area(carried);
         }
     });
     let around = setup.parameters.segmentation.revolution();

@@ -376,18 +376,18 @@ impl Pairing {
     pub(crate) fn begin_step(&mut self, part: &ModelPart, states: &SlaveStates, slivers: bool) {
         self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.choices = Choices::default());
         if slivers {
-            let mut area = SlaveSums::new(states);
+            let mut area = SlaveSums::<f64>::new(states);
             let (integrals, _) = self.integrals(part, states);
             for (block, integrals) in self.blocks.iter().zip(&integrals) {
                 for (at, integral) in integrals.iter().enumerate() {
                     for (local, &slave) in block.slaves(at).iter().enumerate() {
-                        area[slave][0] += integral.area[local];
+                        area[slave] += integral.area[local];
                     }
                 }
             }
             area.over_ranks(part, states);
             for block in &mut self.blocks {
-                let covered = |at: usize| block.slaves(at).iter().all(|&slave| area[slave] > [0.0]);
+                let covered = |at: usize| block.slaves(at).iter().all(|&slave| area[slave] > 0.0);
                 let covered: Vec<bool> = (0..block.len()).map(covered).collect();
                 block.pairs_mut().iter_mut().zip(covered).for_each(|(pair, covered)| pair.choices.slivers = covered);
             }

@@ -13,7 +13,7 @@ use crate::pairing::{Pairing, integrals, searching};
 use crate::pairs::{PAIRS, Pair, PairKey};
 use crate::resolution::Resolution;
 use crate::settings::Setup;
-use crate::slave_nodes::{SlaveStates, SlaveSums};
+use crate::slave_nodes::{SlaveStates, SlaveSums, Summands};
 use crate::variables::NODAL_H;
 
 /// Share of a node's area that a pair must integrate to be missed, and of a mesh size (its square in space, its way about the
@@ -52,6 +52,23 @@ pub(crate) struct Late {
     pub missed: Vec<Pair>,
 }
 
+/// Weighted gap and area that pairs found within the step add to a slave node.
+#[derive(Clone, Copy, Default)]
+struct FoundOverlap {
+    gap: f64,
+    area: f64,
+}
+
+impl Summands<2> for FoundOverlap {
+    fn numbers(&self) -> [f64; 2] {
+        [self.gap, self.area]
+    }
+
+    fn of([gap, area]: [f64; 2]) -> Self {
+        Self { gap, area }
+    }
+}
+
 /// Facets that face each other now without being a pair, where that matters: at nodes in contact, and at nodes that they show to
 /// be in a master.
 ///
@@ -84,27 +101,26 @@ pub(crate) fn late_pairs(
     let (crossed, rest) = pairs_of(&near.iter().copied().filter(is_own).collect::<Vec<_>>());
     let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;
     blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, setup.limit()))?);
-    let mut more = SlaveSums::<2>::new(states);
+    let mut more = SlaveSums::<FoundOverlap>::new(states);
     let integrals = integrals(&mut blocks, part, states);
     for (block, integrals) in blocks.iter().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate().filter(|(_, integral)| integral.overlapping) {
             for (local, &node) in block.slaves(at).iter().enumerate() {
-                more[node][0] += integral.gap[local];
-                more[node][1] += integral.area[local];
+                more[node].gap += integral.gap[local];
+                more[node].area += integral.area[local];
             }
         }
     }
     more.over_ranks(part, states);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let area = |slave: SlaveIndex| states[slave].area + more[slave][1];
+    let area = |slave: SlaveIndex| states[slave].area + more[slave].area;
     let inside = |&n: &SlaveIndex| {
         let at = states.mesh_node(n) as usize;
         let around =
             parameters.segmentation.revolution().map_or(1.0, |per_radius| per_radius * part.nodes.current[at][0]);
         let whole = around * sizes[at].powi(part.info.domain_size as i32 - 1);
-        let [more_gap, more_area] = more[n];
-        let gap = states[n].weighted_gap + more_gap;
-        !states[n].active && more_area > wanted.facing * whole && gap < -wanted.depth * area(n)
+        let gap = states[n].weighted_gap + more[n].gap;
+        !states[n].active && more[n].area > wanted.facing * whole && gap < -wanted.depth * area(n)
     };
     let nodes: BTreeSet<SlaveIndex> = states.slaves().iter().copied().filter(inside).collect();
     let mut found = BTreeSet::new();

@@ -12,4 +12,4 @@ pub use slave_state::{Accepted, SlaveState};
 pub use slave_states::{Columns, Shown, SlaveStates, SlaveTable, set_name};
 pub use slave_status::SlaveStatus;
 pub(crate) use slave_status::write_status;
-pub(crate) use slave_sums::SlaveSums;
+pub(crate) use slave_sums::{SlaveSums, Summands};
