@@ -25,15 +25,15 @@ pub(crate) fn clear_inactive(
     for slave in of {
         let owner = if multiplier.is_unknown() { states.owner(slave) } else { 0 };
         let state = &mut states[slave];
-        if state.active {
+        if state.law.active {
             continue;
         }
         match multiplier {
             Multiplier::Body => {}
-            Multiplier::None => state.carried = [0.0; 3],
+            Multiplier::None => state.law.carried = [0.0; 3],
             Multiplier::Scalar(_) => {
                 multiplier.set(slave_nodes, owner, [0.0; 3]);
-                state.kept_pressure = 0.0;
+                state.law.kept_pressure = 0.0;
             }
             Multiplier::Vector(_) => multiplier.set(slave_nodes, owner, [0.0; 3]),
         }
@@ -60,13 +60,13 @@ pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: Start<'_>, r
         let near = match start {
             Start::Reach(reach) => gap < reach,
             Start::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
-            Start::Touching(nodes) => nodes.contains(&slave) || state.active,
+            Start::Touching(nodes) => nodes.contains(&slave) || state.law.active,
         };
-        state.active = near && !state.isolated;
-        state.start_gap = if near { gap } else { 0.0 };
-        if state.active {
-            let slides = rule == SlipRule::Pure || state.friction.is_smooth();
-            state.slides = Some(slides || state.slides == Some(true));
+        state.law.active = near && !state.kinematics.isolated;
+        state.kinematics.start_gap = if near { gap } else { 0.0 };
+        if state.law.active {
+            let slides = rule == SlipRule::Pure || state.parameters.friction.is_smooth();
+            state.law.slides = Some(slides || state.law.slides == Some(true));
         }
     });
 }
@@ -82,15 +82,16 @@ pub(crate) fn nearest(
 ) -> BTreeSet<SlaveIndex> {
     let sizes = nodes.values.values(&NODAL_H, 0);
     if open.is_empty() {
-        open.extend((0..slaves.len()).filter(|&at| !slaves[at].iter().any(|&n| states[n].active)));
+        open.extend((0..slaves.len()).filter(|&at| !slaves[at].iter().any(|&n| states[n].law.active)));
     }
     let mut found = BTreeSet::new();
     for own in open.iter().map(|&at| &slaves[at]) {
-        let facing = || own.iter().filter(|&&n| !states[n].isolated);
-        let gap = |n: SlaveIndex| states[n].weighted_gap / states[n].area;
+        let facing = || own.iter().filter(|&&n| !states[n].kinematics.isolated);
+        let gap = |n: SlaveIndex| states[n].kinematics.weighted_gap / states[n].kinematics.area;
         let least = facing().map(|&n| gap(n)).fold(f64::INFINITY, f64::min);
         found.extend(
-            facing().filter(|&&n| gap(n) - least <= reach * sizes[states.mesh_node(n) as usize] && !states[n].active),
+            facing()
+                .filter(|&&n| gap(n) - least <= reach * sizes[states.mesh_node(n) as usize] && !states[n].law.active),
         );
     }
     found

@@ -51,7 +51,7 @@ impl<'a> Rules<'a> {
         for (node, state) in states.iter() {
             let numbers = self.numbers(part, states, node);
             let mut decision = (self.formulation.decide)(&numbers, rule);
-            if state.isolated {
+            if state.kinematics.isolated {
                 decision = rules::inactive(&numbers, decision.pressure);
             }
             let multipliers = self.formulation.frictional() && self.formulation.multiplier.is_unknown();
@@ -73,7 +73,7 @@ impl<'a> Rules<'a> {
     /// Why a converged state is not accepted: slave nodes penetrate the master without being in contact, by more than
     /// [`ALLOWED`] of the largest pressure.
     pub(crate) fn passed_through(self, part: &ModelPart, states: &SlaveStates) -> Option<String> {
-        let facing = states.iter().filter(|(_, state)| !state.isolated);
+        let facing = states.iter().filter(|(_, state)| !state.kinematics.isolated);
         let facing: Vec<(SlaveIndex, SlaveNumbers)> = facing.map(|(n, _)| (n, self.numbers(part, states, n))).collect();
         let pressed = facing.iter().filter(|(_, numbers)| numbers.state.is_active());
         let largest = pressed.map(|(_, numbers)| -numbers.pressure()).fold(0.0, f64::max);
@@ -111,23 +111,23 @@ impl<'a> Rules<'a> {
             }
             let pressure = self.acting_pressure(part, states, *node, decision);
             let state = &mut states[*node];
-            state.pressure = pressure;
-            state.active = active;
+            state.law.pressure = pressure;
+            state.law.active = active;
             if active {
-                state.slides = Some(decision.state == NodeState::Slip);
+                state.law.slides = Some(decision.state == NodeState::Slip);
             } else if decision.changed && frictional {
-                state.slides = None;
-                state.weighted_slip = [0.0; 3];
+                state.law.slides = None;
+                state.kinematics.weighted_slip = [0.0; 3];
             }
             let slides = decision.state == NodeState::Slip && was != NodeState::Slip;
             if slides && frictional && decision.traction != [0.0; 3] {
-                state.tangent = tangent(decision.traction, state.normal, part.info.domain_size);
+                state.law.tangent = tangent(decision.traction, state.kinematics.normal, part.info.domain_size);
             }
             if frictional {
-                state.traction = decision.traction;
+                state.law.traction = decision.traction;
                 // By Nitsche's method points carry what the integration finds.
                 if !matches!(self.formulation.multiplier, Multiplier::Body) {
-                    state.carried = decision.traction;
+                    state.law.carried = decision.traction;
                 }
             }
             if let Some(multiplier) = decision.multiplier {
@@ -145,9 +145,9 @@ impl<'a> Rules<'a> {
         for (node, decision) in decisions {
             let pressure = self.acting_pressure(part, states, *node, decision);
             let state = &mut states[*node];
-            state.pressure = pressure;
+            state.law.pressure = pressure;
             if self.formulation.frictional() {
-                state.traction = decision.traction;
+                state.law.traction = decision.traction;
             }
         }
     }
@@ -158,9 +158,9 @@ impl<'a> Rules<'a> {
         match (self.formulation.multiplier, self.parameters.augmentation) {
             (Multiplier::None | Multiplier::Body, _) | (_, Augmentation::Node) => decision.pressure,
             (multiplier, Augmentation::Pair) => {
-                let augmentation = state.penalty * state.weighted_gap;
-                let whole = multiplier.vector(&part.slave_nodes, states.owner(slave), state.normal);
-                let pressure = dot(whole, state.normal);
+                let augmentation = state.parameters.penalty * state.kinematics.weighted_gap;
+                let whole = multiplier.vector(&part.slave_nodes, states.owner(slave), state.kinematics.normal);
+                let pressure = dot(whole, state.kinematics.normal);
                 self.parameters.scale_factor * pressure + augmentation
             }
         }
@@ -173,9 +173,10 @@ impl<'a> Rules<'a> {
     fn numbers(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex) -> SlaveNumbers {
         let Self { formulation, parameters, resolution } = self;
         let (state, owner) = (&states[slave], states.owner(slave));
-        let (normal, area, penalty, held) = (state.normal, state.area, state.penalty, state.held);
+        let (normal, area, penalty, held) =
+            (state.kinematics.normal, state.kinematics.area, state.parameters.penalty, state.law.held);
         let by_area = if area > 0.0 { area.recip() } else { 0.0 };
-        let kept = if state.kept_pressure == 0.0 { 0.0 } else { state.kept_pressure / penalty };
+        let kept = if state.law.kept_pressure == 0.0 { 0.0 } else { state.law.kept_pressure / penalty };
         let slip = resolution.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
         let stiffness = match formulation.multiplier {
             Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
@@ -206,11 +207,11 @@ impl<'a> Rules<'a> {
             solved: formulation.multiplier.is_unknown(),
             gap: resolution.length_of(state.counted_gap(parameters) * by_area + kept),
             slip,
-            trial: state.trial,
-            tangent: state.tangent,
+            trial: state.law.trial,
+            tangent: state.law.tangent,
             stiffness,
             driven,
-            friction: state.friction,
+            friction: state.parameters.friction,
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,
             resolution,

@@ -18,32 +18,33 @@ use crate::slave_nodes::SlaveStates;
 pub(crate) fn hold_open_interfaces(states: &mut SlaveStates, slaves: &[Vec<SlaveIndex>], resolution: Resolution) {
     release(states);
     for nodes in slaves {
-        let presses =
-            |&node: &SlaveIndex| resolution.exceeds(-dot(states[node].trial, states[node].normal), 0.0, false);
+        let presses = |&node: &SlaveIndex| {
+            resolution.exceeds(-dot(states[node].law.trial, states[node].kinematics.normal), 0.0, false)
+        };
         if !nodes.iter().any(presses) {
-            nodes.iter().for_each(|&node| states[node].pressed = states[node].active);
+            nodes.iter().for_each(|&node| states[node].law.pressed = states[node].law.active);
         }
     }
 }
 
 /// Holds the points around these nodes in contact until the next solve.
 pub(crate) fn hold(states: &mut SlaveStates, nodes: &BTreeSet<SlaveIndex>) {
-    nodes.iter().for_each(|&node| states[node].pressed = true);
+    nodes.iter().for_each(|&node| states[node].law.pressed = true);
 }
 
 /// Holds the points around active nodes in contact; `false` where no node is active or all of them are held already.
 pub(crate) fn hold_active(states: &mut SlaveStates) -> bool {
     let mut any = false;
     states.for_each(|_, state| {
-        any |= state.active && !state.pressed;
-        state.pressed |= state.active;
+        any |= state.law.active && !state.law.pressed;
+        state.law.pressed |= state.law.active;
     });
     any
 }
 
 /// Lets all points decide by their pressure and traction.
 pub(crate) fn release(states: &mut SlaveStates) {
-    states.for_all(|state| (state.pressed, state.stuck) = (false, false));
+    states.for_all(|state| (state.law.pressed, state.law.stuck) = (false, false));
 }
 
 /// Lets points stick until the next solve around nodes that slide back: one solve took them from one bound beyond the other.
@@ -57,10 +58,10 @@ pub(crate) fn hold_turned(
     for ((node, decision), &was) in decisions.iter_mut().zip(before) {
         let state = &mut states[*node];
         let slides = was == NodeState::Slip && decision.state == NodeState::Slip;
-        let turned = dot(state.traction, decision.traction) < 0.0;
-        if slides && counts(state.traction) && counts(decision.traction) && turned {
+        let turned = dot(state.law.traction, decision.traction) < 0.0;
+        if slides && counts(state.law.traction) && counts(decision.traction) && turned {
             decision.slip_changed = true;
-            state.stuck = true;
+            state.law.stuck = true;
         }
     }
 }

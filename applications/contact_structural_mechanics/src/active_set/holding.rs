@@ -146,9 +146,9 @@ impl Holding {
         formulation: &Formulation,
         pairs: impl Iterator<Item = FacetsOfPair<'a>> + Clone,
     ) -> Option<Diagnostic> {
-        states.for_all(|state| state.held = [Held::Free; 3]);
+        states.for_all(|state| state.law.held = [Held::Free; 3]);
         let held = if formulation.multiplier.is_unknown() {
-            self.nodes(part, &|slave| states[slave].normal, pairs.clone())
+            self.nodes(part, &|slave| states[slave].kinematics.normal, pairs.clone())
         } else {
             BTreeMap::new()
         };
@@ -156,7 +156,7 @@ impl Holding {
         let resting = self.resting(pairs);
         let mut dropped = BTreeMap::new();
         for (&node, own) in &held {
-            let normal = states[node].normal;
+            let normal = states[node].kinematics.normal;
             let rule = |c: usize| match () {
                 () if !own.components[c] => Held::Free,
                 () if own.moves => Held::KeptInStick,
@@ -176,7 +176,7 @@ impl Holding {
                 }
                 _ => continue,
             };
-            states[node].held = rules;
+            states[node].law.held = rules;
             dropped.insert(states.mesh_node(node), rules.map(Held::is_still));
         }
         let scalar = matches!(formulation.multiplier, Multiplier::Scalar(_));

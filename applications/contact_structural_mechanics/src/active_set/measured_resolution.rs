@@ -21,14 +21,18 @@ pub(crate) fn resolution(
 ) -> Resolution {
     let motion = farthest(nodes, |at| norm(sub(part.nodes.current[at], part.nodes.initial[at])));
     let traction = |slave: SlaveIndex, state: &SlaveState| match formulation.multiplier {
-        Multiplier::Body => norm(state.trial),
+        Multiplier::Body => norm(state.law.trial),
         Multiplier::None => {
-            let by_area = if state.area > 0.0 && !parameters.weighted_penalty { state.area.recip() } else { 1.0 };
-            state.penalty * state.counted_gap(parameters).min(0.0).abs() * by_area
+            let by_area = if state.kinematics.area > 0.0 && !parameters.weighted_penalty {
+                state.kinematics.area.recip()
+            } else {
+                1.0
+            };
+            state.parameters.penalty * state.counted_gap(parameters).min(0.0).abs() * by_area
         }
         multiplier => parameters.scale_factor * norm(multiplier.value(&part.slave_nodes, states.owner(slave))),
     };
-    let in_contact = states.iter().filter(|(_, state)| state.active);
+    let in_contact = states.iter().filter(|(_, state)| state.law.active);
     let largest = in_contact.map(|(slave, state)| traction(slave, state)).fold(0.0, f64::max);
     let mut found = Resolution::of(extent(part, nodes), largest, parameters.stiffness * motion);
     if matches!(formulation.multiplier, Multiplier::Body) {

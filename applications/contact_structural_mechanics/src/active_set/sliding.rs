@@ -40,7 +40,7 @@ pub(crate) fn find_tangents(
     let decided = |traction: [f64; 3]| if resolution.exceeds(norm(traction), 0.0, false) { traction } else { [0.0; 3] };
     for slave in states.slaves().iter().copied() {
         let state = &states[slave];
-        let (contact, normal, before) = (state.contact(), state.normal, state.tangent);
+        let (contact, normal, before) = (state.contact(), state.kinematics.normal, state.law.tangent);
         let by_slip = || {
             let slip = resolution.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
             // Bodies that stand still keep the direction in which they came.
@@ -51,20 +51,24 @@ pub(crate) fn find_tangents(
                 }
                 _ => 0.0,
             };
-            let least = TURNED * state.friction.at(pressure);
-            if parameters.nodal_stiffness(state.penalty, state.area) * norm(slip) > least { slip } else { [0.0; 3] }
+            let least = TURNED * state.parameters.friction.at(pressure);
+            if parameters.nodal_stiffness(state.parameters.penalty, state.kinematics.area) * norm(slip) > least {
+                slip
+            } else {
+                [0.0; 3]
+            }
         };
         let mut turning = Turning::default();
         let direction = match formulation.multiplier {
             Multiplier::Vector(_) => {
                 let whole = formulation.multiplier.value(&part.slave_nodes, states.owner(slave));
-                let sliding = along_free_tangents(tangential(whole, normal), normal, state.held);
+                let sliding = along_free_tangents(tangential(whole, normal), normal, state.law.held);
                 let multiplier = add(scale(normal, dot(whole, normal)), sliding);
                 match contact {
                     NodeState::Slip if dimension == 3 => {
                         let slip = slip(part, states, slave, formulation.multiplier, parameters);
                         let trial = Trial::new(state, slip, parameters, multiplier);
-                        turning = trial.turning(state.pairs, pure, parameters);
+                        turning = trial.turning(state.kinematics.pairs, pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }
                     }
                     NodeState::Inactive if !pure => [0.0; 3],
@@ -77,7 +81,7 @@ pub(crate) fn find_tangents(
                 }
             }
             Multiplier::None if !pure => {
-                let trial = decided(state.trial);
+                let trial = decided(state.law.trial);
                 if contact == NodeState::Slip && dimension == 3 && trial != [0.0; 3] {
                     turning.by_slip = norm(trial).recip();
                 }
@@ -92,9 +96,9 @@ pub(crate) fn find_tangents(
             kept = *count > MOST_REVERSALS;
         }
         let any = tangent(if kept { before } else { direction }, normal, dimension);
-        let free = along_free_tangents(any, normal, state.held);
+        let free = along_free_tangents(any, normal, state.law.held);
         let tangent = if norm(free) > LEAST_FREE { normalised(free) } else { any };
-        (states[slave].tangent, states[slave].turning) = (tangent, turning);
+        (states[slave].law.tangent, states[slave].law.turning) = (tangent, turning);
     }
 }
 
@@ -107,13 +111,13 @@ struct Trial {
 
 impl Trial {
     fn new(state: &SlaveState, slip: [f64; 3], parameters: &StepParameters, multiplier: [f64; 3]) -> Self {
-        let stiffness = parameters.nodal_stiffness(state.penalty, state.area);
+        let stiffness = parameters.nodal_stiffness(state.parameters.penalty, state.kinematics.area);
         let of_slip = scale(slip, parameters.tangent_factor * stiffness);
-        let pressure = parameters.scale_factor * dot(multiplier, state.normal);
+        let pressure = parameters.scale_factor * dot(multiplier, state.kinematics.normal);
         Self {
-            traction: add(scale(tangential(multiplier, state.normal), parameters.scale_factor), of_slip),
+            traction: add(scale(tangential(multiplier, state.kinematics.normal), parameters.scale_factor), of_slip),
             of_slip,
-            bound: state.friction.at(pressure),
+            bound: state.parameters.friction.at(pressure),
         }
     }
 

@@ -54,8 +54,9 @@ impl AdaptationSettings {
     /// Weighted gaps of the slave nodes before the next integration, when they will be needed: those of the last iterate,
     /// in explicit steps those of the last step.
     pub(crate) fn gaps(self, states: &SlaveStates, explicit: bool) -> Vec<f64> {
-        let gap =
-            |(_, state): (SlaveIndex, &SlaveState)| if explicit { state.last.weighted_gap } else { state.weighted_gap };
+        let gap = |(_, state): (SlaveIndex, &SlaveState)| {
+            if explicit { state.last.weighted_gap } else { state.kinematics.weighted_gap }
+        };
         if self.acts() || explicit { states.iter().map(gap).collect() } else { Vec::new() }
     }
 
@@ -80,14 +81,14 @@ impl AdaptationSettings {
         states.for_each(|slave, state| {
             let before = previous.next().expect("a gap of every slave node");
             // The gap of an open node says nothing about its penalty.
-            let Some(gap) = state.gap().filter(|_| state.active) else { return };
-            let before = before / state.area;
-            let mut adapted = state.penalty;
+            let Some(gap) = state.gap().filter(|_| state.law.active) else { return };
+            let before = before / state.kinematics.area;
+            let mut adapted = state.parameters.penalty;
             if self.rule.is_none() {
                 adapted = growth.map_or(penalty, |growth| growth.stiffened(penalty, gap));
             }
             if self.dynamic_factor {
-                state.dynamic_factor = dynamic_factor(gap, before);
+                state.parameters.dynamic_factor = dynamic_factor(gap, before);
             }
             if let Some(rule) = self.rule {
                 let size = sizes[mesh_nodes[slave.place()] as usize];
@@ -96,7 +97,7 @@ impl AdaptationSettings {
                     adapted = next.max(LEAST_SHARE * rule.floor_refers_to(penalty, adapted));
                 }
             }
-            state.penalty = adapted;
+            state.parameters.penalty = adapted;
         });
     }
 }

@@ -55,7 +55,7 @@ impl BearablePenalty {
         let fixed = given || weighted;
         if !fixed {
             part.info.values.insert(INITIAL_PENALTY.name(), most);
-            states.for_all(|state| state.penalty = state.penalty.min(most));
+            states.for_all(|state| state.parameters.penalty = state.parameters.penalty.min(most));
         }
         let says = !std::mem::replace(&mut self.said, true);
         says.then(|| if fixed { warn(step, penalty, most) } else { note(step, penalty, most) })

@@ -85,12 +85,12 @@ impl FrictionRamp {
         }
         let dimension = part.info.domain_size;
         states.for_each(|_, state| {
-            if state.active {
-                let area = state.area;
-                let slip = if area > 0.0 { scale(state.weighted_slip, area.recip()) } else { [0.0; 3] };
-                let slides = norm(resolution.vector_of(slip)) > 0.0 || state.friction.is_smooth();
-                state.tangent = tangent(slip, state.normal, dimension);
-                state.slides = Some(slides);
+            if state.law.active {
+                let area = state.kinematics.area;
+                let slip = if area > 0.0 { scale(state.kinematics.weighted_slip, area.recip()) } else { [0.0; 3] };
+                let slides = norm(resolution.vector_of(slip)) > 0.0 || state.parameters.friction.is_smooth();
+                state.law.tangent = tangent(slip, state.kinematics.normal, dimension);
+                state.law.slides = Some(slides);
             }
         });
         Outer::Again

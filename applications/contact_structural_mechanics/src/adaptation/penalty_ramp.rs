@@ -57,6 +57,6 @@ impl PenaltyRamp {
 
     fn set(self, info: &ProcessInfo, states: &mut SlaveStates) {
         let penalty = info.value_or(INITIAL_PENALTY.name(), 1.0);
-        states.for_all(|state| state.penalty = self.share * penalty);
+        states.for_all(|state| state.parameters.penalty = self.share * penalty);
     }
 }

@@ -39,11 +39,11 @@ impl Uzawa {
     ) -> Outer {
         let multipliers = slave_nodes.history.values(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE, 0);
         let pressure = |(slave, state): (SlaveIndex, &SlaveState)| {
-            if state.active { (scale_factor * multipliers[states.owner(slave) as usize]).min(0.0) } else { 0.0 }
+            if state.law.active { (scale_factor * multipliers[states.owner(slave) as usize]).min(0.0) } else { 0.0 }
         };
         let pressures: Vec<f64> = states.iter().map(pressure).collect();
         let size = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
-        let change = size(&mut states.iter().zip(&pressures).map(|((_, state), p)| p - state.kept_pressure));
+        let change = size(&mut states.iter().zip(&pressures).map(|((_, state), p)| p - state.law.kept_pressure));
         let total = size(&mut pressures.iter().copied());
         if self.updates > 0 && self.last > 0.0 {
             self.rate = change / self.last;
@@ -62,7 +62,7 @@ impl Uzawa {
         }
         self.updates += 1;
         let mut pressures = pressures.into_iter();
-        states.for_each(|_, state| state.kept_pressure = pressures.next().unwrap_or(0.0));
+        states.for_each(|_, state| state.law.kept_pressure = pressures.next().unwrap_or(0.0));
         Outer::Again
     }
 }

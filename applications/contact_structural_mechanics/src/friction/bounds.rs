@@ -18,7 +18,7 @@ const LEAST_SLIP: f64 = 1e-6;
 /// Step start: every so many steps the nodes with friction begin in stick.
 pub(crate) fn start_in_stick(step: usize, states: &mut SlaveStates, rule: SlipRule, settings: &FrictionSettings) {
     if rule != SlipRule::Pure && settings.reset_frequency.is_some_and(|frequency| step.is_multiple_of(frequency)) {
-        states.for_each(|_, state| state.slides = Some(state.friction.is_smooth()));
+        states.for_each(|_, state| state.law.slides = Some(state.parameters.friction.is_smooth()));
     }
 }
 
@@ -35,10 +35,10 @@ pub(crate) fn meet_bounds(
     }
     for (slave, state) in states.iter().filter(|(_, state)| state.contact() == NodeState::Slip) {
         let whole = multiplier.value(slave_nodes, states.owner(slave));
-        let (pressure, along) = (dot(whole, state.normal), tangential(whole, state.normal));
-        let limit = state.friction.at(scale_factor * pressure).max(0.0) / scale_factor;
+        let (pressure, along) = (dot(whole, state.kinematics.normal), tangential(whole, state.kinematics.normal));
+        let limit = state.parameters.friction.at(scale_factor * pressure).max(0.0) / scale_factor;
         if norm(along) > 0.0 {
-            let met = add(scale(state.normal, pressure), scale(along, limit / norm(along)));
+            let met = add(scale(state.kinematics.normal, pressure), scale(along, limit / norm(along)));
             multiplier.set(slave_nodes, states.owner(slave), met);
         }
     }
@@ -58,9 +58,9 @@ pub(crate) fn warn_of_pushing(
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     let pushed = |(slave, state): &(SlaveIndex, &SlaveState)| {
         let slip = slip(part, states, *slave, multiplier, parameters);
-        let traction = tangential(multiplier.value(&part.slave_nodes, states.owner(*slave)), state.normal);
+        let traction = tangential(multiplier.value(&part.slave_nodes, states.owner(*slave)), state.kinematics.normal);
         state.contact() == NodeState::Slip
-            && !state.friction.is_smooth()
+            && !state.parameters.friction.is_smooth()
             && norm(slip) > LEAST_SLIP * sizes[states.mesh_node(*slave) as usize]
             && dot(slip, traction) < 0.0
     };

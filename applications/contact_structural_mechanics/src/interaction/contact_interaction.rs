@@ -199,8 +199,8 @@ impl Interaction for ContactInteraction {
         let (formulation, clears) =
             (self.contact.setup.settings.formulation, self.contact.setup.settings.clear_inactive);
         self.contact.states.for_each(|_, state| {
-            if clears && !state.active {
-                (state.pressure, state.traction) = (0.0, [0.0; 3]);
+            if clears && !state.law.active {
+                (state.law.pressure, state.law.traction) = (0.0, [0.0; 3]);
             }
         });
         if formulation.frictional() {
@@ -273,7 +273,7 @@ impl Interaction for ContactInteraction {
         let ContactState { setup: Setup { settings, parameters, resolution, .. }, pairing, states, .. } = &self.contact;
         let multiplier = settings.formulation.multiplier;
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
-            heat(state.traction, slip(part, states, slave, multiplier, parameters), state.area)
+            heat(state.law.traction, slip(part, states, slave, multiplier, parameters), state.kinematics.area)
         };
         let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.formulation.frictional());
         let slaves = pairing.slaves_by_interface();
@@ -343,7 +343,7 @@ impl Coupling for ContactInteraction {
 
     fn relaxation(&self) -> Option<f64> {
         let parameters = &self.contact.setup.parameters;
-        let largest_area = self.contact.states.iter().map(|(_, state)| state.area).fold(0.0, f64::max);
+        let largest_area = self.contact.states.iter().map(|(_, state)| state.kinematics.area).fold(0.0, f64::max);
         let weight = parameters.scale_factor.powi(2) * largest_area / parameters.stiffness;
         Some(RELAXATION * if largest_area > 0.0 { weight } else { parameters.scale_factor })
     }

@@ -84,7 +84,7 @@ impl ContactState {
             part.slave_nodes.history.add_named(name, components);
         }
         self.states = SlaveStates::of(part, table, formulation.columns());
-        self.states.for_all(|state| state.active = false);
+        self.states.for_all(|state| state.law.active = false);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         self.states.set_slaves(self.pairing.slaves());
         self.import_multipliers(part);
@@ -108,14 +108,14 @@ impl ContactState {
 
     /// Outside its interval contact carries nothing.
     pub(super) fn switch_off(&mut self, part: &mut ModelPart) {
-        self.states.for_all(|state| state.active = false);
+        self.states.for_all(|state| state.law.active = false);
         self.pairing.clear();
         self.clear_inactive(part);
     }
 
     /// Whether a slave node of an interface is in contact.
     pub(super) fn in_contact(&self, interface: usize) -> bool {
-        self.pairing.slaves_of(interface).iter().any(|&slave| self.states[slave].active)
+        self.pairing.slaves_of(interface).iter().any(|&slave| self.states[slave].law.active)
     }
 
     /// Activates these nodes, and keeps those that are in contact.
@@ -243,7 +243,7 @@ impl ContactState {
     pub(super) fn publish(&mut self, part: &mut ModelPart) {
         self.pairing.set_states(&self.states);
         self.states.export(&mut part.nodes);
-        let area = |slave: SlaveIndex| self.states[slave].area;
+        let area = |slave: SlaveIndex| self.states[slave].kinematics.area;
         multiplier_columns::export(part, self.states.table(), &area, self.setup.settings.formulation.multiplier);
         if self.setup.settings.formulation.frictional() {
             write_status(part, &self.states);

@@ -63,7 +63,7 @@ impl OuterLoops {
 
     /// Step start, once gaps are known.
     pub(super) fn keep_start(&mut self, states: &SlaveStates) {
-        self.start_gaps = states.all().map(|slave| states[slave].weighted_gap).collect();
+        self.start_gaps = states.all().map(|slave| states[slave].kinematics.weighted_gap).collect();
     }
 
     /// What follows in a converged state, in the order in which one needs the other.

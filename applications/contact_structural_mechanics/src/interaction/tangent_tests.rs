@@ -242,7 +242,7 @@ impl Contact {
         }
         // Areas stay those of this state: they weigh slips in the direction of sliding only.
         let areas = self.sums(|integral, j| [integral.area[j], 0.0, 0.0]);
-        self.states.for_each(|slave, state| state.area = areas[slave.place()][0]);
+        self.states.for_each(|slave, state| state.kinematics.area = areas[slave.place()][0]);
         self.follow();
     }
 
@@ -273,11 +273,13 @@ impl Contact {
         }
         if self.formulation.frictional() {
             let slips = self.sums(|integral, j| integral.slip[j]);
-            self.states.for_each(|slave, state| (state.weighted_slip, state.pairs) = (slips[slave.place()], 0));
+            self.states.for_each(|slave, state| {
+                (state.kinematics.weighted_slip, state.kinematics.pairs) = (slips[slave.place()], 0)
+            });
             for block in &self.blocks {
                 let integrals = self.integrals(block.as_ref());
                 for at in (0..block.len()).filter(|&at| integrals[at].overlapping) {
-                    block.slaves(at).iter().for_each(|&slave| self.states[slave].pairs += 1);
+                    block.slaves(at).iter().for_each(|&slave| self.states[slave].kinematics.pairs += 1);
                 }
             }
             let (formulation, parameters) = (self.formulation, self.parameters.clone());

@@ -51,25 +51,25 @@ impl MpcFriction {
         change: &mut SetChange,
     ) {
         let before = std::mem::take(&mut self.directions);
-        states.for_all(|state| state.weighted_slip = [0.0; 3]);
+        states.for_all(|state| state.kinematics.weighted_slip = [0.0; 3]);
         let mut sliders = Vec::new();
         let resolved = resolved_length(part, &states.mesh_nodes());
         for (&node, relation) in relations {
             let slave = states.only_at(node);
             let state = &mut states[slave];
-            if !state.active {
+            if !state.law.active {
                 continue;
             }
             let n = relation.normal;
             let moved = tangential(sub(relation.lead(part, node, 0), relation.lead(part, node, 1)), n);
             let moved = if norm(moved) > resolved { moved } else { [0.0; 3] };
-            let area = state.area;
-            state.weighted_slip = scale(moved, area);
+            let area = state.kinematics.area;
+            state.kinematics.weighted_slip = scale(moved, area);
             let held = reaction(part, node);
-            let Bound { coefficient, threshold } = state.friction;
+            let Bound { coefficient, threshold } = state.parameters.friction;
             let constant = threshold * area;
             let bound = Bound { coefficient, threshold: constant }.at(dot(held, n).min(0.0));
-            let sliding = state.slides == Some(true);
+            let sliding = state.law.slides == Some(true);
             let stiffness = stiffness(node) * area;
             // The friction of a sliding node keeps the direction it had but for what the slip turns it.
             let kept = direction_along(before.get(&node), n);
@@ -83,7 +83,7 @@ impl MpcFriction {
             let stiffness = DIRECTION * stiffness;
             let trial = if sliding { sub(scale(kept, bound), scale(moved, stiffness)) } else { tangential(held, n) };
             if slides != sliding {
-                state.slides = Some(slides);
+                state.law.slides = Some(slides);
                 change.stick_slip.push(part.nodes.ids[node as usize]);
             }
             if slides {
@@ -111,7 +111,7 @@ impl MpcFriction {
         let sliders = relations.iter().filter(|(node, _)| slides(**node)).map(|(&node, relation)| {
             let direction = direction_along(before.get(&node), relation.normal);
             let state = &states[states.only_at(node)];
-            let constant = state.friction.threshold * state.area;
+            let constant = state.parameters.friction.threshold * state.kinematics.area;
             Slider::new(node, relation.weights.clone(), relation.normal, direction, [constant; 2], 0.0)
         });
         let sliders = sliders.collect();

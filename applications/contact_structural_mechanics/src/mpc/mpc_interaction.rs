@@ -128,7 +128,9 @@ impl MpcInteraction {
         for interface in self.interfaces.iter_mut().filter(|interface| !interface.open) {
             let [slaves, masters] = [Roles::Slave, Roles::Master].map(|role| interface.nodes_of(role));
             let held = |nodes: &[u32]| {
-                nodes.iter().all(|&node| !can_follow(part, node, self.states[self.states.only_at(node)].normal))
+                nodes
+                    .iter()
+                    .all(|&node| !can_follow(part, node, self.states[self.states.only_at(node)].kinematics.normal))
             };
             if !held(&slaves) || held(&masters) {
                 continue;
@@ -173,7 +175,7 @@ impl MpcInteraction {
         }
         let presses = |node: u32, relation: &NodeRelation| {
             let n = relation.normal;
-            self.states[self.states.only_at(node)].active
+            self.states[self.states.only_at(node)].law.active
                 && !can_follow(part, node, n)
                 && relation.weights.iter().any(|&(master, _)| can_follow(part, master, n))
         };
@@ -181,7 +183,7 @@ impl MpcInteraction {
         let held = self.relations.nodes.iter().filter(|(node, relation)| presses(**node, relation));
         let depth = |node: u32| {
             let state = &self.states[self.states.only_at(node)];
-            -state.weighted_gap / state.area
+            -state.kinematics.weighted_gap / state.kinematics.area
         };
         let depths = held.map(|(&node, _)| (node, depth(node))).filter(|of| of.1 > resolved);
         let depths: Vec<(u32, f64)> = depths.collect();
@@ -220,12 +222,12 @@ impl MpcInteraction {
         let mut next_id = constraints.iter().map(|c| c.id + 1).max().unwrap_or(1).max(first);
         for (&node, relation) in &self.relations.nodes {
             let state = &self.states[self.states.only_at(node)];
-            if state.active {
+            if state.law.active {
                 let hold = match self.settings.kind {
                     MpcKind::Frictionless => Hold::Normal { push: [0.0; 3] },
-                    MpcKind::Frictional if state.slides == Some(true) => {
+                    MpcKind::Frictional if state.law.slides == Some(true) => {
                         let direction = self.friction.directions.get(&node).copied().unwrap_or_default();
-                        Hold::Normal { push: scale(direction, state.friction.coefficient) }
+                        Hold::Normal { push: scale(direction, state.parameters.friction.coefficient) }
                     }
                     MpcKind::Frictional => Hold::Stick,
                     MpcKind::MeshTying if self.settings.consistent() => Hold::Tied,
@@ -250,16 +252,17 @@ impl MpcInteraction {
             let id = part.nodes.ids[node as usize];
             let stiffness = stiffness(node);
             let state = &mut self.states[slave];
-            let was = state.active;
-            state.active = self.relations.nodes.get(&node).is_some_and(|relation| {
+            let was = state.law.active;
+            state.law.active = self.relations.nodes.get(&node).is_some_and(|relation| {
                 let held = if was { dot(reaction(part, node), relation.normal) } else { 0.0 };
-                let depth = state.weighted_gap.min(0.0);
-                state.area > 0.0 && held + stiffness * depth < -release * state.area
+                let depth = state.kinematics.weighted_gap.min(0.0);
+                state.kinematics.area > 0.0 && held + stiffness * depth < -release * state.kinematics.area
             });
-            match (was, state.active) {
+            match (was, state.law.active) {
                 (false, true) => {
                     if self.settings.kind == MpcKind::Frictional {
-                        state.slides = Some(state.friction.is_smooth() || self.friction.rule == SlipRule::Pure);
+                        state.law.slides =
+                            Some(state.parameters.friction.is_smooth() || self.friction.rule == SlipRule::Pure);
                     }
                     change.activated.push(id);
                 }
@@ -323,7 +326,7 @@ impl Interaction for MpcInteraction {
         self.acting = self.settings.interval.contains(part.info.time);
         self.states.read_friction(&part.nodes, self.settings.friction.law);
         if !self.acting {
-            self.states.for_each(|_, state| state.active = false);
+            self.states.for_each(|_, state| state.law.active = false);
             self.relations.clear();
             self.friction.set_sliders(Vec::new(), part.info.domain_size);
             self.write_constraints(part);
@@ -346,7 +349,7 @@ impl Interaction for MpcInteraction {
         if self.settings.ties() {
             for &node in self.relations.nodes.keys() {
                 let slave = self.states.only_at(node);
-                self.states[slave].active = true;
+                self.states[slave].law.active = true;
             }
         } else {
             activation::start(&part.nodes, &mut self.states, Start::ShareOfMeshSize, self.friction.rule);
@@ -407,8 +410,11 @@ impl Interaction for MpcInteraction {
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
             let node = self.states.mesh_node(slave);
             // What friction adds to the force of the constraint goes with the pressure or is the slider's own.
-            let bound = state.friction.at(dot(reaction(part, node), state.normal) / state.area);
-            norm(state.weighted_slip) * bound
+            let bound = state
+                .parameters
+                .friction
+                .at(dot(reaction(part, node), state.kinematics.normal) / state.kinematics.area);
+            norm(state.kinematics.weighted_slip) * bound
         };
         let (holds, least) = (friction || self.settings.ties(), resolved_length(part, &self.states.mesh_nodes()));
         let mut out =
@@ -417,7 +423,7 @@ impl Interaction for MpcInteraction {
             let held = interface
                 .nodes_of(Roles::Slave)
                 .into_iter()
-                .filter(|&node| self.states[self.states.only_at(node)].active);
+                .filter(|&node| self.states[self.states.only_at(node)].law.active);
             pair.constraint_forces = held.map(|node| (node, reaction(part, node))).collect();
         }
         out

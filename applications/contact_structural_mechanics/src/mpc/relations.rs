@@ -82,7 +82,7 @@ impl Relations {
         settings: &MpcSettings,
         states: &SlaveStates,
     ) -> Option<Diagnostic> {
-        let holds = |relation: &PairRelation| relation.nodes().any(|n| states[states.only_at(n)].active);
+        let holds = |relation: &PairRelation| relation.nodes().any(|n| states[states.only_at(n)].law.active);
         let keep = !settings.update_relations || settings.ties();
         let segmentation = &settings.segmentation;
         self.pairs.retain(|key, relation| {
@@ -168,7 +168,7 @@ impl Relations {
         settings: &MpcSettings,
         states: &mut SlaveStates,
     ) {
-        states.for_all(|state| (state.weighted_gap, state.area) = (0.0, 0.0));
+        states.for_all(|state| (state.kinematics.weighted_gap, state.kinematics.area) = (0.0, 0.0));
         states.read_normals(&part.nodes);
         for key in self.pairs.keys() {
             let (slave, master) = facets(interfaces, *key);
@@ -183,12 +183,13 @@ impl Relations {
             for (j, &node) in slave.nodes.iter().enumerate() {
                 let own = states.only_at(node);
                 let state = &mut states[own];
-                state.weighted_gap -= dot(state.normal, operators.jump(j, &of_slave, &of_master));
-                state.area += operators.d[j][..slave.nodes.len()].iter().sum::<f64>();
+                state.kinematics.weighted_gap -= dot(state.kinematics.normal, operators.jump(j, &of_slave, &of_master));
+                state.kinematics.area += operators.d[j][..slave.nodes.len()].iter().sum::<f64>();
             }
         }
         let mesh_nodes: Vec<u32> = states.all().map(|slave| states.mesh_node(slave)).collect();
-        states.for_each(|slave, state| state.isolated = !self.nodes.contains_key(&mesh_nodes[slave.place()]));
+        states
+            .for_each(|slave, state| state.kinematics.isolated = !self.nodes.contains_key(&mesh_nodes[slave.place()]));
     }
 
     /// Nothing is related any more.

@@ -41,7 +41,7 @@ pub(crate) fn isolate_beside(
         }
     }
     let share = |slave: SlaveIndex| match whole[slave] {
-        whole if whole > 0.0 => states[slave].area / whole,
+        whole if whole > 0.0 => states[slave].kinematics.area / whole,
         _ => 0.0,
     };
     let mut best = SlaveSums::<f64>::new(states);
@@ -49,8 +49,8 @@ pub(crate) fn isolate_beside(
         let most = slaves.iter().map(|&slave| share(slave)).fold(0.0, f64::max);
         slaves.iter().for_each(|&slave| best[slave] = best[slave].max(most));
     }
-    let bound = |slave: SlaveIndex| least * if states[slave].active { 0.5 } else { 1.0 };
+    let bound = |slave: SlaveIndex| least * if states[slave].law.active { 0.5 } else { 1.0 };
     let slaves = states.slaves();
     let beside: Vec<bool> = slaves.iter().map(|&slave| share(slave) < bound(slave) * best[slave]).collect();
-    slaves.iter().zip(beside).for_each(|(&slave, beside)| states[slave].isolated |= beside);
+    slaves.iter().zip(beside).for_each(|(&slave, beside)| states[slave].kinematics.isolated |= beside);
 }

@@ -32,7 +32,7 @@ pub(crate) fn take_normals_of_masters(
     pairing: &Pairing,
     on_plane: &dyn Fn(u32) -> bool,
 ) {
-    states.for_all(|state| state.normal_of_master = false);
+    states.for_all(|state| state.kinematics.normal_of_master = false);
     let rims = open_rims(states, pairing, on_plane);
     for (slave, sum, area) in opposite_normals(part, states, pairing, &rims) {
         let size = norm(sum);
@@ -41,9 +41,9 @@ pub(crate) fn take_normals_of_masters(
         }
         let normal = scale(sum, 1.0 / size);
         let state = &mut states[slave];
-        let is_flat = dot(normal, state.normal) > FLAT.cos();
+        let is_flat = dot(normal, state.kinematics.normal) > FLAT.cos();
         if !is_flat {
-            (state.normal, state.normal_of_master) = (normal, true);
+            (state.kinematics.normal, state.kinematics.normal_of_master) = (normal, true);
         }
     }
 }
@@ -56,8 +56,8 @@ fn open_rims(states: &SlaveStates, pairing: &Pairing, on_plane: &dyn Fn(u32) -> 
     for (i, interface) in pairing.interfaces.iter().enumerate() {
         for (f, facet) in interface.facets.iter().enumerate() {
             let own = patches.of_facet(i as u32, f as u32, facet.nodes.len());
-            let inner = own.iter().any(|&slave| states[slave].active && !patches.is_rim(slave));
-            if inner || own.iter().all(|&slave| states[slave].active) {
+            let inner = own.iter().any(|&slave| states[slave].law.active && !patches.is_rim(slave));
+            if inner || own.iter().all(|&slave| states[slave].law.active) {
                 own.iter().for_each(|slave| closed[slave.place()] = true);
             }
         }
@@ -70,18 +70,24 @@ fn open_rims(states: &SlaveStates, pairing: &Pairing, on_plane: &dyn Fn(u32) -> 
 /// Isolates slave nodes that share their mesh node and the normal of a master with another that is in contact or has the larger area: two
 /// multipliers of one direction are a null mode.
 pub(crate) fn keep_one_of_a_normal(states: &mut SlaveStates) {
-    let facing: Vec<SlaveIndex> = states.all().filter(|&slave| !states[slave].isolated).collect();
+    let facing: Vec<SlaveIndex> = states.all().filter(|&slave| !states[slave].kinematics.isolated).collect();
     let is_less = |&slave: &SlaveIndex| {
         let own = &states[slave];
-        let others = states.at(states.mesh_node(slave)).filter(|&other| other != slave && !states[other].isolated);
-        own.normal_of_master
+        let others =
+            states.at(states.mesh_node(slave)).filter(|&other| other != slave && !states[other].kinematics.isolated);
+        own.kinematics.normal_of_master
             && others.into_iter().any(|other| {
-                let order = states[other].active.cmp(&own.active).then(states[other].area.total_cmp(&own.area));
-                order.then(slave.cmp(&other)).is_gt() && dot(states[other].normal, own.normal) > SAME
+                let order = states[other]
+                    .law
+                    .active
+                    .cmp(&own.law.active)
+                    .then(states[other].kinematics.area.total_cmp(&own.kinematics.area));
+                order.then(slave.cmp(&other)).is_gt()
+                    && dot(states[other].kinematics.normal, own.kinematics.normal) > SAME
             })
     };
     let less: Vec<SlaveIndex> = facing.into_iter().filter(is_less).collect();
-    less.into_iter().for_each(|slave| states[slave].isolated = true);
+    less.into_iter().for_each(|slave| states[slave].kinematics.isolated = true);
 }
 
 /// Sum of the normals into the masters that a slave node overlaps, by area, and the sum of the areas.
@@ -115,7 +121,7 @@ fn opposite_normals(
             let points = facet.positions(part);
             for (local, &slave) in pairing.patches.of_facet(i as u32, f as u32, facet.nodes.len()).iter().enumerate() {
                 let own = unit_normal(facet.shape, &points, facet.shape.cell().points[local]);
-                wanted[slave.place()] |= own.is_some_and(|own| dot(own, states[slave].normal) < SHARP);
+                wanted[slave.place()] |= own.is_some_and(|own| dot(own, states[slave].kinematics.normal) < SHARP);
             }
         }
     }

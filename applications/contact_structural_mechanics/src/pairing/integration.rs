@@ -57,8 +57,13 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
     let (integrals, meetings) = pairing.integrals(part, states);
     let mut sums = SlaveSums::<NodeIntegrals>::new(states);
     states.for_all(|state| {
-        (state.pairs, state.area, state.weighted_gap, state.mean_weighted_gap) = (0, 0.0, 0.0, 0.0);
-        state.weighted_slip = [0.0; 3];
+        (
+            state.kinematics.pairs,
+            state.kinematics.area,
+            state.kinematics.weighted_gap,
+            state.kinematics.mean_weighted_gap,
+        ) = (0, 0.0, 0.0, 0.0);
+        state.kinematics.weighted_slip = [0.0; 3];
     });
     let mut meetings = meetings.into_iter();
     for (block, integrals) in pairing.blocks.iter_mut().zip(&integrals) {
@@ -70,7 +75,7 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
                 continue;
             }
             for (local, &node) in block.slaves(at).iter().enumerate() {
-                states[node].pairs += 1;
+                states[node].kinematics.pairs += 1;
                 sums[node].add(integral, local);
             }
         }
@@ -81,18 +86,20 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
     states.for_each(|node, state| {
         let NodeIntegrals { gap, area, gap_by_area, slip, trial, carried } = sums[node];
         let by_area = |sum: [f64; 3]| if area > 0.0 { sum.map(|t| t / area) } else { [0.0; 3] };
-        (state.area, state.weighted_gap, state.isolated) = (area, gap, state.pairs == 0);
-        state.mean_weighted_gap = if area > 0.0 { gap_by_area / area } else { 0.0 };
+        (state.kinematics.area, state.kinematics.weighted_gap, state.kinematics.isolated) =
+            (area, gap, state.kinematics.pairs == 0);
+        state.kinematics.mean_weighted_gap = if area > 0.0 { gap_by_area / area } else { 0.0 };
         if formulation.frictional() {
-            let is_held = state.held.iter().any(|held| held.is_still());
-            state.weighted_slip = if is_held { along_free_tangents(slip, state.normal, state.held) } else { slip };
+            let is_held = state.law.held.iter().any(|held| held.is_still());
+            state.kinematics.weighted_slip =
+                if is_held { along_free_tangents(slip, state.kinematics.normal, state.law.held) } else { slip };
             if formulation.multiplier.is_unknown() {
-                state.multiplier_weight = state.equation_weight(&setup.parameters);
+                state.law.multiplier_weight = state.equation_weight(&setup.parameters);
             }
         }
-        state.trial = by_area(trial);
+        state.law.trial = by_area(trial);
         if setup.by_points() {
-            state.carried = by_area(carried);
+            state.law.carried = by_area(carried);
         }
     });
     let around = setup.parameters.segmentation.revolution();

@@ -46,8 +46,8 @@ impl NitscheBlock {
         let slaves = self.pairs.slaves(at);
         Nodal::new(slaves.len(), |j| {
             let own = &states[slaves[j]];
-            let (held, stuck) = (f64::from(u8::from(own.pressed)), f64::from(u8::from(own.stuck)));
-            NodeOfPoints { carried: own.last.carried, friction: own.friction, held, stuck }
+            let (held, stuck) = (f64::from(u8::from(own.law.pressed)), f64::from(u8::from(own.law.stuck)));
+            NodeOfPoints { carried: own.last.carried, friction: own.parameters.friction, held, stuck }
         })
     }
 

@@ -28,12 +28,12 @@ pub(crate) fn write_states(nodes: &mut Nodes, states: &SlaveStates, frictional: 
     };
     let in_contact = |state: &SlaveState| state.contact() != NodeState::Inactive;
     let traction = |state: &SlaveState| {
-        let tangential = if frictional { state.traction } else { [0.0; 3] };
-        let whole = add(scale(state.normal, state.pressure), tangential);
+        let tangential = if frictional { state.law.traction } else { [0.0; 3] };
+        let whole = add(scale(state.kinematics.normal, state.law.pressure), tangential);
         if in_contact(state) { whole } else { [0.0; 3] }
     };
-    let slip = |state: &SlaveState| match in_contact(state) && state.area > 0.0 {
-        true => scale(state.weighted_slip, state.area.recip()),
+    let slip = |state: &SlaveState| match in_contact(state) && state.kinematics.area > 0.0 {
+        true => scale(state.kinematics.weighted_slip, state.kinematics.area.recip()),
         false => [0.0; 3],
     };
     // Of several slave nodes at a node: the state that is in contact most, the least gap, and pressures by area.
@@ -44,13 +44,14 @@ pub(crate) fn write_states(nodes: &mut Nodes, states: &SlaveStates, frictional: 
         let gaps = own().map(|state| state.gap().unwrap_or(0.0));
         let least = gaps.clone().fold(f64::INFINITY, f64::min);
         values.values_mut(&CONTACT_GAP, 0)[at] = least;
-        let pressures = own().map(|state| ([if in_contact(state) { -state.pressure } else { 0.0 }], state.area));
+        let pressures =
+            own().map(|state| ([if in_contact(state) { -state.law.pressure } else { 0.0 }], state.kinematics.area));
         values.values_mut(&CONTACT_PRESSURE, 0)[at] = combined(Shown::Mean, pressures)[0];
-        let tractions = own().map(|state| (traction(state), state.area));
+        let tractions = own().map(|state| (traction(state), state.kinematics.area));
         let traction = combined(Shown::Mean, tractions);
         values.values_mut(&CONTACT_TRACTION, 0)[3 * at..][..3].copy_from_slice(&traction);
         if frictional {
-            let slips = own().map(|state| (slip(state), state.area));
+            let slips = own().map(|state| (slip(state), state.kinematics.area));
             let slip = combined(Shown::Mean, slips);
             values.values_mut(&CONTACT_SLIP, 0)[3 * at..][..3].copy_from_slice(&slip);
         }

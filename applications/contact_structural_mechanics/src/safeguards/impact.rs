@@ -28,7 +28,7 @@ pub(crate) fn near_nodes(part: &ModelPart, pairing: &Pairing, states: &SlaveStat
     let is_near = |(slave, state): &(SlaveIndex, &SlaveState)| {
         let node = states.mesh_node(*slave);
         let reach = (sizes[node as usize] + motion) * if before.binary_search(&node).is_ok() { 2.0 } else { 1.0 };
-        state.area > 0.0 && state.weighted_gap < reach * state.area
+        state.kinematics.area > 0.0 && state.kinematics.weighted_gap < reach * state.kinematics.area
     };
     let mut near: BTreeSet<u32> = states.iter().filter(is_near).map(|(slave, _)| states.mesh_node(slave)).collect();
     let mut masters = BTreeSet::new();
@@ -66,7 +66,7 @@ pub(crate) fn coarse_impact(
     };
     let began = |slave: SlaveIndex| start.get(slave.place()).map_or(0.0, |gap| gap.max(0.0));
     let work = |(slave, state): (SlaveIndex, &SlaveState)| {
-        0.5 * (pressure(slave, 0) * began(slave) + pressure(slave, 1) * state.weighted_gap.max(0.0))
+        0.5 * (pressure(slave, 0) * began(slave) + pressure(slave, 1) * state.kinematics.weighted_gap.max(0.0))
     };
     let error = states.iter().map(work).sum::<f64>() / energy;
     if error <= tolerance || (*before > 0.0 && error > (1.0 - LEAST_GAIN) * *before) {

@@ -113,14 +113,14 @@ pub(crate) fn late_pairs(
     }
     more.over_ranks(part, states);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let area = |slave: SlaveIndex| states[slave].area + more[slave].area;
+    let area = |slave: SlaveIndex| states[slave].kinematics.area + more[slave].area;
     let inside = |&n: &SlaveIndex| {
         let at = states.mesh_node(n) as usize;
         let around =
             parameters.segmentation.revolution().map_or(1.0, |per_radius| per_radius * part.nodes.current[at][0]);
         let whole = around * sizes[at].powi(part.info.domain_size as i32 - 1);
-        let gap = states[n].weighted_gap + more[n].gap;
-        !states[n].active && more[n].area > wanted.facing * whole && gap < -wanted.depth * area(n)
+        let gap = states[n].kinematics.weighted_gap + more[n].gap;
+        !states[n].law.active && more[n].area > wanted.facing * whole && gap < -wanted.depth * area(n)
     };
     let nodes: BTreeSet<SlaveIndex> = states.slaves().iter().copied().filter(inside).collect();
     let mut found = BTreeSet::new();
@@ -128,7 +128,7 @@ pub(crate) fn late_pairs(
         for (at, integral) in integrals.iter().enumerate() {
             let matters = |(local, &node): (usize, &SlaveIndex)| {
                 nodes.contains(&node)
-                    || states[node].active && integral.area[local].abs() > wanted.share * area(node).abs()
+                    || states[node].law.active && integral.area[local].abs() > wanted.share * area(node).abs()
             };
             if integral.overlapping && block.slaves(at).iter().enumerate().any(matters) {
                 found.insert(block.pairs()[at].key);

@@ -29,7 +29,7 @@ impl Meetings {
     pub(crate) fn accept(&mut self, slaves: &[Vec<SlaveIndex>], states: &SlaveStates) {
         self.steps += 1;
         for (at, slaves) in slaves.iter().enumerate() {
-            if !self.met.contains(&at) && slaves.iter().any(|&slave| states[slave].active) {
+            if !self.met.contains(&at) && slaves.iter().any(|&slave| states[slave].law.active) {
                 self.met.insert(at);
             }
         }

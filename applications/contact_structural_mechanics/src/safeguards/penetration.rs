@@ -14,7 +14,7 @@ pub(crate) fn too_deep(part: &ModelPart, states: &SlaveStates, most: f64, least:
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     // A node without a mesh size has no share that could be judged.
     let share = |node: u32, depth: f64| if sizes[node as usize] > 0.0 { depth / sizes[node as usize] } else { 0.0 };
-    let depths = states.iter().filter(|(_, state)| state.active);
+    let depths = states.iter().filter(|(_, state)| state.law.active);
     let depths = depths.map(|(slave, state)| (states.mesh_node(slave), -state.gap().unwrap_or(0.0)));
     let deep: Vec<(u32, f64)> = depths.filter(|&(node, depth)| depth > least && share(node, depth) > most).collect();
     let (node, depth) = deep.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;

@@ -41,7 +41,7 @@ pub(crate) fn pierced(part: &ModelPart, pairing: &Pairing, states: &SlaveStates)
             for near in tree.meeting(&Bounds::of(&reach)) {
                 let (f, slave) = slaves[near as usize];
                 let active = pairing.patches.of_facet(at as u32, f as u32, slave.nodes.len());
-                let active = active.iter().any(|&slave| states[slave].active);
+                let active = active.iter().any(|&slave| states[slave].law.active);
                 let least = size * if active { HIDDEN } else { NOISE };
                 let Some(depth) = depth(part, slave, x).filter(|depth| *depth > least && *depth < size) else {
                     continue;

@@ -55,7 +55,7 @@ pub(crate) fn import(part: &mut ModelPart, states: &SlaveStates, multiplier: Mul
         let at = components * node as usize;
         std::array::from_fn(|c| if c < components { field.levels[0][at + c] } else { 0.0 })
     };
-    let changed: Vec<(u32, [f64; 3])> = shown(part, states.table(), &|slave| states[slave].area, multiplier)
+    let changed: Vec<(u32, [f64; 3])> = shown(part, states.table(), &|slave| states[slave].kinematics.area, multiplier)
         .into_iter()
         .map(|(node, shown)| (node, shown, given(node)))
         .filter(|(_, shown, given)| shown != given)
@@ -64,7 +64,7 @@ pub(crate) fn import(part: &mut ModelPart, states: &SlaveStates, multiplier: Mul
     for (node, given) in changed {
         let several = states.at(node).nth(1).is_some();
         for slave in states.at(node) {
-            let normal = states[slave].normal;
+            let normal = states[slave].kinematics.normal;
             let along = matches!(multiplier, Multiplier::Vector(_)) && several;
             let own = if along { scale(normal, dot(given, normal)) } else { given };
             multiplier.set(&mut part.slave_nodes, states.owner(slave), own);

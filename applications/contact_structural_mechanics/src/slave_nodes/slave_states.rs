@@ -17,7 +17,7 @@ use zelus_core::model::{ModelPart, Nodes, Variable};
 use zelus_core::vector3::{cross, norm};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use super::slave_state::{Accepted, SlaveState};
+use super::slave_state::{Accepted, SlaveKinematics, SlaveLawState, SlaveParameters, SlaveState};
 use crate::interface::{NormalPatches, Patches, SlaveIndex};
 use crate::law::{FrictionLaw, NodeState};
 use crate::variables::{
@@ -192,7 +192,7 @@ impl SlaveStates {
     pub fn set_slaves(&mut self, slaves: Vec<SlaveIndex>) {
         self.slaves = slaves.into();
         for (place, state) in self.states.iter_mut().enumerate() {
-            state.active &= self.slaves.binary_search(&SlaveIndex(place as u32)).is_ok();
+            state.law.active &= self.slaves.binary_search(&SlaveIndex(place as u32)).is_ok();
         }
     }
 
@@ -226,13 +226,13 @@ impl SlaveStates {
 
     /// Slave nodes in contact.
     pub fn count_active(&self) -> usize {
-        self.iter().filter(|(_, state)| state.active).count()
+        self.iter().filter(|(_, state)| state.law.active).count()
     }
 
     /// Step start: what was accepted last is what the step compares with.
     pub fn begin_step(&mut self) {
         for state in &mut self.states {
-            state.last = Accepted { weighted_gap: state.weighted_gap, carried: state.carried };
+            state.last = Accepted { weighted_gap: state.kinematics.weighted_gap, carried: state.law.carried };
         }
     }
 
@@ -240,7 +240,7 @@ impl SlaveStates {
     pub fn read_normals(&mut self, nodes: &Nodes) {
         let Some(field) = nodes.history.get(NORMAL.name()) else { return };
         for (&node, state) in self.table.nodes.iter().zip(&mut self.states) {
-            state.normal = field.vector(0, node as usize);
+            state.kinematics.normal = field.vector(0, node as usize);
         }
     }
 
@@ -250,7 +250,7 @@ impl SlaveStates {
             let sum = patches.sum(place as u32, places);
             let size = norm(sum);
             if size > 0.0 {
-                state.normal = sum.map(|x| x / size);
+                state.kinematics.normal = sum.map(|x| x / size);
             }
         }
     }
@@ -258,7 +258,7 @@ impl SlaveStates {
     /// Takes the bounds of friction from the numbers of a law at the nodes.
     pub fn read_friction(&mut self, nodes: &Nodes, law: &FrictionLaw) {
         for (&node, state) in self.table.nodes.iter().zip(&mut self.states) {
-            state.friction = law.bound_at(nodes, node as usize);
+            state.parameters.friction = law.bound_at(nodes, node as usize);
         }
     }
 
@@ -267,45 +267,49 @@ impl SlaveStates {
         for own in self.table.nodes.chunk_by(|a, b| a == b).scan(0, next_range) {
             let at = self.table.nodes[own.start] as usize;
             let states = &self.states[own];
-            nodes.flags.set(ACTIVE, at, states.iter().any(|state| state.active));
+            nodes.flags.set(ACTIVE, at, states.iter().any(|state| state.law.active));
             // Of a node in contact, else of the first.
-            let slides = states.iter().find(|state| state.active).unwrap_or(&states[0]).slides;
+            let slides = states.iter().find(|state| state.law.active).unwrap_or(&states[0]).law.slides;
             match slides {
                 Some(slides) => nodes.flags.set(SLIP, at, slides),
                 None => nodes.flags.undefine(SLIP, at),
             }
         }
         for &node in &self.mesh_nodes() {
-            let isolated = self.at(node).all(|slave| self[slave].isolated);
+            let isolated = self.at(node).all(|slave| self[slave].kinematics.isolated);
             nodes.flags.set(ISOLATED, node as usize, isolated);
         }
         let Nodes { values, history, .. } = nodes;
-        self.put(values.values_mut(&NODAL_AREA, 0), Shown::Sum, |state| [state.area]);
-        self.put(values.values_mut(&NORMAL_GAP, 0), Shown::Mean, |state| [state.start_gap]);
-        self.put(history.values_mut(&WEIGHTED_GAP, 0), Shown::Sum, |state| [state.weighted_gap]);
+        self.put(values.values_mut(&NODAL_AREA, 0), Shown::Sum, |state| [state.kinematics.area]);
+        self.put(values.values_mut(&NORMAL_GAP, 0), Shown::Mean, |state| [state.kinematics.start_gap]);
+        self.put(history.values_mut(&WEIGHTED_GAP, 0), Shown::Sum, |state| [state.kinematics.weighted_gap]);
         if history.has(NORMAL.name()) {
-            self.put(history.values_mut(&NORMAL, 0), Shown::Direction, |state| state.normal);
+            self.put(history.values_mut(&NORMAL, 0), Shown::Direction, |state| state.kinematics.normal);
         }
         if let Some(field) = history.get_mut(KEPT_CONTACT_PRESSURE.name()) {
-            self.put(&mut field.levels[0], Shown::Mean, |state| [state.kept_pressure]);
+            self.put(&mut field.levels[0], Shown::Mean, |state| [state.law.kept_pressure]);
         }
         if let Some(field) = self.columns.carried.and_then(|variable| history.get_mut(variable.name())) {
-            self.put(&mut field.levels[0], Shown::Mean, |state| state.carried);
+            self.put(&mut field.levels[0], Shown::Mean, |state| state.law.carried);
         }
         if self.columns.friction {
-            self.put(history.values_mut(&WEIGHTED_SLIP, 0), Shown::Sum, |state| state.weighted_slip);
+            self.put(history.values_mut(&WEIGHTED_SLIP, 0), Shown::Sum, |state| state.kinematics.weighted_slip);
         }
         if !self.columns.tractions {
             return;
         }
-        self.put(values.values_mut(&INITIAL_PENALTY, 0), Shown::Mean, |state| [state.penalty]);
-        self.put(values.values_mut(&DYNAMIC_FACTOR, 0), Shown::Mean, |state| [state.dynamic_factor]);
-        self.put(values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0), Shown::Mean, |state| [state.pressure]);
+        self.put(values.values_mut(&INITIAL_PENALTY, 0), Shown::Mean, |state| [state.parameters.penalty]);
+        self.put(values.values_mut(&DYNAMIC_FACTOR, 0), Shown::Mean, |state| [state.parameters.dynamic_factor]);
+        self.put(values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0), Shown::Mean, |state| [state.law.pressure]);
         if self.columns.friction {
-            self.put(values.values_mut(&MULTIPLIER_WEIGHT, 0), Shown::Mean, |state| [state.multiplier_weight]);
-            self.put(values.values_mut(&TANGENT_XI, 0), Shown::Direction, |state| state.tangent);
-            self.put(values.values_mut(&TANGENT_ETA, 0), Shown::Direction, |state| cross(state.normal, state.tangent));
-            self.put(values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0), Shown::Mean, |state| state.traction);
+            self.put(values.values_mut(&MULTIPLIER_WEIGHT, 0), Shown::Mean, |state| [state.law.multiplier_weight]);
+            self.put(values.values_mut(&TANGENT_XI, 0), Shown::Direction, |state| state.law.tangent);
+            self.put(values.values_mut(&TANGENT_ETA, 0), Shown::Direction, |state| {
+                cross(state.kinematics.normal, state.law.tangent)
+            });
+            self.put(values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0), Shown::Mean, |state| {
+                state.law.traction
+            });
         }
     }
 
@@ -315,7 +319,7 @@ impl SlaveStates {
             let node = self.table.nodes[own.start] as usize;
             let value = match &self.states[own] {
                 [only] => of(only),
-                several => shown.combined(several.iter().map(|state| (of(state), state.area))),
+                several => shown.combined(several.iter().map(|state| (of(state), state.kinematics.area))),
             };
             column[C * node..C * node + C].copy_from_slice(&value);
         }
@@ -369,21 +373,29 @@ fn imported(nodes: &Nodes, at: usize, columns: Columns) -> SlaveState {
     };
     let carried = |level| columns.carried.map_or([0.0; 3], |variable| vector_of(variable.name(), level));
     SlaveState {
-        active: nodes.flags.is(ACTIVE, at),
-        slides: nodes.flags.get(SLIP, at),
-        isolated: nodes.flags.is(ISOLATED, at),
-        normal: vector_of(NORMAL.name(), 0),
-        area: scalar(&NODAL_AREA),
-        weighted_gap: past(WEIGHTED_GAP.name()),
-        weighted_slip: vector_of(WEIGHTED_SLIP.name(), 0),
-        carried: carried(0),
-        kept_pressure: past(KEPT_CONTACT_PRESSURE.name()),
-        penalty: scalar(&INITIAL_PENALTY),
-        dynamic_factor: scalar(&DYNAMIC_FACTOR),
-        tangent: vector(values.values(&TANGENT_XI, 0)),
-        pressure: scalar(&AUGMENTED_NORMAL_CONTACT_PRESSURE),
-        traction: vector(values.values(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0)),
+        kinematics: SlaveKinematics {
+            isolated: nodes.flags.is(ISOLATED, at),
+            normal: vector_of(NORMAL.name(), 0),
+            area: scalar(&NODAL_AREA),
+            weighted_gap: past(WEIGHTED_GAP.name()),
+            weighted_slip: vector_of(WEIGHTED_SLIP.name(), 0),
+            ..SlaveKinematics::default()
+        },
+        law: SlaveLawState {
+            active: nodes.flags.is(ACTIVE, at),
+            slides: nodes.flags.get(SLIP, at),
+            carried: carried(0),
+            kept_pressure: past(KEPT_CONTACT_PRESSURE.name()),
+            tangent: vector(values.values(&TANGENT_XI, 0)),
+            pressure: scalar(&AUGMENTED_NORMAL_CONTACT_PRESSURE),
+            traction: vector(values.values(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0)),
+            ..SlaveLawState::default()
+        },
+        parameters: SlaveParameters {
+            penalty: scalar(&INITIAL_PENALTY),
+            dynamic_factor: scalar(&DYNAMIC_FACTOR),
+            ..SlaveParameters::default()
+        },
         last: Accepted { carried: carried(1), ..Accepted::default() },
-        ..SlaveState::default()
     }
 }

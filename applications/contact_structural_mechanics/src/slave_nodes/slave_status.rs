@@ -41,14 +41,14 @@ pub(crate) fn write_status(part: &mut ModelPart, states: &SlaveStates) {
     let history = &mut part.slave_nodes.history;
     let status = |slave| match states[slave].contact() {
         NodeState::Inactive => SlaveStatus::Inactive,
-        _ if states[slave].friction.is_smooth() => SlaveStatus::Frictionless,
+        _ if states[slave].parameters.friction.is_smooth() => SlaveStatus::Frictionless,
         NodeState::Stick => SlaveStatus::Stick,
         NodeState::Slip => SlaveStatus::Slip,
     };
     for slave in states.all() {
         let at = states.owner(slave) as usize;
         history.values_mut(&SLAVE_STATUS, 0)[at] = status(slave).number();
-        history.values_mut(&MULTIPLIER_WEIGHT, 0)[at] = states[slave].multiplier_weight;
-        history.values_mut(&NORMAL, 0)[3 * at..3 * at + 3].copy_from_slice(&states[slave].normal);
+        history.values_mut(&MULTIPLIER_WEIGHT, 0)[at] = states[slave].law.multiplier_weight;
+        history.values_mut(&NORMAL, 0)[3 * at..3 * at + 3].copy_from_slice(&states[slave].kinematics.normal);
     }
 }
