@@ -20,7 +20,7 @@ pub struct Use {
 pub struct Refusal {
     /// The reason.
     pub reason: &'static str,
-    /// What to do.
+    /// The remedy.
     pub remedy: &'static str,
 }
 

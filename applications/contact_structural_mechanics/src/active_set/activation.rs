@@ -40,7 +40,7 @@ pub(crate) fn clear_inactive(
     }
 }
 
-/// What decides at step start whether a node is in contact.
+/// Criterion of contact at step start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Start<'a> {
     /// A gap below this length.

@@ -23,7 +23,7 @@ pub(crate) const ALLOWED: f64 = 0.01;
 /// Nodes that a warning names.
 const NAMED: usize = 8;
 
-/// What follows from a converged state with a held set.
+/// Outcome of a converged state with a held set.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Settled {
     /// The state fulfils the conditions, or nearly so where none does better.
@@ -96,7 +96,7 @@ impl CycleGuard {
         ))
     }
 
-    /// What to do about decisions that a converged state with a held set leads to, which it may take back in part; `before` is
+    /// Outcome of the decisions in a converged state with a held set, of which it may take back a part; `before` is
     /// that set, `largest` the largest pressure.
     ///
     /// All states change as they want to, unless that leads back to a set that has converged before. Then one node changes,

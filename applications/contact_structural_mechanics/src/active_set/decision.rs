@@ -19,14 +19,14 @@ use crate::resolution::Resolution;
 use crate::settings::Setup;
 use crate::slave_nodes::SlaveStates;
 
-/// What decisions are taken by: the rules of a formulation with the numbers of the step.
+/// The rules of a formulation, with the numbers of the step.
 #[derive(Clone, Copy)]
 pub(crate) struct Rules<'a> {
     /// The formulation.
     pub formulation: &'a Formulation,
     /// Settings and numbers of the step.
     pub parameters: &'a StepParameters,
-    /// What is too small to decide on.
+    /// Smallest lengths and tractions that decide.
     pub resolution: Resolution,
 }
 
@@ -36,7 +36,7 @@ impl<'a> Rules<'a> {
         Self { formulation: setup.settings.formulation, parameters: &setup.parameters, resolution: setup.resolution }
     }
 
-    /// What they want of every slave node, and the states the nodes are in.
+    /// The decision for every slave node, and the states the nodes are in.
     ///
     /// Nodes that nothing overlaps are not in contact. When nothing changes at all, nodes that slide on within a margin and that
     /// friction pushes along their motion stick, each once a step: those in `released` did before.
@@ -166,7 +166,7 @@ impl<'a> Rules<'a> {
         }
     }
 
-    /// What the rules look at, of one slave node.
+    /// The numbers of one slave node that the rules take.
     ///
     /// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
     /// kept until the next update, also of a node that is not in contact meanwhile.

@@ -9,7 +9,7 @@ use crate::pairs::{Formulation, Multiplier};
 use crate::resolution::Resolution;
 use crate::slave_nodes::{SlaveState, SlaveStates};
 
-/// What is too small to decide on at the `nodes` of the interfaces.
+/// Smallest lengths and tractions that decide at the `nodes` of the interfaces.
 ///
 /// Tractions are known as well as a solve leaves multipliers, and as the round-off of displacements leaves forces.
 pub(crate) fn resolution(

@@ -15,7 +15,7 @@ use crate::interface::SlaveIndex;
 use crate::settings::Setup;
 use crate::slave_nodes::SlaveStates;
 
-/// What the stage remembers of a step.
+/// History of the active set within a step.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct SetStage {
     cycles: CycleGuard,

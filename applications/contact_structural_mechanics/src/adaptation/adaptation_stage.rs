@@ -10,10 +10,10 @@ use crate::variables::NODAL_H;
 /// Least share of a penalty that stays: a gap of round-off would otherwise take all of it away.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// What is adapted.
+/// Settings of the adaptation.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AdaptationSettings {
-    /// What penalties follow (`adapt_penalty`); they stay when `None`.
+    /// Rule that penalties follow (`adapt_penalty`); they stay when `None`.
     pub rule: Option<PenaltyRule>,
     /// Least gap, in mesh sizes, with which the adapted penalty method is content.
     pub min_gap_factor: f64,

@@ -19,7 +19,7 @@ use crate::variables::INITIAL_PENALTY;
 /// Share of ω² that contact has even where bodies leave it less: longer steps are warned of anyway.
 const LEAST: f64 = 0.05;
 
-/// What the steps of a run have carried so far.
+/// Loads of the nodes that limit the penalty of explicit steps.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct BearablePenalty {
     /// Largest a/m and area a of the nodes that move (area by mass, area).
@@ -29,8 +29,10 @@ pub(crate) struct BearablePenalty {
 
 impl BearablePenalty {
     /// Step start: lowers the penalty of all nodes to what the step carries, and never raises it: a spring that stiffens under
-    /// load makes energy. `revolution` is the area of a facet by length and radius where the plane is rotated. One that is `given`, or `weighted` and so by area, stays and is warned of. `stiffened` is the factor by
-    /// which it grows with the gap, `delta_time_factor` that of steps with contact.
+    /// load makes energy. A penalty that is `given`, or `weighted` and so by area, stays, with a warning.
+    ///
+    /// `revolution` is the area of a facet by length and radius where the plane is rotated, `stiffened` the factor by which the
+    /// penalty grows with the gap, `delta_time_factor` that of steps with contact.
     pub(crate) fn begin_step(
         &mut self,
         part: &mut ModelPart,

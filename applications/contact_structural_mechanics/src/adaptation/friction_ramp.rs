@@ -3,7 +3,7 @@
 //! Pressures bound friction, and friction decides where bodies press: far from the answer the iteration may run through states
 //! of both that lead nowhere, however short the step, as where bodies are meshed into each other. Contact without friction is
 //! far easier. A step that is tried again solves it first; from there friction takes over, against the slip that it left.
-//! What converges in the end is the step as the deck has it.
+//! The step that converges in the end is that of the deck.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;

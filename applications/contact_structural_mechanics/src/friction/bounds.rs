@@ -5,7 +5,7 @@ use zelus_core::model::{ModelPart, SlaveNodes};
 use zelus_core::vector3::{add, dot, norm, scale};
 
 use super::coefficients::FrictionSettings;
-use super::slip::slip;
+use super::step_slip::slip;
 use crate::interface::SlaveIndex;
 use crate::law::{Multiplier, NodeState, SlipRule, StepParameters};
 use crate::mortar::tangential;

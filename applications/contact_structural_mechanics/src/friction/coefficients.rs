@@ -10,7 +10,7 @@ use crate::interface::Interface;
 use crate::law::{COULOMB, FrictionLaw, Margin, SlipRule};
 use crate::pairs::Friction;
 
-/// What a deck chooses about friction.
+/// Settings of friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionSettings {
     /// The law (`frictional_law`).

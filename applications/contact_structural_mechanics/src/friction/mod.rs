@@ -4,9 +4,9 @@
 
 mod bounds;
 mod coefficients;
-mod slip;
+mod step_slip;
 
 pub(crate) use bounds::{meet_bounds, start_in_stick, warn_of_pushing};
 pub use coefficients::FrictionSettings;
 pub(crate) use coefficients::prepare;
-pub(crate) use slip::slip;
+pub(crate) use step_slip::slip;

@@ -49,11 +49,11 @@ pub struct ContactInteraction {
     warned_of_friction: bool,
     /// Nodes that contact is near to.
     near_nodes: Vec<u32>,
-    /// Of which shape of the bodies its numbers are.
+    /// Count of changes of shape of the bodies that its numbers belong to.
     shape: u64,
 }
 
-/// What contact remembers between steps, as it stands in a saved run.
+/// State of contact in a saved run.
 #[derive(Serialize, Deserialize)]
 struct SavedContact {
     contact: RememberedContact,

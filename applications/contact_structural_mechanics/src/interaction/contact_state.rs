@@ -1,4 +1,4 @@
-//! What contact is at a moment: interfaces with their pairs, slave nodes with their states, and the numbers of the run.
+//! State of contact: interfaces with their pairs, slave nodes with their states, and the numbers of the run.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
@@ -19,7 +19,7 @@ use crate::search::{GapCheck, assign_roles};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, multiplier_columns, owners_name, write_status};
 
-/// Contact at a moment.
+/// State of contact.
 pub(super) struct ContactState {
     /// Settings and numbers.
     pub setup: Setup,
@@ -31,11 +31,11 @@ pub(super) struct ContactState {
     holding: Holding,
     steps_since_search: usize,
     saved: SlaveStates,
-    /// What the user is to be told.
+    /// Notes and warnings for the user.
     pub messages: Vec<Diagnostic>,
 }
 
-/// What contact remembers between steps.
+/// The part of the state that lasts between steps.
 #[derive(Serialize, Deserialize)]
 pub(super) struct RememberedContact {
     pairing: PairingState,
@@ -136,7 +136,7 @@ impl ContactState {
         self.steps_since_search = usize::MAX;
     }
 
-    /// What it remembers between steps.
+    /// The part of the state that lasts between steps.
     pub(super) fn state(&self) -> RememberedContact {
         RememberedContact {
             pairing: self.pairing.state(),

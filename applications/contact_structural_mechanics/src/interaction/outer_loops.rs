@@ -26,7 +26,7 @@ pub(super) struct OuterLoops {
     /// Weighted gaps of all slave nodes at the start of the step.
     #[serde(skip)]
     start_gaps: Vec<f64>,
-    /// What the last attempt at the step made of the energy of motion, where that was too much.
+    /// Share of the energy of motion that the last attempt at the step made, where that was too much.
     impact_error: f64,
     /// Work of contact on bodies in motion.
     pub work: ContactWork,
@@ -66,7 +66,7 @@ impl OuterLoops {
         self.start_gaps = states.all().map(|slave| states[slave].kinematics.weighted_gap).collect();
     }
 
-    /// What follows in a converged state, in the order in which one needs the other.
+    /// The checks of a converged state, in the order in which one needs the other.
     ///
     /// # Errors
     /// Those of making blocks; contact that a deck asks for and that is not there.

@@ -23,7 +23,7 @@ const STEP: f64 = 1e-5;
 pub struct Bodies {
     blocks: Vec<Box<dyn EntityBlock>>,
     faces: FxHashMap<[u32; 2], Face>,
-    /// What weights of points are divided by about an axis.
+    /// Divisor of the weights of points about an axis.
     thickness: f64,
 }
 

@@ -249,7 +249,7 @@ fn assign_roles(
     Ok(())
 }
 
-/// What is said of contact parts that hold elements: their whole skin is taken, or the conditions that they hold beside.
+/// Notes on contact parts that hold elements: their whole skin is taken, or the conditions that they hold beside.
 pub fn notes_of_bodies(part: &ModelPart, parts: &BTreeMap<String, Vec<String>>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     if parts.values().all(Vec::is_empty) {
@@ -437,7 +437,7 @@ fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource
     Ok(Facet { nodes, shape, source, element, properties, role: Roles::Open })
 }
 
-/// Of each node, whether it is one of these parts or of their conditions; of `all`, that it is.
+/// Marks of the nodes of these parts and of their conditions; of all nodes with `all`.
 ///
 /// # Errors
 /// A part that does not exist.

@@ -10,7 +10,7 @@ use super::facets::Interface;
 /// Which components of a node's displacement are prescribed, directly or by constraints on prescribed unknowns.
 pub type Fixed = [bool; 3];
 
-/// What is prescribed at the nodes of interfaces; nodes that are free are left out.
+/// Prescribed components at the nodes of interfaces; free nodes are left out.
 pub fn fixed_components(part: &ModelPart, interfaces: &[Interface]) -> BTreeMap<u32, Fixed> {
     let constraints = part.constraints.iter().filter(|c| c.active).map(|c| (c.slave, &c.masters[..])).collect();
     let dimension = part.info.domain_size;

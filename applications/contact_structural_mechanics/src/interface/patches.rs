@@ -41,10 +41,10 @@ struct PatchNode {
 pub struct Patches {
     nodes: Vec<PatchNode>,
     count: usize,
-    /// Of each facet of each interface the place of its first slave node in `of_facets`; [`NONE`] for masters.
+    /// Place of the first slave node of each facet of each interface in `of_facets`; [`NONE`] for masters.
     starts: Vec<Vec<u32>>,
     of_facets: Vec<SlaveIndex>,
-    /// Of each interface, the nodes of master facets at edges of bodies, ascending.
+    /// Nodes of master facets at edges of bodies, ascending, by interface.
     master_edges: Vec<Vec<u32>>,
 }
 

@@ -82,11 +82,11 @@ pub struct SlaveFace {
     pub densities: Nodal<f64>,
     /// M A/V (stress by length, in the plane times the thickness).
     pub stiffness: f64,
-    /// What tractions are multiplied by, where the weights of points are divided by it.
+    /// Factor of tractions where the weights of points are divided by it.
     pub thickness: f64,
 }
 
-/// What a point takes from the slave nodes around it.
+/// Numbers that a point takes from the slave nodes around it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NodeOfPoints {
     /// Limit of the tangential traction.
@@ -99,7 +99,7 @@ pub struct NodeOfPoints {
     pub stuck: f64,
 }
 
-/// What the points of a pair add up to.
+/// Sums over the points of a pair.
 #[derive(Debug, Clone, Copy)]
 pub struct PointForces<T: Real> {
     /// Forces on slave nodes.
@@ -110,7 +110,7 @@ pub struct PointForces<T: Real> {
     pub traction: Nodal<[f64; 3]>,
     /// ∫ L (τ − t + σ n) over the points in contact, with friction.
     pub carried: Nodal<[T; 3]>,
-    /// What works on changes of the tractions at the inner points (a length times an area).
+    /// Factor of changes of the tractions at the inner points (a length times an area).
     pub by_traction: Nodal<[T; 3]>,
 }
 

@@ -35,7 +35,7 @@ impl NodeState {
     }
 }
 
-/// What becomes of a component of a multiplier.
+/// Constraint on a component of a multiplier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Held {
     /// It has an equation of its own.

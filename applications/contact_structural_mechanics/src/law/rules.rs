@@ -5,7 +5,7 @@
 //! compared with the bound that the law of friction sets under p̂. A sticking node slides when what holds it, k P λ, is more
 //! than the bound; κ c s counts only for nodes that enter. A sliding node, which is at the bound by its own equation, sticks
 //! again when its slip has turned against its traction: then q̂ is below the bound, however small κ c s is. So the states of a
-//! solution do not depend on κ. What is too small to decide on, [`crate::resolution`] says.
+//! solution do not depend on κ. The smallest numbers that decide are those of [`crate::resolution`].
 
 use super::friction_law::Bound;
 use super::node_state::NodeState;
@@ -95,7 +95,7 @@ pub struct SlaveNumbers {
     pub scale_factor: f64,
     /// Ratio κ of tangential to normal stiffness.
     pub tangent_factor: f64,
-    /// What is too small to decide on; gaps and slips below it are zero already.
+    /// Smallest lengths and tractions that decide; gaps and slips below are zero already.
     pub resolution: Resolution,
 }
 
@@ -146,7 +146,7 @@ impl SlaveNumbers {
     }
 }
 
-/// What the active-set stage decides for a node.
+/// Decision of the active-set update for a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Decision {
     /// Augmented normal pressure p̂; compression is negative.

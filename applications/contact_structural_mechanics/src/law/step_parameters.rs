@@ -1,4 +1,4 @@
-//! What every pair of a run shares.
+//! Numbers that every pair of a run shares.
 
 use super::augmentation::Augmentation;
 use super::friction_law::FrictionLaw;
@@ -54,7 +54,7 @@ pub struct StepParameters {
     pub tangent_factor: f64,
     /// Change of the operators beyond which slip is measured objectively.
     pub operator_threshold: OperatorThreshold,
-    /// What limits tangential tractions.
+    /// Law that limits tangential tractions.
     pub friction_law: &'static FrictionLaw,
     /// How stick and slip are told apart.
     pub slip_rule: SlipRule,

@@ -65,7 +65,7 @@ pub struct MpcInteraction {
     messages: Vec<Diagnostic>,
 }
 
-/// What contact by constraints remembers between steps, as it stands in a saved run.
+/// State of contact by constraints in a saved run.
 #[derive(Serialize, Deserialize)]
 struct SavedMpc {
     sides: Vec<Vec<Roles>>,

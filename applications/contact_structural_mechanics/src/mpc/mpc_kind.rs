@@ -1,10 +1,10 @@
-//! What constraints of contact enforce, by the names that decks have for it.
+//! Kinds of contact constraints, by their names in decks.
 
 use zelus_core::Result;
 use zelus_core::diagnostics::did_you_mean;
 use zelus_core::parameters::Settings;
 
-/// What constraints enforce.
+/// Kind of contact constraints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MpcKind {
     /// Contact without friction.
@@ -24,7 +24,7 @@ const TYPES: [(&str, MpcKind, bool); 4] = [
 ];
 const UPDATED: &str = "WithNormalUpdate";
 
-/// What `"contact_type"` of these settings asks for, and whether contact always slides.
+/// Kind of constraints of `"contact_type"` in these settings, and whether contact always slides.
 ///
 /// # Errors
 /// A type that does not exist.

@@ -1,4 +1,4 @@
-//! What a deck chooses about contact by constraints.
+//! Settings of contact by constraints.
 
 use std::collections::BTreeMap;
 
@@ -15,13 +15,13 @@ use crate::mortar::SegmentationSettings;
 use crate::search::SearchSettings;
 use crate::solver::ContactSolverSettings;
 
-/// What a deck chooses about contact by constraints.
+/// Settings of contact by constraints.
 pub struct MpcSettings {
     /// Parts of the interfaces by key.
     pub parts: BTreeMap<String, Vec<String>>,
     /// Parts on the slave side by key.
     pub slaves: BTreeMap<String, Vec<String>>,
-    /// What the constraints enforce.
+    /// The kind of constraints.
     pub kind: MpcKind,
     /// Whether contact always slides.
     pub pure_slip: bool,

@@ -53,7 +53,7 @@ pub(crate) struct NodeRelation {
     pub weights: Vec<(u32, f64)>,
     /// u¹ − B u² where the relation was made (length).
     lead: [f64; 3],
-    /// What is added to it to close the gap.
+    /// Addition to it that closes the gap (length).
     closing: [f64; 3],
     /// The part of that which closes an opening.
     opening: [f64; 3],
@@ -71,7 +71,7 @@ pub enum Weights {
     Consistent,
 }
 
-/// What of a slave node follows its masters, and where to.
+/// Components of a slave node that follow its masters, and the place they follow to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
     /// The displacement along the normal, until the gap is closed; friction goes with the force, `push` to the unit of pressure.
@@ -211,7 +211,7 @@ impl NodeRelation {
         !matches!(self.weights[..], [(_, weight)] if (weight - 1.0).abs() < 1e-6)
     }
 
-    /// What the node is ahead of its masters: u¹ − B u², at a time level.
+    /// Lead of the node over its masters: u¹ − B u², at a time level.
     pub(crate) fn lead(&self, part: &ModelPart, node: u32, level: usize) -> [f64; 3] {
         let levels = part.nodes.history.get(DISPLACEMENT.name()).map_or(0, |field| field.levels.len());
         let displacement = part.nodes.history.values(&DISPLACEMENT, level.min(levels.saturating_sub(1)));

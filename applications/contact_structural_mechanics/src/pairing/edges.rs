@@ -48,7 +48,7 @@ pub(crate) fn take_normals_of_masters(
     }
 }
 
-/// Of each slave node, whether it lies at an edge of its body that may press as an edge: no facet around it is in contact with all of
+/// Marks of the slave nodes at edges of their body that may press as an edge: no facet around them is in contact with all of
 /// its nodes, or with one beside the edge.
 fn open_rims(states: &SlaveStates, pairing: &Pairing, on_plane: &dyn Fn(u32) -> bool) -> Vec<bool> {
     let patches = &pairing.patches;

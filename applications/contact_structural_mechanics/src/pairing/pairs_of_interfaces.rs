@@ -55,7 +55,7 @@ pub(crate) struct Pairing {
     warned_of_reach: bool,
 }
 
-/// What pairs remember between steps.
+/// The part of the pairs that lasts between steps.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct PairingState {
     sides: Vec<Vec<Roles>>,
@@ -347,7 +347,7 @@ impl Pairing {
         (integrals, meetings)
     }
 
-    /// What the last integration has found of each pair: whether it overlaps, and the areas at its nodes.
+    /// Result of the last integration of each pair: whether it overlaps, and the areas at its nodes.
     pub(crate) fn overlaps(&self) -> Vec<(bool, [f64; MOST_NODES])> {
         self.blocks.iter().flat_map(|block| block.pairs()).map(|pair| (pair.overlapping, pair.area)).collect()
     }
@@ -433,7 +433,7 @@ impl Pairing {
         self.graph += 1;
     }
 
-    /// What it remembers between steps.
+    /// The part that lasts between steps.
     pub(crate) fn state(&self) -> PairingState {
         PairingState {
             sides: sides(&self.interfaces),

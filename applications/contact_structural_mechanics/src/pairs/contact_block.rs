@@ -1,4 +1,4 @@
-//! What the interaction asks of a block of pairs, whatever their formulation and their shapes.
+//! Interface of a block of pairs to the interaction, for all formulations and shapes.
 
 use std::sync::Arc;
 

@@ -109,7 +109,7 @@ impl Formulation {
         self.friction != Friction::None
     }
 
-    /// What of its slave nodes has nodal columns.
+    /// The nodal columns of its slave nodes.
     pub fn columns(&self) -> Columns {
         let carries = |variable: &&Variable<[f64; 3]>| self.variables.iter().any(|(name, _)| *name == variable.name());
         Columns {

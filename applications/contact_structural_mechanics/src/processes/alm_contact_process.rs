@@ -146,7 +146,7 @@ pub(super) struct Stem {
     pub name: &'static str,
     /// Factor of the estimated penalty.
     pub penalty_factor: f64,
-    /// What takes the place of an estimate of zero.
+    /// Penalty in the place of an estimate of zero.
     pub least_penalty: f64,
 }
 

@@ -87,7 +87,7 @@ impl FacingSurfaces {
         touching::contact(parameters)
     }
 
-    /// What `of_pair` gives of the pairs of facets of one interface, in an order that depends on nothing but the mesh.
+    /// Results of `of_pair` for the pairs of facets of one interface, in an order that depends on nothing but the mesh.
     pub fn of_pairs<'a, T: Send, I: IntoIterator<Item = T>>(
         &'a self,
         part: &ModelPart,

@@ -1,4 +1,4 @@
-//! What contact shows of an accepted state at the nodes.
+//! Nodal results of contact in an accepted state.
 
 use zelus_core::assembly::nodal_vectors;
 use zelus_core::diagnostics::Result;

@@ -48,7 +48,7 @@ pub(crate) fn pair_states(
     interfaces.iter().zip(slaves).map(of_pair).collect()
 }
 
-/// What friction with this traction has dissipated over this slip on the area of a node.
+/// Energy that friction with this traction has dissipated over this slip on the area of a node.
 pub(crate) fn heat(traction: [f64; 3], slip: [f64; 3], area: f64) -> f64 {
     norm(traction) * norm(slip) * area
 }

@@ -1,7 +1,7 @@
 //! Contact in motion with inertia: which nodes it is near to, and what energy a step makes of closing and opening.
 //!
 //! A trapezoidal step does the work ½ (p_n + p_{n+1}) (g̃_{n+1} − g̃_n) at a node, where contact does none: p g̃ = 0 at both ends.
-//! What is left, ½ (p_n g̃_{n+1} − p_{n+1} g̃_n), is of a node that opens or closes within the step.
+//! The rest, ½ (p_n g̃_{n+1} − p_{n+1} g̃_n), is that of a node which opens or closes within the step.
 
 use std::collections::BTreeSet;
 
@@ -46,8 +46,9 @@ const LEAST_GAIN: f64 = 0.1;
 
 /// Whether the step is too coarse for the nodes that closed or opened in it.
 ///
-/// `tolerance` is the share of the energy of motion that it may make or lose; 0: any. `start` are the weighted gaps at its start. `before` is the error of the last attempt at this step, zero at first: where a
-/// shorter step has not helped, as where supports jump, still shorter ones do not either.
+/// `tolerance` is the share of the energy of motion that it may make or lose; 0: any. `start` are the weighted gaps at its start.
+/// `before` is the error of the last attempt at this step, zero at first: where a shorter step has not helped, as where supports
+/// jump, still shorter ones do not either.
 pub(crate) fn coarse_impact(
     part: &ModelPart,
     states: &SlaveStates,

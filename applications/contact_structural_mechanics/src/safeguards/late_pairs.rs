@@ -20,7 +20,7 @@ use crate::variables::NODAL_H;
 /// axis of revolution) that it must face to be in a master. Less than that is a sliver at the edge of a surface.
 const LEAST_SHARE: f64 = 0.01;
 
-/// What a search within a step is for.
+/// Thresholds of a search within a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wanted {
     /// Depth beyond which a node without contact is in a master (length).
@@ -32,18 +32,18 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// All that matters.
+    /// Every pair that changes the contact of a node.
     pub(crate) fn facing(resolution: Resolution) -> Self {
         Self { depth: resolution.length, facing: LEAST_SHARE, share: LEAST_SHARE }
     }
 
-    /// What nodes have come through by more than `depth`; all pairs once some have been found.
+    /// Pairs of nodes that have come through a master by more than `depth`; all pairs once some have been found.
     pub(crate) fn lost(depth: f64, all: bool) -> Self {
         Self { depth, facing: 0.0, share: if all { 0.0 } else { f64::INFINITY } }
     }
 }
 
-/// What a search within a step finds.
+/// Result of a search within a step.
 #[derive(Default)]
 pub(crate) struct Late {
     /// Nodes that are not in contact though, with the pairs found, they are in a master.

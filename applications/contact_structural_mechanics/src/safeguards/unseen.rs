@@ -12,7 +12,7 @@ use crate::variables::NODAL_H;
 /// Share of the depth that counts by which nodes may move until they are looked at again.
 const STILL: f64 = 0.5;
 
-/// What is kept of the looks at an interface.
+/// Results of the last check of an interface.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Unseen {
     /// Way of the farthest node since the last look that found nothing (length); `None` before the first.

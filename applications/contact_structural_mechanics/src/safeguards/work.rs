@@ -1,6 +1,6 @@
 //! The work that contact does on the bodies in motion, ½ Σ (f_n + f_{n+1}) · (u_{n+1} − u_n) over the nodes of its pairs.
 //!
-//! What contact does to one body the other one takes, springs give back what they took, and friction only takes. A sum above
+//! Contact hands work from one body to the other, springs give back the work they took, and friction only takes. A sum above
 //! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
 
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ const REMEDY: &str = "make the finer of the two sides the slave, or refine the s
 struct Step {
     /// Work on all nodes.
     work: f64,
-    /// What one body has handed to another: half the work without its signs.
+    /// Work that one body has handed to another: half the sum of absolute values.
     handed_on: f64,
 }
 
@@ -79,7 +79,7 @@ impl ContactWork {
         Ok(())
     }
 
-    /// What contact has made with the present step, as a share of the energy there was or was handed on; below zero what it took.
+    /// Energy that contact has made with the present step, as a share of the energy there was or was handed on; below zero it took some.
     fn gain(&self, part: &ModelPart) -> f64 {
         let gain = self.sum.work + self.step.work;
         let energy = part.info.value_or(ENERGY_OF_MOTION, 0.0) - gain.max(0.0);

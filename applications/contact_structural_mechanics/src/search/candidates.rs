@@ -46,7 +46,7 @@ pub enum WithinStep {
     Lost,
 }
 
-/// What decides whether a pair is a candidate.
+/// Settings of the search for candidates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
     /// Reach of the search in radii of the slave facet: facets farther apart are not a pair.
@@ -55,7 +55,7 @@ pub struct SearchSettings {
     pub distance: SearchDistance,
     /// Least difference of the unit normals: facets that face the same way are not a pair.
     pub normal_orientation_threshold: f64,
-    /// What is looked for within a step.
+    /// Pairs that are searched within a step.
     pub within_step: WithinStep,
     /// How contact starts.
     pub check: GapCheck,

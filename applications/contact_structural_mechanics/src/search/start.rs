@@ -33,7 +33,7 @@ struct Place {
     size: f64,
 }
 
-/// What became of the slave nodes of an interface, named `name`, before the first step; nodes are of `bodies`.
+/// Moves or reports the slave nodes of an interface, named `name`, before the first step; nodes are of `bodies`.
 ///
 /// Where `tolerance` is given, nodes whose distance is at most that many mesh sizes are moved onto the master, with their initial
 /// positions: without strain. Deeper ones, and all without it, are told; beyond a mesh size as an error where `refuses` holds.

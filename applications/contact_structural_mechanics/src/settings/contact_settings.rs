@@ -1,4 +1,4 @@
-//! What a deck chooses about contact, read by the processes and used by the interaction.
+//! Settings of contact, read by the processes and used by the interaction.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::pairs::Formulation;
 use crate::search::SearchSettings;
 use crate::solver::ContactSolverSettings;
 
-/// What a deck chooses about contact.
+/// Settings of contact.
 #[derive(Clone)]
 pub struct ContactSettings {
     /// Parts of the interfaces by key.
@@ -62,7 +62,7 @@ pub struct ContactSettings {
     pub operator_threshold: OperatorThreshold,
     /// Coefficients and the rules of stick and slip.
     pub friction: FrictionSettings,
-    /// What of the parameters is adapted in every iteration.
+    /// Parameters that are adapted in every iteration.
     pub adaptation: AdaptationSettings,
     /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.
     pub mind_supports: bool,

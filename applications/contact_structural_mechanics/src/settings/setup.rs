@@ -1,4 +1,4 @@
-//! What all of contact shares during a run: the deck's choices, the numbers of the bodies, and what is too small to decide on.
+//! Settings and numbers that all of contact shares during a run: those of the deck, of the bodies, and the smallest that decide.
 
 use std::sync::Arc;
 
@@ -17,13 +17,13 @@ use crate::variables::NODAL_H;
 
 /// Settings and numbers of contact in a model part.
 pub(crate) struct Setup {
-    /// What the deck chooses.
+    /// Settings of the deck.
     pub settings: ContactSettings,
-    /// What every pair shares.
+    /// Numbers that every pair shares.
     pub parameters: Arc<StepParameters>,
     /// Gap below which nodes and facets count as near, before factors (length).
     pub threshold: f64,
-    /// What is too small to decide on in the present state.
+    /// Smallest lengths and tractions that decide in the present state.
     pub resolution: Resolution,
 }
 

@@ -1,4 +1,4 @@
-//! What contact adds to the solver's settings.
+//! Settings of contact at the solver.
 
 mod contact_solver_settings;
 

@@ -29,7 +29,7 @@ use crate::results::{joins, name};
 use crate::search::SearchSettings;
 use crate::slave_nodes::{SlaveTable, multiplier_columns, owners_name, set_name};
 
-/// What a deck chooses about a tie.
+/// Settings of a tie.
 pub struct TyingSettings {
     /// Parts of the interfaces by key.
     pub parts: BTreeMap<String, Vec<String>>,
@@ -37,7 +37,7 @@ pub struct TyingSettings {
     pub slaves: BTreeMap<String, Vec<String>>,
     /// The multipliers.
     pub formulation: &'static TyingFormulation,
-    /// What is tied, one number a multiplier.
+    /// The tied unknowns, one a multiplier.
     pub tied: Vec<ScalarVariable>,
     /// Times in which the tie holds.
     pub interval: Interval,
@@ -73,7 +73,7 @@ pub struct TyingInteraction {
     normals: Vec<[f64; 3]>,
     pairs: BTreeMap<PairKey, FacetOperators>,
     blocks: Vec<Box<dyn EntityBlock>>,
-    /// Of each block, the facets of its entities.
+    /// Facets of the entities of each block.
     keys: Vec<Vec<PairKey>>,
     scale_factor: f64,
     graph: u64,
@@ -84,7 +84,7 @@ pub struct TyingInteraction {
     messages: Vec<Diagnostic>,
 }
 
-/// What ties remember between steps, as it stands in a saved run.
+/// State of ties in a saved run.
 #[derive(Serialize, Deserialize)]
 struct SavedTie {
     pairs: BTreeMap<PairKey, FacetOperators>,
