@@ -42,7 +42,7 @@ pub(crate) fn clear_inactive(
 
 /// Criterion of contact at step start.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Start<'a> {
+pub(crate) enum ActivationCriterion<'a> {
     /// A gap below this length.
     Reach(f64),
     /// A gap below a small share of the mesh size of the node.
@@ -52,15 +52,15 @@ pub(crate) enum Start<'a> {
 }
 
 /// Step start: which nodes are active. Gaps are weighted gaps over areas, so they are those of the mortar mapping.
-pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: Start<'_>, rule: SlipRule) {
+pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCriterion<'_>, rule: SlipRule) {
     let sizes = nodes.values.values(&NODAL_H, 0);
     let mesh_nodes: Vec<u32> = states.all().map(|slave| states.mesh_node(slave)).collect();
     states.for_each(|slave, state| {
         let gap = state.gap().unwrap_or(FAR);
         let near = match start {
-            Start::Reach(reach) => gap < reach,
-            Start::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
-            Start::Touching(nodes) => nodes.contains(&slave) || state.law.active,
+            ActivationCriterion::Reach(reach) => gap < reach,
+            ActivationCriterion::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
+            ActivationCriterion::Touching(nodes) => nodes.contains(&slave) || state.law.active,
         };
         state.law.active = near && !state.kinematics.isolated;
         state.kinematics.start_gap = if near { gap } else { 0.0 };

@@ -25,7 +25,7 @@ const NAMED: usize = 8;
 
 /// Outcome of a converged state with a held set.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Settled {
+pub(crate) enum SetOutcome {
     /// The state fulfils the conditions, or nearly so where none does better.
     Done,
     /// States change, and the iteration goes on.
@@ -107,10 +107,10 @@ impl CycleGuard {
         before: &[NodeState],
         largest: f64,
         ids: &dyn Fn(SlaveIndex) -> usize,
-    ) -> Settled {
+    ) -> SetOutcome {
         let mut changing: Vec<usize> = (0..before.len()).filter(|&at| decisions[at].1.state != before[at]).collect();
         if changing.is_empty() {
-            return Settled::Done;
+            return SetOutcome::Done;
         }
         changing.sort_by(|&a, &b| decisions[b].1.excess.total_cmp(&decisions[a].1.excess));
         let violation = decisions[changing[0]].1.excess;
@@ -119,7 +119,7 @@ impl CycleGuard {
         let is_known = |set: &[NodeState]| self.converged.iter().any(|(known, _)| known == set);
         let wanted: Vec<NodeState> = decisions.iter().map(|(_, decision)| decision.state).collect();
         if !is_known(&wanted) && self.converged.len() < MOST_CHANGES {
-            return Settled::Change;
+            return SetOutcome::Change;
         }
         let single = |&at: &usize| {
             let mut set = before.to_vec();
@@ -130,17 +130,17 @@ impl CycleGuard {
             for at in changing.into_iter().filter(|&at| at != one) {
                 decisions[at].1.stay(before[at], before[at]);
             }
-            return Settled::Change;
+            return SetOutcome::Change;
         }
         let best = self.converged.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
         if share <= best && share <= ALLOWED {
-            return Settled::Done;
+            return SetOutcome::Done;
         }
         if best <= ALLOWED && self.converged.len() < 2 * MOST_CHANGES {
-            return Settled::Change;
+            return SetOutcome::Change;
         }
         let nodes = named(changing.into_iter().map(|at| ids(decisions[at].0)));
-        Settled::Failed(format!(
+        SetOutcome::Failed(format!(
             "the contact states of nodes {nodes} find no rest; they violate contact by {share:.1e} of the largest pressure"
         ))
     }
@@ -199,8 +199,8 @@ mod tests {
         let seen = run(&mut guard, wants, 8);
         assert!(guard.holds() && seen[3] == seen[7] && seen[2] != seen[3]);
         let mut wanted = decisions(&[Inactive, Slip, Slip], 1.0);
-        assert_eq!(guard.settle(&mut wanted, &seen[7], 1.0, &IDS), Settled::Change);
-        assert_eq!(guard.settle(&mut wanted, &[Inactive, Slip, Slip], 1.0, &IDS), Settled::Done);
+        assert_eq!(guard.settle(&mut wanted, &seen[7], 1.0, &IDS), SetOutcome::Change);
+        assert_eq!(guard.settle(&mut wanted, &[Inactive, Slip, Slip], 1.0, &IDS), SetOutcome::Done);
     }
 
     #[test]
@@ -213,18 +213,18 @@ mod tests {
             };
             [turn(&one, &other, excess[0]), turn(&other, &one, excess[1]), turn(&one, &other, excess[0])]
         };
-        assert_eq!(run([1e-3, 5e-3]), [Settled::Change, Settled::Change, Settled::Done]);
-        assert!(matches!(run([0.5, 0.5])[1], Settled::Failed(_)));
+        assert_eq!(run([1e-3, 5e-3]), [SetOutcome::Change, SetOutcome::Change, SetOutcome::Done]);
+        assert!(matches!(run([0.5, 0.5])[1], SetOutcome::Failed(_)));
     }
 
     #[test]
     fn several_nodes_that_come_back_together_change_one_by_one() {
         let (one, other) = ([Stick; 3], [Slip, Slip, Stick]);
         let mut guard = CycleGuard::default();
-        assert_eq!(guard.settle(&mut decisions(&other, 1.0), &one, 1.0, &IDS), Settled::Change);
+        assert_eq!(guard.settle(&mut decisions(&other, 1.0), &one, 1.0, &IDS), SetOutcome::Change);
         let mut wanted = decisions(&one, 1.0);
         wanted[1].1.excess = 2.0;
-        assert_eq!(guard.settle(&mut wanted, &other, 1.0, &IDS), Settled::Change);
+        assert_eq!(guard.settle(&mut wanted, &other, 1.0, &IDS), SetOutcome::Change);
         assert_eq!(wanted.iter().map(|(_, d)| d.state).collect::<Vec<_>>(), [Slip, Stick, Stick]);
     }
 

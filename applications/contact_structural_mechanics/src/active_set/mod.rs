@@ -11,7 +11,7 @@ mod measured_resolution;
 mod set_stage;
 mod sliding;
 
-pub(crate) use activation::Start;
+pub(crate) use activation::ActivationCriterion;
 pub(crate) use decision::Rules;
 pub(crate) use holding::{FacetsOfPair, Holding};
 pub(crate) use measured_resolution::{resolution, resolved_length};

@@ -7,7 +7,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Outer, SetChange};
 use zelus_core::model::ModelPart;
 
-use super::cycling::{CycleGuard, Settled};
+use super::cycling::{CycleGuard, SetOutcome};
 use super::decision::Rules;
 use super::forced_points;
 use super::sliding::find_tangents;
@@ -77,9 +77,9 @@ impl SetStage {
         let largest = decisions.iter().map(|(_, decision)| -decision.pressure).fold(0.0, f64::max);
         let settled = self.cycles.settle(&mut decisions, &before, largest, &ids(part, states));
         match settled {
-            Settled::Done => Outer::Done,
-            Settled::Failed(why) => Outer::Failed(why),
-            Settled::Change => {
+            SetOutcome::Done => Outer::Done,
+            SetOutcome::Failed(why) => Outer::Failed(why),
+            SetOutcome::Change => {
                 rules.apply(part, states, &decisions, &before);
                 self.find_tangents(part, states, setup);
                 Outer::Again

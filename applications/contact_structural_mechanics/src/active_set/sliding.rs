@@ -67,7 +67,7 @@ pub(crate) fn find_tangents(
                 match contact {
                     NodeState::Slip if dimension == 3 => {
                         let slip = slip(part, states, slave, formulation.multiplier, parameters);
-                        let trial = Trial::new(state, slip, parameters, multiplier);
+                        let trial = TrialTraction::new(state, slip, parameters, multiplier);
                         turning = trial.turning(state.kinematics.pairs, pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }
                     }
@@ -103,13 +103,13 @@ pub(crate) fn find_tangents(
 }
 
 /// Trial traction q̂ = k P λ + κ c s of a node with slip s, and what bounds it.
-struct Trial {
+struct TrialTraction {
     traction: [f64; 3],
     of_slip: [f64; 3],
     bound: f64,
 }
 
-impl Trial {
+impl TrialTraction {
     fn new(state: &SlaveState, slip: [f64; 3], parameters: &StepParameters, multiplier: [f64; 3]) -> Self {
         let stiffness = parameters.nodal_stiffness(state.parameters.penalty, state.kinematics.area);
         let of_slip = scale(slip, parameters.tangent_factor * stiffness);

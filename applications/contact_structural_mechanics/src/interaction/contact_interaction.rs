@@ -15,7 +15,7 @@ use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
 use super::contact_state::{ContactState, RememberedContact};
 use super::outer_loops::OuterLoops;
-use crate::active_set::{SetStage, Start, forced_points};
+use crate::active_set::{ActivationCriterion, SetStage, forced_points};
 use crate::adaptation::{BearablePenalty, Growth};
 use crate::flags::CONTACT;
 use crate::friction;
@@ -24,7 +24,7 @@ use crate::interface::{Bodies, SlaveIndex, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
 use crate::law::StepParameters;
 use crate::results::{heat, joins, pair_states, write_forces, write_states};
-use crate::safeguards::{FreeBodies, Meetings, near_nodes};
+use crate::safeguards::{FreeBodies, InterfacesInContact, near_nodes};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::SlaveState;
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
@@ -39,7 +39,7 @@ pub struct ContactInteraction {
     contact: ContactState,
     set: SetStage,
     loops: OuterLoops,
-    meetings: Meetings,
+    meetings: InterfacesInContact,
     acting: bool,
     /// How explicit steps stiffen the penalty.
     growth: Option<Growth>,
@@ -59,7 +59,7 @@ struct SavedContact {
     contact: RememberedContact,
     set: SetStage,
     loops: OuterLoops,
-    meetings: Meetings,
+    meetings: InterfacesInContact,
     bearable: BearablePenalty,
     near_nodes: Vec<u32>,
     warned_of_friction: bool,
@@ -84,7 +84,7 @@ impl ContactInteraction {
             contact: ContactState::new(settings, part)?,
             set: SetStage::default(),
             loops: OuterLoops::default(),
-            meetings: Meetings::default(),
+            meetings: InterfacesInContact::default(),
             acting: true,
             growth: None,
             bearable: BearablePenalty::default(),
@@ -422,7 +422,7 @@ impl ActiveSet for ContactInteraction {
         if !any {
             let slaves = self.contact.pairing.slaves_by_interface();
             let near = self.free_bodies.next(&part.nodes, &self.contact.states, &slaves);
-            self.contact.activate(part, Start::Touching(&near));
+            self.contact.activate(part, ActivationCriterion::Touching(&near));
             if self.contact.setup.by_points() {
                 forced_points::hold(&mut self.contact.states, &near);
             }

@@ -5,7 +5,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 use zelus_core::{Carrier, Result};
 
-use crate::active_set::activation::{self, Start};
+use crate::active_set::activation::{self, ActivationCriterion};
 use crate::active_set::{FacetsOfPair, Holding, SetStage, forced_points};
 use crate::flags::{MASTER, SLAVE};
 use crate::friction;
@@ -119,7 +119,7 @@ impl ContactState {
     }
 
     /// Activates these nodes, and keeps those that are in contact.
-    pub(super) fn activate(&mut self, part: &ModelPart, start: Start<'_>) {
+    pub(super) fn activate(&mut self, part: &ModelPart, start: ActivationCriterion<'_>) {
         activation::start(&part.nodes, &mut self.states, start, self.setup.parameters.slip_rule);
     }
 
@@ -279,10 +279,10 @@ impl ContactState {
         self.integrate(part);
         let settings = &self.setup.settings;
         let start = match settings.search.check {
-            GapCheck::DirectCheck => Start::Touching(&self.pairing.touching),
-            GapCheck::NoCheck => Start::Reach(f64::MAX),
-            GapCheck::CheckMapping if settings.simple_search => Start::ShareOfMeshSize,
-            GapCheck::CheckMapping => Start::Reach(self.setup.near()),
+            GapCheck::DirectCheck => ActivationCriterion::Touching(&self.pairing.touching),
+            GapCheck::NoCheck => ActivationCriterion::Reach(f64::MAX),
+            GapCheck::CheckMapping if settings.simple_search => ActivationCriterion::ShareOfMeshSize,
+            GapCheck::CheckMapping => ActivationCriterion::Reach(self.setup.near()),
         };
         let rule = self.setup.parameters.slip_rule;
         activation::start(&part.nodes, &mut self.states, start, rule);

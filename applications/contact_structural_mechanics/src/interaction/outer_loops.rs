@@ -9,7 +9,7 @@ use super::contact_state::ContactState;
 use crate::active_set::{Rules, SetStage};
 use crate::adaptation::{FrictionRamp, PenaltyRamp, Uzawa};
 use crate::pairs::Multiplier;
-use crate::safeguards::{ContactWork, StepSearch, Unseen, coarse_impact, pierced, too_deep};
+use crate::safeguards::{ContactWork, PenetrationCheck, StepSearch, coarse_impact, pierced, too_deep};
 use crate::slave_nodes::SlaveStates;
 
 /// The loops of a step.
@@ -32,7 +32,7 @@ pub(super) struct OuterLoops {
     pub work: ContactWork,
     /// Looks for what pairs do not see.
     #[serde(skip)]
-    unseen: Unseen,
+    unseen: PenetrationCheck,
 }
 
 impl OuterLoops {

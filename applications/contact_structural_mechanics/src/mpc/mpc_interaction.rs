@@ -21,9 +21,9 @@ use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_kind::MpcKind;
 use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
-use super::node_relation::{Hold, NodeRelation, can_follow};
+use super::node_relation::{FollowingComponents, NodeRelation, can_follow};
 use super::relations::Relations;
-use crate::active_set::activation::{self, Start};
+use crate::active_set::activation::{self, ActivationCriterion};
 use crate::active_set::resolved_length;
 use crate::flags::{CONTACT, MASTER, SLAVE};
 use crate::friction;
@@ -34,8 +34,8 @@ use crate::interface::{
 use crate::law::SlipRule;
 use crate::pairs::{Friction, condition_name};
 use crate::results::{joins, pair_states};
-use crate::safeguards::{FreeBodies, Meetings, settle_all};
-use crate::slave_nodes::{Columns, SlaveState, SlaveStates, SlaveTable};
+use crate::safeguards::{FreeBodies, InterfacesInContact, settle_all};
+use crate::slave_nodes::{SlaveColumns, SlaveState, SlaveStates, SlaveTable};
 use crate::variables::{NODAL_H, WEIGHTED_GAP, WEIGHTED_SLIP};
 
 /// Iterations in which relations follow every motion: without sliders, and with them.
@@ -61,7 +61,7 @@ pub struct MpcInteraction {
     sided: bool,
     free_bodies: FreeBodies,
     warned_of_held: bool,
-    meetings: Meetings,
+    meetings: InterfacesInContact,
     messages: Vec<Diagnostic>,
 }
 
@@ -76,7 +76,7 @@ struct SavedMpc {
     steps_since_search: usize,
     sided: bool,
     warned_of_held: bool,
-    meetings: Meetings,
+    meetings: InterfacesInContact,
 }
 
 #[typetag::serde(name = "mpc_contact")]
@@ -116,7 +116,7 @@ impl MpcInteraction {
             sided: false,
             free_bodies: FreeBodies::default(),
             warned_of_held: false,
-            meetings: Meetings::default(),
+            meetings: InterfacesInContact::default(),
         })
     }
 
@@ -224,14 +224,14 @@ impl MpcInteraction {
             let state = &self.states[self.states.only_at(node)];
             if state.law.active {
                 let hold = match self.settings.kind {
-                    MpcKind::Frictionless => Hold::Normal { push: [0.0; 3] },
+                    MpcKind::Frictionless => FollowingComponents::Normal { push: [0.0; 3] },
                     MpcKind::Frictional if state.law.slides == Some(true) => {
                         let direction = self.friction.directions.get(&node).copied().unwrap_or_default();
-                        Hold::Normal { push: scale(direction, state.parameters.friction.coefficient) }
+                        FollowingComponents::Normal { push: scale(direction, state.parameters.friction.coefficient) }
                     }
-                    MpcKind::Frictional => Hold::Stick,
-                    MpcKind::MeshTying if self.settings.consistent() => Hold::Tied,
-                    MpcKind::MeshTying => Hold::Closed,
+                    MpcKind::Frictional => FollowingComponents::Stick,
+                    MpcKind::MeshTying if self.settings.consistent() => FollowingComponents::Tied,
+                    MpcKind::MeshTying => FollowingComponents::Closed,
                 };
                 let keeps = self.settings.keeps_first_opening && part.info.step <= 1;
                 let relation = if keeps { &relation.keeping_opening() } else { relation };
@@ -315,7 +315,7 @@ impl Interaction for MpcInteraction {
             self.friction.entry = Some(require_kind(Role::Condition, &name)?);
         }
         nodal_normals(part, &self.interfaces);
-        let columns = Columns { friction: self.settings.kind == MpcKind::Frictional, ..Columns::default() };
+        let columns = SlaveColumns { friction: self.settings.kind == MpcKind::Frictional, ..SlaveColumns::default() };
         let nodes: BTreeSet<u32> = self.interfaces.iter().flat_map(|i| i.nodes.iter().copied()).collect();
         self.states = SlaveStates::of(part, SlaveTable::of_nodes(nodes.into_iter().collect()), columns);
         self.set_slaves();
@@ -352,7 +352,7 @@ impl Interaction for MpcInteraction {
                 self.states[slave].law.active = true;
             }
         } else {
-            activation::start(&part.nodes, &mut self.states, Start::ShareOfMeshSize, self.friction.rule);
+            activation::start(&part.nodes, &mut self.states, ActivationCriterion::ShareOfMeshSize, self.friction.rule);
             friction::start_in_stick(part.info.step, &mut self.states, self.friction.rule, &self.settings.friction);
             self.friction.slide_on(part, &self.relations.nodes, &self.states);
         }
@@ -510,7 +510,7 @@ impl ActiveSet for MpcInteraction {
             return false;
         }
         let near = self.free_bodies.next(&part.nodes, &self.states, &self.slaves_by_interface());
-        activation::start(&part.nodes, &mut self.states, Start::Touching(&near), self.friction.rule);
+        activation::start(&part.nodes, &mut self.states, ActivationCriterion::Touching(&near), self.friction.rule);
         self.write_constraints(part);
         self.states.export(&mut part.nodes);
         !near.is_empty()

@@ -73,7 +73,7 @@ pub enum Weights {
 
 /// Components of a slave node that follow its masters, and the place they follow to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Hold {
+pub(crate) enum FollowingComponents {
     /// The displacement along the normal, until the gap is closed; friction goes with the force, `push` to the unit of pressure.
     Normal { push: [f64; 3] },
     /// All components: along the normal until the gap is closed, in the tangent where the relation was made.
@@ -233,7 +233,7 @@ impl NodeRelation {
         &self,
         part: &ModelPart,
         node: u32,
-        hold: Hold,
+        hold: FollowingComponents,
         next_id: &mut usize,
         out: &mut Vec<MasterSlaveConstraint>,
     ) {
@@ -247,15 +247,15 @@ impl NodeRelation {
         let n = self.normal;
         let closed: [f64; 3] = std::array::from_fn(|c| self.lead[c] + self.closing[c]);
         let offset = match hold {
-            Hold::Tied => self.lead,
-            Hold::Normal { .. } | Hold::Closed => closed,
-            Hold::Stick => {
+            FollowingComponents::Tied => self.lead,
+            FollowingComponents::Normal { .. } | FollowingComponents::Closed => closed,
+            FollowingComponents::Stick => {
                 let lead = self.lead(part, node, 1);
                 let closing = dot(n, sub(closed, lead));
                 std::array::from_fn(|c| lead[c] + n[c] * closing)
             }
         };
-        let Hold::Normal { push: along } = hold else {
+        let FollowingComponents::Normal { push: along } = hold else {
             for c in (0..dimension).filter(|&c| is_free(c)) {
                 let masters = self.weights.iter().map(|&(m, w)| ((m, DISPLACEMENT.component(c as u8)), w));
                 push(c, masters.collect(), None, offset[c]);
@@ -311,7 +311,7 @@ mod tests {
         part.nodes.history.add(&DISPLACEMENT);
         fixed.iter().for_each(|&c| part.nodes.set_fixed(DISPLACEMENT.component(c), &[0], true));
         let mut out = Vec::new();
-        relation().constraints(&part, 0, Hold::Normal { push }, &mut 1, &mut out);
+        relation().constraints(&part, 0, FollowingComponents::Normal { push }, &mut 1, &mut out);
         let constraint = out.pop().expect("a constraint");
         let mut force = [[0.0; 3]; 3];
         let weights = constraint.masters.iter().map(|m| m.1).collect();

@@ -65,9 +65,9 @@ pub(crate) struct PairingState {
     warned_of_reach: bool,
 }
 
-/// How the facets of a pair meet.
+/// Overlap of the facets of a pair.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Meeting {
+pub(crate) struct PairOverlap {
     /// They share an area that is integrated.
     pub overlapping: bool,
     /// They share an area, be it a sliver.
@@ -222,7 +222,7 @@ impl Pairing {
         }
         let before = self.keys();
         self.set(known.into_values().collect(), settings, &searching(parameters, setup.limit()))?;
-        let found: Vec<(Pair, Meeting)> = self.pairs().into_iter().zip(self.integrals(part, states).1).collect();
+        let found: Vec<(Pair, PairOverlap)> = self.pairs().into_iter().zip(self.integrals(part, states).1).collect();
         let lost = found.iter().filter(|(pair, i)| i.overlapping && beyond.contains(&pair.key)).count();
         let warns = lost > 0 && !std::mem::replace(&mut self.warned_of_reach, true);
         // Slivers too: within the step they may grow to overlaps.
@@ -337,13 +337,18 @@ impl Pairing {
     }
 
     /// The integrals of the pairs of this rank, and of all pairs how they meet.
-    pub(crate) fn integrals(&mut self, part: &ModelPart, states: &SlaveStates) -> (Vec<Vec<Integral>>, Vec<Meeting>) {
+    pub(crate) fn integrals(
+        &mut self,
+        part: &ModelPart,
+        states: &SlaveStates,
+    ) -> (Vec<Vec<Integral>>, Vec<PairOverlap>) {
         let integrals = integrals(&mut self.blocks, part, states);
         let mut flags: Vec<bool> = integrals.iter().flatten().flat_map(|i| [i.overlapping, i.facing]).collect();
         if part.share.is_some() {
             part.ranks.any_of(&mut flags);
         }
-        let meetings = flags.chunks_exact(2).map(|pair| Meeting { overlapping: pair[0], facing: pair[1] }).collect();
+        let meetings =
+            flags.chunks_exact(2).map(|pair| PairOverlap { overlapping: pair[0], facing: pair[1] }).collect();
         (integrals, meetings)
     }
 

@@ -11,7 +11,7 @@ use super::contact_block::ContactBlock;
 use super::pair_block::PairBlock;
 use super::pair_request::PairRequest;
 use crate::law::{ContactLaw, Decision, Multiplier, NodeLaw, SlaveNumbers, SlipRule};
-use crate::slave_nodes::Columns;
+use crate::slave_nodes::SlaveColumns;
 use crate::variables::{CARRIED_TRACTION, FRICTION_TRACTION};
 
 /// Friction of a formulation.
@@ -110,9 +110,9 @@ impl Formulation {
     }
 
     /// The nodal columns of its slave nodes.
-    pub fn columns(&self) -> Columns {
+    pub fn columns(&self) -> SlaveColumns {
         let carries = |variable: &&Variable<[f64; 3]>| self.variables.iter().any(|(name, _)| *name == variable.name());
-        Columns {
+        SlaveColumns {
             tractions: true,
             friction: self.frictional(),
             carried: [&FRICTION_TRACTION, &CARRIED_TRACTION].into_iter().find(carries),

@@ -28,7 +28,7 @@ use crate::settings::ContactSettings;
 use crate::solver::ContactSolverSettings;
 
 #[derive(Debug, Deserialize)]
-struct Search {
+struct ContactSearchKeys {
     simple_search: bool,
     adapt_search: bool,
     dynamic_search: bool,
@@ -42,7 +42,7 @@ struct Search {
 }
 
 #[derive(Debug, Deserialize)]
-struct Parameters {
+struct PenaltyKeys {
     #[serde(rename = "manual_ALM")]
     manual: bool,
     stiffness_factor: f64,
@@ -61,12 +61,12 @@ struct Parameters {
 }
 
 #[derive(Debug, Deserialize)]
-struct Alternatives {
+struct AlternativeKeys {
     axisymmetric: bool,
 }
 
 #[derive(Debug, Deserialize)]
-struct Whole {
+struct ContactKeys {
     model_part_name: String,
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
@@ -85,10 +85,10 @@ struct Whole {
     /// Where points decide, nodes decide nothing.
     #[serde(default)]
     least_coverage: f64,
-    search_parameters: Search,
+    search_parameters: ContactSearchKeys,
     #[serde(rename = "advance_ALM_parameters")]
-    parameters: Parameters,
-    alternative_formulations: Alternatives,
+    parameters: PenaltyKeys,
+    alternative_formulations: AlternativeKeys,
 }
 
 /// In which direction a sliding node goes on, in the plane.
@@ -134,14 +134,14 @@ impl FrictionKeys {
 ///
 /// # Errors
 /// Settings that do not fit.
-pub(super) fn of_formulations(request: &mut ProcessRequest<'_>, stem: &Stem) -> Result<Box<dyn Process>> {
+pub(super) fn of_formulations(request: &mut ProcessRequest<'_>, stem: &FormulationStem) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(without_computing_part)?;
     let (root, interaction) = interaction(&settings, request, stem)?;
     Ok(InteractionProcess::boxed(root, interaction))
 }
 
 /// The formulations that a process serves, and how stiff their penalty is.
-pub(super) struct Stem {
+pub(super) struct FormulationStem {
     /// How their names begin; the contact type follows.
     pub name: &'static str,
     /// Factor of the estimated penalty.
@@ -154,9 +154,9 @@ pub(super) struct Stem {
 fn interaction(
     settings: &Settings,
     request: &mut ProcessRequest<'_>,
-    formulations: &Stem,
+    formulations: &FormulationStem,
 ) -> Result<(String, ContactInteraction)> {
-    let whole: Whole = settings.parse()?;
+    let whole: ContactKeys = settings.parse()?;
     let (stem, updated) = match whole.contact_type.strip_suffix("WithNormalUpdate") {
         Some(stem) => (stem, true),
         None => (whole.contact_type.as_str(), false),
@@ -364,7 +364,7 @@ fn check_variables(part: &ModelPart, formulation: &Formulation, settings: &Setti
     }
 }
 
-const AUGMENTED: Stem = Stem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 };
+const AUGMENTED: FormulationStem = FormulationStem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 };
 
 register! { ProcessEntry "alm_contact_process",
     aliases: &["ALMContactProcess"],

@@ -3,10 +3,10 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_formulations};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
 /// The formulations of the penalty method; a penalty as stiff as elements leaves explicit steps their length.
-const EXPLICIT: Stem = Stem { name: "PenaltyContact", penalty_factor: 1.0, least_penalty: 1e13 };
+const EXPLICIT: FormulationStem = FormulationStem { name: "PenaltyContact", penalty_factor: 1.0, least_penalty: 1e13 };
 
 register! { ProcessEntry "explicit_penalty_contact_process",
     aliases: &["ExplicitPenaltyContactProcess"],

@@ -17,32 +17,32 @@ use crate::solver::ContactSolverSettings;
 use crate::tying::{TyingInteraction, TyingSettings};
 
 #[derive(Debug, Deserialize)]
-struct Search {
+struct TyingSearchKeys {
     search_factor: f64,
     database_step_update: usize,
     normal_orientation_threshold: f64,
 }
 
 #[derive(Debug, Deserialize)]
-struct ScaleFactor {
+struct ScaleFactorKeys {
     manual_scale_factor: bool,
     stiffness_factor: f64,
     scale_factor: f64,
 }
 
 #[derive(Debug, Deserialize)]
-struct Whole {
+struct TyingKeys {
     model_part_name: String,
     mesh_tying_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
-    search_parameters: Search,
-    scale_factor_parameters: ScaleFactor,
+    search_parameters: TyingSearchKeys,
+    scale_factor_parameters: ScaleFactorKeys,
     mind_supports: bool,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(without_computing_part)?;
-    let whole: Whole = settings.parse()?;
+    let whole: TyingKeys = settings.parse()?;
     check_search(&settings)?;
     check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;
     let part = request.model.root_mut(&whole.model_part_name)?;

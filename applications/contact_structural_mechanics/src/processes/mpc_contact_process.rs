@@ -17,14 +17,14 @@ use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 use crate::solver::ContactSolverSettings;
 
 #[derive(Debug, Deserialize)]
-struct Search {
+struct MpcSearchKeys {
     search_factor: f64,
     database_step_update: usize,
     normal_orientation_threshold: f64,
 }
 
 #[derive(Debug, Deserialize)]
-struct Whole {
+struct MpcKeys {
     model_part_name: String,
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
@@ -34,12 +34,12 @@ struct Whole {
     consistent_weights: bool,
     keep_first_opening: bool,
     swap_held_slaves: bool,
-    search_parameters: Search,
+    search_parameters: MpcSearchKeys,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(without_computing_part)?;
-    let whole: Whole = settings.parse()?;
+    let whole: MpcKeys = settings.parse()?;
     let (kind, pure_slip) = mpc_contact_type(&settings)?;
     check_search(&settings)?;
     check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;

@@ -3,9 +3,9 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_formulations};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
-const NITSCHE: Stem = Stem { name: "NitscheContact", penalty_factor: 1.0, least_penalty: 1.0 };
+const NITSCHE: FormulationStem = FormulationStem { name: "NitscheContact", penalty_factor: 1.0, least_penalty: 1.0 };
 
 register! { ProcessEntry "nitsche_contact_process",
     aliases: &["NitscheContactProcess"],

@@ -3,10 +3,10 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_formulations};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
 /// A spring stiff enough to hold surfaces apart alone.
-const PENALTY: Stem = Stem { name: "PenaltyContact", penalty_factor: 1e4, least_penalty: 1e16 };
+const PENALTY: FormulationStem = FormulationStem { name: "PenaltyContact", penalty_factor: 1e4, least_penalty: 1e16 };
 
 register! { ProcessEntry "penalty_contact_process",
     aliases: &["PenaltyContactProcess"],

@@ -3,9 +3,10 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_formulations};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
-const FORMULATIONS: Stem = Stem { name: "PerturbedLagrangianContact", penalty_factor: 1e4, least_penalty: 1.0 };
+const FORMULATIONS: FormulationStem =
+    FormulationStem { name: "PerturbedLagrangianContact", penalty_factor: 1e4, least_penalty: 1.0 };
 
 register! { ProcessEntry "perturbed_lagrangian_contact_process",
     aliases: &["PerturbedLagrangianContactProcess"],

@@ -3,9 +3,9 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_formulations};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
-const FORMULATIONS: Stem = Stem { name: "UzawaContact", penalty_factor: 1e1, least_penalty: 1.0 };
+const FORMULATIONS: FormulationStem = FormulationStem { name: "UzawaContact", penalty_factor: 1e1, least_penalty: 1.0 };
 
 register! { ProcessEntry "uzawa_contact_process",
     aliases: &["UzawaContactProcess"],

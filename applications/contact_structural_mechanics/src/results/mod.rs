@@ -4,4 +4,4 @@ mod nodal_results;
 mod pair_states;
 
 pub(crate) use nodal_results::{write_forces, write_states};
-pub(crate) use pair_states::{Parts, heat, joins, name, pair_states};
+pub(crate) use pair_states::{PartsOfPairs, heat, joins, name, pair_states};

@@ -8,7 +8,7 @@ use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use crate::law::NodeState;
-use crate::slave_nodes::{Shown, SlaveState, SlaveStates};
+use crate::slave_nodes::{NodalCombination, SlaveState, SlaveStates};
 use crate::variables::{CONTACT_FORCE, CONTACT_GAP, CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION};
 
 /// Writes pressures, tractions, gaps, slips and states of slave nodes.
@@ -46,20 +46,20 @@ pub(crate) fn write_states(nodes: &mut Nodes, states: &SlaveStates, frictional: 
         values.values_mut(&CONTACT_GAP, 0)[at] = least;
         let pressures =
             own().map(|state| ([if in_contact(state) { -state.law.pressure } else { 0.0 }], state.kinematics.area));
-        values.values_mut(&CONTACT_PRESSURE, 0)[at] = combined(Shown::Mean, pressures)[0];
+        values.values_mut(&CONTACT_PRESSURE, 0)[at] = combined(NodalCombination::Mean, pressures)[0];
         let tractions = own().map(|state| (traction(state), state.kinematics.area));
-        let traction = combined(Shown::Mean, tractions);
+        let traction = combined(NodalCombination::Mean, tractions);
         values.values_mut(&CONTACT_TRACTION, 0)[3 * at..][..3].copy_from_slice(&traction);
         if frictional {
             let slips = own().map(|state| (slip(state), state.kinematics.area));
-            let slip = combined(Shown::Mean, slips);
+            let slip = combined(NodalCombination::Mean, slips);
             values.values_mut(&CONTACT_SLIP, 0)[3 * at..][..3].copy_from_slice(&slip);
         }
     }
 }
 
 /// The numbers of the only slave node at a mesh node, or the combination of several.
-fn combined<const C: usize>(shown: Shown, of: impl Iterator<Item = ([f64; C], f64)> + Clone) -> [f64; C] {
+fn combined<const C: usize>(shown: NodalCombination, of: impl Iterator<Item = ([f64; C], f64)> + Clone) -> [f64; C] {
     let mut all = of.clone();
     match (all.next(), all.next()) {
         (Some((only, _)), None) => only,

@@ -11,15 +11,15 @@ use crate::law::NodeState;
 use crate::search::facing;
 use crate::slave_nodes::{SlaveState, SlaveStates};
 
-/// Parts of each pair of a deck by key: all of them, and those on the slave side.
-pub(crate) type Parts<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
+/// Parts of the pairs of a deck by key: all of them, and those on the slave side.
+pub(crate) type PartsOfPairs<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
 
 /// The pairs of these interfaces; nodes in contact slide where there is no friction, and `heat` is what a slave node that slides
 /// has dissipated in the step; `slaves` are the slave nodes of each interface. No depth up to `least` counts. A slave node of several
 /// pairs counts in the first.
 pub(crate) fn pair_states(
     interfaces: &[Interface],
-    parts: Parts<'_>,
+    parts: PartsOfPairs<'_>,
     (states, slaves): (&SlaveStates, &[Vec<SlaveIndex>]),
     frictional: bool,
     least: f64,
@@ -54,7 +54,7 @@ pub(crate) fn heat(traction: [f64; 3], slip: [f64; 3], area: f64) -> f64 {
 }
 
 /// Name of a pair for reports: its key, the slave parts and those they meet.
-pub(crate) fn name(key: &str, (parts, slaves): Parts<'_>) -> String {
+pub(crate) fn name(key: &str, (parts, slaves): PartsOfPairs<'_>) -> String {
     let all = parts.get(key).map_or(&[][..], Vec::as_slice);
     let own = slaves.get(key).map_or(&[][..], Vec::as_slice);
     let others: Vec<&str> = all.iter().filter(|part| !own.contains(part)).map(String::as_str).collect();

@@ -4,7 +4,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{ModelPart, bodies_of_nodes};
 
 use crate::interface::{Interface, notes_of_bodies};
-use crate::results::{Parts, name};
+use crate::results::{PartsOfPairs, name};
 use crate::search::settle;
 use crate::solver::ContactSolverSettings;
 
@@ -12,7 +12,7 @@ use crate::solver::ContactSolverSettings;
 pub(crate) fn settle_all(
     part: &mut ModelPart,
     interfaces: &[Interface],
-    parts: Parts<'_>,
+    parts: PartsOfPairs<'_>,
     solver: &ContactSolverSettings,
 ) -> Vec<Diagnostic> {
     let (tolerance, refuses) = (solver.adjust_tolerance, solver.largest_penetration > 0.0);

@@ -22,7 +22,7 @@ const LEAST_SHARE: f64 = 0.01;
 
 /// Thresholds of a search within a step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wanted {
+pub(crate) struct SearchThresholds {
     /// Depth beyond which a node without contact is in a master (length).
     pub depth: f64,
     /// Share of its mesh size that such a node must face.
@@ -31,7 +31,7 @@ pub(crate) struct Wanted {
     pub share: f64,
 }
 
-impl Wanted {
+impl SearchThresholds {
     /// Every pair that changes the contact of a node.
     pub(crate) fn facing(resolution: Resolution) -> Self {
         Self { depth: resolution.length, facing: LEAST_SHARE, share: LEAST_SHARE }
@@ -45,7 +45,7 @@ impl Wanted {
 
 /// Result of a search within a step.
 #[derive(Default)]
-pub(crate) struct Late {
+pub(crate) struct FoundPairs {
     /// Nodes that are not in contact though, with the pairs found, they are in a master.
     pub nodes: Vec<u32>,
     /// Pairs of these nodes, and pairs of nodes in contact that integrate a part of their area.
@@ -81,8 +81,8 @@ pub(crate) fn late_pairs(
     part: &ModelPart,
     (pairing, states): (&Pairing, &SlaveStates),
     setup: &Setup,
-    wanted: Wanted,
-) -> Result<Late> {
+    wanted: SearchThresholds,
+) -> Result<FoundPairs> {
     let Setup { settings, parameters, .. } = setup;
     let known: BTreeSet<_> = pairing.keys().into_iter().collect();
     let near = pairing.candidates(part, settings).into_iter();
@@ -141,7 +141,7 @@ pub(crate) fn late_pairs(
     }
     let missed = near.into_iter().zip(missed).filter(|(_, missed)| *missed).map(|(key, _)| key);
     let (crossed, rest) = pairs_of(&missed.collect::<Vec<_>>());
-    Ok(Late {
+    Ok(FoundPairs {
         missed: [crossed, rest].concat(),
         nodes: nodes.into_iter().map(|slave| states.mesh_node(slave)).collect(),
     })

@@ -8,21 +8,21 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, sub};
 
 use crate::interface::{Interface, Roles, SlaveIndex};
-use crate::results::{Parts, name};
+use crate::results::{PartsOfPairs, name};
 use crate::search::{Bounds, Tree};
 use crate::slave_nodes::SlaveStates;
 use crate::variables::NODAL_H;
 
-/// Which pairs have met.
+/// Interfaces that have been in contact.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Meetings {
+pub(crate) struct InterfacesInContact {
     /// Interfaces of which a node was in contact.
     met: BTreeSet<usize>,
     /// Steps in which contact acted.
     steps: usize,
 }
 
-impl Meetings {
+impl InterfacesInContact {
     /// A step is accepted in which contact acts.
     ///
     /// `slaves` are the slave nodes of each interface.
@@ -36,13 +36,18 @@ impl Meetings {
     }
 
     /// The warnings of pairs that never met.
-    pub(crate) fn warnings(&self, part: &ModelPart, interfaces: &[Interface], parts: Parts<'_>) -> Vec<Diagnostic> {
+    pub(crate) fn warnings(
+        &self,
+        part: &ModelPart,
+        interfaces: &[Interface],
+        parts: PartsOfPairs<'_>,
+    ) -> Vec<Diagnostic> {
         let missed =
             interfaces.iter().enumerate().filter(|(at, of)| self.steps > 0 && !of.open && !self.met.contains(at));
         missed.filter_map(|(_, interface)| self.warning(part, interface, parts)).collect()
     }
 
-    fn warning(&self, part: &ModelPart, interface: &Interface, parts: Parts<'_>) -> Option<Diagnostic> {
+    fn warning(&self, part: &ModelPart, interface: &Interface, parts: PartsOfPairs<'_>) -> Option<Diagnostic> {
         let [slaves, masters] = [Roles::Slave, Roles::Master].map(|role| interface.nodes_of(role));
         let place = |node: u32| part.nodes.current[node as usize];
         let tree = Tree::new(masters.iter().map(|&node| Bounds::of(&[place(node)])).collect());

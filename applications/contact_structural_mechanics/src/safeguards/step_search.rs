@@ -6,7 +6,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::Outer;
 use zelus_core::model::ModelPart;
 
-use super::late_pairs::{Late, Wanted, farthest_motion, late_pairs};
+use super::late_pairs::{FoundPairs, SearchThresholds, farthest_motion, late_pairs};
 use crate::pairing::Pairing;
 use crate::pairs::Pair;
 use crate::search::{WithinStep, warn_of_late_pairs};
@@ -40,14 +40,14 @@ impl StepSearch {
         (pairing, states): (&Pairing, &SlaveStates),
         setup: &Setup,
         searched: bool,
-    ) -> Result<Late> {
+    ) -> Result<FoundPairs> {
         let still = searched && farthest_motion(part, &pairing.nodes()) <= setup.resolution.length;
         if still || !setup.threshold.is_finite() {
-            return Ok(Late::default());
+            return Ok(FoundPairs::default());
         }
         let wanted = match setup.settings.search.within_step {
-            WithinStep::Facing => Wanted::facing(setup.resolution),
-            WithinStep::Lost => Wanted::lost(setup.near(), self.searches > 0),
+            WithinStep::Facing => SearchThresholds::facing(setup.resolution),
+            WithinStep::Lost => SearchThresholds::lost(setup.near(), self.searches > 0),
         };
         late_pairs(part, (pairing, states), setup, wanted)
     }

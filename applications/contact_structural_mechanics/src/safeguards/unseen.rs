@@ -14,14 +14,14 @@ const STILL: f64 = 0.5;
 
 /// Results of the last check of an interface.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Unseen {
+pub(crate) struct PenetrationCheck {
     /// Way of the farthest node since the last look that found nothing (length); `None` before the first.
     moved: Option<f64>,
     /// Whether the last look found what a shorter step may not have.
     pub depends_on_step: bool,
 }
 
-impl Unseen {
+impl PenetrationCheck {
     /// Why a converged state cannot be accepted: bodies are in each other by more than `most` of their mesh size
     /// where no node of an interface is in contact, or nodes have gone through a master in the step. Collective.
     ///

@@ -22,7 +22,7 @@ const REMEDY: &str = "make the finer of the two sides the slave, or refine the s
 
 /// Sums over the present step.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-struct Step {
+struct WorkSums {
     /// Work on all nodes.
     work: f64,
     /// Work that one body has handed to another: half the sum of absolute values.
@@ -37,9 +37,9 @@ pub(crate) struct ContactWork {
     /// Forces at the end of the present one.
     #[serde(skip)]
     now: Vec<f64>,
-    step: Step,
+    step: WorkSums,
     /// Sums over all accepted steps.
-    sum: Step,
+    sum: WorkSums,
     warned: bool,
 }
 
@@ -75,7 +75,7 @@ impl ContactWork {
             sums[1] += 0.5 * work.abs();
         }
         part.ranks.sum(&mut sums);
-        self.step = Step { work: sums[0], handed_on: sums[1] };
+        self.step = WorkSums { work: sums[0], handed_on: sums[1] };
         Ok(())
     }
 
@@ -104,8 +104,8 @@ impl ContactWork {
     pub(crate) fn accept(&mut self, part: &ModelPart, conserves: bool) -> Option<Diagnostic> {
         let gain = self.gain(part);
         std::mem::swap(&mut self.before, &mut self.now);
-        let Step { work, handed_on } = std::mem::take(&mut self.step);
-        self.sum = Step { work: self.sum.work + work, handed_on: self.sum.handed_on + handed_on };
+        let WorkSums { work, handed_on } = std::mem::take(&mut self.step);
+        self.sum = WorkSums { work: self.sum.work + work, handed_on: self.sum.handed_on + handed_on };
         let change = if conserves { gain.abs() } else { gain };
         if change <= WORTH_A_WARNING || std::mem::replace(&mut self.warned, true) {
             return None;

@@ -97,8 +97,8 @@ pub(super) fn among(
     settings: &SearchSettings,
     overlapping: bool,
 ) -> Vec<Candidate> {
-    let place = |f: u32| Place::of(part, &interface.facets[f as usize]);
-    let places: Vec<Place> = masters.iter().map(|&m| place(m)).collect();
+    let place = |f: u32| FacetExtent::of(part, &interface.facets[f as usize]);
+    let places: Vec<FacetExtent> = masters.iter().map(|&m| place(m)).collect();
     let tree = Tree::new(places.iter().map(|p| p.bounds).collect());
     let of_slave = |at: usize| {
         let slave = slaves[at];
@@ -124,8 +124,8 @@ pub(super) fn among(
     parallel::map(slaves.len(), AT_A_TIME, of_slave).concat()
 }
 
-/// Where a facet is.
-pub(super) struct Place {
+/// Extent of a facet: its box, centre, radius and normal.
+pub(super) struct FacetExtent {
     bounds: Bounds,
     pub(super) centre: [f64; 3],
     pub(super) normal: [f64; 3],
@@ -135,7 +135,7 @@ pub(super) struct Place {
     is_flat: bool,
 }
 
-impl Place {
+impl FacetExtent {
     pub(super) fn of(part: &ModelPart, facet: &Facet) -> Self {
         let points = facet.positions(part);
         let centre: [f64; 3] = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);

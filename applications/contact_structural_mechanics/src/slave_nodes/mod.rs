@@ -9,7 +9,7 @@ mod slave_sums;
 
 pub(crate) use owners::owners_name;
 pub use slave_state::{Accepted, SlaveKinematics, SlaveLawState, SlaveParameters, SlaveState};
-pub use slave_states::{Columns, Shown, SlaveStates, SlaveTable, set_name};
+pub use slave_states::{NodalCombination, SlaveColumns, SlaveStates, SlaveTable, set_name};
 pub use slave_status::SlaveStatus;
 pub(crate) use slave_status::write_status;
 pub(crate) use slave_sums::{SlaveSums, Summands};

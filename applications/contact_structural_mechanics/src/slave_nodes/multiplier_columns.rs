@@ -6,7 +6,7 @@
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, scale};
 
-use super::slave_states::{Shown, SlaveStates, SlaveTable};
+use super::slave_states::{NodalCombination, SlaveStates, SlaveTable};
 use crate::interface::SlaveIndex;
 use crate::law::Multiplier;
 
@@ -25,7 +25,7 @@ fn shown(
         first = places.end;
         let several = places.len() > 1;
         let of = places.clone().map(|place| (value(place), area(SlaveIndex(place as u32))));
-        out.push((own[0], if several { Shown::Mean.combined(of) } else { value(places.start) }));
+        out.push((own[0], if several { NodalCombination::Mean.combined(of) } else { value(places.start) }));
     }
     out
 }

@@ -28,7 +28,7 @@ use crate::variables::{
 
 /// The nodal columns that states are exported to.
 #[derive(Clone, Copy, Default)]
-pub struct Columns {
+pub struct SlaveColumns {
     /// Whether penalties and tractions do.
     pub tractions: bool,
     /// Whether directions, slips and tractions of friction do.
@@ -89,7 +89,7 @@ pub struct SlaveStates {
     slaves: Arc<[SlaveIndex]>,
     states: Vec<SlaveState>,
     #[serde(skip)]
-    columns: Columns,
+    columns: SlaveColumns,
 }
 
 impl Index<SlaveIndex> for SlaveStates {
@@ -113,7 +113,7 @@ impl SlaveStates {
     }
 
     /// The states that flags and columns of a part hold at the mesh nodes of a table; all of them count as slaves.
-    pub fn of(part: &ModelPart, table: SlaveTable, columns: Columns) -> Self {
+    pub fn of(part: &ModelPart, table: SlaveTable, columns: SlaveColumns) -> Self {
         let states = table.nodes.iter().map(|&node| imported(&part.nodes, node as usize, columns)).collect();
         let slaves = (0..table.nodes.len() as u32).map(SlaveIndex).collect();
         Self { slaves, table: Arc::new(table), states, columns }
@@ -280,41 +280,54 @@ impl SlaveStates {
             nodes.flags.set(ISOLATED, node as usize, isolated);
         }
         let Nodes { values, history, .. } = nodes;
-        self.put(values.values_mut(&NODAL_AREA, 0), Shown::Sum, |state| [state.kinematics.area]);
-        self.put(values.values_mut(&NORMAL_GAP, 0), Shown::Mean, |state| [state.kinematics.start_gap]);
-        self.put(history.values_mut(&WEIGHTED_GAP, 0), Shown::Sum, |state| [state.kinematics.weighted_gap]);
+        self.put(values.values_mut(&NODAL_AREA, 0), NodalCombination::Sum, |state| [state.kinematics.area]);
+        self.put(values.values_mut(&NORMAL_GAP, 0), NodalCombination::Mean, |state| [state.kinematics.start_gap]);
+        self.put(history.values_mut(&WEIGHTED_GAP, 0), NodalCombination::Sum, |state| [state.kinematics.weighted_gap]);
         if history.has(NORMAL.name()) {
-            self.put(history.values_mut(&NORMAL, 0), Shown::Direction, |state| state.kinematics.normal);
+            self.put(history.values_mut(&NORMAL, 0), NodalCombination::Direction, |state| state.kinematics.normal);
         }
         if let Some(field) = history.get_mut(KEPT_CONTACT_PRESSURE.name()) {
-            self.put(&mut field.levels[0], Shown::Mean, |state| [state.law.kept_pressure]);
+            self.put(&mut field.levels[0], NodalCombination::Mean, |state| [state.law.kept_pressure]);
         }
         if let Some(field) = self.columns.carried.and_then(|variable| history.get_mut(variable.name())) {
-            self.put(&mut field.levels[0], Shown::Mean, |state| state.law.carried);
+            self.put(&mut field.levels[0], NodalCombination::Mean, |state| state.law.carried);
         }
         if self.columns.friction {
-            self.put(history.values_mut(&WEIGHTED_SLIP, 0), Shown::Sum, |state| state.kinematics.weighted_slip);
+            self.put(history.values_mut(&WEIGHTED_SLIP, 0), NodalCombination::Sum, |state| {
+                state.kinematics.weighted_slip
+            });
         }
         if !self.columns.tractions {
             return;
         }
-        self.put(values.values_mut(&INITIAL_PENALTY, 0), Shown::Mean, |state| [state.parameters.penalty]);
-        self.put(values.values_mut(&DYNAMIC_FACTOR, 0), Shown::Mean, |state| [state.parameters.dynamic_factor]);
-        self.put(values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0), Shown::Mean, |state| [state.law.pressure]);
+        self.put(values.values_mut(&INITIAL_PENALTY, 0), NodalCombination::Mean, |state| [state.parameters.penalty]);
+        self.put(values.values_mut(&DYNAMIC_FACTOR, 0), NodalCombination::Mean, |state| {
+            [state.parameters.dynamic_factor]
+        });
+        self.put(values.values_mut(&AUGMENTED_NORMAL_CONTACT_PRESSURE, 0), NodalCombination::Mean, |state| {
+            [state.law.pressure]
+        });
         if self.columns.friction {
-            self.put(values.values_mut(&MULTIPLIER_WEIGHT, 0), Shown::Mean, |state| [state.law.multiplier_weight]);
-            self.put(values.values_mut(&TANGENT_XI, 0), Shown::Direction, |state| state.law.tangent);
-            self.put(values.values_mut(&TANGENT_ETA, 0), Shown::Direction, |state| {
+            self.put(values.values_mut(&MULTIPLIER_WEIGHT, 0), NodalCombination::Mean, |state| {
+                [state.law.multiplier_weight]
+            });
+            self.put(values.values_mut(&TANGENT_XI, 0), NodalCombination::Direction, |state| state.law.tangent);
+            self.put(values.values_mut(&TANGENT_ETA, 0), NodalCombination::Direction, |state| {
                 cross(state.kinematics.normal, state.law.tangent)
             });
-            self.put(values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0), Shown::Mean, |state| {
+            self.put(values.values_mut(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0), NodalCombination::Mean, |state| {
                 state.law.traction
             });
         }
     }
 
     /// Writes a column at the mesh nodes: the number of the only slave node there, or the combination of several.
-    pub fn put<const C: usize>(&self, column: &mut [f64], shown: Shown, of: impl Fn(&SlaveState) -> [f64; C]) {
+    pub fn put<const C: usize>(
+        &self,
+        column: &mut [f64],
+        shown: NodalCombination,
+        of: impl Fn(&SlaveState) -> [f64; C],
+    ) {
         for own in self.table.nodes.chunk_by(|a, b| a == b).scan(0, next_range) {
             let node = self.table.nodes[own.start] as usize;
             let value = match &self.states[own] {
@@ -335,7 +348,7 @@ fn next_range(first: &mut usize, chunk: &[u32]) -> Option<Range<usize>> {
 
 /// Combination of the numbers of several slave nodes at one mesh node, for columns of mesh nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shown {
+pub enum NodalCombination {
     /// Forces, areas and numbers weighted by them.
     Sum,
     /// Pressures and tractions: the mean by area.
@@ -344,7 +357,7 @@ pub enum Shown {
     Direction,
 }
 
-impl Shown {
+impl NodalCombination {
     /// The combination of numbers with areas; all count alike where none has an area.
     pub fn combined<const C: usize>(self, of: impl Iterator<Item = ([f64; C], f64)> + Clone) -> [f64; C] {
         let total: f64 = of.clone().map(|(_, area)| area.max(0.0)).sum();
@@ -363,7 +376,7 @@ impl Shown {
     }
 }
 
-fn imported(nodes: &Nodes, at: usize, columns: Columns) -> SlaveState {
+fn imported(nodes: &Nodes, at: usize, columns: SlaveColumns) -> SlaveState {
     let (values, history) = (&nodes.values, &nodes.history);
     let scalar = |variable| values.values(variable, 0).get(at).copied().unwrap_or(0.0);
     let past = |name: &str| history.get(name).map_or(0.0, |field| field.levels[0][at]);
