@@ -22,29 +22,29 @@ pub(crate) fn hold_open_interfaces(states: &mut SlaveStates, slaves: &[Vec<Slave
             resolution.exceeds(-dot(states[node].law.trial, states[node].kinematics.normal), 0.0, false)
         };
         if !nodes.iter().any(presses) {
-            nodes.iter().for_each(|&node| states[node].law.pressed = states[node].law.active);
+            nodes.iter().for_each(|&node| states[node].law.forced_active = states[node].law.active);
         }
     }
 }
 
 /// Holds the points around these nodes in contact until the next solve.
 pub(crate) fn hold(states: &mut SlaveStates, nodes: &BTreeSet<SlaveIndex>) {
-    nodes.iter().for_each(|&node| states[node].law.pressed = true);
+    nodes.iter().for_each(|&node| states[node].law.forced_active = true);
 }
 
 /// Holds the points around active nodes in contact; `false` where no node is active or all of them are held already.
 pub(crate) fn hold_active(states: &mut SlaveStates) -> bool {
     let mut any = false;
     states.for_each(|_, state| {
-        any |= state.law.active && !state.law.pressed;
-        state.law.pressed |= state.law.active;
+        any |= state.law.active && !state.law.forced_active;
+        state.law.forced_active |= state.law.active;
     });
     any
 }
 
 /// Lets all points decide by their pressure and traction.
 pub(crate) fn release(states: &mut SlaveStates) {
-    states.for_all(|state| (state.law.pressed, state.law.stuck) = (false, false));
+    states.for_all(|state| (state.law.forced_active, state.law.forced_stick) = (false, false));
 }
 
 /// Lets points stick until the next solve around nodes that slide back: one solve took them from one bound beyond the other.
@@ -61,7 +61,7 @@ pub(crate) fn hold_turned(
         let turned = dot(state.law.traction, decision.traction) < 0.0;
         if slides && counts(state.law.traction) && counts(decision.traction) && turned {
             decision.slip_changed = true;
-            state.law.stuck = true;
+            state.law.forced_stick = true;
         }
     }
 }

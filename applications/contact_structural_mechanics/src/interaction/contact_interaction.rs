@@ -16,7 +16,7 @@ use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 use super::contact_state::{ContactState, RememberedContact};
 use super::outer_loops::OuterLoops;
 use crate::active_set::{ActivationCriterion, SetStage, forced_points};
-use crate::adaptation::{BearablePenalty, Growth};
+use crate::adaptation::{Growth, StablePenalty};
 use crate::flags::CONTACT;
 use crate::friction;
 use crate::friction::slip;
@@ -39,11 +39,11 @@ pub struct ContactInteraction {
     contact: ContactState,
     set: SetStage,
     loops: OuterLoops,
-    meetings: InterfacesInContact,
+    in_contact: InterfacesInContact,
     acting: bool,
     /// How explicit steps stiffen the penalty.
     growth: Option<Growth>,
-    bearable: BearablePenalty,
+    stable_penalty: StablePenalty,
     /// Nodes of interfaces without contact that this step has activated because a body was free to move.
     free_bodies: FreeBodies,
     warned_of_friction: bool,
@@ -59,8 +59,8 @@ struct SavedContact {
     contact: RememberedContact,
     set: SetStage,
     loops: OuterLoops,
-    meetings: InterfacesInContact,
-    bearable: BearablePenalty,
+    in_contact: InterfacesInContact,
+    stable_penalty: StablePenalty,
     near_nodes: Vec<u32>,
     warned_of_friction: bool,
 }
@@ -84,10 +84,10 @@ impl ContactInteraction {
             contact: ContactState::new(settings, part)?,
             set: SetStage::default(),
             loops: OuterLoops::default(),
-            meetings: InterfacesInContact::default(),
+            in_contact: InterfacesInContact::default(),
             acting: true,
             growth: None,
-            bearable: BearablePenalty::default(),
+            stable_penalty: StablePenalty::default(),
             free_bodies: FreeBodies::default(),
             warned_of_friction: false,
             near_nodes: Vec::new(),
@@ -177,7 +177,7 @@ impl Interaction for ContactInteraction {
                 let (states, interfaces) = (&mut self.contact.states, &self.contact.pairing.interfaces);
                 let (most, factor) = (1.0 + explicit.most, settings.solver.delta_time_factor);
                 let said =
-                    self.bearable.begin_step(part, states, interfaces, revolution, most, given, weighted, factor);
+                    self.stable_penalty.begin_step(part, states, interfaces, revolution, most, given, weighted, factor);
                 self.contact.messages.extend(said);
             }
             self.contact.find_contact(part)?;
@@ -192,7 +192,7 @@ impl Interaction for ContactInteraction {
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.loops.accept(part, &mut self.contact);
         if self.acting {
-            self.meetings.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
+            self.in_contact.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
         }
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         self.contact.clear_inactive(part);
@@ -222,20 +222,21 @@ impl Interaction for ContactInteraction {
             contact: self.contact.state(),
             set: self.set.clone(),
             loops: self.loops.clone(),
-            meetings: self.meetings.clone(),
-            bearable: self.bearable.clone(),
+            in_contact: self.in_contact.clone(),
+            stable_penalty: self.stable_penalty.clone(),
             near_nodes: self.near_nodes.clone(),
             warned_of_friction: self.warned_of_friction,
         }))
     }
 
     fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
-        let SavedContact { contact, set, loops, meetings, bearable, near_nodes, warned_of_friction } = state.take()?;
-        self.meetings = meetings;
+        let SavedContact { contact, set, loops, in_contact, stable_penalty, near_nodes, warned_of_friction } =
+            state.take()?;
+        self.in_contact = in_contact;
         self.contact.resume(part, contact)?;
         check_nodes(part.nodes.len(), near_nodes.iter().copied())?;
         loops.check(part.nodes.len())?;
-        (self.set, self.loops, self.bearable) = (set, loops, bearable);
+        (self.set, self.loops, self.stable_penalty) = (set, loops, stable_penalty);
         (self.near_nodes, self.warned_of_friction) = (near_nodes, warned_of_friction);
         Ok(())
     }
@@ -294,7 +295,7 @@ impl Interaction for ContactInteraction {
 
     fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
         let settings = &self.contact.setup.settings;
-        self.meetings.warnings(part, &self.contact.pairing.interfaces, (&settings.parts, &settings.slaves))
+        self.in_contact.warnings(part, &self.contact.pairing.interfaces, (&settings.parts, &settings.slaves))
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {

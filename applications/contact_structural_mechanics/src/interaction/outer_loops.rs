@@ -32,7 +32,7 @@ pub(super) struct OuterLoops {
     pub work: ContactWork,
     /// Looks for what pairs do not see.
     #[serde(skip)]
-    unseen: PenetrationCheck,
+    penetration_check: PenetrationCheck,
 }
 
 impl OuterLoops {
@@ -123,7 +123,8 @@ impl OuterLoops {
             return Ok(Outer::Failed(why));
         }
         if let Some(why) =
-            self.unseen.why(part, &contact.pairing.interfaces, solver.largest_penetration, |at| contact.in_contact(at))
+            self.penetration_check
+                .why(part, &contact.pairing.interfaces, solver.largest_penetration, |at| contact.in_contact(at))
         {
             return Ok(Outer::Failed(why));
         }
@@ -170,6 +171,6 @@ impl OuterLoops {
 
     /// Whether the next attempt of a step that fails once more goes another way.
     pub(super) fn has_alternative(&self, contact: &ContactState) -> bool {
-        self.unseen.depends_on_step || contact.setup.ramps_friction() && self.friction_ramp.comes_next()
+        self.penetration_check.depends_on_step || contact.setup.ramps_friction() && self.friction_ramp.comes_next()
     }
 }

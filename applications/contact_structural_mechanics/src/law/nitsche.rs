@@ -94,9 +94,9 @@ pub struct NodeOfPoints {
     /// r° of the last accepted state (force per area).
     pub carried: [f64; 3],
     /// 1 where points are in contact whatever their pressure, until the next solve; else 0.
-    pub held: f64,
+    pub forced_active: f64,
     /// 1 where points in contact stick whatever their traction, until the next solve; else 0.
-    pub stuck: f64,
+    pub forced_stick: f64,
 }
 
 /// Sums over the points of a pair.
@@ -163,8 +163,8 @@ impl Nitsche {
             let share = |of: fn(&NodeOfPoints) -> f64| {
                 nodes.iter().zip(point.slave.iter()).map(|(node, n)| of(node) * n.value()).sum::<f64>() > HELD
             };
-            let held = share(|node| node.held);
-            let pressing = held || pressure.value() < 0.0;
+            let forced = share(|node| node.forced_active);
+            let pressing = forced || pressure.value() < 0.0;
             let mut force = if pressing { scale(normal, pressure) } else { zero };
             let mut own = scale(normal, stress);
             let shares = nodal_shares(shape, point);
@@ -181,7 +181,7 @@ impl Nitsche {
                     let carried = tangential(rotation.apply(carried), normal);
                     let along = sub(traction, scale(normal, stress));
                     let trial = add(add(along, carried), scale(slip, T::constant(gamma * ratio)));
-                    let sticks = held || share(|node| node.stuck);
+                    let sticks = forced || share(|node| node.forced_stick);
                     let friction = limited(trial, pressure, mean_bound(nodes, &weights), sticks);
                     force = add(force, friction);
                     let apart = sub(friction, along);

@@ -61,7 +61,7 @@ pub struct MpcInteraction {
     sided: bool,
     free_bodies: FreeBodies,
     warned_of_held: bool,
-    meetings: InterfacesInContact,
+    in_contact: InterfacesInContact,
     messages: Vec<Diagnostic>,
 }
 
@@ -76,7 +76,7 @@ struct SavedMpc {
     steps_since_search: usize,
     sided: bool,
     warned_of_held: bool,
-    meetings: InterfacesInContact,
+    in_contact: InterfacesInContact,
 }
 
 #[typetag::serde(name = "mpc_contact")]
@@ -116,7 +116,7 @@ impl MpcInteraction {
             sided: false,
             free_bodies: FreeBodies::default(),
             warned_of_held: false,
-            meetings: InterfacesInContact::default(),
+            in_contact: InterfacesInContact::default(),
         })
     }
 
@@ -364,7 +364,7 @@ impl Interaction for MpcInteraction {
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.warn_of_held(part);
         if self.acting {
-            self.meetings.accept(&self.slaves_by_interface(), &self.states);
+            self.in_contact.accept(&self.slaves_by_interface(), &self.states);
         }
         Ok(())
     }
@@ -379,7 +379,7 @@ impl Interaction for MpcInteraction {
             steps_since_search: self.steps_since_search,
             sided: self.sided,
             warned_of_held: self.warned_of_held,
-            meetings: self.meetings.clone(),
+            in_contact: self.in_contact.clone(),
         }))
     }
 
@@ -392,7 +392,7 @@ impl Interaction for MpcInteraction {
         self.relations = saved.relations;
         (self.friction.directions, [self.version, self.friction.graph]) = (saved.directions, saved.versions);
         (self.steps_since_search, self.sided) = (saved.steps_since_search, saved.sided);
-        (self.warned_of_held, self.meetings) = (saved.warned_of_held, saved.meetings);
+        (self.warned_of_held, self.in_contact) = (saved.warned_of_held, saved.in_contact);
         Ok(())
     }
 
@@ -442,7 +442,7 @@ impl Interaction for MpcInteraction {
     }
 
     fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
-        self.meetings.warnings(part, &self.interfaces, (&self.settings.parts, &self.settings.slaves))
+        self.in_contact.warnings(part, &self.interfaces, (&self.settings.parts, &self.settings.slaves))
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {

@@ -54,7 +54,7 @@ impl Summands<12> for NodeIntegrals {
 
 /// Integrates all pairs, and finds what is too small to decide on.
 pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut SlaveStates, setup: &mut Setup) {
-    let (integrals, meetings) = pairing.integrals(part, states);
+    let (integrals, overlaps) = pairing.integrals(part, states);
     let mut sums = SlaveSums::<NodeIntegrals>::new(states);
     states.for_all(|state| {
         (
@@ -65,13 +65,13 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
         ) = (0, 0.0, 0.0, 0.0);
         state.kinematics.weighted_slip = [0.0; 3];
     });
-    let mut meetings = meetings.into_iter();
+    let mut overlaps = overlaps.into_iter();
     for (block, integrals) in pairing.blocks.iter_mut().zip(&integrals) {
         for (at, integral) in integrals.iter().enumerate() {
-            let overlaps = meetings.next().is_some_and(|meeting| meeting.overlapping);
+            let overlapping = overlaps.next().is_some_and(|overlap| overlap.overlapping);
             let pair = &mut block.pairs_mut()[at];
-            (pair.overlapping, pair.area) = (overlaps, integral.area);
-            if !overlaps {
+            (pair.overlapping, pair.area) = (overlapping, integral.area);
+            if !overlapping {
                 continue;
             }
             for (local, &node) in block.slaves(at).iter().enumerate() {

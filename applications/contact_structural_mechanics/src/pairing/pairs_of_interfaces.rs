@@ -347,9 +347,9 @@ impl Pairing {
         if part.share.is_some() {
             part.ranks.any_of(&mut flags);
         }
-        let meetings =
+        let overlaps =
             flags.chunks_exact(2).map(|pair| PairOverlap { overlapping: pair[0], facing: pair[1] }).collect();
-        (integrals, meetings)
+        (integrals, overlaps)
     }
 
     /// Result of the last integration of each pair: whether it overlaps, and the areas at its nodes.

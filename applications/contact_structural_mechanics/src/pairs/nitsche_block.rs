@@ -46,8 +46,9 @@ impl NitscheBlock {
         let slaves = self.pairs.slaves(at);
         Nodal::new(slaves.len(), |j| {
             let own = &states[slaves[j]];
-            let (held, stuck) = (f64::from(u8::from(own.law.pressed)), f64::from(u8::from(own.law.stuck)));
-            NodeOfPoints { carried: own.last.carried, friction: own.parameters.friction, held, stuck }
+            let (forced_active, forced_stick) =
+                (f64::from(u8::from(own.law.forced_active)), f64::from(u8::from(own.law.forced_stick)));
+            NodeOfPoints { carried: own.last.carried, friction: own.parameters.friction, forced_active, forced_stick }
         })
     }
 

@@ -6,7 +6,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::Outer;
 use zelus_core::model::ModelPart;
 
-use super::late_pairs::{FoundPairs, SearchThresholds, farthest_motion, late_pairs};
+use super::missed_pairs::{FoundPairs, SearchThresholds, farthest_motion, missed_pairs};
 use crate::pairing::Pairing;
 use crate::pairs::Pair;
 use crate::search::{WithinStep, warn_of_late_pairs};
@@ -34,7 +34,7 @@ impl StepSearch {
     ///
     /// # Errors
     /// Those of making blocks.
-    fn late_pairs(
+    fn missed_pairs(
         &self,
         part: &ModelPart,
         (pairing, states): (&Pairing, &SlaveStates),
@@ -49,7 +49,7 @@ impl StepSearch {
             WithinStep::Facing => SearchThresholds::facing(setup.resolution),
             WithinStep::Lost => SearchThresholds::lost(setup.near(), self.searches > 0),
         };
-        late_pairs(part, (pairing, states), setup, wanted)
+        missed_pairs(part, (pairing, states), setup, wanted)
     }
 
     /// In the first iterations: pairs that the motion has made, so that the iteration need not be repeated for them at its end.
@@ -64,7 +64,7 @@ impl StepSearch {
         searched: bool,
     ) -> Result<Vec<Pair>> {
         let looks = setup.settings.search.within_step == WithinStep::Facing && setup.settings.explicit.is_none();
-        if looks { Ok(self.late_pairs(part, contact, setup, searched)?.missed) } else { Ok(Vec::new()) }
+        if looks { Ok(self.missed_pairs(part, contact, setup, searched)?.missed) } else { Ok(Vec::new()) }
     }
 
     /// In a converged state: pairs that the motion has made, and what the step does about them.
@@ -79,7 +79,7 @@ impl StepSearch {
         searched: bool,
         messages: &mut Vec<Diagnostic>,
     ) -> Result<(Vec<Pair>, Outer)> {
-        let late = self.late_pairs(part, contact, setup, searched)?;
+        let late = self.missed_pairs(part, contact, setup, searched)?;
         if late.missed.is_empty() {
             return Ok((late.missed, Outer::Done));
         }

@@ -62,9 +62,9 @@ pub struct SlaveLawState {
     /// How that direction turns with the unknowns.
     pub turning: Turning,
     /// Whether points around it are in contact until the next solve, whatever their pressure.
-    pub pressed: bool,
+    pub forced_active: bool,
     /// Whether points in contact around it stick until the next solve, whatever their traction.
-    pub stuck: bool,
+    pub forced_stick: bool,
     /// Normal traction for output, compression negative.
     pub pressure: f64,
     /// Tangential traction for output.

@@ -21,13 +21,13 @@ const LEAST: f64 = 0.05;
 
 /// Loads of the nodes that limit the penalty of explicit steps.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(crate) struct BearablePenalty {
+pub(crate) struct StablePenalty {
     /// Largest a/m and area a of the nodes that move (area by mass, area).
     load: Option<[f64; 2]>,
     said: bool,
 }
 
-impl BearablePenalty {
+impl StablePenalty {
     /// Step start: lowers the penalty of all nodes to what the step carries, and never raises it: a spring that stiffens under
     /// load makes energy. A penalty that is `given`, or `weighted` and so by area, stays, with a warning.
     ///

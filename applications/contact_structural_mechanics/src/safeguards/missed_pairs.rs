@@ -77,7 +77,7 @@ impl Summands<2> for FoundOverlap {
 ///
 /// # Errors
 /// Those of making blocks.
-pub(crate) fn late_pairs(
+pub(crate) fn missed_pairs(
     part: &ModelPart,
     (pairing, states): (&Pairing, &SlaveStates),
     setup: &Setup,

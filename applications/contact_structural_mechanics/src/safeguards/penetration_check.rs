@@ -4,7 +4,7 @@ use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
-use super::late_pairs::{farthest_motion, step_start};
+use super::missed_pairs::{farthest_motion, step_start};
 use crate::interface::{Facet, Interface, Roles};
 use crate::search::{Bounds, Tree, inside};
 use crate::variables::NODAL_H;
