@@ -1,4 +1,4 @@
-//! Update of the active set: the numbers of every slave node, their decision by the [`rules`](crate::law::rules), and the states
+//! Update of the active set: the numbers of every slave node, their decision by the [`rules`], and the states
 //! that follow from it.
 
 use std::collections::BTreeSet;
