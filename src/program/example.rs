@@ -14,8 +14,8 @@ const WORDS: [(&str, &str); 9] = [
     ("builder_and_solver", "solver_settings.builder_and_solver_settings.type"),
     ("linear_solver", "solver_settings.linear_solver_settings.solver_type"),
     ("preconditioner", "solver_settings.linear_solver_settings.preconditioner_type"),
-    ("contact_family", "solver_settings.contact_settings.mortar_type"),
-    ("tying_family", "solver_settings.contact_settings.mortar_type"),
+    ("contact_formulation", "solver_settings.contact_settings.mortar_type"),
+    ("tying_formulation", "solver_settings.contact_settings.mortar_type"),
     ("friction_law", "Parameters.frictional_law"),
     ("output_format", "Parameters.file_format"),
 ];

@@ -142,12 +142,12 @@ def slid_past():
                [material("Lower", 1, "strain", *LOWER), material("Upper", 2, "strain", *UPPER)], mesh, checks)
 
 
-def by_another_method(folder, process_name, family, **process_settings):
-    """Lets the contact of a written case be that of another process and family."""
+def by_another_method(folder, process_name, formulation, **process_settings):
+    """Lets the contact of a written case be that of another process and formulation."""
     path = os.path.join(HERE, folder, "ProjectParameters.json")
     with open(path) as file:
         project = json.load(file)
-    project["solver_settings"]["contact_settings"]["mortar_type"] = family
+    project["solver_settings"]["contact_settings"]["mortar_type"] = formulation
     contact = project["processes"]["contact_process_list"][0]
     contact["python_module"] = process_name
     contact["Parameters"].update(process_settings)

@@ -22,7 +22,7 @@ def block(folder, requirement, shape, sliding, length=1.0, stress=1.0, steps=5, 
     The shear acts on the top and, as its complement, on the sides, so that both stresses are uniform. `length` and
     `stress` are the units of the deck in metres and pascals. `limits` has one entry for each of several such pairs of
     blocks side by side: a coefficient, or for Tresca's law the limit as a share of p. `kind` is the contact type, `method`
-    the family: a penalty yields a little, and its tractions stand for multipliers."""
+    the formulation: a penalty yields a little, and its tractions stand for multipliers."""
     dim = int(shape[0])
     up, last = "xyz"[dim - 1], dim - 1
     young, load, drag = 1.0e9 / stress, 1.0e3 / stress, 5.0e-6 / length
@@ -184,7 +184,7 @@ def write():
           steps=1, settings={"linear_solver_settings": {"solver_type": "gmres", "tolerance": 1e-11}})
     block("contact_2d/friction_perfect_stick", "With a huge coefficient of friction a sheared block is tied.", "2D4N", False,
           steps=1, limits=(1e9,))
-    block("contact_2d/friction_pure_slip", "A family that always slides resists with μ p from the first step on.", "2D4N", True,
+    block("contact_2d/friction_pure_slip", "A formulation that always slides resists with μ p from the first step on.", "2D4N", True,
           kind="FrictionalPureSlip")
     block("contact_2d/friction_none", "With a coefficient of zero a dragged block slides freely.", "2D4N", True, limits=(0.0,))
     block("contact_2d/friction_by_pair", "Each pair slides by its own entry of friction_coefficients.", "2D4N", True,

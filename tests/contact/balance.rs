@@ -34,11 +34,11 @@ fn assert_near(found: f64, expected: f64, tolerance: f64, what: &str) {
 
 #[test]
 fn a_pressed_block_hands_its_load_through_contact_to_the_ground() {
-    for family in ["ALMContactFrictionless", "ALMContactFrictionlessComponents", "PenaltyContactFrictionless"] {
+    for formulation in ["ALMContactFrictionless", "ALMContactFrictionlessComponents", "PenaltyContactFrictionless"] {
         let of = balances("contact_2d/matching", Ranks::default(), |deck| {
-            deck["solver_settings"]["contact_settings"]["mortar_type"] = json!(family);
+            deck["solver_settings"]["contact_settings"]["mortar_type"] = json!(formulation);
             let process = &mut deck["processes"]["contact_process_list"][0];
-            match family {
+            match formulation {
                 "ALMContactFrictionlessComponents" => {
                     process["Parameters"]["contact_type"] = json!("FrictionlessComponents");
                 }
@@ -52,12 +52,12 @@ fn a_pressed_block_hands_its_load_through_contact_to_the_ground() {
         assert_near(forces.reactions[1], 1e6, 1e-10, "reaction");
         let [pair] = &balance.pairs[..] else { panic!("one pair") };
         assert_near(pair.force[1].abs(), 1e6, 1e-10, "contact");
-        assert!(forces.relative < 1e-10 && pair.out_of_balance[1].abs() < 1e-4, "{family}: {balance:?}");
+        assert!(forces.relative < 1e-10 && pair.out_of_balance[1].abs() < 1e-4, "{formulation}: {balance:?}");
         assert!(forces.elements[1].abs() < 1e-4 && forces.inertia == [0.0; 3]);
         assert_eq!((pair.open, pair.sticking, pair.name.as_str()), (0, 0, "0: Slave on Interface"));
         assert_eq!(pair.slipping, 4);
-        let depth = if family.starts_with("Penalty") { 1e-9..1e-2 } else { -1e-12..1e-9 };
-        assert!(depth.contains(&pair.penetration) && pair.dissipated == 0.0, "{family}: {}", pair.penetration);
+        let depth = if formulation.starts_with("Penalty") { 1e-9..1e-2 } else { -1e-12..1e-9 };
+        assert!(depth.contains(&pair.penetration) && pair.dissipated == 0.0, "{formulation}: {}", pair.penetration);
         let energies = balance.energies;
         assert_near(energies.loads, energies.stored - energies.interactions, 1e-9, "energies");
         assert!(energies.stored > 0.0 && energies.supports.abs() < 1e-9 * energies.stored);

@@ -139,7 +139,7 @@ fn condensed_systems_have_the_answer_of_the_direct_engine() {
 #[test]
 fn components_and_perturbed_lagrangian_condense_too() {
     let case = "contact_3d/hexahedra_nonmatching";
-    for (family, module, kind, multiplier) in [
+    for (formulation, module, kind, multiplier) in [
         (
             "ALMContactFrictionlessComponents",
             "alm_contact_process",
@@ -154,7 +154,7 @@ fn components_and_perturbed_lagrangian_condense_too() {
         ),
     ] {
         let change = |deck: &mut Value| {
-            deck["solver_settings"]["contact_settings"]["mortar_type"] = json!(family);
+            deck["solver_settings"]["contact_settings"]["mortar_type"] = json!(formulation);
             let process = &mut deck["processes"]["contact_process_list"][0];
             process["python_module"] = json!(module);
             process["Parameters"]["contact_type"] = json!(kind);
@@ -166,9 +166,9 @@ fn components_and_perturbed_lagrangian_condense_too() {
         };
         let direct = Run::converged(case, DIRECT, change);
         let condensed = Run::converged(case, "bicgstab", change);
-        assert!(condensed.is_solved_by("gmres, condensed"), "{family}: {:?}", condensed.engines);
+        assert!(condensed.is_solved_by("gmres, condensed"), "{formulation}: {:?}", condensed.engines);
         let (difference, field) = direct.difference(&condensed);
-        assert!(difference < AGREE, "{family}: {field} differs by {difference:e}");
+        assert!(difference < AGREE, "{formulation}: {field} differs by {difference:e}");
     }
 }
 

@@ -18,7 +18,7 @@ const PATCH: Stack = Stack {
     axis: [0.0, -1.0, 0.0],
     size: 1.0,
     guided: true,
-    family: ALM,
+    formulation: ALM,
     friction: 0.3,
     load: 1e-3,
 };
@@ -88,11 +88,11 @@ fn tilted_patch_on_a_support() {
 #[test]
 fn blocks_with_a_gap_in_the_plane() {
     let mut stacks = Vec::new();
-    for family in [SMOOTH, ALM, PENALTY] {
+    for formulation in [SMOOTH, ALM, PENALTY] {
         for gap in [0.0, 1e-6, 1e-3, 0.02] {
             for (turn, guided) in [(0.0, true), (0.0, false), (37.0, false)] {
                 for tilt in [0.0, 20.0] {
-                    stacks.push(Stack { divisions: [5, 7], family, gap, turn, guided, tilt, ..PATCH });
+                    stacks.push(Stack { divisions: [5, 7], formulation, gap, turn, guided, tilt, ..PATCH });
                 }
             }
         }
@@ -103,11 +103,11 @@ fn blocks_with_a_gap_in_the_plane() {
 #[test]
 fn blocks_with_a_gap_in_space() {
     let mut stacks = Vec::new();
-    for family in [SMOOTH, ALM] {
+    for formulation in [SMOOTH, ALM] {
         for gap in [0.0, 1e-3] {
             for (turn, guided) in [(0.0, true), (37.0, false)] {
                 for tilt in [0.0, 20.0] {
-                    stacks.push(Stack { space: 3, divisions: [3, 4], family, gap, turn, guided, tilt, ..PATCH });
+                    stacks.push(Stack { space: 3, divisions: [3, 4], formulation, gap, turn, guided, tilt, ..PATCH });
                 }
             }
         }
@@ -119,11 +119,11 @@ fn blocks_with_a_gap_in_space() {
 #[test]
 fn gaps_turned_about_odd_axes() {
     let (mut upright, mut turned) = (Vec::new(), Vec::new());
-    for family in [SMOOTH, ALM, PENALTY] {
+    for formulation in [SMOOTH, ALM, PENALTY] {
         for (divisions, gap, tilt) in
             [([2, 3], 1e-3, 0.0), ([3, 2], 1e-3, 20.0), ([3, 4], 0.0, -20.0), ([4, 3], 0.02, 0.0)]
         {
-            let stack = Stack { space: 3, divisions, family, gap, tilt, guided: false, ..PATCH };
+            let stack = Stack { space: 3, divisions, formulation, gap, tilt, guided: false, ..PATCH };
             upright.push(stack);
             for (axis, turn) in [([1.0, 1.0, 0.3], 40.0), ([0.2, -1.0, 0.7], 125.0), ([1.0, 0.0, 0.0], 90.0)] {
                 turned.push(Stack { axis, turn, ..stack });
@@ -138,7 +138,7 @@ fn gaps_turned_about_odd_axes() {
 /// Without a gap, friction or curvature a shorter step is the same problem: cutting ends with the second attempt.
 #[test]
 fn steps_that_only_scale_are_cut_once() {
-    let stack = Stack { divisions: [5, 7], family: SMOOTH, guided: false, ..PATCH };
+    let stack = Stack { divisions: [5, 7], formulation: SMOOTH, guided: false, ..PATCH };
     let folder = tempfile::tempdir().expect("a scratch folder");
     stack.write(folder.path(), |_| {});
     let output = zelus(folder.path(), &["run", "ProjectParameters.json", "--report", "report.json", "--threads", "1"]);

@@ -126,13 +126,13 @@ fn an_adapted_augmented_lagrangian_ends_within_its_limit_or_where_it_would_have_
     for rule in ["AALM", "printed"] {
         for penalty in [true, false] {
             let scratch = case("contact_2d/uzawa");
-            let (process, family) = if penalty {
+            let (process, formulation) = if penalty {
                 ("penalty_contact_process", "PenaltyContactFrictionless")
             } else {
                 ("alm_contact_process", "ALMContactFrictionless")
             };
             let deck = std::fs::read_to_string(scratch.path().join(DECK)).expect("the deck");
-            let deck = deck.replace("uzawa_contact_process", process).replace("UzawaContactFrictionless", family);
+            let deck = deck.replace("uzawa_contact_process", process).replace("UzawaContactFrictionless", formulation);
             let mut deck: Value = serde_json::from_str(&deck).expect("JSON");
             for output in deck["processes"]["json_output_process_list"].as_array_mut().expect("a list") {
                 let variables = output["Parameters"]["output_variables"].as_array_mut().expect("a list");
@@ -164,7 +164,7 @@ fn an_adapted_augmented_lagrangian_ends_within_its_limit_or_where_it_would_have_
 /// The penalty of each process is its factor times E/h of the softer side, E = 1e9 and h = 1/3.
 #[test]
 fn each_process_has_its_penalty() {
-    for (process, family, expected) in [
+    for (process, formulation, expected) in [
         ("penalty", "Penalty", 3e13),
         ("uzawa", "Uzawa", 3e10),
         ("perturbed_lagrangian", "PerturbedLagrangian", 3e13),
@@ -172,7 +172,7 @@ fn each_process_has_its_penalty() {
     ] {
         let scratch = case("contact_2d/uzawa");
         let deck = std::fs::read_to_string(scratch.path().join(DECK)).expect("the deck");
-        let deck = deck.replace("uzawa_contact", &format!("{process}_contact")).replace("Uzawa", family);
+        let deck = deck.replace("uzawa_contact", &format!("{process}_contact")).replace("Uzawa", formulation);
         let mut deck: Value = serde_json::from_str(&deck).expect("JSON");
         let parameters = &mut deck["processes"]["contact_process_list"][0]["Parameters"];
         let settings = parameters.as_object_mut().expect("an object");

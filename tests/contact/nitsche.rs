@@ -3,19 +3,17 @@
 
 use std::sync::Arc;
 
-use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
-use zelus::contact_structural_mechanics::friction_law::COULOMB;
 use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles,
 };
 use zelus::contact_structural_mechanics::law::{
-    Augmentation, Nitsche, NitscheVariant, NormalVariation, StepParameters,
+    Augmentation, COULOMB, Margin, Nitsche, NitscheVariant, NormalVariation, SlipRule, StepParameters,
 };
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
-    ContactBlock, Pair, PairKey, PairRequest, condition_name, find_family, group_by_surroundings,
+    ContactBlock, Pair, PairKey, PairRequest, condition_name, find_formulation, group_by_surroundings,
 };
-use zelus::contact_structural_mechanics::slave_states::{SlaveStates, SlaveTable};
+use zelus::contact_structural_mechanics::slave_nodes::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use zelus_core::entities::{LocalSystems, Want, require_kind};
@@ -130,7 +128,7 @@ impl Contact {
         let bodies = Arc::new(Bodies::new(&part, interfaces, axisymmetric).expect("tractions"));
 
         let name = if friction > 0.0 { "NitscheContactFrictional" } else { "NitscheContactFrictionless" };
-        let family = find_family(name).expect("the family");
+        let formulation = find_formulation(name).expect("the formulation");
         let (slave, master) = (shape(face.len()), shape(masters));
         let parameters = Arc::new(StepParameters {
             segmentation: SegmentationSettings {
@@ -161,8 +159,8 @@ impl Contact {
         let groups = group_by_surroundings(&around, vec![pair], &own);
         let (around, (pairs, nodes)) = groups.into_iter().next().expect("one pair");
         let entry =
-            require_kind(Role::Condition, &condition_name(family.condition, slave, master)).expect("a condition");
-        let mut states = SlaveStates::of(&part, table, family.columns());
+            require_kind(Role::Condition, &condition_name(formulation.condition, slave, master)).expect("a condition");
+        let mut states = SlaveStates::of(&part, table, formulation.columns());
         states.read_friction(&part.nodes, &COULOMB);
         let request = PairRequest {
             entry,
@@ -178,7 +176,7 @@ impl Contact {
             parameters,
             states: Arc::new(states.clone()),
         };
-        let block = (family.block)(request);
+        let block = (formulation.block)(request);
         Self { part, block, interface, patches, states }
     }
 

@@ -17,12 +17,12 @@ struct Run {
 }
 
 impl Run {
-    /// A case with another family, all defaults of its process but for what the problem itself says.
-    fn of(case: &str, process: &str, family: &str) -> Self {
+    /// A case with another formulation, all defaults of its process but for what the problem itself says.
+    fn of(case: &str, process: &str, formulation: &str) -> Self {
         let scratch = scratch_copy(&root().join("tests/cases").join(case));
         let file = scratch.path().join(DECK);
         let mut deck = read_json(&file).expect("the deck");
-        deck["solver_settings"]["contact_settings"]["mortar_type"] = json!(family);
+        deck["solver_settings"]["contact_settings"]["mortar_type"] = json!(formulation);
         let list = &mut deck["processes"]["contact_process_list"][0];
         list["python_module"] = json!(process);
         list["Parameters"].as_object_mut().expect("settings").remove("advance_ALM_parameters");
@@ -32,7 +32,7 @@ impl Run {
                 "historical_value": flag, "time_frequency": 0.0}})
         };
         let mut tractions = vec!["AUGMENTED_NORMAL_CONTACT_PRESSURE", "NODAL_AREA"];
-        if family.ends_with("Frictional") {
+        if formulation.ends_with("Frictional") {
             tractions.push("AUGMENTED_TANGENT_CONTACT_PRESSURE");
         }
         deck["processes"]["json_output_process_list"] = json!([
@@ -41,7 +41,7 @@ impl Run {
         ]);
         std::fs::write(&file, serde_json::to_string_pretty::<Value>(&deck).expect("JSON")).expect("a file");
         let ran = zelus(scratch.path(), &["run", DECK, "--threads", "2"]);
-        assert!(ran.status.success(), "{family}: {}", said(&ran));
+        assert!(ran.status.success(), "{formulation}: {}", said(&ran));
         let read = |name: &str| Results::read(Path::new(&scratch.path().join(name))).expect("results");
         Self { history: read("history.json"), values: read("values.json") }
     }
@@ -107,19 +107,19 @@ fn sheared_cylinders() {
 fn pressed_spheres() {
     let case = "contact_2d/hertz_spheres_light_coarse";
     let twin = Run::of(case, "alm_contact_process", "ALMContactFrictionless");
-    for (process, family) in [
+    for (process, formulation) in [
         ("penalty_contact_process", "PenaltyContactFrictionless"),
         ("perturbed_lagrangian_contact_process", "PerturbedLagrangianContactFrictionless"),
     ] {
-        let run = Run::of(case, process, family);
+        let run = Run::of(case, process, formulation);
         for time in [0.3, 1.0] {
             let pressed = run.total("AUGMENTED_NORMAL_CONTACT_PRESSURE", time) / (-117.808787 * time.powi(3));
-            println!("{family}, t = {time}: pressed by {pressed:.6} of the load");
-            assert!((pressed - 1.0).abs() < TOLERANCE, "{family}, t = {time}: {pressed}");
+            println!("{formulation}, t = {time}: pressed by {pressed:.6} of the load");
+            assert!((pressed - 1.0).abs() < TOLERANCE, "{formulation}, t = {time}: {pressed}");
             for quantity in ["AUGMENTED_NORMAL_CONTACT_PRESSURE", "DISPLACEMENT_Y"] {
                 let off = run.differs(&twin, quantity, time);
-                println!("{family}, t = {time}: {quantity} off by {off:.1e}");
-                assert!(off < TOLERANCE, "{family}, t = {time}: {quantity} differs by {off}");
+                println!("{formulation}, t = {time}: {quantity} off by {off:.1e}");
+                assert!(off < TOLERANCE, "{formulation}, t = {time}: {quantity} differs by {off}");
             }
         }
     }

@@ -1,5 +1,5 @@
 //! One problem in ten sizes, all defaults: the same iterations, displacements and penetration relative to the size, in every
-//! family of contact, in the plane and in space. Penalties come from stiffness and mesh size, with no length of their own.
+//! contact formulation, in the plane and in space. Penalties come from stiffness and mesh size, with no length of their own.
 
 use crate::stacks::Stack;
 use crate::support::{Results, read_json, said, zelus};
@@ -19,7 +19,7 @@ const BLOCKS: Stack = Stack {
     axis: [0.0, -1.0, 0.0],
     size: 1.0,
     guided: true,
-    family: ("", ""),
+    formulation: ("", ""),
     friction: 0.6,
     load: 1e-2,
 };
@@ -51,15 +51,16 @@ fn outcome(stack: &Stack) -> Result<Outcome, String> {
 }
 
 /// Runs all sizes; penetrations must be below `deepest` times the size.
-fn same_in_all_sizes(family: (&'static str, &'static str), deepest: f64) {
+fn same_in_all_sizes(formulation: (&'static str, &'static str), deepest: f64) {
     let mut problems = Vec::new();
     for (space, divisions) in [(2, [5, 7]), (3, [2, 3])] {
-        let stack = |size| Stack { space, divisions, size, family, ..BLOCKS };
-        let (iterations, depth, motion) = outcome(&stack(SIZES[0])).unwrap_or_else(|said| panic!("{family:?}: {said}"));
-        assert!(depth <= deepest, "{family:?}, {space} dimensions: {depth:.1e} deep");
-        assert!(motion > 1e-3 && motion < 0.05, "{family:?}: {motion}");
+        let stack = |size| Stack { space, divisions, size, formulation, ..BLOCKS };
+        let (iterations, depth, motion) =
+            outcome(&stack(SIZES[0])).unwrap_or_else(|said| panic!("{formulation:?}: {said}"));
+        assert!(depth <= deepest, "{formulation:?}, {space} dimensions: {depth:.1e} deep");
+        assert!(motion > 1e-3 && motion < 0.05, "{formulation:?}: {motion}");
         for &size in &SIZES[1..] {
-            let place = format!("{family:?}, {space} dimensions, size {size}");
+            let place = format!("{formulation:?}, {space} dimensions, size {size}");
             match outcome(&stack(size)) {
                 Err(said) => problems.push(format!("{place}: {said}")),
                 Ok((found, ..)) if found != iterations => {

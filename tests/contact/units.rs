@@ -1,4 +1,4 @@
-//! The unit system changes neither the number of iterations nor a digit beyond round-off, in any family of contact.
+//! The unit system changes neither the number of iterations nor a digit beyond round-off, in any contact formulation.
 //!
 //! Every number of a deck that has a unit is rewritten. Absolute tolerances are switched off. Of the settings of contact
 //! these have one: `penalty` is a stress over a length and an area (in the plane over two lengths), `scale_factor` a stress
@@ -307,8 +307,8 @@ fn uzawa() {
 #[test]
 fn perturbed_lagrangian() {
     let process = ("\"alm_contact_process\"", "\"perturbed_lagrangian_contact_process\"");
-    let family = ("\"ALMContactFrictionless\"", "\"PerturbedLagrangianContactFrictionless\"");
-    unchanged(changed(&FLAT, &[process, family]));
+    let formulation = ("\"ALMContactFrictionless\"", "\"PerturbedLagrangianContactFrictionless\"");
+    unchanged(changed(&FLAT, &[process, formulation]));
 }
 
 #[test]

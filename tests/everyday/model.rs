@@ -269,7 +269,7 @@ impl Model {
         let kind = if self.friction.is_some() { "Frictional" } else { "Frictionless" };
         let (method, module) =
             if self.look.penalty { ("Penalty", "penalty_contact_process") } else { ("ALM", "alm_contact_process") };
-        let family = format!("{method}Contact{kind}");
+        let formulation = format!("{method}Contact{kind}");
         let [contacts, slaves] = contact;
         let mut settings = json!({"model_part_name": "Structure", "contact_type": kind, "contact_model_part": contacts,
             "assume_master_slave": slaves});
@@ -298,7 +298,7 @@ impl Model {
                 "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},
                 "material_import_settings": {"materials_filename": "materials.json"},
                 "convergence_criterion": "contact_residual_criterion",
-                "contact_settings": {"mortar_type": family}},
+                "contact_settings": {"mortar_type": formulation}},
             "processes": {
                 "constraints_process_list": processes,
                 "loads_process_list": loads,

@@ -289,7 +289,7 @@ fn conductance_follows_the_pressure() {
     assert!((passed(&report, 0) + q).abs() > 1e-2 * q, "the first step alone would do");
 }
 
-/// The module of the process of contact that brings a family.
+/// The module of the process of contact that brings a formulation.
 fn process_of(mortar: &str) -> &'static str {
     match mortar {
         _ if mortar.starts_with("Penalty") => "penalty_contact_process",
@@ -321,7 +321,7 @@ fn blocks(width: f64, joint: Joint, slides: Value) -> Deck {
     Deck { mesh, joint, supports, pressure: 2.0, young: 1e4, steps: 10 }
 }
 
-/// Runs blocks with heat beside, contact by a family: the report, and heat at nodes; bottom and top are held at these temperatures.
+/// Runs blocks with heat beside, contact by a formulation: the report, and heat at nodes; bottom and top are held at these temperatures.
 fn warm_blocks(blocks: &Deck, mortar: &str, strategy: &str, held: [f64; 2], laws: &Value) -> (Value, Results) {
     let scratch = tempfile::tempdir().expect("a scratch folder");
     blocks.write(scratch.path(), |deck| {
@@ -361,7 +361,7 @@ fn warm_blocks(blocks: &Deck, mortar: &str, strategy: &str, held: [f64; 2], laws
     (read_json(&scratch.path().join("report.json")).expect("the report"), results)
 }
 
-/// Families of contact, without friction and with it.
+/// Contact formulations, without friction and with it.
 const FRICTIONLESS: [&str; 6] = [
     "ALMContactFrictionless",
     "ALMContactFrictionlessComponents",
@@ -374,7 +374,7 @@ const FRICTIONAL: [&str; 3] = ["ALMContactFrictional", "PenaltyContactFrictional
 
 /// Pressed blocks conduct by their pressure, whatever the method of contact: q = ΔT/(L/k + 1/h(p) + L/k).
 #[test]
-fn every_family_conducts_by_its_pressure() {
+fn every_formulation_conducts_by_its_pressure() {
     let laws = json!([{"law": "pressure", "conductance": 100.0, "hardness": 5.0}]);
     let exact = 100.0 / (1.0 / 5.0 + 1.0 / (100.0 * 0.4_f64.powf(0.95)) + 1.0 / 5.0);
     let with = |mortar: &str, strategy: &str, joint: Joint| {

@@ -1,6 +1,7 @@
 //! The order of the code: a module uses only those above it in the list of its crate, the framework names no physics, and nothing of
 //! a run is global.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Crates whose `lib.rs` lists its modules from what is used to what uses.
@@ -14,6 +15,12 @@ const CRATES: [&str; 8] = [
     "applications/convection_diffusion/src",
     "src",
 ];
+
+/// The crate whose folders each hold files that use each other one way.
+const CONTACT: &str = "applications/contact_structural_mechanics/src";
+
+/// Folders of contact whose files still use each other in a loop.
+const LOOPED: [&str; 1] = ["mortar"];
 
 /// Variables, flags and keys of applications.
 const PHYSICS: [&str; 25] = [
@@ -173,6 +180,73 @@ fn every_way_of_naming_a_module_is_seen() {
         "use crate::a::B;\nuse crate::{c::D, e::{F, G}, h};\nlet x = crate::i::j();\n$crate::k::l();\nuse super::m::N;";
     assert_eq!(used(text, true), ["a", "c", "e", "h", "i", "m"]);
     assert_eq!(used(text, false), ["a", "c", "e", "h", "i"]);
+}
+
+/// The files of a folder, each with the files beside it that it uses.
+fn uses_of_files(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
+    let mut paths = Vec::new();
+    sources(folder, &mut paths);
+    let named = |path: &PathBuf| (path.file_stem().unwrap().to_string_lossy().into_owned(), code(path));
+    let mut texts: BTreeMap<String, String> = paths.iter().map(named).collect();
+    let face = texts.remove("mod").unwrap_or_default();
+    let shown: Vec<(String, String)> = texts
+        .keys()
+        .flat_map(|file| {
+            names_after(&face, &format!("{file}::")).into_iter().map(|item| (item.to_owned(), file.clone()))
+        })
+        .collect();
+    let file_of = |name: &str| match texts.contains_key(name) {
+        true => Some(name.to_owned()),
+        false => shown.iter().find(|(item, _)| item == name).map(|(_, file)| file.clone()),
+    };
+    let uses = |(file, text): (&String, &String)| {
+        let used = names_after(text, "super::").into_iter().filter_map(file_of).filter(|other| other != file);
+        (file.clone(), used.collect())
+    };
+    texts.iter().map(uses).collect()
+}
+
+/// The files that are left when those that use none of the others are taken away, again and again: loops, and their users.
+fn looped(mut uses: BTreeMap<String, BTreeSet<String>>) -> Vec<String> {
+    loop {
+        let free: Vec<String> = uses.iter().filter(|(_, used)| used.is_empty()).map(|(file, _)| file.clone()).collect();
+        if free.is_empty() {
+            return uses.into_keys().collect();
+        }
+        for file in free {
+            uses.remove(&file);
+            uses.values_mut().for_each(|used| {
+                used.remove(&file);
+            });
+        }
+    }
+}
+
+#[test]
+fn files_of_a_folder_of_contact_use_each_other_one_way() {
+    let mut wrong = Vec::new();
+    for module in listed(&root().join(CONTACT)).iter().filter(|module| !LOOPED.contains(&module.as_str())) {
+        let folder = root().join(CONTACT).join(module);
+        if folder.is_dir() {
+            let files = looped(uses_of_files(&folder));
+            if !files.is_empty() {
+                wrong.push(format!("{module}: {}", files.join(", ")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "in loops, or users of those:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn loops_of_files_are_seen() {
+    let uses = |of: &[(&str, &[&str])]| {
+        of.iter()
+            .map(|(file, used)| ((*file).to_owned(), used.iter().map(|name| (*name).to_owned()).collect()))
+            .collect()
+    };
+    assert!(looped(uses(&[("a", &[]), ("b", &["a"]), ("c", &["a", "b"])])).is_empty());
+    assert_eq!(looped(uses(&[("a", &["c"]), ("b", &["a"]), ("c", &["b"]), ("d", &[])])), ["a", "b", "c"]);
+    assert!(!looped(uses_of_files(&root().join(CONTACT).join("mortar"))).is_empty());
 }
 
 #[test]

@@ -1,11 +1,11 @@
-//! Every family of contact with every setting that may not suit it: it runs, or is refused with the reason that
+//! Every contact formulation with every setting that may not suit it: it runs, or is refused with the reason that
 //! `compatibility` states.
 
 use crate::support::{read_json, root, said, scratch_copy, zelus};
 use serde_json::{Value, json};
 use std::path::Path;
 use zelus::contact_structural_mechanics::compatibility::{Use, refusal};
-use zelus::contact_structural_mechanics::pairs::{Family, FamilyEntry, Friction};
+use zelus::contact_structural_mechanics::pairs::{Formulation, FormulationEntry, Friction};
 use zelus_core::registry::all;
 
 const DECK: &str = "ProjectParameters.json";
@@ -16,12 +16,12 @@ const VARIATIONS: [&str; 4] = [
     "nodal_elemental_derivatives",
 ];
 
-fn families() -> Vec<(&'static str, &'static Family)> {
-    all::<FamilyEntry>().into_iter().map(|entry| (entry.name, &entry.build)).collect()
+fn formulations() -> Vec<(&'static str, &'static Formulation)> {
+    all::<FormulationEntry>().into_iter().map(|entry| (entry.name, &entry.build)).collect()
 }
 
-/// The process of a family and the contact type that names it there.
-fn process_of(family: &str, explicit: bool) -> (&'static str, &str) {
+/// The process of a formulation and the contact type that names it there.
+fn process_of(formulation: &str, explicit: bool) -> (&'static str, &str) {
     let processes = [
         ("ALMContact", "alm_contact_process"),
         ("PenaltyContact", if explicit { "explicit_penalty_contact_process" } else { "penalty_contact_process" }),
@@ -29,8 +29,8 @@ fn process_of(family: &str, explicit: bool) -> (&'static str, &str) {
         ("NitscheContact", "nitsche_contact_process"),
         ("PerturbedLagrangianContact", "perturbed_lagrangian_contact_process"),
     ];
-    let found = processes.iter().find_map(|(stem, process)| Some((*process, family.strip_prefix(stem)?)));
-    found.unwrap_or_else(|| panic!("no process for {family}"))
+    let found = processes.iter().find_map(|(stem, process)| Some((*process, formulation.strip_prefix(stem)?)));
+    found.unwrap_or_else(|| panic!("no process for {formulation}"))
 }
 
 /// What else a deck asks for.
@@ -49,7 +49,7 @@ fn replace(folder: &Path, file: &str, pairs: &[(&str, &str)]) {
     std::fs::write(path, pairs.iter().fold(text, |text, (from, to)| text.replace(from, to))).expect("a file");
 }
 
-fn check(name: &str, family: &Family, wish: Wish) {
+fn check(name: &str, formulation: &Formulation, wish: Wish) {
     let Use { dimension, axisymmetric, explicit, arc_length } = wish.wanted;
     let case = if dimension == 2 { "contact_2d/nonmatching" } else { "contact_3d/hexahedra_nonmatching" };
     let scratch = scratch_copy(&root().join("tests/cases").join(case));
@@ -89,9 +89,9 @@ fn check(name: &str, family: &Family, wish: Wish) {
     settings["normal_variation"] = json!(wish.variation);
     settings["alternative_formulations"] = json!({"axisymmetric": axisymmetric});
     settings["advance_ALM_parameters"] = json!({"adapt_penalty": wish.adapt_penalty});
-    if family.friction != Friction::None {
+    if formulation.friction != Friction::None {
         // Sliding without a choice has no answer with friction where nothing can slide.
-        let coefficient = if family.friction == Friction::PureSlip { 0.0 } else { 0.3 };
+        let coefficient = if formulation.friction == Friction::PureSlip { 0.0 } else { 0.3 };
         settings["friction_coefficients"] = json!({"0": coefficient});
         settings["frictional_law"] = json!(if wish.tresca { "Tresca" } else { "Coulomb" });
     }
@@ -102,7 +102,7 @@ fn check(name: &str, family: &Family, wish: Wish) {
     std::fs::write(&path, serde_json::to_string(&Value::clone(&deck)).expect("JSON")).expect("the deck");
     let output = zelus(scratch.path(), &["run", DECK]);
     let said = said(&output);
-    match refusal(family, wish.wanted) {
+    match refusal(formulation, wish.wanted) {
         None => {
             assert!(output.status.success(), "{name} {wish:?}\n{said}");
             if !explicit && !wish.dynamic {
@@ -136,27 +136,27 @@ fn plain(dimension: usize) -> Wish {
 }
 
 #[test]
-fn every_family_runs_with_every_variation_of_normals() {
-    for (name, family) in families() {
+fn every_formulation_runs_with_every_variation_of_normals() {
+    for (name, formulation) in formulations() {
         for variation in VARIATIONS {
-            check(name, family, Wish { variation, ..plain(2) });
-            check(name, family, Wish { variation, ..plain(3) });
+            check(name, formulation, Wish { variation, ..plain(2) });
+            check(name, formulation, Wish { variation, ..plain(3) });
         }
     }
 }
 
 #[test]
-fn every_family_runs_or_is_refused_about_an_axis_in_time_and_adapted() {
-    for (name, family) in families() {
+fn every_formulation_runs_or_is_refused_about_an_axis_in_time_and_adapted() {
+    for (name, formulation) in formulations() {
         for dimension in [2, 3] {
             let plain = plain(dimension);
-            check(name, family, Wish { wanted: Use { axisymmetric: true, ..plain.wanted }, ..plain });
-            check(name, family, Wish { wanted: Use { explicit: true, ..plain.wanted }, ..plain });
-            check(name, family, Wish { wanted: Use { arc_length: true, ..plain.wanted }, ..plain });
-            check(name, family, Wish { dynamic: true, ..plain });
-            check(name, family, Wish { adapt_penalty: true, ..plain });
-            if family.friction == Friction::Coulomb {
-                check(name, family, Wish { tresca: true, ..plain });
+            check(name, formulation, Wish { wanted: Use { axisymmetric: true, ..plain.wanted }, ..plain });
+            check(name, formulation, Wish { wanted: Use { explicit: true, ..plain.wanted }, ..plain });
+            check(name, formulation, Wish { wanted: Use { arc_length: true, ..plain.wanted }, ..plain });
+            check(name, formulation, Wish { dynamic: true, ..plain });
+            check(name, formulation, Wish { adapt_penalty: true, ..plain });
+            if formulation.friction == Friction::Coulomb {
+                check(name, formulation, Wish { tresca: true, ..plain });
             }
         }
     }

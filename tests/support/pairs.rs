@@ -1,18 +1,18 @@
-//! The walk over contact families: one pair of facets of every two shapes, through the family's block.
+//! The walk over contact formulations: one pair of facets of every two shapes, through the formulation's block.
 
 use std::sync::Arc;
 
-use zelus::contact_structural_mechanics::active_set::{Margin, SlipRule};
 use zelus::contact_structural_mechanics::flags::SLIP;
-use zelus::contact_structural_mechanics::friction_law::COULOMB;
-use zelus::contact_structural_mechanics::law::{Augmentation, Nitsche, NormalVariation, StepParameters};
+use zelus::contact_structural_mechanics::law::{
+    Augmentation, COULOMB, Margin, Nitsche, NormalVariation, SlipRule, StepParameters,
+};
 use zelus::contact_structural_mechanics::mortar::{
     IntegrationOrder, MOST_NODES, OperatorThreshold, SegmentationSettings,
 };
 use zelus::contact_structural_mechanics::pairs::{
-    ContactBlock, Family, FamilyEntry, Multiplier, Pair, PairKey, PairRequest, Present, condition_name,
+    ContactBlock, Formulation, FormulationEntry, Multiplier, Pair, PairKey, PairRequest, Present, condition_name,
 };
-use zelus::contact_structural_mechanics::slave_states::{SlaveStates, SlaveTable};
+use zelus::contact_structural_mechanics::slave_nodes::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
@@ -152,10 +152,10 @@ impl Setting {
         other
     }
 
-    /// The family's block of this pair in a model part; `None` for shapes the family does not know.
-    fn build(&self, family: &Family) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
+    /// The formulation's block of this pair in a model part; `None` for shapes the formulation does not know.
+    fn build(&self, formulation: &Formulation) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
         let [slave, master] = self.shapes;
-        let name = condition_name(family.condition, slave, master);
+        let name = condition_name(formulation.condition, slave, master);
         let entry = find_kind(Role::Condition, &name)?;
         let masters = self.master.len();
         let current: Vec<Vec3> = self.master.iter().chain(&self.slave).copied().collect();
@@ -168,7 +168,7 @@ impl Setting {
         part.nodes.history.set_levels(2);
         part.nodes.history.add(&DISPLACEMENT);
         part.nodes.history.add(&NORMAL);
-        for &(name, components) in family.variables {
+        for &(name, components) in formulation.variables {
             part.nodes.history.add_named(name, components);
         }
         for (level, u) in self.displacement.iter().enumerate() {
@@ -197,7 +197,7 @@ impl Setting {
             levels_back: 1,
             normal_variation: NormalVariation::Update,
             augmentation: Augmentation::Node,
-            compliant: family.compliant,
+            compliant: formulation.compliant,
             dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
@@ -205,11 +205,11 @@ impl Setting {
         };
         let nodes: Vec<u32> = (masters as u32..count as u32).collect();
         let owners: Vec<u32> = part.slave_nodes.set("pair", &nodes).collect();
-        if let Some((name, components)) = family.multiplier.column() {
+        if let Some((name, components)) = formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }
         let table = SlaveTable { nodes, owners: owners.clone() };
-        let mut states = SlaveStates::of(&part, table, family.columns());
+        let mut states = SlaveStates::of(&part, table, formulation.columns());
         states.read_friction(&part.nodes, &COULOMB);
         let key = PairKey { interface: 0, slave: 0, master: 0 };
         let pair = Pair { area: [0.6; MOST_NODES], ..Pair::new(key, [self.slave_normal, self.master_normal]) };
@@ -220,14 +220,14 @@ impl Setting {
             pairs: vec![pair],
             nodes: (0..count as u32).collect(),
             slaves: states.all().collect(),
-            owners: if family.multiplier.is_unknown() { owners } else { Vec::new() },
+            owners: if formulation.multiplier.is_unknown() { owners } else { Vec::new() },
             around: 0,
             bodies: Arc::default(),
             patches: Arc::default(),
             parameters: Arc::new(parameters),
             states: Arc::new(states.clone()),
         };
-        let mut block = (family.block)(request);
+        let mut block = (formulation.block)(request);
         part.nodes.move_all();
         let here = part.nodes.current.clone();
         part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));
@@ -270,12 +270,13 @@ pub fn system(part: &ModelPart, block: &dyn EntityBlock, want: Want) -> LocalSys
     out
 }
 
-fn families() -> Vec<(&'static str, &'static Family)> {
+fn formulations() -> Vec<(&'static str, &'static Formulation)> {
     // Those that take tractions from elements are walked with elements, in tests/contact/nitsche.rs.
-    let found = all::<FamilyEntry>().into_iter().map(|entry| (entry.name, &entry.build));
-    let found: Vec<_> = found.filter(|(_, family)| !matches!(family.multiplier, Multiplier::Body)).collect();
-    assert!(!found.is_empty(), "no contact family is registered");
-    let by_node = |&(name, family): &(&'static str, &'static Family)| Some((name, family.by_node?.implicit));
+    let found = all::<FormulationEntry>().into_iter().map(|entry| (entry.name, &entry.build));
+    let found: Vec<_> = found.filter(|(_, formulation)| !matches!(formulation.multiplier, Multiplier::Body)).collect();
+    assert!(!found.is_empty(), "no contact formulation is registered");
+    let by_node =
+        |&(name, formulation): &(&'static str, &'static Formulation)| Some((name, formulation.by_node?.implicit));
     let by_node: Vec<_> = found.iter().filter_map(by_node).collect();
     found.into_iter().chain(by_node).collect()
 }
@@ -287,9 +288,9 @@ const INACTIVE: (bool, bool) = (false, false);
 const STICK: (bool, bool) = (true, false);
 const SLIDING: (bool, bool) = (true, true);
 
-/// Every family on every two shapes in every mix of states, with its name; penalties by pair and by node.
-fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
-    for (name, family) in families() {
+/// Every formulation on every two shapes in every mix of states, with its name; penalties by pair and by node.
+fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Formulation, Setting)) {
+    for (name, formulation) in formulations() {
         let mut shapes = 0;
         let pairs = FACETS.into_iter().flat_map(|slave| FACETS.map(|master| [slave, master]));
         for [slave, master] in pairs.filter(|[slave, master]| slave.dim() == master.dim()) {
@@ -297,9 +298,9 @@ fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
                 [[INACTIVE; 2], [SLIDING; 2], [STICK; 2], [SLIDING, INACTIVE], [STICK, SLIDING]].into_iter().enumerate()
             {
                 let setting = Setting::new(slave, master, 7 + at as u64, noise, states);
-                if setting.build(family).is_some() {
+                if setting.build(formulation).is_some() {
                     shapes += 1;
-                    visit(&format!("{name} {slave:?} on {master:?}, states {states:?}"), family, setting);
+                    visit(&format!("{name} {slave:?} on {master:?}, states {states:?}"), formulation, setting);
                 }
             }
         }
@@ -310,10 +311,10 @@ fn walk(noise: f64, mut visit: impl FnMut(&str, &'static Family, Setting)) {
 #[test]
 fn tangents_of_pairs_are_derivatives() {
     let mut met = 0;
-    walk(0.05, |name, family, setting| {
-        for operator_threshold in if family.frictional() { vec![0.0, 1e9] } else { vec![0.0] } {
+    walk(0.05, |name, formulation, setting| {
+        for operator_threshold in if formulation.frictional() { vec![0.0, 1e9] } else { vec![0.0] } {
             let setting = Setting { operator_threshold, ..setting.clone() };
-            let (mut part, block) = setting.build(family).expect("a block");
+            let (mut part, block) = setting.build(formulation).expect("a block");
             let block = block.as_ref();
             let LocalSystems { lhs, rhs, .. } = system(&part, block, Want::Both);
             let plain = system(&part, block, Want::Residual).rhs;
@@ -349,9 +350,9 @@ fn tangents_of_pairs_are_derivatives() {
 
 #[test]
 fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
-    walk(0.05, |name, family, setting| {
+    walk(0.05, |name, formulation, setting| {
         let space = setting.space();
-        let (part, block) = setting.build(family).expect("a block");
+        let (part, block) = setting.build(formulation).expect("a block");
         let rhs = system(&part, block.as_ref(), Want::Residual).rhs;
         let rows = setting.multiplier_rows(block.as_ref());
         let vectors = rows.len() == space * setting.slave.len();
@@ -366,7 +367,7 @@ fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
             [x, k * y - t * v[2], t * y + k * v[2]]
         };
         let shift = [0.4, -0.3, if space == 3 { 0.2 } else { 0.0 }];
-        let (part, block) = setting.moved(turn, shift, vectors).build(family).expect("a block");
+        let (part, block) = setting.moved(turn, shift, vectors).build(formulation).expect("a block");
         let after = system(&part, block.as_ref(), Want::Residual).rhs;
         let turned_rows = if vectors { rhs.len() } else { rows.start };
         let mut expected: Vec<f64> = rhs[..turned_rows]
@@ -384,18 +385,18 @@ fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
 
 #[test]
 fn the_order_of_a_facets_nodes_does_not_matter() {
-    walk(0.0, |name, family, mut setting| {
+    walk(0.0, |name, formulation, mut setting| {
         if setting.space() == 2 {
             return; // the other order of a line is its other side
         }
         // rectangles and a rule of degree six: the integrals are exact however the overlap is cut
         setting.order = 5;
-        let (part, block) = setting.build(family).expect("a block");
+        let (part, block) = setting.build(formulation).expect("a block");
         let rhs = system(&part, block.as_ref(), Want::Residual).rhs;
         let (masters, slaves) = (setting.master.len(), setting.slave.len());
         let each = setting.multiplier_rows(block.as_ref()).len() / slaves;
         for (slave_by, master_by) in [(1, 0), (0, 1), (2, 1)] {
-            let (part, block) = setting.recounted(slave_by, master_by).build(family).expect("a block");
+            let (part, block) = setting.recounted(slave_by, master_by).build(formulation).expect("a block");
             let other = system(&part, block.as_ref(), Want::Residual).rhs;
             let mut back = other.clone();
             let [slave, master] = setting.shapes.map(|shape| shape.cell().corners());

@@ -25,8 +25,8 @@ pub struct Stack {
     pub size: f64,
     /// Whether the sides x = 0 of both blocks, interface included, are held across; in space the sides y = 0 too.
     pub guided: bool,
-    /// Family of contact, its process and the coefficient of friction.
-    pub family: (&'static str, &'static str),
+    /// Contact formulation, its process and the coefficient of friction.
+    pub formulation: (&'static str, &'static str),
     pub friction: f64,
     /// Pressure over Young's modulus.
     pub load: f64,
@@ -239,10 +239,10 @@ impl Stack {
             "kratos_module": "KratosMultiphysics", "Parameters": {"model_part_name": "Structure.Top",
             "variable_name": if self.space == 2 { "LINE_LOAD" } else { "SURFACE_LOAD" },
             "modulus": format!("{:e}*t", self.load * YOUNG), "direction": self.down(), "interval": [0.0, "End"]}});
-        let (family, process) = self.family;
+        let (formulation, process) = self.formulation;
         let mut contact = json!({"model_part_name": "Structure", "contact_model_part": {"0": ["Interface"]},
             "assume_master_slave": {"0": ["Slave"]}, "contact_type": "Frictionless"});
-        if !family.ends_with("Frictionless") {
+        if !formulation.ends_with("Frictionless") {
             contact["contact_type"] = json!("Frictional");
             contact["friction_coefficients"] = json!({"0": self.friction});
         }
@@ -255,7 +255,7 @@ impl Stack {
                 "model_import_settings": {"input_type": "mdpa", "input_filename": "mesh"},
                 "material_import_settings": {"materials_filename": "StructuralMaterials.json"},
                 "time_stepping": {"time_step": 1.0}, "convergence_criterion": "contact_residual_criterion",
-                "contact_settings": {"mortar_type": family}},
+                "contact_settings": {"mortar_type": formulation}},
             "processes": {"constraints_process_list": supports, "loads_process_list": [load],
                 "contact_process_list": [{"python_module": process,
                     "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication", "Parameters": contact}],

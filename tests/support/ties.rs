@@ -1,9 +1,9 @@
-//! The walk over families of ties: their block for every two shapes, with operators as a pair might have them.
+//! The walk over tying formulations: their block for every two shapes, with operators as a pair might have them.
 
 use zelus::contact_structural_mechanics::pairs::{
-    FacetOperators, FacetPair, Multiplier, PairKey, TyingBlock, TyingFamily, TyingFamilyEntry, TyingRequest,
-    condition_name,
+    FacetOperators, FacetPair, Multiplier, PairKey, TyingFormulation, TyingFormulationEntry, condition_name,
 };
+use zelus::contact_structural_mechanics::tying::{TyingBlock, TyingRequest};
 use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::entities::{EntityBlock, Want, find_kind};
 use zelus_core::geometry::Shape;
@@ -23,10 +23,10 @@ fn operators(slaves: usize, masters: usize, random: &mut Random) -> FacetOperato
     out
 }
 
-fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart, Box<dyn EntityBlock>)> {
+fn block(formulation: &TyingFormulation, slave: Shape, master: Shape) -> Option<(ModelPart, Box<dyn EntityBlock>)> {
     let space = slave.dim() + 1;
-    let multipliers = family.multiplier.unknowns(space);
-    let tied = match family.multiplier {
+    let multipliers = formulation.multiplier.unknowns(space);
+    let tied = match formulation.multiplier {
         Multiplier::Scalar(_) | Multiplier::None | Multiplier::Body => {
             vec![DISPLACEMENT.component(0)]
         }
@@ -36,7 +36,7 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
     let mut part = ModelPart::new("walk");
     part.nodes = Nodes::new((1..=count).collect(), vec![[0.0; 3]; count]);
     part.nodes.history.add(&DISPLACEMENT);
-    for &(name, components) in family.variables {
+    for &(name, components) in formulation.variables {
         part.nodes.history.add_named(name, components);
     }
     let entry = find_kind(Role::Condition, &condition_name("MeshTyingMortarCondition", slave, master))?;
@@ -46,7 +46,7 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
     };
     let slaves: Vec<u32> = (master.nodes() as u32..count as u32).collect();
     let owners = part.slave_nodes.set("pair", &slaves).collect();
-    if let Some((name, components)) = family.multiplier.column() {
+    if let Some((name, components)) = formulation.multiplier.column() {
         part.slave_nodes.history.add_named(name, components);
     }
     let request = TyingRequest {
@@ -63,11 +63,11 @@ fn block(family: &TyingFamily, slave: Shape, master: Shape) -> Option<(ModelPart
 
 #[test]
 fn ties_are_linear_symmetric_and_carry_rigid_shifts() {
-    let families = all::<TyingFamilyEntry>().into_iter().map(|entry| (entry.name, &entry.build));
+    let formulations = all::<TyingFormulationEntry>().into_iter().map(|entry| (entry.name, &entry.build));
     let mut walked = 0;
-    for (name, family) in families {
+    for (name, formulation) in formulations {
         for (slave, master) in FACETS.into_iter().flat_map(|s| FACETS.map(|m| (s, m))) {
-            let Some((mut part, block)) = block(family, slave, master) else { continue };
+            let Some((mut part, block)) = block(formulation, slave, master) else { continue };
             let block = block.as_ref();
             let n = block.unknowns().len();
             let mut random = Random(4);
@@ -86,5 +86,5 @@ fn ties_are_linear_symmetric_and_carry_rigid_shifts() {
             walked += 1;
         }
     }
-    assert!(walked > 0, "no family of ties is registered");
+    assert!(walked > 0, "no tying formulation is registered");
 }

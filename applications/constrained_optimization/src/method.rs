@@ -1,7 +1,7 @@
 //! What a method is: a term of the functional for each constraint, and when it acts.
 
 use serde::{Deserialize, Serialize};
-use zelus_contact_structural_mechanics::penalty_adaptation::adapted_augmented_lagrangian;
+use zelus_contact_structural_mechanics::adaptation::adapted_augmented_lagrangian;
 use zelus_core::model::Variable;
 use zelus_core::scalar::Real;
 

@@ -1,8 +1,8 @@
-//! What a family of contact cannot be used for, and why: stated once, asked by the processes, walked by a test.
+//! Uses that a contact formulation refuses, with reason and remedy: stated once, asked by the processes, walked by a test.
 
-use crate::pairs::{Family, Multiplier};
+use crate::pairs::{Formulation, Multiplier};
 
-/// What a deck wants of a family.
+/// Use of a formulation by a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Use {
     /// Dimensions of the problem.
@@ -20,14 +20,14 @@ pub struct Use {
 pub struct Refusal {
     /// The reason.
     pub reason: &'static str,
-    /// What to do.
+    /// The remedy.
     pub remedy: &'static str,
 }
 
 /// A rule: when it holds, and what is then refused.
-type Rule = (fn(&Family, Use) -> bool, Refusal);
+type Rule = (fn(&Formulation, Use) -> bool, Refusal);
 
-/// Everything that is not listed runs: every family on every pair of shapes, in the plane, in space and (in the plane)
+/// Everything that is not listed runs: every formulation on every pair of shapes, in the plane, in space and (in the plane)
 /// about an axis, with every `normal_variation`, law of friction, adaptation of the penalty, strategy and time integration.
 const RULES: [Rule; 4] = [
     (
@@ -38,21 +38,23 @@ const RULES: [Rule; 4] = [
         },
     ),
     (
-        |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Scalar(_) | Multiplier::Vector(_)),
+        |formulation, wanted| {
+            wanted.explicit && matches!(formulation.multiplier, Multiplier::Scalar(_) | Multiplier::Vector(_))
+        },
         Refusal {
             reason: "explicit steps give every unknown a mass, and multipliers have none",
             remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
         },
     ),
     (
-        |family, wanted| wanted.explicit && matches!(family.multiplier, Multiplier::Body),
+        |formulation, wanted| wanted.explicit && matches!(formulation.multiplier, Multiplier::Body),
         Refusal {
             reason: "explicit steps do not iterate, and tractions of bodies answer to the step they are made in",
             remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
         },
     ),
     (
-        |family, wanted| wanted.arc_length && family.updated,
+        |formulation, wanted| wanted.arc_length && formulation.updated,
         Refusal {
             reason: "an outer loop would go along the path with every update of the multipliers",
             remedy: "use alm_contact_process, or \"solving_strategy_settings\" of the type \"newton_raphson\"",
@@ -60,7 +62,7 @@ const RULES: [Rule; 4] = [
     ),
 ];
 
-/// The first reason not to use a family so.
-pub fn refusal(family: &Family, wanted: Use) -> Option<Refusal> {
-    RULES.iter().find(|(applies, _)| applies(family, wanted)).map(|(_, refusal)| *refusal)
+/// The first reason not to use a formulation so.
+pub fn refusal(formulation: &Formulation, wanted: Use) -> Option<Refusal> {
+    RULES.iter().find(|(applies, _)| applies(formulation, wanted)).map(|(_, refusal)| *refusal)
 }

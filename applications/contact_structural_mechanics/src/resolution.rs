@@ -1,4 +1,4 @@
-//! What contact can tell apart: the one rule by which all families take their decisions.
+//! Smallest lengths and tractions that contact tells apart: the one rule by which all formulations take their decisions.
 //!
 //! Numbers that are equal in exact arithmetic differ in their last digits, and those depend on the unit system, on the
 //! numbers of the nodes and on the order in which ranks add up. A decision that hangs on them makes the iteration go another
@@ -17,7 +17,7 @@ use zelus_core::vector3::norm;
 const POSITIONS: f64 = 64.0 * f64::EPSILON;
 /// Round-off of a sum of forces, as a share of its terms.
 const FORCES: f64 = 1024.0 * f64::EPSILON;
-/// What solving leaves of a traction that is zero, as a share of the largest.
+/// Error of a solve in a traction that is zero, as a share of the largest.
 const TRACTIONS: f64 = 1e-9;
 
 /// Sizes of an interface below which nothing is decided.

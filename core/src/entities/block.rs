@@ -343,7 +343,13 @@ pub trait EntityBlock: Send + Sync {
         _by: Option<&mut [[f64; 3]]>,
     ) -> Result<[f64; 3], EntityError> {
         let (kind, nodes) = (self.entry().name, Vec::new());
-        Err(EntityError { kind, id: 0, nodes, fact: NO_TRACTIONS.to_owned(), remedy: "take another family of contact" })
+        Err(EntityError {
+            kind,
+            id: 0,
+            nodes,
+            fact: NO_TRACTIONS.to_owned(),
+            remedy: "take another contact formulation",
+        })
     }
 }
 

@@ -284,8 +284,11 @@ pub trait FirstIterate {
 
 /// Nodes that others carry the mass of.
 pub trait Massless {
-    /// Step start, in motion with inertia: nodes whose mass others carry, since forces on them come and go at once.
-    fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes;
+    /// A step in motion with inertia begins: finds the nodes whose mass others carry, since forces on them come and go at once.
+    fn begin_dynamic_step(&mut self, part: &ModelPart);
+
+    /// The nodes that [`Massless::begin_dynamic_step`] found.
+    fn massless_nodes(&self) -> MasslessNodes;
 }
 
 /// A state that a retried step must restore.

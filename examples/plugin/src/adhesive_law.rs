@@ -2,7 +2,7 @@
 //!
 //! |t| ≤ c − μ p with c = ADHESION (force per area) and μ = 0.2; the pressure p is negative in compression.
 
-use zelus::contact_structural_mechanics::friction_law::{Bound, FrictionLaw, FrictionLawEntry};
+use zelus::contact_structural_mechanics::law::{Bound, FrictionLaw, FrictionLawEntry};
 use zelus_core::{register, register_variable};
 
 register_variable! {

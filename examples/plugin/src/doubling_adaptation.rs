@@ -1,6 +1,6 @@
 //! A penalty that doubles until gaps are small enough.
 
-use zelus::contact_structural_mechanics::penalty_adaptation::{PenaltyAdaptation, PenaltyAdaptationEntry};
+use zelus::contact_structural_mechanics::adaptation::{PenaltyAdaptation, PenaltyAdaptationEntry};
 use zelus_core::register;
 
 register! { PenaltyAdaptationEntry "doubling",

@@ -6,8 +6,8 @@
 use zelus::contact_structural_mechanics::law::{
     Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters,
 };
-use zelus::contact_structural_mechanics::pairs::Family;
-use zelus::contact_structural_mechanics::register_contact_family;
+use zelus::contact_structural_mechanics::pairs::Formulation;
+use zelus::contact_structural_mechanics::register_contact_formulation;
 use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
@@ -30,14 +30,14 @@ impl NodeLaw for HardeningPenalty {
     }
 }
 
-register_contact_family! { "HardeningPenaltyContactFrictionless",
+register_contact_formulation! { "HardeningPenaltyContactFrictionless",
     about: "frictionless contact by a penalty that stiffens with depth",
     source: "a cubic spring",
     conditions: [
         "HardeningPenaltyFrictionlessMortarContactCondition",
         "HardeningPenaltyFrictionlessAxisymMortarContactCondition"
     ],
-    build: Family::of::<HardeningPenalty>(
+    build: Formulation::of::<HardeningPenalty>(
         "HardeningPenaltyFrictionlessMortarContactCondition",
         &[("NORMAL", 3), ("WEIGHTED_GAP", 1)],
     ),

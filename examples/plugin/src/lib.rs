@@ -16,5 +16,5 @@ mod patient_strategy;
 mod refining_builder;
 mod scale_load_process;
 mod shift_mesh_modeler;
-mod soft_layer_family;
+mod soft_layer_formulation;
 mod uncoupled_law;

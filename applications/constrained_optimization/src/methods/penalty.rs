@@ -1,7 +1,7 @@
 //! Penalty: ℓ = ε/2 ⟨−g⟩² (eq. D.1b), and its adapted form, in which ε follows the penetration (eq. D.4).
 
 use serde::Deserialize;
-use zelus_contact_structural_mechanics::penalty_adaptation::adapted_penalty;
+use zelus_contact_structural_mechanics::adaptation::adapted_penalty;
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 use zelus_core::scalar::Real;

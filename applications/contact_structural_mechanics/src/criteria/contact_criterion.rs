@@ -7,7 +7,7 @@ use zelus_core::strategies::{
 };
 
 use super::frictional_criterion::FrictionalCriterion;
-use crate::pairs::{Family, find_family};
+use crate::pairs::{Formulation, find_formulation};
 
 /// Displacements and multipliers, each in its form.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +46,7 @@ fn single(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Re
     let settings = request.settings;
     let decomposed = settings.node().get("contact_settings").is_some()
         && settings.get_bool("contact_settings.frictional_decomposed")?
-        && find_family(settings.get_str("contact_settings.mortar_type")?).is_ok_and(Family::frictional);
+        && find_formulation(settings.get_str("contact_settings.mortar_type")?).is_ok_and(Formulation::frictional);
     if decomposed {
         return Ok(Box::new(FrictionalCriterion::from_settings(request, primary, multiplier)?));
     }

@@ -16,10 +16,10 @@ use zelus_core::vector3::{dot, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
 use crate::mortar::tangential;
-use crate::slave_status::SlaveStatus;
+use crate::slave_nodes::SlaveStatus;
 use crate::variables::MULTIPLIER_WEIGHT;
 
-/// The criterion of the families with friction.
+/// The criterion of the formulations with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionalCriterion {
     primary: Measure,

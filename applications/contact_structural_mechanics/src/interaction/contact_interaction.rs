@@ -13,29 +13,20 @@ use zelus_core::model::{Carriers, ModelPart};
 use zelus_core::{Carrier, Result, State};
 use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
-use super::activation::Start;
-use super::bearable_penalty::BearablePenalty;
-use super::contact_settings::ContactSettings;
 use super::contact_state::{ContactState, RememberedContact};
-use super::decision::slip;
-use super::friction;
-use super::impact::near_nodes;
-use super::meetings::Meetings;
 use super::outer_loops::OuterLoops;
-use super::pair_states::{heat, joins, pair_states};
-use super::points;
-use super::reach::Reach;
-use super::results::{write_forces, write_states};
-use super::set_stage::SetStage;
-use super::setup::Setup;
-use super::step_parameters::StepParameters;
+use crate::active_set::{ActivationCriterion, SetStage, forced_points};
+use crate::adaptation::{Growth, StablePenalty};
 use crate::flags::CONTACT;
-use crate::interface::{Bodies, check_nodes, find_nodal_h};
+use crate::friction;
+use crate::friction::slip;
+use crate::interface::{Bodies, SlaveIndex, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
-use crate::node_state::SlaveIndex;
-use crate::penalty_adaptation::Growth;
-use crate::slave_state::SlaveState;
-use crate::solver::{COMPUTE_DYNAMIC_FACTOR, DELTA_TIME_FACTOR, KEEP_MASS};
+use crate::law::StepParameters;
+use crate::results::{heat, joins, pair_states, write_forces, write_states};
+use crate::safeguards::{FreeBodies, InterfacesInContact, near_nodes};
+use crate::settings::{ContactSettings, Setup};
+use crate::slave_nodes::SlaveState;
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
 
 /// Iterations after which the choices of the integration are frozen: most steps have converged by then, as in Kratos.
@@ -48,28 +39,28 @@ pub struct ContactInteraction {
     contact: ContactState,
     set: SetStage,
     loops: OuterLoops,
-    meetings: Meetings,
+    in_contact: InterfacesInContact,
     acting: bool,
     /// How explicit steps stiffen the penalty.
     growth: Option<Growth>,
-    bearable: BearablePenalty,
+    stable_penalty: StablePenalty,
     /// Nodes of interfaces without contact that this step has activated because a body was free to move.
-    reach: Reach,
+    free_bodies: FreeBodies,
     warned_of_friction: bool,
     /// Nodes that contact is near to.
     near_nodes: Vec<u32>,
-    /// Of which shape of the bodies its numbers are.
+    /// Count of changes of shape of the bodies that its numbers belong to.
     shape: u64,
 }
 
-/// What contact remembers between steps, as it stands in a saved run.
+/// State of contact in a saved run.
 #[derive(Serialize, Deserialize)]
 struct SavedContact {
     contact: RememberedContact,
     set: SetStage,
     loops: OuterLoops,
-    meetings: Meetings,
-    bearable: BearablePenalty,
+    in_contact: InterfacesInContact,
+    stable_penalty: StablePenalty,
     near_nodes: Vec<u32>,
     warned_of_friction: bool,
 }
@@ -93,11 +84,11 @@ impl ContactInteraction {
             contact: ContactState::new(settings, part)?,
             set: SetStage::default(),
             loops: OuterLoops::default(),
-            meetings: Meetings::default(),
+            in_contact: InterfacesInContact::default(),
             acting: true,
             growth: None,
-            bearable: BearablePenalty::default(),
-            reach: Reach::default(),
+            stable_penalty: StablePenalty::default(),
+            free_bodies: FreeBodies::default(),
             warned_of_friction: false,
             near_nodes: Vec::new(),
             shape: 0,
@@ -117,9 +108,14 @@ impl ContactInteraction {
         Ok(())
     }
 
+    /// Whether other nodes carry the mass of those of contact in motion.
+    fn takes_mass(&self) -> bool {
+        self.acting && !self.contact.setup.settings.solver.keeps_mass
+    }
+
     /// Writes what is looked at of the present state.
     fn write_results(&self, part: &mut ModelPart) -> Result<()> {
-        let frictional = self.contact.setup.settings.family.frictional();
+        let frictional = self.contact.setup.settings.formulation.frictional();
         write_states(&mut part.nodes, &self.contact.states, frictional);
         // explicit steps are many and short: the forces would cost as much as the steps
         match self.contact.setup.settings.explicit {
@@ -135,14 +131,14 @@ impl Interaction for ContactInteraction {
     }
 
     fn step_factor(&self, part: &ModelPart) -> f64 {
-        if part.info.is(CONTACT) { part.info.value_or(DELTA_TIME_FACTOR, 1.0) } else { 1.0 }
+        if part.info.is(CONTACT) { self.contact.setup.settings.solver.delta_time_factor } else { 1.0 }
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
-        let (family, explicit) = (self.contact.setup.settings.family, self.contact.setup.settings.explicit);
+        let (formulation, explicit) = (self.contact.setup.settings.formulation, self.contact.setup.settings.explicit);
         part.nodes.history.add(&NORMAL);
         part.nodes.history.add(&WEIGHTED_GAP);
-        if family.frictional() {
+        if formulation.frictional() {
             part.nodes.history.add(&WEIGHTED_SLIP);
         }
         let levels = part.nodes.history.levels().max(self.contact.setup.parameters.levels_back + 1);
@@ -155,7 +151,7 @@ impl Interaction for ContactInteraction {
         // Forces of a spring by node have a potential, and keep the energy as long as nothing scales them.
         self.contact.setup.settings.adaptation.dynamic_factor = (explicit.is_some()
             && self.contact.setup.settings.weighted_penalty)
-            || (part.info.is(COMPUTE_DYNAMIC_FACTOR) && part.nodes.history.has(VELOCITY.name()));
+            || (self.contact.setup.settings.solver.dynamic_factor && part.nodes.history.has(VELOCITY.name()));
         self.contact.setup.calibrate(part, &self.contact.pairing.interfaces, &mut self.contact.messages)?;
         self.growth = explicit.map(|explicit| explicit.growth(part));
         self.find_bodies(part)?;
@@ -170,7 +166,7 @@ impl Interaction for ContactInteraction {
         }
         self.contact.begin_step(part);
         self.set.begin_step();
-        self.reach = Reach::default();
+        self.free_bodies = FreeBodies::default();
         self.loops.begin_step(part, &mut self.contact);
         self.contact.states.read_friction(&part.nodes, self.contact.setup.settings.friction.law);
         if self.acting {
@@ -179,8 +175,9 @@ impl Interaction for ContactInteraction {
                 let (given, weighted) = (settings.manual.is_some(), settings.weighted_penalty);
                 let revolution = self.contact.setup.parameters.segmentation.revolution();
                 let (states, interfaces) = (&mut self.contact.states, &self.contact.pairing.interfaces);
-                let most = 1.0 + explicit.most;
-                let said = self.bearable.begin_step(part, states, interfaces, revolution, most, given, weighted);
+                let (most, factor) = (1.0 + explicit.most, settings.solver.delta_time_factor);
+                let said =
+                    self.stable_penalty.begin_step(part, states, interfaces, revolution, most, given, weighted, factor);
                 self.contact.messages.extend(said);
             }
             self.contact.find_contact(part)?;
@@ -195,22 +192,23 @@ impl Interaction for ContactInteraction {
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.loops.accept(part, &mut self.contact);
         if self.acting {
-            self.meetings.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
+            self.in_contact.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
         }
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
         self.contact.clear_inactive(part);
-        let (family, clears) = (self.contact.setup.settings.family, self.contact.setup.settings.clear_inactive);
+        let (formulation, clears) =
+            (self.contact.setup.settings.formulation, self.contact.setup.settings.clear_inactive);
         self.contact.states.for_each(|_, state| {
-            if clears && !state.active {
-                (state.pressure, state.traction) = (0.0, [0.0; 3]);
+            if clears && !state.law.active {
+                (state.law.pressure, state.law.traction) = (0.0, [0.0; 3]);
             }
         });
-        if family.frictional() {
+        if formulation.frictional() {
             let parameters = &self.contact.setup.parameters;
             let states = &self.contact.states;
-            friction::meet_bounds(&mut part.slave_nodes, states, family.multiplier, parameters.scale_factor);
+            friction::meet_bounds(&mut part.slave_nodes, states, formulation.multiplier, parameters.scale_factor);
             if !self.warned_of_friction {
-                let warning = friction::warn_of_pushing(part, &self.contact.states, family.multiplier, parameters);
+                let warning = friction::warn_of_pushing(part, &self.contact.states, formulation.multiplier, parameters);
                 self.warned_of_friction = warning.is_some();
                 self.contact.messages.extend(warning);
             }
@@ -224,20 +222,21 @@ impl Interaction for ContactInteraction {
             contact: self.contact.state(),
             set: self.set.clone(),
             loops: self.loops.clone(),
-            meetings: self.meetings.clone(),
-            bearable: self.bearable.clone(),
+            in_contact: self.in_contact.clone(),
+            stable_penalty: self.stable_penalty.clone(),
             near_nodes: self.near_nodes.clone(),
             warned_of_friction: self.warned_of_friction,
         }))
     }
 
     fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
-        let SavedContact { contact, set, loops, meetings, bearable, near_nodes, warned_of_friction } = state.take()?;
-        self.meetings = meetings;
+        let SavedContact { contact, set, loops, in_contact, stable_penalty, near_nodes, warned_of_friction } =
+            state.take()?;
+        self.in_contact = in_contact;
         self.contact.resume(part, contact)?;
         check_nodes(part.nodes.len(), near_nodes.iter().copied())?;
         loops.check(part.nodes.len())?;
-        (self.set, self.loops, self.bearable) = (set, loops, bearable);
+        (self.set, self.loops, self.stable_penalty) = (set, loops, stable_penalty);
         (self.near_nodes, self.warned_of_friction) = (near_nodes, warned_of_friction);
         Ok(())
     }
@@ -265,7 +264,7 @@ impl Interaction for ContactInteraction {
         if self.contact.setup.parameters.dynamic {
             out.push(("work of contact", self.loops.work.done()));
         }
-        if self.contact.setup.settings.family.updated {
+        if self.contact.setup.settings.formulation.updated {
             out.extend([("multiplier updates", self.loops.uzawa.updates as f64), ("rate", self.loops.uzawa.rate)]);
         }
         out
@@ -273,11 +272,11 @@ impl Interaction for ContactInteraction {
 
     fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
         let ContactState { setup: Setup { settings, parameters, resolution, .. }, pairing, states, .. } = &self.contact;
-        let multiplier = settings.family.multiplier;
+        let multiplier = settings.formulation.multiplier;
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
-            heat(state.traction, slip(part, states, slave, multiplier, parameters), state.area)
+            heat(state.law.traction, slip(part, states, slave, multiplier, parameters), state.kinematics.area)
         };
-        let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.family.frictional());
+        let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.formulation.frictional());
         let slaves = pairing.slaves_by_interface();
         pair_states(&pairing.interfaces, parts, (states, &slaves), frictional, resolution.length, of_node)
     }
@@ -287,7 +286,7 @@ impl Interaction for ContactInteraction {
     }
 
     fn joins(&self, part: &ModelPart) -> Option<Vec<Join>> {
-        joins(part, &self.contact.pairing.interfaces, false, self.contact.setup.settings.family.frictional())
+        joins(part, &self.contact.pairing.interfaces, false, self.contact.setup.settings.formulation.frictional())
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {
@@ -296,7 +295,7 @@ impl Interaction for ContactInteraction {
 
     fn last_messages(&self, part: &ModelPart) -> Vec<Diagnostic> {
         let settings = &self.contact.setup.settings;
-        self.meetings.warnings(part, &self.contact.pairing.interfaces, (&settings.parts, &settings.slaves))
+        self.in_contact.warnings(part, &self.contact.pairing.interfaces, (&settings.parts, &settings.slaves))
     }
 
     fn coupling(&self) -> Option<&dyn Coupling> {
@@ -322,7 +321,7 @@ impl Interaction for ContactInteraction {
 
 impl Coupling for ContactInteraction {
     fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
-        let unknowns = self.contact.setup.settings.family.multiplier.unknowns(part.info.domain_size);
+        let unknowns = self.contact.setup.settings.formulation.multiplier.unknowns(part.info.domain_size);
         let owners = self.contact.states.owners();
         unknowns.into_iter().map(|variable| Carriers::of_slaves(variable, owners.iter().copied())).collect()
     }
@@ -345,7 +344,7 @@ impl Coupling for ContactInteraction {
 
     fn relaxation(&self) -> Option<f64> {
         let parameters = &self.contact.setup.parameters;
-        let largest_area = self.contact.states.iter().map(|(_, state)| state.area).fold(0.0, f64::max);
+        let largest_area = self.contact.states.iter().map(|(_, state)| state.kinematics.area).fold(0.0, f64::max);
         let weight = parameters.scale_factor.powi(2) * largest_area / parameters.stiffness;
         Some(RELAXATION * if largest_area > 0.0 { weight } else { parameters.scale_factor })
     }
@@ -372,7 +371,7 @@ impl ActiveSet for ContactInteraction {
             self.contact.pairing.refresh_normals(part, true);
         }
         if self.contact.setup.by_points() {
-            points::release(&mut self.contact.states);
+            forced_points::release(&mut self.contact.states);
         }
         let (adaptation, explicit) =
             (self.contact.setup.settings.adaptation, self.contact.setup.settings.explicit.is_some());
@@ -412,7 +411,7 @@ impl ActiveSet for ContactInteraction {
         let outer = self.loops.judge(part, &mut self.contact, &mut self.set)?;
         self.contact.publish(part);
         // Others that look at the converged state, as heat does, read pressures and slips.
-        write_states(&mut part.nodes, &self.contact.states, self.contact.setup.settings.family.frictional());
+        write_states(&mut part.nodes, &self.contact.states, self.contact.setup.settings.formulation.frictional());
         Ok(outer)
     }
 
@@ -420,13 +419,13 @@ impl ActiveSet for ContactInteraction {
         if !self.acting || self.contact.setup.settings.explicit.is_some() {
             return false;
         }
-        let mut any = self.contact.setup.by_points() && points::hold_active(&mut self.contact.states);
+        let mut any = self.contact.setup.by_points() && forced_points::hold_active(&mut self.contact.states);
         if !any {
             let slaves = self.contact.pairing.slaves_by_interface();
-            let near = self.reach.next(&part.nodes, &self.contact.states, &slaves);
-            self.contact.activate(part, Start::Touching(&near));
+            let near = self.free_bodies.next(&part.nodes, &self.contact.states, &slaves);
+            self.contact.activate(part, ActivationCriterion::Touching(&near));
             if self.contact.setup.by_points() {
-                points::hold(&mut self.contact.states, &near);
+                forced_points::hold(&mut self.contact.states, &near);
             }
             self.set.find_tangents(part, &mut self.contact.states, &self.contact.setup);
             any = !near.is_empty();
@@ -450,16 +449,22 @@ impl FirstIterate for ContactInteraction {
 }
 
 impl Massless for ContactInteraction {
-    fn massless_nodes(&mut self, part: &ModelPart) -> MasslessNodes {
+    fn begin_dynamic_step(&mut self, part: &ModelPart) {
         if !self.contact.setup.parameters.dynamic {
             self.contact.setup.parameters =
                 Arc::new(StepParameters { dynamic: true, ..(*self.contact.setup.parameters).clone() });
         }
-        if !self.acting || part.info.is(KEEP_MASS) {
-            return MasslessNodes::default();
+        if self.takes_mass() {
+            self.near_nodes = near_nodes(part, &self.contact.pairing, &self.contact.states, &self.near_nodes);
         }
-        self.near_nodes = near_nodes(part, &self.contact.pairing, &self.contact.states, &self.near_nodes);
-        MasslessNodes { surface: self.contact.pairing.nodes(), near: self.near_nodes.clone() }
+    }
+
+    fn massless_nodes(&self) -> MasslessNodes {
+        if self.takes_mass() {
+            MasslessNodes { surface: self.contact.pairing.nodes(), near: self.near_nodes.clone() }
+        } else {
+            MasslessNodes::default()
+        }
     }
 }
 

@@ -1,35 +1,25 @@
-//! What contact is at a moment: interfaces with their pairs, slave nodes with their states, and the numbers of the run.
+//! State of contact: interfaces with their pairs, slave nodes with their states, and the numbers of the run.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 use zelus_core::{Carrier, Result};
 
-use super::activation::{self, Start};
-use super::contact_settings::ContactSettings;
-use super::edges::take_normals_of_masters;
-use super::friction;
-use super::holding::{FacetsOfPair, Holding};
-use super::integration::integrate;
-use super::multiplier_columns;
-use super::owners::{feature_angle, owners_name};
-use super::pair_states::settle_all;
-use super::pairing::{Pairing, PairingState};
-use super::points;
-use super::results::write_states;
-use super::set_stage::SetStage;
-use super::setup::Setup;
+use crate::active_set::activation::{self, ActivationCriterion};
+use crate::active_set::{FacetsOfPair, Holding, SetStage, forced_points};
 use crate::flags::{MASTER, SLAVE};
-use crate::interface::{NormalPatches, Roles, add_contact_part, interfaces, warnings_of_pairs};
-use crate::node_state::SlaveIndex;
+use crate::friction;
+use crate::interface::{NormalPatches, Roles, SlaveIndex, add_contact_part, interfaces, warnings_of_pairs};
+use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
+use crate::results::write_states;
+use crate::safeguards::settle_all;
 use crate::search::{GapCheck, assign_roles};
-use crate::slave_states::SlaveStates;
-use crate::slave_status::write_status;
-use crate::solver::AVERAGED_EDGES;
+use crate::settings::{ContactSettings, Setup};
+use crate::slave_nodes::{SlaveStates, multiplier_columns, owners_name, write_status};
 
-/// Contact at a moment.
+/// State of contact.
 pub(super) struct ContactState {
     /// Settings and numbers.
     pub setup: Setup,
@@ -41,11 +31,11 @@ pub(super) struct ContactState {
     holding: Holding,
     steps_since_search: usize,
     saved: SlaveStates,
-    /// What the user is to be told.
+    /// Notes and warnings for the user.
     pub messages: Vec<Diagnostic>,
 }
 
-/// What contact remembers between steps.
+/// The part of the state that lasts between steps.
 #[derive(Serialize, Deserialize)]
 pub(super) struct RememberedContact {
     pairing: PairingState,
@@ -71,7 +61,7 @@ impl ContactState {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
-        messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves)));
+        messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves), &settings.solver));
         Ok(Self {
             messages,
             pairing: Pairing::new(interfaces, settings.nodal_normals),
@@ -85,16 +75,16 @@ impl ContactState {
 
     /// Makes the states of all nodes that may carry multipliers, none of them in contact.
     pub(super) fn make_states(&mut self, part: &mut ModelPart) {
-        let angle = feature_angle(part);
+        let angle = self.setup.settings.solver.feature_angle;
         let name = self.owners_name();
         let table = self.pairing.make_patches(part, angle, &name);
         write_nodal_normals(part, &self.pairing, &self.holding);
-        let family = self.setup.settings.family;
-        if let Some((name, components)) = family.multiplier.column() {
+        let formulation = self.setup.settings.formulation;
+        if let Some((name, components)) = formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }
-        self.states = SlaveStates::of(part, table, family.columns());
-        self.states.for_all(|state| state.active = false);
+        self.states = SlaveStates::of(part, table, formulation.columns());
+        self.states.for_all(|state| state.law.active = false);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         self.states.set_slaves(self.pairing.slaves());
         self.import_multipliers(part);
@@ -108,7 +98,7 @@ impl ContactState {
 
     /// Takes multipliers that the columns of mesh nodes were given from outside, as by a deck.
     fn import_multipliers(&self, part: &mut ModelPart) {
-        multiplier_columns::import(part, &self.states, self.setup.settings.family.multiplier);
+        multiplier_columns::import(part, &self.states, self.setup.settings.formulation.multiplier);
     }
 
     /// Whether the step began with a search.
@@ -118,18 +108,18 @@ impl ContactState {
 
     /// Outside its interval contact carries nothing.
     pub(super) fn switch_off(&mut self, part: &mut ModelPart) {
-        self.states.for_all(|state| state.active = false);
+        self.states.for_all(|state| state.law.active = false);
         self.pairing.clear();
         self.clear_inactive(part);
     }
 
     /// Whether a slave node of an interface is in contact.
     pub(super) fn in_contact(&self, interface: usize) -> bool {
-        self.pairing.slaves_of(interface).iter().any(|&slave| self.states[slave].active)
+        self.pairing.slaves_of(interface).iter().any(|&slave| self.states[slave].law.active)
     }
 
     /// Activates these nodes, and keeps those that are in contact.
-    pub(super) fn activate(&mut self, part: &ModelPart, start: Start<'_>) {
+    pub(super) fn activate(&mut self, part: &ModelPart, start: ActivationCriterion<'_>) {
         activation::start(&part.nodes, &mut self.states, start, self.setup.parameters.slip_rule);
     }
 
@@ -146,7 +136,7 @@ impl ContactState {
         self.steps_since_search = usize::MAX;
     }
 
-    /// What it remembers between steps.
+    /// The part of the state that lasts between steps.
     pub(super) fn state(&self) -> RememberedContact {
         RememberedContact {
             pairing: self.pairing.state(),
@@ -165,7 +155,7 @@ impl ContactState {
         let RememberedContact { pairing, states, holding, resolution, steps_since_search } = state;
         holding.check(part.nodes.len())?;
         (self.holding, self.setup.resolution, self.steps_since_search) = (holding, resolution, steps_since_search);
-        self.pairing.resume(&self.holding, &self.setup, pairing)?;
+        self.pairing.resume(self.holding.planes(), &self.setup, pairing)?;
         self.states.resume(states)?;
         self.pairing.set_states(&self.states);
         Ok(())
@@ -175,7 +165,7 @@ impl ContactState {
     pub(super) fn find_normals(&mut self, part: &mut ModelPart) {
         write_nodal_normals(part, &self.pairing, &self.holding);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
-        if !part.info.is(AVERAGED_EDGES) {
+        if self.setup.settings.solver.feature_angle.is_some() {
             let planes = self.holding.planes();
             take_normals_of_masters(part, &mut self.states, &self.pairing, &|node| planes.contains_key(&node));
         }
@@ -196,16 +186,16 @@ impl ContactState {
             }
         }
         self.states.set_slaves(self.pairing.slaves());
-        let (all, multiplier) = (self.states.all(), self.setup.settings.family.multiplier);
+        let (all, multiplier) = (self.states.all(), self.setup.settings.formulation.multiplier);
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, all);
-        self.pairing.find_normal_patches(&self.holding);
+        self.pairing.find_normal_patches(self.holding.planes());
         write_nodal_normals(part, &self.pairing, &self.holding);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
     }
 
     /// Sets the multipliers of slave nodes without contact to zero.
     pub(super) fn clear_inactive(&mut self, part: &mut ModelPart) {
-        let (slaves, multiplier) = (self.states.slaves(), self.setup.settings.family.multiplier);
+        let (slaves, multiplier) = (self.states.slaves(), self.setup.settings.formulation.multiplier);
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, slaves.iter().copied());
     }
 
@@ -219,7 +209,7 @@ impl ContactState {
         let (states, resolution, overlaps) = (self.states.clone(), self.setup.resolution, self.pairing.overlaps());
         self.integrate(part);
         set.find_tractions(part, &mut self.states, &self.setup);
-        write_states(&mut part.nodes, &self.states, self.setup.settings.family.frictional());
+        write_states(&mut part.nodes, &self.states, self.setup.settings.formulation.frictional());
         (self.states, self.setup.resolution) = (states, resolution);
         self.pairing.set_overlaps(&overlaps);
     }
@@ -244,7 +234,7 @@ impl ContactState {
                 slaves: self.pairing.slaves_of_pair(key),
                 master: self.pairing.master(key),
             });
-            let said = self.holding.hold(part, &mut self.states, self.setup.settings.family, facets);
+            let said = self.holding.hold(part, &mut self.states, self.setup.settings.formulation, facets);
             self.messages.extend(said);
         }
     }
@@ -253,9 +243,9 @@ impl ContactState {
     pub(super) fn publish(&mut self, part: &mut ModelPart) {
         self.pairing.set_states(&self.states);
         self.states.export(&mut part.nodes);
-        let area = |slave: SlaveIndex| self.states[slave].area;
-        multiplier_columns::export(part, self.states.table(), &area, self.setup.settings.family.multiplier);
-        if self.setup.settings.family.frictional() {
+        let area = |slave: SlaveIndex| self.states[slave].kinematics.area;
+        multiplier_columns::export(part, self.states.table(), &area, self.setup.settings.formulation.multiplier);
+        if self.setup.settings.formulation.frictional() {
             write_status(part, &self.states);
         }
     }
@@ -274,7 +264,7 @@ impl ContactState {
         self.clear_inactive(part);
         if self.setup.settings.mind_supports {
             self.holding.begin_step(part, &self.pairing.interfaces);
-            self.pairing.find_normal_patches(&self.holding);
+            self.pairing.find_normal_patches(self.holding.planes());
         }
         self.find_normals(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
@@ -289,15 +279,19 @@ impl ContactState {
         self.integrate(part);
         let settings = &self.setup.settings;
         let start = match settings.search.check {
-            GapCheck::DirectCheck => Start::Touching(&self.pairing.touching),
-            GapCheck::NoCheck => Start::Reach(f64::MAX),
-            GapCheck::CheckMapping if settings.simple_search => Start::ShareOfMeshSize,
-            GapCheck::CheckMapping => Start::Reach(self.setup.near()),
+            GapCheck::DirectCheck => ActivationCriterion::Touching(&self.pairing.touching),
+            GapCheck::NoCheck => ActivationCriterion::Reach(f64::MAX),
+            GapCheck::CheckMapping if settings.simple_search => ActivationCriterion::ShareOfMeshSize,
+            GapCheck::CheckMapping => ActivationCriterion::Reach(self.setup.near()),
         };
         let rule = self.setup.parameters.slip_rule;
         activation::start(&part.nodes, &mut self.states, start, rule);
         if self.setup.by_points() {
-            points::hold_open_interfaces(&mut self.states, &self.pairing.slaves_by_interface(), self.setup.resolution);
+            forced_points::hold_open_interfaces(
+                &mut self.states,
+                &self.pairing.slaves_by_interface(),
+                self.setup.resolution,
+            );
         }
         friction::start_in_stick(part.info.step, &mut self.states, rule, &settings.friction);
         self.pairing.refresh_normals(part, self.setup.updates_normals());

@@ -1,58 +1,9 @@
-//! Contact as a participant in the Newton loop: search, pairs, gaps, active set.
+//! Contact as a participant in the Newton loop: steps, iterations, and the loops around them.
 
-mod activation;
-mod adaptation;
-mod bearable_penalty;
-mod calibration;
 mod contact_interaction;
-mod contact_settings;
 mod contact_state;
-mod coverage;
-mod cycling;
-mod decision;
-mod edges;
-mod friction;
-mod friction_ramp;
-mod holding;
-mod impact;
-mod integration;
-mod late_pairs;
-mod meetings;
-mod multiplier_columns;
-mod mpc_friction;
-mod mpc_interaction;
-mod mpc_relation;
-mod mpc_relations;
-mod mpc_settings;
-mod slave_sums;
 mod outer_loops;
-mod owners;
-mod pair_states;
-mod pairing;
-mod penalty_ramp;
-mod piercing;
-mod points;
-mod reach;
-mod results;
-mod set_stage;
-mod setup;
-mod slider_forces;
-mod sliding;
-mod step_search;
 #[cfg(test)]
 mod tangent_tests;
-mod tying_interaction;
-mod unseen;
-mod uzawa;
-mod work;
 
-use crate::law::step_parameters;
-pub use adaptation::{AdaptationSettings, ExplicitPenalty};
 pub use contact_interaction::ContactInteraction;
-pub use contact_settings::ContactSettings;
-pub use friction::FrictionSettings;
-pub use mpc_interaction::MpcInteraction;
-pub use mpc_relation::Weights;
-pub use mpc_settings::MpcSettings;
-pub use tying_interaction::{TyingInteraction, TyingSettings};
-pub use uzawa::UzawaSettings;

@@ -6,19 +6,11 @@ use zelus_core::model::ModelPart;
 use zelus_core::{Carrier, Result};
 
 use super::contact_state::ContactState;
-use super::friction_ramp::FrictionRamp;
-use super::impact::coarse_impact;
-use super::penalty_ramp::PenaltyRamp;
-use super::piercing::pierced;
-use super::set_stage::SetStage;
-use super::step_search::StepSearch;
-use super::unseen::Unseen;
-use super::uzawa::Uzawa;
-use super::work::ContactWork;
+use crate::active_set::{Rules, SetStage};
+use crate::adaptation::{FrictionRamp, PenaltyRamp, Uzawa};
 use crate::pairs::Multiplier;
-use crate::slave_states::SlaveStates;
-use crate::solver::{ENSURE_CONTACT, LARGEST_PENETRATION};
-use crate::variables::NODAL_H;
+use crate::safeguards::{ContactWork, PenetrationCheck, StepSearch, coarse_impact, pierced, too_deep};
+use crate::slave_nodes::SlaveStates;
 
 /// The loops of a step.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -34,13 +26,13 @@ pub(super) struct OuterLoops {
     /// Weighted gaps of all slave nodes at the start of the step.
     #[serde(skip)]
     start_gaps: Vec<f64>,
-    /// What the last attempt at the step made of the energy of motion, where that was too much.
+    /// Share of the energy of motion that the last attempt at the step made, where that was too much.
     impact_error: f64,
     /// Work of contact on bodies in motion.
     pub work: ContactWork,
     /// Looks for what pairs do not see.
     #[serde(skip)]
-    unseen: Unseen,
+    penetration_check: PenetrationCheck,
 }
 
 impl OuterLoops {
@@ -71,10 +63,10 @@ impl OuterLoops {
 
     /// Step start, once gaps are known.
     pub(super) fn keep_start(&mut self, states: &SlaveStates) {
-        self.start_gaps = states.all().map(|slave| states[slave].weighted_gap).collect();
+        self.start_gaps = states.all().map(|slave| states[slave].kinematics.weighted_gap).collect();
     }
 
-    /// What follows in a converged state, in the order in which one needs the other.
+    /// The checks of a converged state, in the order in which one needs the other.
     ///
     /// # Errors
     /// Those of making blocks; contact that a deck asks for and that is not there.
@@ -84,8 +76,9 @@ impl OuterLoops {
         contact: &mut ContactState,
         set: &mut SetStage,
     ) -> Result<Outer> {
-        let (family, scale_factor) = (contact.setup.settings.family, contact.setup.parameters.scale_factor);
-        if family.updated {
+        let (formulation, scale_factor) = (contact.setup.settings.formulation, contact.setup.parameters.scale_factor);
+        let solver = contact.setup.settings.solver;
+        if formulation.updated {
             let outer =
                 self.uzawa.update(&part.slave_nodes, &mut contact.states, scale_factor, contact.setup.settings.uzawa);
             if outer != Outer::Done {
@@ -121,24 +114,28 @@ impl OuterLoops {
         }
         // Points in the master press in every state that has converged.
         if !contact.setup.by_points()
-            && let Some(why) = contact.setup.rules().passed_through(part, &contact.states)
+            && let Some(why) = Rules::of(&contact.setup).passed_through(part, &contact.states)
         {
             return Ok(Outer::Failed(why));
         }
-        if let Some(why) = too_deep(part, &contact.states, contact.setup.resolution.length) {
+        if let Some(why) = too_deep(part, &contact.states, solver.largest_penetration, contact.setup.resolution.length)
+        {
             return Ok(Outer::Failed(why));
         }
-        if let Some(why) = self.unseen.why(part, &contact.pairing.interfaces, |at| contact.in_contact(at)) {
+        if let Some(why) =
+            self.penetration_check
+                .why(part, &contact.pairing.interfaces, solver.largest_penetration, |at| contact.in_contact(at))
+        {
             return Ok(Outer::Failed(why));
         }
         // Of bodies in motion the energy that contact makes tells what is too much.
         if !contact.setup.parameters.dynamic
-            && part.info.value_or(LARGEST_PENETRATION, 0.0) > 0.0
+            && solver.largest_penetration > 0.0
             && let Some(why) = pierced(part, &contact.pairing, &contact.states)
         {
             return Ok(Outer::Failed(why));
         }
-        if part.info.is(ENSURE_CONTACT) && contact.states.count_active() == 0 {
+        if solver.ensures_contact && contact.states.count_active() == 0 {
             return Err(zelus_core::Error::NotConverged(
                 "no node is in contact, and \"ensure_contact\" asks for one".to_owned(),
             ));
@@ -146,21 +143,21 @@ impl OuterLoops {
         self.friction_ramp.solve();
         if contact.setup.parameters.dynamic {
             self.work.of_step(part, &contact.pairing.as_entities())?;
-            if let Some(why) = self.work.too_much(part) {
+            if let Some(why) = self.work.too_much(part, &solver) {
                 return Ok(Outer::Failed(why));
             }
         }
         let start = (&*self.start_gaps, &mut self.impact_error);
-        Ok(coarse_impact(part, &contact.states, family, scale_factor, start))
+        Ok(coarse_impact(part, &contact.states, formulation, scale_factor, solver.impact_tolerance, start))
     }
 
     /// The step is accepted.
     pub(super) fn accept(&mut self, part: &ModelPart, contact: &mut ContactState) {
         self.impact_error = 0.0;
         if contact.setup.parameters.dynamic {
-            let family = contact.setup.settings.family;
-            let stores = family.compliant || matches!(family.multiplier, Multiplier::None);
-            let conserves = !stores && !family.frictional();
+            let formulation = contact.setup.settings.formulation;
+            let stores = formulation.compliant || matches!(formulation.multiplier, Multiplier::None);
+            let conserves = !stores && !formulation.frictional();
             contact.messages.extend(self.work.accept(part, conserves));
         }
         self.friction_ramp.accept();
@@ -174,25 +171,6 @@ impl OuterLoops {
 
     /// Whether the next attempt of a step that fails once more goes another way.
     pub(super) fn has_alternative(&self, contact: &ContactState) -> bool {
-        self.unseen.depends_on_step || contact.setup.ramps_friction() && self.friction_ramp.comes_next()
+        self.penetration_check.depends_on_step || contact.setup.ramps_friction() && self.friction_ramp.comes_next()
     }
-}
-
-/// Why a state cannot be accepted in which a node in contact is too deep in the master; depths up to `least` are round-off.
-fn too_deep(part: &ModelPart, states: &SlaveStates, least: f64) -> Option<String> {
-    let most = Some(part.info.value_or(LARGEST_PENETRATION, 0.0)).filter(|most| *most > 0.0)?;
-    let sizes = part.nodes.values.values(&NODAL_H, 0);
-    // A node without a mesh size has no share that could be judged.
-    let share = |node: u32, depth: f64| if sizes[node as usize] > 0.0 { depth / sizes[node as usize] } else { 0.0 };
-    let depths = states.iter().filter(|(_, state)| state.active);
-    let depths = depths.map(|(slave, state)| (states.mesh_node(slave), -state.gap().unwrap_or(0.0)));
-    let deep: Vec<(u32, f64)> = depths.filter(|&(node, depth)| depth > least && share(node, depth) > most).collect();
-    let (node, depth) = deep.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
-    let [x, y, z] = part.nodes.initial[node as usize];
-    Some(format!(
-        "{} slave nodes in contact are inside the master by more than {most} of their mesh size, node {} at ({x}, {y}, {z}) by {depth:.3e} ({:.2} of it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
-        deep.len(),
-        part.nodes.ids[node as usize],
-        share(node, depth)
-    ))
 }

@@ -10,27 +10,23 @@ use zelus_core::model::{ModelPart, Nodes, Role};
 use zelus_core::vector3::add;
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
-use super::decision::Rules;
-use super::sliding::find_tangents;
-use crate::active_set::{Margin, SlipRule};
+use crate::active_set::{Rules, find_tangents};
 use crate::flags::SLIP;
-use crate::friction_law::COULOMB;
-use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles};
-use crate::law::{Augmentation, Nitsche, NormalVariation, StepParameters};
+use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex};
+use crate::law::{Augmentation, COULOMB, Margin, Nitsche, NormalVariation, SlipRule, StepParameters};
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
-use crate::node_state::SlaveIndex;
 use crate::pairs::{
-    ContactBlock, Family, Integral, Pair, PairKey, PairRequest, Present, condition_name, find_family, group_by_shapes,
-    group_by_surroundings,
+    ContactBlock, Formulation, Integral, Pair, PairKey, PairRequest, Present, condition_name, find_formulation,
+    group_by_shapes, group_by_surroundings,
 };
 use crate::resolution::Resolution;
-use crate::slave_states::{SlaveStates, SlaveTable};
+use crate::slave_nodes::{SlaveStates, SlaveTable};
 use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA};
 
 /// Facets of two sides that overlap in several pairs a node, and all that their forces depend on.
 struct Contact {
-    family: &'static Family,
+    formulation: &'static Formulation,
     parameters: Arc<StepParameters>,
     part: ModelPart,
     interface: Interface,
@@ -102,7 +98,11 @@ fn surfaces(space: usize, second_order: bool) -> (Vec<[f64; 3]>, Interface) {
 }
 
 impl Contact {
-    fn new(family: &'static Family, (space, second_order): (usize, bool), augmentation: Augmentation) -> Self {
+    fn new(
+        formulation: &'static Formulation,
+        (space, second_order): (usize, bool),
+        augmentation: Augmentation,
+    ) -> Self {
         let (places, interface) = surfaces(space, second_order);
         let mut noise = Noise::new(5);
         let count = places.len();
@@ -112,7 +112,7 @@ impl Contact {
         part.nodes.history.set_levels(2);
         part.nodes.history.add(&DISPLACEMENT);
         part.nodes.history.add(&NORMAL);
-        family.variables.iter().for_each(|&(name, components)| part.nodes.history.add_named(name, components));
+        formulation.variables.iter().for_each(|&(name, components)| part.nodes.history.add_named(name, components));
         let mut vector =
             |size: f64| -> [f64; 3] { std::array::from_fn(|c| if c < space { size * noise.next() } else { 0.0 }) };
         let start: Vec<[f64; 3]> = (0..count).map(|_| vector(0.05)).collect();
@@ -122,7 +122,7 @@ impl Contact {
         let patches = Patches::new(&part, interfaces, None);
         let normals = Arc::new(NormalPatches::of_slaves(&patches, interfaces, NodalNormals::ByEdges));
         let table = SlaveTable::of_patches(&mut part, &patches, "contact");
-        if let Some((name, components)) = family.multiplier.column() {
+        if let Some((name, components)) = formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }
         part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(20.0);
@@ -143,23 +143,24 @@ impl Contact {
             levels_back: 1,
             normal_variation: NormalVariation::Exact,
             augmentation,
-            compliant: family.compliant,
+            compliant: formulation.compliant,
             dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         });
-        let mut states = SlaveStates::of(&part, table, family.columns());
+        let mut states = SlaveStates::of(&part, table, formulation.columns());
         states.set_slaves(patches.slaves(interfaces));
         states.read_friction(&part.nodes, &COULOMB);
-        let mut contact = Self { family, parameters, part, interface, blocks: Vec::new(), patches, normals, states };
+        let mut contact =
+            Self { formulation, parameters, part, interface, blocks: Vec::new(), patches, normals, states };
         contact.make_blocks();
         contact.leave_start();
         contact
     }
 
     fn make_blocks(&mut self) {
-        let family = self.family;
+        let formulation = self.formulation;
         let of_role = |role| {
             let facets = self.interface.facets.iter().enumerate();
             facets.filter(move |(_, facet)| facet.role == role).map(|(at, _)| at as u32)
@@ -171,14 +172,14 @@ impl Contact {
         for ((slave, master), (pairs, nodes)) in
             group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
         {
-            let entry = require_kind(Role::Condition, &condition_name(family.condition, slave, master)).unwrap();
+            let entry = require_kind(Role::Condition, &condition_name(formulation.condition, slave, master)).unwrap();
             for (around, (pairs, nodes)) in group_by_surroundings(&|pair: &Pair| self.around(pair.key), pairs, &nodes) {
                 let (patches, parameters) = (self.normals.clone(), self.parameters.clone());
                 let slaves: Vec<SlaveIndex> = pairs.iter().flat_map(|pair| self.slaves_of(pair.key)).copied().collect();
-                let has_owners = family.multiplier.is_unknown();
+                let has_owners = formulation.multiplier.is_unknown();
                 let owners = slaves.iter().filter(|_| has_owners).map(|slave| self.states.owner(*slave)).collect();
                 let (bodies, states) = (Arc::default(), Arc::default());
-                self.blocks.push((family.block)(PairRequest {
+                self.blocks.push((formulation.block)(PairRequest {
                     entry,
                     slave,
                     master,
@@ -212,7 +213,7 @@ impl Contact {
 
     /// Moves somewhere else than at the start of the step, with multipliers of its own.
     fn leave_start(&mut self) {
-        let family = self.family;
+        let formulation = self.formulation;
         let mut noise = Noise::new(23);
         let space = self.part.info.domain_size;
         let mut vector =
@@ -220,18 +221,18 @@ impl Contact {
         let count = self.part.nodes.len();
         let moved: Vec<[f64; 3]> = (0..count).map(|_| vector(0.03)).collect();
         self.part.nodes.history.values_mut(&DISPLACEMENT, 0).copy_from_slice(moved.as_flattened());
-        if family.variables.iter().any(|(name, _)| *name == "VECTOR_LAGRANGE_MULTIPLIER") {
+        if formulation.variables.iter().any(|(name, _)| *name == "VECTOR_LAGRANGE_MULTIPLIER") {
             let down = if space == 2 { [0.3, -1.0, 0.0] } else { [0.3, 0.2, -1.0] };
             let multipliers: Vec<[f64; 3]> = (0..count).map(|_| add(vector(0.1), down)).collect();
             for slave in self.states.all() {
                 let node = self.states.mesh_node(slave) as usize;
                 let value = if node == OUT_OF_CONTACT { [0.0; 3] } else { multipliers[node] };
-                family.multiplier.set(&mut self.part.slave_nodes, self.states.owner(slave), value);
+                formulation.multiplier.set(&mut self.part.slave_nodes, self.states.owner(slave), value);
             }
         } else {
             for slave in self.states.all() {
                 let value = [-1.0 - 0.1 * f64::from(self.states.mesh_node(slave)), 0.0, 0.0];
-                family.multiplier.set(&mut self.part.slave_nodes, self.states.owner(slave), value);
+                formulation.multiplier.set(&mut self.part.slave_nodes, self.states.owner(slave), value);
             }
         }
         self.follow();
@@ -241,7 +242,7 @@ impl Contact {
         }
         // Areas stay those of this state: they weigh slips in the direction of sliding only.
         let areas = self.sums(|integral, j| [integral.area[j], 0.0, 0.0]);
-        self.states.for_each(|slave, state| state.area = areas[slave.place()][0]);
+        self.states.for_each(|slave, state| state.kinematics.area = areas[slave.place()][0]);
         self.follow();
     }
 
@@ -270,17 +271,19 @@ impl Contact {
             };
             (pair.slave_normal, pair.master_normal) = (normal(pair.key.slave), normal(pair.key.master));
         }
-        if self.family.frictional() {
+        if self.formulation.frictional() {
             let slips = self.sums(|integral, j| integral.slip[j]);
-            self.states.for_each(|slave, state| (state.weighted_slip, state.pairs) = (slips[slave.place()], 0));
+            self.states.for_each(|slave, state| {
+                (state.kinematics.weighted_slip, state.kinematics.pairs) = (slips[slave.place()], 0)
+            });
             for block in &self.blocks {
                 let integrals = self.integrals(block.as_ref());
                 for at in (0..block.len()).filter(|&at| integrals[at].overlapping) {
-                    block.slaves(at).iter().for_each(|&slave| self.states[slave].pairs += 1);
+                    block.slaves(at).iter().for_each(|&slave| self.states[slave].kinematics.pairs += 1);
                 }
             }
-            let (family, parameters) = (self.family, self.parameters.clone());
-            let rules = Rules { family, parameters: &parameters, resolution: Resolution::default() };
+            let (formulation, parameters) = (self.formulation, self.parameters.clone());
+            let rules = Rules { formulation, parameters: &parameters, resolution: Resolution::default() };
             find_tangents(&self.part, &mut self.states, rules, false, &mut BTreeMap::new());
         }
         let states = Arc::new(self.states.clone());
@@ -319,16 +322,16 @@ fn place((node, unknown): (u32, LocalUnknown)) -> Place {
     (node, unknown.variable.column, unknown.variable.offset())
 }
 
-fn check(family: &str, of: (usize, bool), augmentation: Augmentation) {
+fn check(formulation: &str, of: (usize, bool), augmentation: Augmentation) {
     let space = of.0;
-    let mut contact = Contact::new(find_family(family).unwrap(), of, augmentation);
+    let mut contact = Contact::new(find_formulation(formulation).unwrap(), of, augmentation);
     let (mut tangent, mut forces) = (BTreeMap::<(Place, Place), f64>::new(), BTreeMap::<Place, f64>::new());
     contact.each(Want::Both, |row, column, value| match column {
         Some(column) => *tangent.entry((place(row), place(column))).or_default() += value,
         None => *forces.entry(place(row)).or_default() += value,
     });
     let largest = tangent.values().fold(0.0_f64, |most, value| most.max(value.abs()));
-    assert!(largest > 0.1 && forces.len() > 10, "{family} {of:?}: {largest}");
+    assert!(largest > 0.1 && forces.len() > 10, "{formulation} {of:?}: {largest}");
     for node in 0..contact.part.nodes.len() {
         for c in 0..space {
             let mut slopes: BTreeMap<Place, f64> = BTreeMap::new();
@@ -345,7 +348,7 @@ fn check(family: &str, of: (usize, bool), augmentation: Augmentation) {
                 let exact = tangent.get(&(row, column)).copied().unwrap_or(0.0);
                 assert!(
                     (slope - exact).abs() < 2e-7 * largest,
-                    "{family} {of:?} {augmentation:?}: {row:?} by {column:?}: {slope} {exact} of {largest}"
+                    "{formulation} {of:?} {augmentation:?}: {row:?} by {column:?}: {slope} {exact} of {largest}"
                 );
             }
         }

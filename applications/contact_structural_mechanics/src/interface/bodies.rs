@@ -18,17 +18,17 @@ use crate::mortar::inner_point;
 /// Share of the size of an element by which it is moved for second derivatives.
 const STEP: f64 = 1e-5;
 
-/// The elements behind slave facets; none for families with tractions of their own.
+/// The elements behind slave facets; none for formulations with tractions of their own.
 #[derive(Default)]
 pub struct Bodies {
     blocks: Vec<Box<dyn EntityBlock>>,
-    faces: FxHashMap<[u32; 2], Face>,
-    /// What weights of points are divided by about an axis.
+    faces: FxHashMap<[u32; 2], SlaveElementFace>,
+    /// Divisor of the weights of points about an axis.
     thickness: f64,
 }
 
 /// A slave facet as a face of its element.
-struct Face {
+struct SlaveElementFace {
     block: usize,
     at: usize,
     points: Vec<FacePoint>,
@@ -81,18 +81,18 @@ impl Bodies {
             if let Some(why) = own.lacks_tractions(&part.view(), at) {
                 return Err(lack(part, facet.element, why).into());
             }
-            let face = Face::new(part, facet, own.as_ref(), (block, at), axisymmetric.is_some())?;
+            let face = SlaveElementFace::new(part, facet, own.as_ref(), (block, at), axisymmetric.is_some())?;
             bodies.faces.insert(key, face);
         }
         Ok(bodies)
     }
 
-    fn face(&self, key: [u32; 2]) -> (&Face, &dyn EntityBlock) {
+    fn face(&self, key: [u32; 2]) -> (&SlaveElementFace, &dyn EntityBlock) {
         let face = &self.faces[&key];
         (face, self.blocks[face.block].as_ref())
     }
 
-    /// Nodes of the element behind a facet; none for families without.
+    /// Nodes of the element behind a facet; none for formulations without.
     pub fn nodes(&self, key: [u32; 2]) -> &[u32] {
         self.faces.get(&key).map_or(&[], |face| self.blocks[face.block].nodes(face.at))
     }
@@ -122,7 +122,7 @@ impl Bodies {
 
     fn tractions_at(
         &self,
-        face: &Face,
+        face: &SlaveElementFace,
         block: &dyn EntityBlock,
         view: &StepView<'_>,
         u: &[[f64; 3]],
@@ -182,7 +182,7 @@ impl Bodies {
     }
 }
 
-impl Face {
+impl SlaveElementFace {
     fn new(
         part: &ModelPart,
         facet: &Facet,

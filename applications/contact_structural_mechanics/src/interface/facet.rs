@@ -37,7 +37,7 @@ pub struct Facet {
     pub nodes: Vec<u32>,
     /// One that carries contact.
     pub shape: Shape,
-    /// What it is part of.
+    /// The condition or element face that it is made of.
     pub source: FacetSource,
     /// Index of the element whose face it is.
     pub element: u32,

@@ -105,7 +105,7 @@ pub fn slave_nodes(interfaces: &[Interface]) -> Vec<u32> {
 }
 
 /// A face of an element.
-struct Face {
+struct ElementFace {
     element: u32,
     /// In the element's order.
     nodes: Vec<u32>,
@@ -115,12 +115,12 @@ struct Face {
 }
 
 /// Faces of elements by their sorted nodes.
-type Faces = FxHashMap<Vec<u32>, Face>;
+type Faces = FxHashMap<Vec<u32>, ElementFace>;
 
 /// The faces of one element only whose nodes are `wanted`, as facets in the order of the elements' ids.
 fn outer_facets(part: &ModelPart, faces: &Faces, wanted: impl Fn(u32) -> bool, found: &mut Vec<Facet>) -> Result<()> {
     let outer = faces.values().filter(|face| face.shared == 1 && face.nodes.iter().all(|&node| wanted(node)));
-    let mut outer: Vec<&Face> = outer.collect();
+    let mut outer: Vec<&ElementFace> = outer.collect();
     outer.sort_by_key(|face| (part.elements.ids[face.element as usize], face.nodes.clone()));
     for face in outer {
         found.push(facet(part, face, face.nodes.clone(), FacetSource::Face(face.element))?);
@@ -248,7 +248,7 @@ fn assign_roles(
     Ok(())
 }
 
-/// What is said of contact parts that hold elements: their whole skin is taken, or the conditions that they hold beside.
+/// Notes on contact parts that hold elements: their whole skin is taken, or the conditions that they hold beside.
 pub fn notes_of_bodies(part: &ModelPart, parts: &BTreeMap<String, Vec<String>>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     if parts.values().all(Vec::is_empty) {
@@ -393,8 +393,8 @@ fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Fac
 }
 
 /// A facet whose nodes are turned so that its normal leaves the element.
-fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource) -> Result<Facet> {
-    let &Face { element, shape, .. } = face;
+fn facet(part: &ModelPart, face: &ElementFace, mut nodes: Vec<u32>, source: FacetSource) -> Result<Facet> {
+    let &ElementFace { element, shape, .. } = face;
     let (id, space) = (part.elements.ids[element as usize], part.info.domain_size);
     if !carries_contact(shape) || shape.dim() + 1 != space {
         let fact =
@@ -436,7 +436,7 @@ fn facet(part: &ModelPart, face: &Face, mut nodes: Vec<u32>, source: FacetSource
     Ok(Facet { nodes, shape, source, element, properties, role: Roles::Open })
 }
 
-/// Of each node, whether it is one of these parts or of their conditions; of `all`, that it is.
+/// Marks of the nodes of these parts and of their conditions; of all nodes with `all`.
 ///
 /// # Errors
 /// A part that does not exist.
@@ -463,7 +463,7 @@ fn boundary_faces(part: &ModelPart, wanted: &[bool]) -> Faces {
             let face: Vec<u32> = facet.nodes.iter().map(|&n| nodes[n]).collect();
             let mut sorted = face.clone();
             sorted.sort_unstable();
-            let new = || Face { element, nodes: face, shape: facet.shape, shared: 1 };
+            let new = || ElementFace { element, nodes: face, shape: facet.shape, shared: 1 };
             faces.entry(sorted).and_modify(|face| face.shared += 1).or_insert_with(new);
         }
     }

@@ -22,8 +22,8 @@ use zelus_structural_mechanics::variables::NORMAL;
 
 use super::facet::{Facet, Roles};
 use super::facets::Interface;
+use super::fixed::Fixed;
 use super::patches::Patches;
-use super::supports::Fixed;
 
 /// The edge that a line has not.
 const AXIS: [f64; 3] = [0.0, 0.0, 1.0];

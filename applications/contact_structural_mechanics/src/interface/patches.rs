@@ -18,7 +18,7 @@ use zelus_core::vector3::{dot, scale, sub};
 
 use super::facet::{Facet, Roles};
 use super::facets::Interface;
-use crate::node_state::SlaveIndex;
+use super::slave_index::SlaveIndex;
 
 /// Angle between the normals of two facets, in degrees, from which on their common edge is one of the body. An octagon that
 /// stands for a circle turns by 45° a facet and is one surface, a cube turns by 90°.
@@ -41,10 +41,10 @@ struct PatchNode {
 pub struct Patches {
     nodes: Vec<PatchNode>,
     count: usize,
-    /// Of each facet of each interface the place of its first slave node in `of_facets`; [`NONE`] for masters.
+    /// Place of the first slave node of each facet of each interface in `of_facets`; [`NONE`] for masters.
     starts: Vec<Vec<u32>>,
     of_facets: Vec<SlaveIndex>,
-    /// Of each interface, the nodes of master facets at edges of bodies, ascending.
+    /// Nodes of master facets at edges of bodies, ascending, by interface.
     master_edges: Vec<Vec<u32>>,
 }
 

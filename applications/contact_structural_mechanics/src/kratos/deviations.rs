@@ -7,9 +7,9 @@ pub struct Deviation {
     pub of: &'static [&'static str],
     /// The key, with dots.
     pub key: &'static str,
-    /// What Kratos does.
+    /// Behaviour of Kratos.
     pub kratos: &'static str,
-    /// What is the default here, and why.
+    /// The default here, and its reason.
     pub here: &'static str,
     /// Where Kratos does it.
     pub source: &'static str,

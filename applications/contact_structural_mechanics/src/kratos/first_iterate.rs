@@ -1,7 +1,7 @@
 //! The tangent of the first iterate of a step whose normals that iterate decides.
 //!
-//! Kratos keeps, for a whole step, the normals there are after its first iteration (`normal_variation`). What the tangent of that
-//! iteration leaves out changes these normals and with them the answer, so the same is left out: in space D and M move as
+//! Kratos keeps, for a whole step, the normals there are after its first iteration (`normal_variation`). Terms that the tangent of that
+//! iteration leaves out change these normals and with them the answer, so the same are left out: in space D and M move as
 //! [`FlatMaster`] says; in the plane constant operators are nearest to Kratos'.
 
 use zelus_core::entities::{NORMALS_OF_FIRST_ITERATION, StepView};

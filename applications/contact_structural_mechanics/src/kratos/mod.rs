@@ -1,4 +1,4 @@
-//! What contact does only because Kratos does it, behind the settings that `--like kratos` lays under a deck.
+//! Behaviour of contact that only reproduces Kratos, behind the settings that `--like kratos` lays under a deck.
 //!
 //! [`DEVIATIONS`] names each with its source; `tests/contact/like_kratos.rs` switches each off and says what changes. Where one is a
 //! formula of its own it stands here ([`FlatMaster`], [`FirstIterateTangent`], [`PenaltyUnit`]);

@@ -12,7 +12,7 @@ use zelus_core::diagnostics::Diagnostic;
 pub struct PenaltyUnit {
     /// The unit (length).
     pub length: f64,
-    /// What a weighted gap counts beside a gap: an area, in the plane a length.
+    /// Weight of a weighted gap beside a gap: an area, in the plane a length.
     pub measure: f64,
 }
 

@@ -4,8 +4,8 @@
 //! for the residual and with [`Active`] ones, which carry the derivatives of a pair, for the tangent. So a law is compiled for
 //! two scalars, whatever the shapes of facets.
 
+use super::rules::{self, Decision, SlaveNumbers, SlipRule};
 use super::{Multiplier, SlaveNode, StepParameters};
-use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
 use crate::mortar::{Active, OperatorThreshold};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::constant;
@@ -105,7 +105,7 @@ pub trait NodeLaw: Send + Sync + 'static {
 
     /// Its rule of the active set: whether a slave node is in contact, sticks or slides.
     fn decide(node: &SlaveNumbers, _rule: SlipRule) -> Decision {
-        active_set::frictionless(node)
+        rules::frictionless(node)
     }
 }
 

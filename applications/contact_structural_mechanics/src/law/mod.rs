@@ -16,17 +16,23 @@
 mod augmentation;
 pub mod constrained_multiplier;
 mod contact_law;
+mod friction_law;
 pub mod mesh_tying;
 mod multiplier;
 pub mod nitsche;
+mod node_state;
+pub mod rules;
 mod slave_node;
-pub(crate) mod step_parameters;
+mod step_parameters;
 
-pub use crate::node_state::{Held, NodeState, Turning};
 pub use augmentation::Augmentation;
 pub use contact_law::{ContactLaw, NodeForces, NodeInputs, NodeLaw, SlipMeasure};
+pub use friction_law::{Bound, COULOMB, FrictionLaw, FrictionLawEntry, find_friction_law};
 pub use mesh_tying::MeshTying;
 pub use multiplier::Multiplier;
 pub use nitsche::{Nitsche, NitscheVariant, NodeOfPoints, PointForces, SlaveFace};
+pub use node_state::{Held, NodeState, Turning};
+pub(crate) use rules::TURNED;
+pub use rules::{Decision, Margin, SlaveNumbers, SlipRule};
 pub use slave_node::SlaveNode;
 pub use step_parameters::{NormalVariation, StepParameters};

@@ -3,7 +3,7 @@
 use zelus_core::model::{ScalarVariable, SlaveNodes, Variable};
 use zelus_core::vector3::scale;
 
-/// The multipliers of a family.
+/// The multipliers of a formulation.
 #[derive(Clone, Copy)]
 pub enum Multiplier {
     /// None: the penalty method.

@@ -18,7 +18,7 @@
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
 
-use crate::friction_law::Bound;
+use super::friction_law::Bound;
 use crate::mortar::operators::least_overlap;
 use crate::mortar::points::for_each_point;
 use crate::mortar::{
@@ -82,11 +82,11 @@ pub struct SlaveFace {
     pub densities: Nodal<f64>,
     /// M A/V (stress by length, in the plane times the thickness).
     pub stiffness: f64,
-    /// What tractions are multiplied by, where the weights of points are divided by it.
+    /// Factor of tractions where the weights of points are divided by it.
     pub thickness: f64,
 }
 
-/// What a point takes from the slave nodes around it.
+/// Numbers that a point takes from the slave nodes around it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NodeOfPoints {
     /// Limit of the tangential traction.
@@ -94,12 +94,12 @@ pub struct NodeOfPoints {
     /// r° of the last accepted state (force per area).
     pub carried: [f64; 3],
     /// 1 where points are in contact whatever their pressure, until the next solve; else 0.
-    pub held: f64,
+    pub forced_active: f64,
     /// 1 where points in contact stick whatever their traction, until the next solve; else 0.
-    pub stuck: f64,
+    pub forced_stick: f64,
 }
 
-/// What the points of a pair add up to.
+/// Sums over the points of a pair.
 #[derive(Debug, Clone, Copy)]
 pub struct PointForces<T: Real> {
     /// Forces on slave nodes.
@@ -110,7 +110,7 @@ pub struct PointForces<T: Real> {
     pub traction: Nodal<[f64; 3]>,
     /// ∫ L (τ − t + σ n) over the points in contact, with friction.
     pub carried: Nodal<[T; 3]>,
-    /// What works on changes of the tractions at the inner points (a length times an area).
+    /// Factor of changes of the tractions at the inner points (a length times an area).
     pub by_traction: Nodal<[T; 3]>,
 }
 
@@ -163,8 +163,8 @@ impl Nitsche {
             let share = |of: fn(&NodeOfPoints) -> f64| {
                 nodes.iter().zip(point.slave.iter()).map(|(node, n)| of(node) * n.value()).sum::<f64>() > HELD
             };
-            let held = share(|node| node.held);
-            let pressing = held || pressure.value() < 0.0;
+            let forced = share(|node| node.forced_active);
+            let pressing = forced || pressure.value() < 0.0;
             let mut force = if pressing { scale(normal, pressure) } else { zero };
             let mut own = scale(normal, stress);
             let shares = nodal_shares(shape, point);
@@ -181,7 +181,7 @@ impl Nitsche {
                     let carried = tangential(rotation.apply(carried), normal);
                     let along = sub(traction, scale(normal, stress));
                     let trial = add(add(along, carried), scale(slip, T::constant(gamma * ratio)));
-                    let sticks = held || share(|node| node.stuck);
+                    let sticks = forced || share(|node| node.forced_stick);
                     let friction = limited(trial, pressure, mean_bound(nodes, &weights), sticks);
                     force = add(force, friction);
                     let apart = sub(friction, along);

@@ -1,7 +1,7 @@
 //! Constants of a slave node during an assembly.
 
-use crate::friction_law::Bound;
-use crate::node_state::{Held, NodeState, Turning};
+use super::friction_law::Bound;
+use super::node_state::{Held, NodeState, Turning};
 
 /// Constants of a slave node during an assembly.
 #[derive(Debug, Clone, Copy, PartialEq)]

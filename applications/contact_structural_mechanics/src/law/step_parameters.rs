@@ -1,10 +1,10 @@
-//! What every pair of a run shares.
+//! Numbers that every pair of a run shares.
 
-use crate::active_set::SlipRule;
-use crate::friction_law::FrictionLaw;
-use crate::law::{Augmentation, Nitsche};
+use super::augmentation::Augmentation;
+use super::friction_law::FrictionLaw;
+use super::nitsche::Nitsche;
+use super::rules::SlipRule;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
-use crate::slave_state::SlaveState;
 
 /// When normals follow the iteration, and whether the tangent knows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
@@ -54,7 +54,7 @@ pub struct StepParameters {
     pub tangent_factor: f64,
     /// Change of the operators beyond which slip is measured objectively.
     pub operator_threshold: OperatorThreshold,
-    /// What limits tangential tractions.
+    /// Law that limits tangential tractions.
     pub friction_law: &'static FrictionLaw,
     /// How stick and slip are told apart.
     pub slip_rule: SlipRule,
@@ -70,7 +70,7 @@ pub struct StepParameters {
     pub compliant: bool,
     /// Whether the step has inertia, so that friction must make no energy.
     pub dynamic: bool,
-    /// Nitsche's method, of families whose tractions are those of bodies.
+    /// Nitsche's method, of formulations whose tractions are those of bodies.
     pub nitsche: Nitsche,
 }
 
@@ -84,16 +84,5 @@ impl StepParameters {
             Augmentation::Node => self.stiffness,
             Augmentation::Pair => self.stiffness.max(penalty * area),
         }
-    }
-
-    /// Weighted gap that the pressure of a node counts. Where a penalty counts weighted gaps each pair acts by its own, and
-    /// their mean is what the node bears.
-    pub fn counted_gap(&self, state: &SlaveState) -> f64 {
-        if self.weighted_penalty { state.mean_weighted_gap } else { state.weighted_gap }
-    }
-
-    /// k² A/c: the weight of the equation of a node's multiplier where that states a traction (force times area).
-    pub fn multiplier_weight(&self, state: &SlaveState) -> f64 {
-        self.scale_factor.powi(2) * state.area / self.nodal_stiffness(state.penalty, state.area)
     }
 }

@@ -21,14 +21,14 @@
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, dot, scale, sub, value};
 
-use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
+use crate::law::rules::{self, Decision, SlaveNumbers, SlipRule};
 use crate::law::{
     Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState, SlaveNode, SlipMeasure, StepParameters,
     Turning,
 };
 use crate::mortar::{OperatorThreshold, tangential};
-use crate::pairs::{Family, Friction};
-use crate::register_contact_family;
+use crate::pairs::{Formulation, Friction};
+use crate::register_contact_formulation;
 use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
 
 /// Augmented Lagrangian with friction.
@@ -104,7 +104,7 @@ impl NodeLaw for AlmFrictional {
     }
 
     fn decide(node: &SlaveNumbers, rule: SlipRule) -> Decision {
-        active_set::alm_frictional(node, rule)
+        rules::alm_frictional(node, rule)
     }
 
     fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T> {
@@ -145,8 +145,8 @@ impl NodeLaw for AlmFrictional {
     }
 }
 
-/// The family, with or without sticking.
-const fn family(friction: Friction) -> Family {
+/// The formulation, with or without sticking.
+const fn formulation(friction: Friction) -> Formulation {
     let variables = &[
         ("NORMAL", 3),
         ("VECTOR_LAGRANGE_MULTIPLIER", 3),
@@ -154,21 +154,21 @@ const fn family(friction: Friction) -> Family {
         ("WEIGHTED_SLIP", 3),
         ("WEIGHTED_VECTOR_RESIDUAL", 3),
     ];
-    Family {
+    Formulation {
         friction,
         weighted_gaps: true,
-        ..Family::of::<AlmFrictional>("ALMFrictionalMortarContactCondition", variables)
+        ..Formulation::of::<AlmFrictional>("ALMFrictionalMortarContactCondition", variables)
     }
 }
 
-register_contact_family! { "ALMContactFrictional",
+register_contact_formulation! { "ALMContactFrictional",
     about: "Coulomb friction, augmented Lagrangian, one multiplier a slave node and direction",
     source: "eq. 4.9, D.11, D.13",
     conditions: ["ALMFrictionalMortarContactCondition", "ALMFrictionalAxisymMortarContactCondition"],
-    build: family(Friction::Coulomb),
+    build: formulation(Friction::Coulomb),
 }
-register_contact_family! { "ALMContactFrictionalPureSlip",
+register_contact_formulation! { "ALMContactFrictionalPureSlip",
     about: "ALMContactFrictional without sticking: every node in contact slides",
     source: "eq. 4.9, D.11, D.13",
-    build: family(Friction::PureSlip),
+    build: formulation(Friction::PureSlip),
 }

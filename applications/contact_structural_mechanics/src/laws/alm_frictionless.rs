@@ -10,8 +10,8 @@ use zelus_core::scalar::Real;
 use zelus_core::vector3::scale;
 
 use crate::law::{Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters};
-use crate::pairs::Family;
-use crate::register_contact_family;
+use crate::pairs::Formulation;
+use crate::register_contact_formulation;
 use crate::variables::LAGRANGE_MULTIPLIER_CONTACT_PRESSURE;
 
 /// Augmented Lagrangian, normal multiplier.
@@ -43,13 +43,13 @@ impl NodeLaw for AlmFrictionless {
     }
 }
 
-register_contact_family! { "ALMContactFrictionless",
+register_contact_formulation! { "ALMContactFrictionless",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node along its normal",
     source: "eq. 4.9, D.11",
     conditions: ["ALMFrictionlessMortarContactCondition", "ALMFrictionlessAxisymMortarContactCondition"],
-    build: Family {
+    build: Formulation {
         weighted_gaps: true,
-        ..Family::of::<AlmFrictionless>(
+        ..Formulation::of::<AlmFrictionless>(
             "ALMFrictionlessMortarContactCondition",
             &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1), ("WEIGHTED_SCALAR_RESIDUAL", 1)],
         )

@@ -7,8 +7,8 @@ use zelus_core::scalar::Real;
 
 use crate::law::{Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters};
 use crate::mortar::tangential;
-use crate::pairs::Family;
-use crate::register_contact_family;
+use crate::pairs::Formulation;
+use crate::register_contact_formulation;
 use crate::variables::VECTOR_LAGRANGE_MULTIPLIER;
 
 /// Augmented Lagrangian, multiplier by components, no friction.
@@ -42,15 +42,15 @@ impl NodeLaw for AlmFrictionlessComponents {
     }
 }
 
-register_contact_family! { "ALMContactFrictionlessComponents",
+register_contact_formulation! { "ALMContactFrictionlessComponents",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node and direction",
     source: "eq. 4.9, D.11 by components",
     conditions: [
         "ALMFrictionlessComponentsMortarContactCondition", "ALMFrictionlessComponentsAxisymMortarContactCondition"
     ],
-    build: Family {
+    build: Formulation {
         weighted_gaps: true,
-        ..Family::of::<AlmFrictionlessComponents>(
+        ..Formulation::of::<AlmFrictionlessComponents>(
             "ALMFrictionlessComponentsMortarContactCondition",
             &[("NORMAL", 3), ("VECTOR_LAGRANGE_MULTIPLIER", 3), ("WEIGHTED_GAP", 1), ("WEIGHTED_VECTOR_RESIDUAL", 3)],
         )

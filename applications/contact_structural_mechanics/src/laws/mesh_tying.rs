@@ -2,22 +2,22 @@
 
 use zelus_core::register;
 
-use crate::pairs::{Multiplier, TyingFamily, TyingFamilyEntry};
+use crate::pairs::{Multiplier, TyingFormulation, TyingFormulationEntry};
 use crate::register_pair_conditions;
 use crate::variables::{SCALAR_LAGRANGE_MULTIPLIER, VECTOR_LAGRANGE_MULTIPLIER};
 
-register! { TyingFamilyEntry "ScalarMeshTying",
+register! { TyingFormulationEntry "ScalarMeshTying",
     about: "ties one number a node of two meshes by a multiplier",
-    build: TyingFamily {
+    build: TyingFormulation {
         multiplier: Multiplier::Scalar(&SCALAR_LAGRANGE_MULTIPLIER),
         variables: &[("NORMAL", 3), ("SCALAR_LAGRANGE_MULTIPLIER", 1), ("WEIGHTED_SCALAR_RESIDUAL", 1)],
     },
 }
-register! { TyingFamilyEntry "ComponentsMeshTying",
+register! { TyingFormulationEntry "ComponentsMeshTying",
     about: "ties the components of a vector of two meshes by multipliers",
-    build: TyingFamily {
+    build: TyingFormulation {
         multiplier: Multiplier::Vector(&VECTOR_LAGRANGE_MULTIPLIER),
         variables: &[("NORMAL", 3), ("VECTOR_LAGRANGE_MULTIPLIER", 3), ("WEIGHTED_VECTOR_RESIDUAL", 3)],
     },
 }
-register_pair_conditions! { "MeshTyingMortarCondition", "pair of the families ScalarMeshTying and ComponentsMeshTying" }
+register_pair_conditions! { "MeshTyingMortarCondition", "pair of the formulations ScalarMeshTying and ComponentsMeshTying" }

@@ -10,10 +10,10 @@ use zelus_core::vector3::{add, scale};
 
 use super::alm_frictional::AlmFrictional;
 use super::penalty_by_node::PenaltyByNode;
-use crate::active_set::{self, Decision, SlaveNumbers, SlipRule};
+use crate::law::rules::{self, Decision, SlaveNumbers, SlipRule};
 use crate::law::{Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState, SlaveNode, SlipMeasure, StepParameters};
-use crate::pairs::{ByNode, Family, Friction};
-use crate::register_contact_family;
+use crate::pairs::{ByNode, Formulation, Friction};
+use crate::register_contact_formulation;
 
 /// Penalty method with friction, of weighted gaps and slips.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +56,7 @@ impl NodeLaw for PenaltyFrictional {
     }
 
     fn decide(node: &SlaveNumbers, rule: SlipRule) -> Decision {
-        active_set::penalty_frictional(node, rule)
+        rules::penalty_frictional(node, rule)
     }
 
     fn evaluate<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> NodeForces<T> {
@@ -72,9 +72,9 @@ impl NodeLaw for PenaltyFrictional {
 }
 
 /// Pair by pair.
-const BY_PAIR: Family = Family {
+const BY_PAIR: Formulation = Formulation {
     friction: Friction::Coulomb,
-    ..Family::of::<PenaltyFrictional>(
+    ..Formulation::of::<PenaltyFrictional>(
         "PenaltyFrictionalMortarContactCondition",
         &[
             ("NORMAL", 3),
@@ -87,22 +87,22 @@ const BY_PAIR: Family = Family {
 };
 
 /// By node, with a multiplier a node and direction.
-static IMPLICIT: Family = Family {
+static IMPLICIT: Formulation = Formulation {
     friction: Friction::Coulomb,
     compliant: true,
-    ..Family::of::<AlmFrictional>(BY_PAIR.condition, BY_PAIR.variables)
+    ..Formulation::of::<AlmFrictional>(BY_PAIR.condition, BY_PAIR.variables)
 };
 
 /// By node, in explicit steps.
-static EXPLICIT: Family = Family {
+static EXPLICIT: Formulation = Formulation {
     friction: Friction::Coulomb,
-    decide: active_set::penalty_frictional,
-    ..Family::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables)
+    decide: rules::penalty_frictional,
+    ..Formulation::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables)
 };
 
-register_contact_family! { "PenaltyContactFrictional",
+register_contact_formulation! { "PenaltyContactFrictional",
     about: "Coulomb friction, penalty method",
     source: "eq. D.3",
     conditions: ["PenaltyFrictionalMortarContactCondition", "PenaltyFrictionalAxisymMortarContactCondition"],
-    build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
+    build: Formulation { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }

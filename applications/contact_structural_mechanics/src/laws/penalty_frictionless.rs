@@ -8,8 +8,8 @@ use zelus_core::vector3::scale;
 use super::alm_frictionless::AlmFrictionless;
 use super::penalty_by_node::PenaltyByNode;
 use crate::law::{Multiplier, NodeForces, NodeInputs, NodeLaw, SlaveNode, StepParameters};
-use crate::pairs::{ByNode, Family};
-use crate::register_contact_family;
+use crate::pairs::{ByNode, Formulation};
+use crate::register_contact_formulation;
 
 /// Penalty method without friction, of weighted gaps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,21 +31,21 @@ impl NodeLaw for PenaltyFrictionless {
 }
 
 /// Pair by pair.
-const BY_PAIR: Family = Family::of::<PenaltyFrictionless>(
+const BY_PAIR: Formulation = Formulation::of::<PenaltyFrictionless>(
     "PenaltyFrictionlessMortarContactCondition",
     &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],
 );
 
 /// By node, with a multiplier a node.
-static IMPLICIT: Family =
-    Family { compliant: true, ..Family::of::<AlmFrictionless>(BY_PAIR.condition, BY_PAIR.variables) };
+static IMPLICIT: Formulation =
+    Formulation { compliant: true, ..Formulation::of::<AlmFrictionless>(BY_PAIR.condition, BY_PAIR.variables) };
 
 /// By node, in explicit steps.
-static EXPLICIT: Family = Family::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables);
+static EXPLICIT: Formulation = Formulation::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables);
 
-register_contact_family! { "PenaltyContactFrictionless",
+register_contact_formulation! { "PenaltyContactFrictionless",
     about: "frictionless contact, penalty method",
     source: "eq. D.3",
     conditions: ["PenaltyFrictionlessMortarContactCondition", "PenaltyFrictionlessAxisymMortarContactCondition"],
-    build: Family { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
+    build: Formulation { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }

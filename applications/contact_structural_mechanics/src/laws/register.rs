@@ -1,22 +1,22 @@
-//! How a family gets its names.
+//! Registration of formulations and of their conditions.
 
-/// Registers a [`Family`](crate::pairs::Family) under its `mortar_type`, and its conditions, one a pair of shapes, under Kratos'
+/// Registers a [`Formulation`](crate::pairs::Formulation) under its `mortar_type`, and its conditions, one a pair of shapes, under Kratos'
 /// names: `conditions` are their beginnings, in plane and space and about an axis.
 #[macro_export]
-macro_rules! register_contact_family {
-    ($name:literal, about: $about:literal, source: $source:literal, build: $family:expr $(,)?) => {
+macro_rules! register_contact_formulation {
+    ($name:literal, about: $about:literal, source: $source:literal, build: $formulation:expr $(,)?) => {
         const _: () = {
-            use $crate::pairs::FamilyEntry;
-            zelus_core::register! { FamilyEntry $name, about: $about, source: $source, build: $family }
+            use $crate::pairs::FormulationEntry;
+            zelus_core::register! { FormulationEntry $name, about: $about, source: $source, build: $formulation }
         };
     };
     (
         $name:literal, about: $about:literal, source: $source:literal,
-        conditions: [$stem:literal, $axisymmetric:literal], build: $family:expr $(,)?
+        conditions: [$stem:literal, $axisymmetric:literal], build: $formulation:expr $(,)?
     ) => {
-        $crate::register_contact_family! { $name, about: $about, source: $source, build: $family }
-        $crate::register_pair_conditions! { $stem, concat!("pair of the family ", $name) }
-        $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the family ", $name),
+        $crate::register_contact_formulation! { $name, about: $about, source: $source, build: $formulation }
+        $crate::register_pair_conditions! { $stem, concat!("pair of the formulation ", $name) }
+        $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the formulation ", $name),
             (Line2, 2, "2D2N") (Line2, 2, "2D2N3N") (Line3, 2, "2D3N2N") (Line3, 2, "2D3N")
         }
     };

@@ -1,12 +1,12 @@
-//! What the interaction asks of a block of pairs, whatever their family and their shapes.
+//! Interface of a block of pairs to the interaction, for all formulations and shapes.
 
 use std::sync::Arc;
 
 use zelus_core::entities::{EntityBlock, StepView};
 
 use super::pair::{Integral, Pair};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::interface::SlaveIndex;
+use crate::slave_nodes::SlaveStates;
 
 /// The present state, as pairs are integrated in it.
 #[derive(Clone, Copy)]

@@ -10,14 +10,13 @@ use zelus_core::scalar::Real;
 use zelus_core::vector3::dot;
 
 use super::contact_block::{ContactBlock, Present};
-use super::family::PairRequest;
 use super::pair::{Integral, Pair};
+use super::pair_request::PairRequest;
 use super::pairs_of_shapes::PairsOfShapes;
-use crate::interface::{Bodies, Tractions};
+use crate::interface::{Bodies, SlaveIndex, Tractions};
 use crate::law::{Multiplier, Nitsche, NodeOfPoints, PointForces};
 use crate::mortar::{Active, LANES, PairGeometry, rotated_slip, variables_from};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::slave_nodes::SlaveStates;
 
 /// The block of Nitsche's method, with friction or without.
 pub fn nitsche_block(request: PairRequest, friction: bool) -> Box<dyn ContactBlock> {
@@ -47,8 +46,9 @@ impl NitscheBlock {
         let slaves = self.pairs.slaves(at);
         Nodal::new(slaves.len(), |j| {
             let own = &states[slaves[j]];
-            let (held, stuck) = (f64::from(u8::from(own.pressed)), f64::from(u8::from(own.stuck)));
-            NodeOfPoints { carried: own.last.carried, friction: own.friction, held, stuck }
+            let (forced_active, forced_stick) =
+                (f64::from(u8::from(own.law.forced_active)), f64::from(u8::from(own.law.forced_stick)));
+            NodeOfPoints { carried: own.last.carried, friction: own.parameters.friction, forced_active, forced_stick }
         })
     }
 

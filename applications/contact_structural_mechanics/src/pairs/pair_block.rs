@@ -9,15 +9,15 @@ use zelus_core::geometry::Nodal;
 use zelus_core::model::EntityKind;
 
 use super::contact_block::{ContactBlock, Present};
-use super::family::PairRequest;
 use super::kinematics::PairHistory;
 use super::local_system::{PairSystem, multipliers_of};
 use super::pair::{Integral, Pair};
+use super::pair_request::PairRequest;
 use super::pairs_of_shapes::PairsOfShapes;
+use crate::interface::SlaveIndex;
 use crate::kratos::FirstIterateTangent;
 use crate::law::{ContactLaw, SlipMeasure};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::slave_nodes::SlaveStates;
 
 /// Pairs of two shapes under one law.
 pub(super) struct PairBlock {

@@ -11,16 +11,15 @@ use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_block::Present;
-use super::family::PairRequest;
 use super::grouping::PAIRS;
 use super::kinematics::PairHistory;
 use super::known_operators::KnownOperators;
 use super::pair::{Integral, Pair, Previous};
-use crate::interface::{Corner, NormalPatches};
+use super::pair_request::PairRequest;
+use crate::interface::{Corner, NormalPatches, SlaveIndex};
 use crate::law::{Augmentation, Multiplier, NormalVariation, SlaveNode, StepParameters};
 use crate::mortar::{Active, Operators, Overlap, PairGeometry, choices_of, operators, weighted_gap};
-use crate::node_state::SlaveIndex;
-use crate::slave_states::SlaveStates;
+use crate::slave_nodes::SlaveStates;
 
 /// Pairs of two shapes.
 ///
@@ -132,7 +131,7 @@ impl PairsOfShapes {
             master_shape: self.master,
             slave: Nodal::new(slaves.len(), |j| view.nodes.current[slaves[j] as usize]),
             master: Nodal::new(masters.len(), |l| view.nodes.current[masters[l] as usize]),
-            nodal_normals: Nodal::new(slaves.len(), |j| states[self.slaves(at)[j]].normal),
+            nodal_normals: Nodal::new(slaves.len(), |j| states[self.slaves(at)[j]].kinematics.normal),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
             choices: pair.choices,
@@ -165,7 +164,7 @@ impl PairsOfShapes {
         // By column, how the normal of a node turns: several facets tell of the same neighbour.
         let mut turning: Vec<(usize, [[f64; 3]; 3])> = Vec::with_capacity(self.nodes(at).len());
         for (j, &slave) in self.slaves(at).iter().enumerate() {
-            if self.states[slave].normal_of_master {
+            if self.states[slave].kinematics.normal_of_master {
                 continue;
             }
             turning.clear();
@@ -212,25 +211,28 @@ impl PairsOfShapes {
         let slaves = self.slaves(at);
         self.slave.nodal(|j| {
             let node = &states[slaves[j]];
-            let area = positive(node.area);
+            let area = positive(node.kinematics.area);
             // On a part of a facet of second order the share of a corner may be below zero; over all pairs they add up to the area.
-            let share = if node.area > 0.0 { own[j] } else { positive(own[j]) };
-            let stiffness = self.parameters.nodal_stiffness(node.penalty, area);
+            let share = if node.kinematics.area > 0.0 { own[j] } else { positive(own[j]) };
+            let stiffness = self.parameters.nodal_stiffness(node.parameters.penalty, area);
             SlaveNode {
                 state: node.contact(),
-                penalty: node.penalty,
-                compliance: if self.parameters.compliant { node.penalty.recip() } else { 0.0 },
-                kept: node.kept_pressure,
+                penalty: node.parameters.penalty,
+                compliance: if self.parameters.compliant { node.parameters.penalty.recip() } else { 0.0 },
+                kept: node.law.kept_pressure,
                 stiffness,
                 area: if by_pair { area } else { share },
-                dynamic_factor: node.dynamic_factor,
-                friction: node.friction,
-                tangent: node.tangent,
-                turning: node.turning,
-                held: node.held,
+                dynamic_factor: node.parameters.dynamic_factor,
+                friction: node.parameters.friction,
+                tangent: node.law.tangent,
+                turning: node.law.turning,
+                held: node.law.held,
                 held_weight: k * k * area / stiffness,
                 carried: node.last.carried,
-                traction: add(node.carried, scale(node.normal, node.penalty * (node.weighted_gap / area))),
+                traction: add(
+                    node.law.carried,
+                    scale(node.kinematics.normal, node.parameters.penalty * (node.kinematics.weighted_gap / area)),
+                ),
             }
         })
     }

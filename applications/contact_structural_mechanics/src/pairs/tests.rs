@@ -1,9 +1,8 @@
-//! Tangents against central differences, balance of forces, and the algebra of single families.
+//! Tangents against central differences, balance of forces, and the algebra of single formulations.
 
 use super::*;
-use crate::friction_law::Bound;
 use crate::kratos::FirstIterateTangent;
-use crate::law::{Augmentation, ContactLaw, Held, MeshTying, NodeState, SlaveNode, Turning};
+use crate::law::{Augmentation, Bound, ContactLaw, Held, MeshTying, NodeState, SlaveNode, Turning};
 use crate::laws::alm_frictional::AlmFrictional;
 use crate::laws::alm_frictionless::AlmFrictionless;
 use crate::laws::alm_frictionless_components::AlmFrictionlessComponents;
@@ -208,7 +207,7 @@ fn tangents_match_differences() {
     }
 }
 
-/// Residuals of one family against lines of `reference_residuals.txt`; numbers are nodal vectors, then scalars.
+/// Residuals of one formulation against lines of `reference_residuals.txt`; numbers are nodal vectors, then scalars.
 fn check_references(law: &dyn ContactLaw, start: &[f64], lines: &[Vec<f64>], history: &PairHistory) {
     for line in lines {
         let vector = |i: usize| [line[3 * i], line[3 * i + 1], line[3 * i + 2]];
@@ -261,10 +260,10 @@ fn residuals_of_the_reference_program() {
     let numbers = |text: &str| -> Vec<f64> { text.split(' ').map(|x| x.parse().unwrap()).collect() };
     let text = include_str!("reference_residuals.txt");
     let blocks = text.split("start ").skip(1);
-    let mut families = 0;
+    let mut formulations = 0;
     for block in blocks {
         let (head, rest) = block.split_once('\n').unwrap();
-        let (family, start) = head.split_once(' ').unwrap();
+        let (formulation, start) = head.split_once(' ').unwrap();
         let start = numbers(start);
         let lines: Vec<_> = rest.lines().map(numbers).collect();
         let vector = |i: usize| [start[25 + 3 * i], start[26 + 3 * i], start[27 + 3 * i]];
@@ -274,13 +273,13 @@ fn residuals_of_the_reference_program() {
             slave: [vector(0), vector(1)].into(),
             master: [vector(2), vector(3)].into(),
         };
-        match family {
+        match formulation {
             "alm_frictional" => check_references(&frictional(start[24]), &start, &lines, &history),
             _ => check_references(&COMPONENTS, &start, &lines, &history),
         }
-        families += 1;
+        formulations += 1;
     }
-    assert_eq!(families, 3);
+    assert_eq!(formulations, 3);
 }
 
 /// One multiplier along the normal and the same as a vector push equally; their gap rows agree along the normal.

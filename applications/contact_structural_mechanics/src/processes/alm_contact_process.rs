@@ -13,20 +13,20 @@ use zelus_core::{Error, Result};
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_positive, check_search, segmentation, without_computing_part};
-use crate::active_set::Margin;
+use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaSettings};
 use crate::compatibility::{Refusal, Use, refusal};
-use crate::interaction::{
-    AdaptationSettings, ContactInteraction, ContactSettings, ExplicitPenalty, FrictionSettings, UzawaSettings,
-};
+use crate::friction::FrictionSettings;
+use crate::interaction::ContactInteraction;
 use crate::interface::{AlmParameters, NodalNormals, check_parts};
-use crate::law::{Augmentation, Nitsche, NitscheVariant, NormalVariation};
+use crate::law::{Augmentation, Margin, Nitsche, NitscheVariant, NormalVariation};
 use crate::mortar::OperatorThreshold;
-use crate::pairs::{Family, find_family};
-use crate::penalty_adaptation::PenaltyRule;
+use crate::pairs::{Formulation, find_formulation};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use crate::settings::ContactSettings;
+use crate::solver::ContactSolverSettings;
 
 #[derive(Debug, Deserialize)]
-struct Search {
+struct ContactSearchKeys {
     simple_search: bool,
     adapt_search: bool,
     dynamic_search: bool,
@@ -40,7 +40,7 @@ struct Search {
 }
 
 #[derive(Debug, Deserialize)]
-struct Parameters {
+struct PenaltyKeys {
     #[serde(rename = "manual_ALM")]
     manual: bool,
     stiffness_factor: f64,
@@ -50,7 +50,7 @@ struct Parameters {
     scale_factor: f64,
     adapt_penalty: bool,
     max_gap_factor: f64,
-    /// Families whose answer does not depend on the penalty lack the keys of the adapted penalty method.
+    /// Formulations whose answer does not depend on the penalty lack the keys of the adapted penalty method.
     adaptation_rule: Option<PenaltyRule>,
     min_gap_factor: Option<f64>,
     /// Only processes of the penalty method have it.
@@ -59,19 +59,19 @@ struct Parameters {
 }
 
 #[derive(Debug, Deserialize)]
-struct Alternatives {
+struct AlternativeKeys {
     axisymmetric: bool,
 }
 
 #[derive(Debug, Deserialize)]
-struct Whole {
+struct ContactKeys {
     model_part_name: String,
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
     contact_type: String,
     normal_variation: NormalVariation,
     nodal_normals: NodalNormals,
-    /// Processes whose families have their forces from penalties lack it.
+    /// Processes whose formulations have their forces from penalties lack it.
     augmentation: Option<Augmentation>,
     /// Only the process of Nitsche's method has it.
     #[serde(default)]
@@ -83,10 +83,10 @@ struct Whole {
     /// Where points decide, nodes decide nothing.
     #[serde(default)]
     least_coverage: f64,
-    search_parameters: Search,
+    search_parameters: ContactSearchKeys,
     #[serde(rename = "advance_ALM_parameters")]
-    parameters: Parameters,
-    alternative_formulations: Alternatives,
+    parameters: PenaltyKeys,
+    alternative_formulations: AlternativeKeys,
 }
 
 /// In which direction a sliding node goes on, in the plane.
@@ -100,7 +100,7 @@ enum SlidingDirection {
     OfMultiplier,
 }
 
-/// The keys of friction; processes whose families have none lack them.
+/// The keys of friction; processes whose formulations have none lack them.
 #[derive(Debug, Deserialize)]
 struct FrictionKeys {
     friction_coefficients: BTreeMap<String, f64>,
@@ -112,7 +112,7 @@ struct FrictionKeys {
     slip_step_reset_frequency: i64,
     tangent_factor: f64,
     operator_threshold: f64,
-    /// Only families that measure slip in two ways have it.
+    /// Only formulations that measure slip in two ways have it.
     #[serde(default)]
     absolute_operator_threshold: bool,
 }
@@ -128,23 +128,23 @@ impl FrictionKeys {
     }
 }
 
-/// The process for the families whose names begin with that of `stem`.
+/// The process for the formulations whose names begin with that of `stem`.
 ///
 /// # Errors
 /// Settings that do not fit.
-pub(super) fn of_families(request: &mut ProcessRequest<'_>, stem: &Stem) -> Result<Box<dyn Process>> {
+pub(super) fn of_formulations(request: &mut ProcessRequest<'_>, stem: &FormulationStem) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(without_computing_part)?;
     let (root, interaction) = interaction(&settings, request, stem)?;
     Ok(InteractionProcess::boxed(root, interaction))
 }
 
-/// The families that a process serves, and how stiff their penalty is.
-pub(super) struct Stem {
+/// The formulations that a process serves, and how stiff their penalty is.
+pub(super) struct FormulationStem {
     /// How their names begin; the contact type follows.
     pub name: &'static str,
     /// Factor of the estimated penalty.
     pub penalty_factor: f64,
-    /// What takes the place of an estimate of zero.
+    /// Penalty in the place of an estimate of zero.
     pub least_penalty: f64,
 }
 
@@ -152,15 +152,16 @@ pub(super) struct Stem {
 fn interaction(
     settings: &Settings,
     request: &mut ProcessRequest<'_>,
-    families: &Stem,
+    formulations: &FormulationStem,
 ) -> Result<(String, ContactInteraction)> {
-    let whole: Whole = settings.parse()?;
+    let whole: ContactKeys = settings.parse()?;
     let (stem, updated) = match whole.contact_type.strip_suffix("WithNormalUpdate") {
         Some(stem) => (stem, true),
         None => (whole.contact_type.as_str(), false),
     };
     let mut problems = Report::new();
-    let named = find_family(&format!("{}{stem}", families.name)).map_err(|d| d.at(settings.key_place("contact_type")));
+    let named =
+        find_formulation(&format!("{}{stem}", formulations.name)).map_err(|d| d.at(settings.key_place("contact_type")));
     let named = problems.absorb(named.map_err(Error::from));
     let part = request.model.root_mut(&whole.model_part_name)?;
     let known = check_parts(part, &whole.contact_model_part, &whole.assume_master_slave);
@@ -172,8 +173,9 @@ fn interaction(
     problems.absorb(check_search(settings));
     problems.absorb(segmentation(settings));
     problems.finish()?;
+    let solver = ContactSolverSettings::of(&part.info);
     let named = named.expect("it is known");
-    let family = match named.by_node {
+    let formulation = match named.by_node {
         Some(by_node) if !whole.parameters.penalty_of_weighted_gaps => {
             if part.info.solver.explicit {
                 by_node.explicit
@@ -188,10 +190,10 @@ fn interaction(
     let friction = match &keys {
         None => FrictionSettings::default(),
         Some(keys) => FrictionSettings {
-            law: friction_law(settings, family.frictional(), request)?,
+            law: friction_law(settings, formulation.frictional(), request)?,
             coefficients: keys.friction_coefficients.clone(),
             // A penalty holds sliding nodes and sticking ones by the same spring.
-            margin: if family.compliant {
+            margin: if formulation.compliant {
                 Margin::default()
             } else {
                 Margin { augmentation: keys.slip_augmentation_coefficient, threshold: keys.slip_threshold }
@@ -202,24 +204,24 @@ fn interaction(
     };
     let keeps_normals = keys.as_ref().is_some_and(|keys| keys.not_normal_update_frictional);
     let normal_variation = match whole.normal_variation {
-        NormalVariation::None if updated || (family.frictional() && !keeps_normals) => NormalVariation::Update,
-        NormalVariation::Exact if family.frictional() && keeps_normals => NormalVariation::None,
+        NormalVariation::None if updated || (formulation.frictional() && !keeps_normals) => NormalVariation::Update,
+        NormalVariation::Exact if formulation.frictional() && keeps_normals => NormalVariation::None,
         other => other,
     };
     let augmentation =
-        whole.augmentation.unwrap_or(if family.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
+        whole.augmentation.unwrap_or(if formulation.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
     let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
     let factor = nitsche_factor(settings, whole.nitsche_factor)?;
     let rule = whole.parameters.adaptation_rule.unwrap_or_else(PenaltyRule::usual);
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,
-        family,
+        formulation,
         interval: Interval::from_node(settings.get("interval")?)?,
         normal_variation,
         nodal_normals: whole.nodal_normals,
         augmentation,
-        nitsche: Nitsche::new(whole.nitsche_variant, factor, family.frictional().then_some(tangent_factor)),
+        nitsche: Nitsche::new(whole.nitsche_variant, factor, formulation.frictional().then_some(tangent_factor)),
         search: SearchSettings {
             factor: whole.search_parameters.search_factor,
             distance: whole.search_parameters.search_distance,
@@ -237,8 +239,8 @@ fn interaction(
             scale_factor: whole.parameters.scale_factor,
         }),
         estimate: [whole.parameters.stiffness_factor, whole.parameters.penalty_scale_factor],
-        penalty_factor: families.penalty_factor,
-        least_penalty: families.least_penalty,
+        penalty_factor: formulations.penalty_factor,
+        least_penalty: formulations.least_penalty,
         weighted_penalty: named.by_node.is_some() && whole.parameters.penalty_of_weighted_gaps,
         uzawa: uzawa(settings)?,
         explicit: explicit_penalty(settings, request)?,
@@ -263,11 +265,12 @@ fn interaction(
         least_coverage: whole.least_coverage,
         segmentation: segmentation(settings)?,
         axisymmetric: whole.alternative_formulations.axisymmetric,
+        solver,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
-    check_use(part, family, settings)?;
+    check_use(part, formulation, settings)?;
     let warning = warn_of_revolution(part, settings)?;
-    check_variables(part, family, settings)?;
+    check_variables(part, formulation, settings)?;
     let interaction = ContactInteraction::new(chosen, part)?;
     warning.into_iter().for_each(|warning| request.report.push(warning));
     Ok((whole.model_part_name, interaction))
@@ -315,8 +318,8 @@ fn explicit_penalty(settings: &Settings, request: &ProcessRequest<'_>) -> Result
     Ok(Some(ExplicitPenalty { most, exponent, gap }))
 }
 
-/// Refuses what the family cannot be used for.
-fn check_use(part: &ModelPart, family: &Family, settings: &Settings) -> Result<()> {
+/// Refuses what the formulation cannot be used for.
+fn check_use(part: &ModelPart, formulation: &Formulation, settings: &Settings) -> Result<()> {
     let key = "alternative_formulations.axisymmetric";
     let wanted = Use {
         dimension: part.info.domain_size,
@@ -324,7 +327,7 @@ fn check_use(part: &ModelPart, family: &Family, settings: &Settings) -> Result<(
         explicit: part.info.solver.explicit,
         arc_length: part.info.solver.unknown_load_factor,
     };
-    let Some(Refusal { reason, remedy }) = refusal(family, wanted) else { return Ok(()) };
+    let Some(Refusal { reason, remedy }) = refusal(formulation, wanted) else { return Ok(()) };
     let key = if wanted.explicit || wanted.arc_length { "contact_type" } else { key };
     Err(settings.error(key, "contact-use", reason).remedy(remedy).into())
 }
@@ -341,25 +344,25 @@ fn warn_of_revolution(part: &ModelPart, settings: &Settings) -> Result<Option<Di
     Ok(Some(warning.remedy(format!("set \"axisymmetric\" of \"alternative_formulations\" to {}", !around))))
 }
 
-/// The solver gives the nodes the variables of its `mortar_type`; another family's would be missing.
-fn check_variables(part: &ModelPart, family: &Family, settings: &Settings) -> Result<()> {
-    match family.variables.iter().find(|(name, _)| !part.nodes.history.has(name)) {
+/// The solver gives the nodes the variables of its `mortar_type`; another formulation's would be missing.
+fn check_variables(part: &ModelPart, formulation: &Formulation, settings: &Settings) -> Result<()> {
+    match formulation.variables.iter().find(|(name, _)| !part.nodes.history.has(name)) {
         None => Ok(()),
         Some(_) if part.info.solver.incomplete => Ok(()),
         Some((name, _)) => {
             let fact = format!(
                 "\"contact_type\" asks for {}, but the solver's \"mortar_type\" brings no {name}",
-                family.condition
+                formulation.condition
             );
             Err(settings
                 .error("contact_type", "contact-type", fact)
-                .remedy("let \"contact_settings.mortar_type\" and \"contact_type\" name the same family")
+                .remedy("let \"contact_settings.mortar_type\" and \"contact_type\" name the same formulation")
                 .into())
         }
     }
 }
 
-const AUGMENTED: Stem = Stem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 };
+const AUGMENTED: FormulationStem = FormulationStem { name: "ALMContact", penalty_factor: 1.0, least_penalty: 1.0 };
 
 register! { ProcessEntry "alm_contact_process",
     aliases: &["ALMContactProcess"],
@@ -367,6 +370,6 @@ register! { ProcessEntry "alm_contact_process",
     source: "eqs. 4.9, 4.11, D.11",
     defaults: include_str!("../../../../configs/processes/alm_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/alm_contact_process.json"))],
-    build: |request| of_families(request, &AUGMENTED),
+    build: |request| of_formulations(request, &AUGMENTED),
     surfaces: super::touching::contact,
 }

@@ -3,10 +3,10 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_families};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
-/// The families of the penalty method; a penalty as stiff as elements leaves explicit steps their length.
-const EXPLICIT: Stem = Stem { name: "PenaltyContact", penalty_factor: 1.0, least_penalty: 1e13 };
+/// The formulations of the penalty method; a penalty as stiff as elements leaves explicit steps their length.
+const EXPLICIT: FormulationStem = FormulationStem { name: "PenaltyContact", penalty_factor: 1.0, least_penalty: 1e13 };
 
 register! { ProcessEntry "explicit_penalty_contact_process",
     aliases: &["ExplicitPenaltyContactProcess"],
@@ -14,6 +14,6 @@ register! { ProcessEntry "explicit_penalty_contact_process",
     source: "eqs. 4.11, D.3",
     defaults: include_str!("../../../../configs/processes/explicit_penalty_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_penalty_contact_process.json"))],
-    build: |request| of_families(request, &EXPLICIT),
+    build: |request| of_formulations(request, &EXPLICIT),
     surfaces: super::touching::contact,
 }

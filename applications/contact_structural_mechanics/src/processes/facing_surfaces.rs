@@ -19,7 +19,7 @@ use crate::pairs::{FacingPoint, PAIRS, PairKey, facing_points};
 use crate::search::{Candidate, GapCheck, SearchDistance, SearchSettings, WithinStep, candidates};
 
 #[derive(Debug, Deserialize)]
-struct Whole {
+struct FacingSurfacesKeys {
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
     normal_orientation_threshold: f64,
@@ -58,7 +58,7 @@ impl FacingSurfaces {
     /// # Errors
     /// Parts that do not exist or hold no facets, pairs without slaves, numbers out of range.
     pub fn new(settings: &Settings, part: &mut ModelPart, slivers: bool) -> Result<Self> {
-        let whole: Whole = settings.parse()?;
+        let whole: FacingSurfacesKeys = settings.parse()?;
         check_slaves(settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
         let search = SearchSettings {
             factor: settings.get_positive("search_factor")?,
@@ -87,7 +87,7 @@ impl FacingSurfaces {
         touching::contact(parameters)
     }
 
-    /// What `of_pair` gives of the pairs of facets of one interface, in an order that depends on nothing but the mesh.
+    /// Results of `of_pair` for the pairs of facets of one interface, in an order that depends on nothing but the mesh.
     pub fn of_pairs<'a, T: Send, I: IntoIterator<Item = T>>(
         &'a self,
         part: &ModelPart,

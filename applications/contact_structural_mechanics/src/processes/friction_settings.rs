@@ -5,7 +5,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::parameters::Settings;
 use zelus_core::processes::ProcessRequest;
 
-use crate::friction_law::{FrictionLaw, find_friction_law};
+use crate::law::{FrictionLaw, find_friction_law};
 
 /// The law of friction of the settings; warns of numbers that nothing will read.
 ///

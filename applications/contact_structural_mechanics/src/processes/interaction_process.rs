@@ -1,4 +1,4 @@
-//! What the processes of contact and ties end in: an interaction for the system of the stage.
+//! A process that gives the system of its stage an interaction: the end of all processes of contact and ties.
 
 use zelus_core::Result;
 use zelus_core::entities::Interaction;

@@ -11,50 +11,51 @@ use zelus_core::register;
 
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
-use crate::interaction::{TyingInteraction, TyingSettings};
-use crate::pairs::find_tying_family;
+use crate::pairs::find_tying_formulation;
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use crate::solver::ContactSolverSettings;
+use crate::tying::{TyingInteraction, TyingSettings};
 
 #[derive(Debug, Deserialize)]
-struct Search {
+struct TyingSearchKeys {
     search_factor: f64,
     database_step_update: usize,
     normal_orientation_threshold: f64,
 }
 
 #[derive(Debug, Deserialize)]
-struct ScaleFactor {
+struct ScaleFactorKeys {
     manual_scale_factor: bool,
     stiffness_factor: f64,
     scale_factor: f64,
 }
 
 #[derive(Debug, Deserialize)]
-struct Whole {
+struct TyingKeys {
     model_part_name: String,
     mesh_tying_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
-    search_parameters: Search,
-    scale_factor_parameters: ScaleFactor,
+    search_parameters: TyingSearchKeys,
+    scale_factor_parameters: ScaleFactorKeys,
     mind_supports: bool,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(without_computing_part)?;
-    let whole: Whole = settings.parse()?;
+    let whole: TyingKeys = settings.parse()?;
     check_search(&settings)?;
     check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;
     let part = request.model.root_mut(&whole.model_part_name)?;
     let (mortar_type, tied) = tied(&settings, part.info.domain_size)?;
-    let family = find_tying_family(mortar_type)?;
-    for (name, components) in family.variables {
+    let formulation = find_tying_formulation(mortar_type)?;
+    for (name, components) in formulation.variables {
         part.nodes.history.add_named(name, *components);
     }
     let manual = &whole.scale_factor_parameters;
     let chosen = TyingSettings {
         parts: whole.mesh_tying_model_part,
         slaves: whole.assume_master_slave,
-        family,
+        formulation,
         tied,
         interval: Interval::from_node(settings.get("interval")?)?,
         search: SearchSettings {
@@ -70,6 +71,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         manual: manual.manual_scale_factor.then_some(manual.scale_factor),
         stiffness_factor: manual.stiffness_factor,
         mind_supports: whole.mind_supports,
+        feature_angle: ContactSolverSettings::of(&part.info).feature_angle,
     };
     let interaction = TyingInteraction::new(chosen, part)?;
     Ok(InteractionProcess::boxed(whole.model_part_name, interaction))

@@ -11,19 +11,20 @@ use zelus_core::register;
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
-use crate::interaction::{FrictionSettings, MpcInteraction, MpcSettings, Weights};
-use crate::mpc_kind::{MpcKind, mpc_contact_type};
+use crate::friction::FrictionSettings;
+use crate::mpc::{MpcInteraction, MpcKind, MpcSettings, Weights, mpc_contact_type, updates_each_iteration};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use crate::solver::ContactSolverSettings;
 
 #[derive(Debug, Deserialize)]
-struct Search {
+struct MpcSearchKeys {
     search_factor: f64,
     database_step_update: usize,
     normal_orientation_threshold: f64,
 }
 
 #[derive(Debug, Deserialize)]
-struct Whole {
+struct MpcKeys {
     model_part_name: String,
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
@@ -33,15 +34,17 @@ struct Whole {
     consistent_weights: bool,
     keep_first_opening: bool,
     swap_held_slaves: bool,
-    search_parameters: Search,
+    search_parameters: MpcSearchKeys,
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(without_computing_part)?;
-    let whole: Whole = settings.parse()?;
+    let whole: MpcKeys = settings.parse()?;
     let (kind, pure_slip) = mpc_contact_type(&settings)?;
     check_search(&settings)?;
     check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
+    let info = &request.model.root_mut(&whole.model_part_name)?.info;
+    let (solver, update_each_iteration) = (ContactSolverSettings::of(info), updates_each_iteration(info));
     let law = friction_law(&settings, kind == MpcKind::Frictional, request)?;
     let chosen = MpcSettings {
         parts: whole.contact_model_part,
@@ -61,6 +64,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         database_step_update: whole.search_parameters.database_step_update.max(1),
         segmentation: segmentation(&settings)?,
         reaction_check_stiffness_factor: whole.reaction_check_stiffness_factor,
+        update_each_iteration,
         update_relations: whole.update_condition_relation_step,
         weights: if whole.consistent_weights || kind == MpcKind::Frictional {
             Weights::Consistent
@@ -69,6 +73,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         },
         keeps_first_opening: whole.keep_first_opening,
         swaps_held_slaves: whole.swap_held_slaves,
+        solver,
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     let interaction = MpcInteraction::new(chosen, part)?;

@@ -3,9 +3,10 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_families};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
-const FAMILIES: Stem = Stem { name: "PerturbedLagrangianContact", penalty_factor: 1e4, least_penalty: 1.0 };
+const FORMULATIONS: FormulationStem =
+    FormulationStem { name: "PerturbedLagrangianContact", penalty_factor: 1e4, least_penalty: 1.0 };
 
 register! { ProcessEntry "perturbed_lagrangian_contact_process",
     aliases: &["PerturbedLagrangianContactProcess"],
@@ -13,6 +14,6 @@ register! { ProcessEntry "perturbed_lagrangian_contact_process",
     source: "eq. 4.11; Simo, Wriggers and Taylor (1985)",
     defaults: include_str!("../../../../configs/processes/perturbed_lagrangian_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/perturbed_lagrangian_contact_process.json"))],
-    build: |request| of_families(request, &FAMILIES),
+    build: |request| of_formulations(request, &FORMULATIONS),
     surfaces: super::touching::contact,
 }

@@ -3,9 +3,9 @@
 use zelus_core::processes::ProcessEntry;
 use zelus_core::register;
 
-use super::alm_contact_process::{Stem, of_families};
+use super::alm_contact_process::{FormulationStem, of_formulations};
 
-const FAMILIES: Stem = Stem { name: "UzawaContact", penalty_factor: 1e1, least_penalty: 1.0 };
+const FORMULATIONS: FormulationStem = FormulationStem { name: "UzawaContact", penalty_factor: 1e1, least_penalty: 1.0 };
 
 register! { ProcessEntry "uzawa_contact_process",
     aliases: &["UzawaContactProcess"],
@@ -13,6 +13,6 @@ register! { ProcessEntry "uzawa_contact_process",
     source: "eqs. 4.11, D.10",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/uzawa_contact_process.json"))],
-    build: |request| of_families(request, &FAMILIES),
+    build: |request| of_formulations(request, &FORMULATIONS),
     surfaces: super::touching::contact,
 }

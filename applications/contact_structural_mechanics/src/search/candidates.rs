@@ -46,7 +46,7 @@ pub enum WithinStep {
     Lost,
 }
 
-/// What decides whether a pair is a candidate.
+/// Settings of the search for candidates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
     /// Reach of the search in radii of the slave facet: facets farther apart are not a pair.
@@ -55,7 +55,7 @@ pub struct SearchSettings {
     pub distance: SearchDistance,
     /// Least difference of the unit normals: facets that face the same way are not a pair.
     pub normal_orientation_threshold: f64,
-    /// What is looked for within a step.
+    /// Pairs that are searched within a step.
     pub within_step: WithinStep,
     /// How contact starts.
     pub check: GapCheck,
@@ -97,8 +97,8 @@ pub(super) fn among(
     settings: &SearchSettings,
     overlapping: bool,
 ) -> Vec<Candidate> {
-    let place = |f: u32| Place::of(part, &interface.facets[f as usize]);
-    let places: Vec<Place> = masters.iter().map(|&m| place(m)).collect();
+    let place = |f: u32| FacetExtent::of(part, &interface.facets[f as usize]);
+    let places: Vec<FacetExtent> = masters.iter().map(|&m| place(m)).collect();
     let tree = Tree::new(places.iter().map(|p| p.bounds).collect());
     let of_slave = |at: usize| {
         let slave = slaves[at];
@@ -124,8 +124,8 @@ pub(super) fn among(
     parallel::map(slaves.len(), AT_A_TIME, of_slave).concat()
 }
 
-/// Where a facet is.
-pub(super) struct Place {
+/// Extent of a facet: its box, centre, radius and normal.
+pub(super) struct FacetExtent {
     bounds: Bounds,
     pub(super) centre: [f64; 3],
     pub(super) normal: [f64; 3],
@@ -135,7 +135,7 @@ pub(super) struct Place {
     is_flat: bool,
 }
 
-impl Place {
+impl FacetExtent {
     pub(super) fn of(part: &ModelPart, facet: &Facet) -> Self {
         let points = facet.positions(part);
         let centre: [f64; 3] = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);

@@ -12,7 +12,7 @@ const INSIDE: f64 = 1e-6;
 const ELEMENTS: usize = 1 << 10;
 const POINTS: usize = 16;
 
-/// Of each point, whether it is inside an element of this rank that its node is not part of.
+/// Marks of the points inside an element of this rank that their node is not part of.
 ///
 /// A point is given with its node, its place and the mesh size there.
 pub fn inside(part: &ModelPart, points: &[(u32, [f64; 3], f64)]) -> Vec<bool> {

@@ -1,4 +1,4 @@
-//! What is said of overlaps that the reach of the search leaves out.
+//! Warnings of overlaps beyond the search radius, and of pairs found too late.
 
 use zelus_core::diagnostics::Diagnostic;
 
@@ -9,7 +9,7 @@ pub fn warn_of_reach(lost: usize) -> Diagnostic {
         .remedy("set \"search_parameters.search_distance\" to \"between_facets\", or raise \"search_factor\"")
 }
 
-/// What is said when searches within a step went on to find pairs.
+/// The warning that searches within a step went on to find pairs.
 pub fn warn_of_late_pairs(count: usize, searches: usize) -> Diagnostic {
     let fact = format!("after {searches} searches within the step {count} pairs more are found; they are left out");
     Diagnostic::warning("late-contact", fact).remedy("shorten the step")

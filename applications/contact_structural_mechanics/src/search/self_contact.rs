@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, VecDeque};
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, sub};
 
-use super::candidates::{Place, SearchSettings, among};
+use super::candidates::{FacetExtent, SearchSettings, among};
 use crate::interface::{Interface, Roles};
 
 /// Gives every facet of an open interface its role for this configuration.
@@ -23,7 +23,7 @@ pub fn assign_roles(part: &ModelPart, interface: &mut Interface, settings: &Sear
     for candidate in among(part, interface, &all, &all, settings, false).into_iter().filter(|c| c.within_reach) {
         let (a, b) = (&interface.facets[candidate.slave as usize], &interface.facets[candidate.master as usize]);
         let apart = a.nodes.iter().all(|n| !b.nodes.contains(n));
-        let (from, to) = (Place::of(part, a), Place::of(part, b));
+        let (from, to) = (FacetExtent::of(part, a), FacetExtent::of(part, b));
         // the two sides of one body look away from each other, farther behind than a facet that has come through
         let ahead = dot(sub(to.centre, from.centre), from.normal) > -from.radius;
         if apart && ahead && dot(from.normal, to.normal) < 0.0 {
@@ -112,7 +112,7 @@ fn order_in_space(part: &ModelPart, interface: &Interface) -> Vec<u32> {
         .map(|facet| {
             let mut points: Vec<[f64; 3]> = facet.nodes.iter().map(|&n| part.nodes.initial[n as usize]).collect();
             points.sort_unstable_by(descending);
-            (points, Place::of(part, facet).normal)
+            (points, FacetExtent::of(part, facet).normal)
         })
         .collect();
     let mut order: Vec<u32> = (0..keys.len() as u32).collect();

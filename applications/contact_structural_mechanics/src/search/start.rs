@@ -22,7 +22,7 @@ const SILENT: f64 = 0.02;
 const ROUND_OFF: f64 = 1e-12;
 
 /// A slave node before the first step.
-struct Place {
+struct StartingNode {
     node: u32,
     /// A node of its master.
     master: u32,
@@ -33,7 +33,7 @@ struct Place {
     size: f64,
 }
 
-/// What became of the slave nodes of an interface, named `name`, before the first step; nodes are of `bodies`.
+/// Moves or reports the slave nodes of an interface, named `name`, before the first step; nodes are of `bodies`.
 ///
 /// Where `tolerance` is given, nodes whose distance is at most that many mesh sizes are moved onto the master, with their initial
 /// positions: without strain. Deeper ones, and all without it, are told; beyond a mesh size as an error where `refuses` holds.
@@ -57,11 +57,12 @@ pub fn settle(
     if let Some(tolerance) = tolerance {
         return adjust(part, &places, name, tolerance);
     }
-    let deep: Vec<&Place> = places.iter().filter(|at| at.distance < -SILENT * at.size).collect();
+    let deep: Vec<&StartingNode> = places.iter().filter(|at| at.distance < -SILENT * at.size).collect();
     let points: Vec<_> = deep.iter().map(|at| (at.node, part.nodes.current[at.node as usize], at.size)).collect();
     let mut inside = inside(part, &points);
     part.ranks.any_of(&mut inside);
-    let deep: Vec<&Place> = deep.into_iter().zip(inside).filter_map(|(at, inside)| inside.then_some(at)).collect();
+    let deep: Vec<&StartingNode> =
+        deep.into_iter().zip(inside).filter_map(|(at, inside)| inside.then_some(at)).collect();
     let deepest = deep.iter().min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.node.cmp(&b.node)))?;
     let x = part.nodes.initial[deepest.node as usize];
     let fact = format!(
@@ -93,7 +94,7 @@ fn one_body(
     part: &ModelPart,
     interface: &Interface,
     bodies: &[Option<usize>],
-    places: &[Place],
+    places: &[StartingNode],
     name: &str,
     refuses: bool,
 ) -> Option<Diagnostic> {
@@ -121,9 +122,9 @@ fn one_body(
     Some(make("one-body", fact).remedy(remedy))
 }
 
-fn adjust(part: &mut ModelPart, places: &[Place], name: &str, tolerance: f64) -> Option<Diagnostic> {
-    let moves = |at: &&Place| (ROUND_OFF * at.size..=tolerance * at.size).contains(&at.distance.abs());
-    let moved: Vec<&Place> = places.iter().filter(moves).collect();
+fn adjust(part: &mut ModelPart, places: &[StartingNode], name: &str, tolerance: f64) -> Option<Diagnostic> {
+    let moves = |at: &&StartingNode| (ROUND_OFF * at.size..=tolerance * at.size).contains(&at.distance.abs());
+    let moved: Vec<&StartingNode> = places.iter().filter(moves).collect();
     for at in &moved {
         let node = at.node as usize;
         let to = add(part.nodes.initial[node], scale(at.normal, at.distance));
@@ -146,7 +147,7 @@ pub fn facing(part: &ModelPart, interface: &Interface) -> Vec<([u32; 2], [f64; 3
 }
 
 /// The slave nodes that face a master facet along their normals, ascending.
-fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
+fn places(part: &ModelPart, interface: &Interface) -> Vec<StartingNode> {
     let of_role = |role: Roles| interface.facets.iter().filter(move |facet| facet.role == role);
     let masters: Vec<&Facet> = of_role(Roles::Master).collect();
     let bounds: Vec<Bounds> = masters.iter().map(|facet| Bounds::of(&facet.positions(part))).collect();
@@ -174,7 +175,7 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<Place> {
             met.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         };
         let (distance, master) = way(NEAR * size).or_else(|| way(extent))?;
-        distance.is_finite().then_some(Place { node, master, normal, distance, size })
+        distance.is_finite().then_some(StartingNode { node, master, normal, distance, size })
     };
     parallel::map(nodes.len(), AT_A_TIME, place).into_iter().flatten().collect()
 }

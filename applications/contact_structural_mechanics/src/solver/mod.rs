@@ -1,10 +1,5 @@
-//! What contact adds to the solver's settings.
+//! Settings of contact at the solver.
 
-mod contact_settings;
-mod mpc_contact_settings;
+mod contact_solver_settings;
 
-pub(crate) use contact_settings::{
-    ADJUST_INITIAL, ADJUST_TOLERANCE, AVERAGED_EDGES, COMPUTE_DYNAMIC_FACTOR, CONTACT_FEATURE_ANGLE, DELTA_TIME_FACTOR,
-    ENSURE_CONTACT, IMPACT_TOLERANCE, KEEP_MASS, LARGEST_ENERGY_GAIN, LARGEST_PENETRATION,
-};
-pub(crate) use mpc_contact_settings::UPDATE_EACH_ITERATION;
+pub use contact_solver_settings::ContactSolverSettings;

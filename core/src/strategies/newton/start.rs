@@ -14,7 +14,8 @@ impl NewtonRaphson {
     pub(super) fn redistribute_mass(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         let mut nodes = MasslessNodes::default();
         for massless in system.interactions.iter_mut().filter_map(|interaction| interaction.massless()) {
-            let own = massless.massless_nodes(part);
+            massless.begin_dynamic_step(part);
+            let own = massless.massless_nodes();
             nodes.surface.extend(own.surface);
             nodes.near.extend(own.near);
         }

@@ -1,0 +1,98 @@
+//! Which slave nodes begin a step in contact, by their gap; and what nodes without contact keep: nothing.
+
+use std::collections::BTreeSet;
+
+use zelus_core::model::{Nodes, SlaveNodes};
+
+use crate::interface::SlaveIndex;
+use crate::law::SlipRule;
+use crate::pairs::Multiplier;
+use crate::slave_nodes::SlaveStates;
+use crate::variables::NODAL_H;
+
+/// Gap, in mesh sizes, of the simple activation.
+const SIMPLE_REACH: f64 = 2e-3;
+/// Gap of a node that nothing faces.
+const FAR: f64 = 1e12;
+
+/// Sets the multipliers of inactive nodes among `of` to zero, and the tractions and pressures that are kept of them.
+pub(crate) fn clear_inactive(
+    slave_nodes: &mut SlaveNodes,
+    states: &mut SlaveStates,
+    multiplier: Multiplier,
+    of: impl Iterator<Item = SlaveIndex>,
+) {
+    for slave in of {
+        let owner = if multiplier.is_unknown() { states.owner(slave) } else { 0 };
+        let state = &mut states[slave];
+        if state.law.active {
+            continue;
+        }
+        match multiplier {
+            Multiplier::Body => {}
+            Multiplier::None => state.law.carried = [0.0; 3],
+            Multiplier::Scalar(_) => {
+                multiplier.set(slave_nodes, owner, [0.0; 3]);
+                state.law.kept_pressure = 0.0;
+            }
+            Multiplier::Vector(_) => multiplier.set(slave_nodes, owner, [0.0; 3]),
+        }
+    }
+}
+
+/// Criterion of contact at step start.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ActivationCriterion<'a> {
+    /// A gap below this length.
+    Reach(f64),
+    /// A gap below a small share of the mesh size of the node.
+    ShareOfMeshSize,
+    /// These nodes, and those that are in contact already.
+    Touching(&'a BTreeSet<SlaveIndex>),
+}
+
+/// Step start: which nodes are active. Gaps are weighted gaps over areas, so they are those of the mortar mapping.
+pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCriterion<'_>, rule: SlipRule) {
+    let sizes = nodes.values.values(&NODAL_H, 0);
+    let mesh_nodes: Vec<u32> = states.all().map(|slave| states.mesh_node(slave)).collect();
+    states.for_each(|slave, state| {
+        let gap = state.gap().unwrap_or(FAR);
+        let near = match start {
+            ActivationCriterion::Reach(reach) => gap < reach,
+            ActivationCriterion::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
+            ActivationCriterion::Touching(nodes) => nodes.contains(&slave) || state.law.active,
+        };
+        state.law.active = near && !state.kinematics.isolated;
+        state.kinematics.start_gap = if near { gap } else { 0.0 };
+        if state.law.active {
+            let slides = rule == SlipRule::Pure || state.parameters.friction.is_smooth();
+            state.law.slides = Some(slides || state.law.slides == Some(true));
+        }
+    });
+}
+
+/// The slave nodes, of these of each interface, of interfaces without contact that are at most `reach` mesh sizes farther from a master than the nearest
+/// of their interface, where those are not in contact yet. `open` keeps the interfaces that had none when it was empty.
+pub(crate) fn nearest(
+    nodes: &Nodes,
+    states: &SlaveStates,
+    slaves: &[Vec<SlaveIndex>],
+    reach: f64,
+    open: &mut BTreeSet<usize>,
+) -> BTreeSet<SlaveIndex> {
+    let sizes = nodes.values.values(&NODAL_H, 0);
+    if open.is_empty() {
+        open.extend((0..slaves.len()).filter(|&at| !slaves[at].iter().any(|&n| states[n].law.active)));
+    }
+    let mut found = BTreeSet::new();
+    for own in open.iter().map(|&at| &slaves[at]) {
+        let facing = || own.iter().filter(|&&n| !states[n].kinematics.isolated);
+        let gap = |n: SlaveIndex| states[n].kinematics.weighted_gap / states[n].kinematics.area;
+        let least = facing().map(|&n| gap(n)).fold(f64::INFINITY, f64::min);
+        found.extend(
+            facing()
+                .filter(|&&n| gap(n) - least <= reach * sizes[states.mesh_node(n) as usize] && !states[n].law.active),
+        );
+    }
+    found
+}

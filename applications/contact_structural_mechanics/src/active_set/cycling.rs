@@ -1,0 +1,239 @@
+//! Active sets that come back or do not come to rest: found, said and settled.
+//!
+//! A set that returns after others is a cycle: Newton's iteration would run through it for ever, because states change
+//! before displacements have followed. From then on, as from an iteration on by which sets should have come to rest, states
+//! change in converged states only: the set is held until the iteration has converged with it, then the rules decide on
+//! what is an equilibrium. Where that comes back to a set too, no set fulfils all conditions at the resolution of the
+//! mesh; that one is taken which violates them least, if that is little, and the step fails otherwise.
+
+use serde::{Deserialize, Serialize};
+use zelus_core::diagnostics::Diagnostic;
+
+use crate::interface::SlaveIndex;
+use crate::law::{Decision, NodeState};
+
+/// Longest cycle that is looked for, in iterations.
+const LONGEST: usize = 6;
+/// Iterations after which sets that still change are held.
+const RESTLESS: usize = 15;
+/// Converged states in which a held set may change.
+const MOST_CHANGES: usize = 30;
+/// Violation, as a share of the largest pressure, that may stay where no set fulfils all conditions.
+pub(crate) const ALLOWED: f64 = 0.01;
+/// Nodes that a warning names.
+const NAMED: usize = 8;
+
+/// Outcome of a converged state with a held set.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum SetOutcome {
+    /// The state fulfils the conditions, or nearly so where none does better.
+    Done,
+    /// States change, and the iteration goes on.
+    Change,
+    /// No set does.
+    Failed(String),
+}
+
+/// The sets of a step's iterations.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct CycleGuard {
+    #[serde(skip)]
+    sets: Vec<Vec<NodeState>>,
+    /// Whether states change in converged states only.
+    #[serde(skip)]
+    held: bool,
+    /// Sets that have converged, with what they violate.
+    #[serde(skip)]
+    converged: Vec<(Vec<NodeState>, f64)>,
+    warned: bool,
+}
+
+impl CycleGuard {
+    /// A step begins.
+    pub(crate) fn begin_step(&mut self) {
+        *self = Self { warned: self.warned, ..Self::default() };
+    }
+
+    /// Whether states change in converged states only.
+    pub(crate) fn holds(&self) -> bool {
+        self.held
+    }
+
+    /// Takes back all changes of a set that is held.
+    pub(crate) fn restrict(&self, decisions: &mut [(SlaveIndex, Decision)], before: &[NodeState]) {
+        if self.held {
+            decisions.iter_mut().zip(before).for_each(|((_, decision), &was)| decision.stay(was, was));
+        }
+    }
+
+    /// Keeps the set of an iteration; the warning when a cycle is met for the first time in the run.
+    pub(crate) fn keep(
+        &mut self,
+        decisions: &[(SlaveIndex, Decision)],
+        ids: &dyn Fn(SlaveIndex) -> usize,
+        step: usize,
+    ) -> Option<Diagnostic> {
+        if self.held {
+            return None;
+        }
+        self.sets.push(decisions.iter().map(|(_, decision)| decision.state).collect());
+        let Some(period) = self.period() else {
+            self.held = self.sets.len() >= RESTLESS;
+            return None;
+        };
+        self.held = true;
+        if std::mem::replace(&mut self.warned, true) {
+            return None;
+        }
+        let states = &self.sets[self.sets.len() - period..];
+        let cycling = (0..decisions.len()).filter(|&at| states.iter().any(|set| set[at] != states[0][at]));
+        let fact = format!(
+            "step {step}: the contact states of nodes {} come back every {period} iterations",
+            named(cycling.map(|at| ids(decisions[at].0)))
+        );
+        Some(Diagnostic::warning("contact-cycle", fact).remedy(
+            "nothing to do: from here on they change in converged states only; a shorter \"time_step\" may avoid it",
+        ))
+    }
+
+    /// Outcome of the decisions in a converged state with a held set, of which it may take back a part; `before` is
+    /// that set, `largest` the largest pressure.
+    ///
+    /// All states change as they want to, unless that leads back to a set that has converged before. Then one node changes,
+    /// that which is violated most of those that lead to a new set.
+    pub(crate) fn settle(
+        &mut self,
+        decisions: &mut [(SlaveIndex, Decision)],
+        before: &[NodeState],
+        largest: f64,
+        ids: &dyn Fn(SlaveIndex) -> usize,
+    ) -> SetOutcome {
+        let mut changing: Vec<usize> = (0..before.len()).filter(|&at| decisions[at].1.state != before[at]).collect();
+        if changing.is_empty() {
+            return SetOutcome::Done;
+        }
+        changing.sort_by(|&a, &b| decisions[b].1.excess.total_cmp(&decisions[a].1.excess));
+        let violation = decisions[changing[0]].1.excess;
+        let share = if largest > 0.0 { violation / largest } else { 1.0 };
+        self.converged.push((before.to_vec(), share));
+        let is_known = |set: &[NodeState]| self.converged.iter().any(|(known, _)| known == set);
+        let wanted: Vec<NodeState> = decisions.iter().map(|(_, decision)| decision.state).collect();
+        if !is_known(&wanted) && self.converged.len() < MOST_CHANGES {
+            return SetOutcome::Change;
+        }
+        let single = |&at: &usize| {
+            let mut set = before.to_vec();
+            set[at] = wanted[at];
+            !is_known(&set)
+        };
+        if let Some(one) = changing.iter().copied().find(single).filter(|_| self.converged.len() < MOST_CHANGES) {
+            for at in changing.into_iter().filter(|&at| at != one) {
+                decisions[at].1.stay(before[at], before[at]);
+            }
+            return SetOutcome::Change;
+        }
+        let best = self.converged.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
+        if share <= best && share <= ALLOWED {
+            return SetOutcome::Done;
+        }
+        if best <= ALLOWED && self.converged.len() < 2 * MOST_CHANGES {
+            return SetOutcome::Change;
+        }
+        let nodes = named(changing.into_iter().map(|at| ids(decisions[at].0)));
+        SetOutcome::Failed(format!(
+            "the contact states of nodes {nodes} find no rest; they violate contact by {share:.1e} of the largest pressure"
+        ))
+    }
+
+    /// Iterations after which the sets repeat, seen twice over.
+    fn period(&self) -> Option<usize> {
+        let sets = &self.sets;
+        let last = sets.len();
+        (2..=LONGEST.min(last / 2)).find(|&period| {
+            (0..period).all(|back| sets[last - 1 - back] == sets[last - 1 - back - period])
+                && sets[last - period..].windows(2).any(|pair| pair[0] != pair[1])
+        })
+    }
+}
+
+/// Ids of some nodes, in words.
+fn named(ids: impl Iterator<Item = usize>) -> String {
+    let ids: Vec<usize> = ids.collect();
+    let names: Vec<String> = ids.iter().take(NAMED).map(ToString::to_string).collect();
+    format!("{}{}", names.join(" "), if ids.len() > NAMED { " and others" } else { "" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use NodeState::{Inactive, Slip, Stick};
+
+    const IDS: fn(SlaveIndex) -> usize = |slave| slave.place() + 1;
+
+    fn decisions(states: &[NodeState], excess: f64) -> Vec<(SlaveIndex, Decision)> {
+        states
+            .iter()
+            .enumerate()
+            .map(|(at, &state)| (SlaveIndex(at as u32), Decision { excess, ..Decision::plain(state) }))
+            .collect()
+    }
+
+    /// Runs a rule that wants `wants(iteration)`; gives the states after each iteration.
+    fn run(guard: &mut CycleGuard, wants: impl Fn(usize) -> Vec<NodeState>, count: usize) -> Vec<Vec<NodeState>> {
+        let mut states = wants(0);
+        let mut out = Vec::new();
+        for iteration in 1..=count {
+            let mut list = decisions(&wants(iteration), 0.0);
+            guard.restrict(&mut list, &states);
+            guard.keep(&list, &IDS, 1);
+            states = list.iter().map(|(_, d)| d.state).collect();
+            out.push(states.clone());
+        }
+        out
+    }
+
+    #[test]
+    fn a_cycle_is_held_and_changes_in_converged_states() {
+        let mut guard = CycleGuard::default();
+        let wants = |i: usize| vec![[Stick, Slip][i % 2], Slip, Slip];
+        let seen = run(&mut guard, wants, 8);
+        assert!(guard.holds() && seen[3] == seen[7] && seen[2] != seen[3]);
+        let mut wanted = decisions(&[Inactive, Slip, Slip], 1.0);
+        assert_eq!(guard.settle(&mut wanted, &seen[7], 1.0, &IDS), SetOutcome::Change);
+        assert_eq!(guard.settle(&mut wanted, &[Inactive, Slip, Slip], 1.0, &IDS), SetOutcome::Done);
+    }
+
+    #[test]
+    fn of_two_sets_that_lead_to_each_other_the_better_is_taken_where_it_is_good() {
+        let (one, other) = ([Slip; 3], [Slip, Slip, Inactive]);
+        let run = |excess: [f64; 2]| {
+            let mut guard = CycleGuard::default();
+            let mut turn = |set: &[NodeState], wanted: &[NodeState], excess: f64| {
+                guard.settle(&mut decisions(wanted, excess), set, 1.0, &IDS)
+            };
+            [turn(&one, &other, excess[0]), turn(&other, &one, excess[1]), turn(&one, &other, excess[0])]
+        };
+        assert_eq!(run([1e-3, 5e-3]), [SetOutcome::Change, SetOutcome::Change, SetOutcome::Done]);
+        assert!(matches!(run([0.5, 0.5])[1], SetOutcome::Failed(_)));
+    }
+
+    #[test]
+    fn several_nodes_that_come_back_together_change_one_by_one() {
+        let (one, other) = ([Stick; 3], [Slip, Slip, Stick]);
+        let mut guard = CycleGuard::default();
+        assert_eq!(guard.settle(&mut decisions(&other, 1.0), &one, 1.0, &IDS), SetOutcome::Change);
+        let mut wanted = decisions(&one, 1.0);
+        wanted[1].1.excess = 2.0;
+        assert_eq!(guard.settle(&mut wanted, &other, 1.0, &IDS), SetOutcome::Change);
+        assert_eq!(wanted.iter().map(|(_, d)| d.state).collect::<Vec<_>>(), [Slip, Stick, Stick]);
+    }
+
+    #[test]
+    fn sets_that_settle_are_no_cycle() {
+        let mut guard = CycleGuard::default();
+        run(&mut guard, |i| vec![if i < 3 { Stick } else { Slip }; 3], 8);
+        assert!(!guard.holds());
+        run(&mut guard, |_| vec![Slip; 3], 8);
+        assert!(guard.holds(), "held where nothing changes does no harm");
+    }
+}

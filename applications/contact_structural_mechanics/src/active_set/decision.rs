@@ -1,0 +1,220 @@
+//! Update of the active set: the numbers of every slave node, their decision by the [`rules`], and the states
+//! that follow from it.
+
+use std::collections::BTreeSet;
+
+use zelus_core::entities::SetChange;
+use zelus_core::model::ModelPart;
+use zelus_core::vector3::{add, dot, norm, scale, sub};
+
+use super::cycling::ALLOWED;
+use crate::friction::slip;
+use crate::interface::SlaveIndex;
+use crate::law::constrained_multiplier::along_free_tangents;
+use crate::law::rules::{self, Decision, SlaveNumbers};
+use crate::law::{Augmentation, Held, NodeState, StepParameters};
+use crate::mortar::{tangent, tangential};
+use crate::pairs::{Formulation, Multiplier};
+use crate::resolution::Resolution;
+use crate::settings::Setup;
+use crate::slave_nodes::SlaveStates;
+
+/// The rules of a formulation, with the numbers of the step.
+#[derive(Clone, Copy)]
+pub(crate) struct Rules<'a> {
+    /// The formulation.
+    pub formulation: &'a Formulation,
+    /// Settings and numbers of the step.
+    pub parameters: &'a StepParameters,
+    /// Smallest lengths and tractions that decide.
+    pub resolution: Resolution,
+}
+
+impl<'a> Rules<'a> {
+    /// Rules with the settings and numbers of a setup.
+    pub(crate) fn of(setup: &'a Setup) -> Self {
+        Self { formulation: setup.settings.formulation, parameters: &setup.parameters, resolution: setup.resolution }
+    }
+
+    /// The decision for every slave node, and the states the nodes are in.
+    ///
+    /// Nodes that nothing overlaps are not in contact. When nothing changes at all, nodes that slide on within a margin and that
+    /// friction pushes along their motion stick, each once a step: those in `released` did before.
+    pub(crate) fn decide(
+        self,
+        part: &ModelPart,
+        states: &SlaveStates,
+        released: &mut BTreeSet<SlaveIndex>,
+    ) -> (Vec<(SlaveIndex, Decision)>, Vec<NodeState>) {
+        let rule = self.parameters.slip_rule;
+        let (mut decisions, mut before, mut pushed) = (Vec::new(), Vec::new(), Vec::new());
+        for (node, state) in states.iter() {
+            let numbers = self.numbers(part, states, node);
+            let mut decision = (self.formulation.decide)(&numbers, rule);
+            if state.kinematics.isolated {
+                decision = rules::inactive(&numbers, decision.pressure);
+            }
+            let multipliers = self.formulation.frictional() && self.formulation.multiplier.is_unknown();
+            if multipliers && !released.contains(&node) && rules::is_pushed(&numbers, rule) {
+                pushed.push(decisions.len());
+            }
+            decisions.push((node, decision));
+            before.push(numbers.state);
+        }
+        if decisions.iter().zip(&before).all(|((_, decision), was)| decision.state == *was) {
+            for at in pushed {
+                decisions[at].1.stay(NodeState::Stick, NodeState::Slip);
+                released.insert(decisions[at].0);
+            }
+        }
+        (decisions, before)
+    }
+
+    /// Why a converged state is not accepted: slave nodes penetrate the master without being in contact, by more than
+    /// [`ALLOWED`] of the largest pressure.
+    pub(crate) fn passed_through(self, part: &ModelPart, states: &SlaveStates) -> Option<String> {
+        let facing = states.iter().filter(|(_, state)| !state.kinematics.isolated);
+        let facing: Vec<(SlaveIndex, SlaveNumbers)> = facing.map(|(n, _)| (n, self.numbers(part, states, n))).collect();
+        let pressed = facing.iter().filter(|(_, numbers)| numbers.state.is_active());
+        let largest = pressed.map(|(_, numbers)| -numbers.pressure()).fold(0.0, f64::max);
+        let inside: Vec<_> =
+            facing.iter().filter(|(_, numbers)| numbers.has_passed_through(ALLOWED * largest)).collect();
+        let deepest = inside.iter().min_by(|(_, a), (_, b)| a.gap.total_cmp(&b.gap))?;
+        Some(format!(
+            "{} nodes without contact are in the master, node {} by {:.3e}",
+            inside.len(),
+            part.nodes.ids[states.mesh_node(deepest.0) as usize],
+            -deepest.1.gap
+        ))
+    }
+
+    /// Makes the decisions of an iteration the active set.
+    ///
+    /// A node that becomes active starts from its augmented pressure; one that becomes inactive keeps its multiplier, which the
+    /// next solve drives to zero.
+    pub(crate) fn apply(
+        self,
+        part: &mut ModelPart,
+        states: &mut SlaveStates,
+        decisions: &[(SlaveIndex, Decision)],
+        before: &[NodeState],
+    ) -> SetChange {
+        let mut change = SetChange::default();
+        let frictional = self.formulation.frictional();
+        for ((node, decision), &was) in decisions.iter().zip(before) {
+            let (id, active) = (part.nodes.ids[states.mesh_node(*node) as usize], decision.state.is_active());
+            match (decision.changed, active) {
+                (true, true) => change.activated.push(id),
+                (true, false) => change.deactivated.push(id),
+                (false, _) if decision.slip_changed => change.stick_slip.push(id),
+                (false, _) => {}
+            }
+            let pressure = self.acting_pressure(part, states, *node, decision);
+            let state = &mut states[*node];
+            state.law.pressure = pressure;
+            state.law.active = active;
+            if active {
+                state.law.slides = Some(decision.state == NodeState::Slip);
+            } else if decision.changed && frictional {
+                state.law.slides = None;
+                state.kinematics.weighted_slip = [0.0; 3];
+            }
+            let slides = decision.state == NodeState::Slip && was != NodeState::Slip;
+            if slides && frictional && decision.traction != [0.0; 3] {
+                state.law.tangent = tangent(decision.traction, state.kinematics.normal, part.info.domain_size);
+            }
+            if frictional {
+                state.law.traction = decision.traction;
+                // By Nitsche's method points carry what the integration finds.
+                if !matches!(self.formulation.multiplier, Multiplier::Body) {
+                    state.law.carried = decision.traction;
+                }
+            }
+            if let Some(multiplier) = decision.multiplier {
+                let along_normal = [decision.pressure / self.parameters.scale_factor, 0.0, 0.0];
+                let scalar = matches!(self.formulation.multiplier, Multiplier::Scalar(_));
+                let value = if scalar { along_normal } else { multiplier };
+                self.formulation.multiplier.set(&mut part.slave_nodes, states.owner(*node), value);
+            }
+        }
+        change
+    }
+
+    /// Takes pressures and tractions from decisions, and nothing else.
+    pub(crate) fn press(self, part: &ModelPart, states: &mut SlaveStates, decisions: &[(SlaveIndex, Decision)]) {
+        for (node, decision) in decisions {
+            let pressure = self.acting_pressure(part, states, *node, decision);
+            let state = &mut states[*node];
+            state.law.pressure = pressure;
+            if self.formulation.frictional() {
+                state.law.traction = decision.traction;
+            }
+        }
+    }
+
+    /// The pressure that acts at a slave node: k λ·n + ε g̃ where pairs augment, else that of the decision.
+    fn acting_pressure(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex, decision: &Decision) -> f64 {
+        let state = &states[slave];
+        match (self.formulation.multiplier, self.parameters.augmentation) {
+            (Multiplier::None | Multiplier::Body, _) | (_, Augmentation::Node) => decision.pressure,
+            (multiplier, Augmentation::Pair) => {
+                let augmentation = state.parameters.penalty * state.kinematics.weighted_gap;
+                let whole = multiplier.vector(&part.slave_nodes, states.owner(slave), state.kinematics.normal);
+                let pressure = dot(whole, state.kinematics.normal);
+                self.parameters.scale_factor * pressure + augmentation
+            }
+        }
+    }
+
+    /// The numbers of one slave node that the rules take.
+    ///
+    /// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
+    /// kept until the next update, also of a node that is not in contact meanwhile.
+    fn numbers(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex) -> SlaveNumbers {
+        let Self { formulation, parameters, resolution } = self;
+        let (state, owner) = (&states[slave], states.owner(slave));
+        let (normal, area, penalty, held) =
+            (state.kinematics.normal, state.kinematics.area, state.parameters.penalty, state.law.held);
+        let by_area = if area > 0.0 { area.recip() } else { 0.0 };
+        let kept = if state.law.kept_pressure == 0.0 { 0.0 } else { state.law.kept_pressure / penalty };
+        let slip = resolution.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
+        let stiffness = match formulation.multiplier {
+            Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
+            Multiplier::None if parameters.weighted_penalty => penalty * area,
+            Multiplier::None | Multiplier::Body => penalty,
+        };
+        let whole = formulation.multiplier.vector(&part.slave_nodes, owner, normal);
+        let driven = held.contains(&Held::KeptInStick);
+        let multiplier = match formulation.multiplier {
+            // No multiplier holds what supports move: the slip itself says what would.
+            Multiplier::Vector(_) if driven => {
+                let along = |c: usize| held[c] == Held::KeptInStick && norm(slip) > 0.0;
+                let normal_part = scale(normal, dot(whole, normal));
+                let kept = sub(whole, normal_part);
+                let free = std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] });
+                add(add(normal_part, free), scale(slip, stiffness / parameters.scale_factor))
+            }
+            // What slides, slides along what is free.
+            Multiplier::Vector(_) => {
+                add(scale(normal, dot(whole, normal)), along_free_tangents(tangential(whole, normal), normal, held))
+            }
+            _ => whole,
+        };
+        SlaveNumbers {
+            state: state.contact(),
+            normal,
+            multiplier,
+            solved: formulation.multiplier.is_unknown(),
+            gap: resolution.length_of(state.counted_gap(parameters) * by_area + kept),
+            slip,
+            trial: state.law.trial,
+            tangent: state.law.tangent,
+            stiffness,
+            driven,
+            friction: state.parameters.friction,
+            scale_factor: parameters.scale_factor,
+            tangent_factor: parameters.tangent_factor,
+            resolution,
+        }
+    }
+}

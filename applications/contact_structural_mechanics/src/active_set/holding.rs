@@ -1,0 +1,253 @@
+//! Slave nodes that supports hold together with what they face, and what becomes of their multipliers.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+use zelus_core::Carrier;
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::geometry::mapping::local_coordinates;
+use zelus_core::geometry::shape_functions;
+use zelus_core::model::ModelPart;
+use zelus_core::vector3::{add, dot, norm, scale, sub};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
+
+use crate::interface::{Facet, Fixed, Interface, SlaveIndex, check_nodes, fixed_components, symmetry_planes};
+use crate::law::Held;
+use crate::law::constrained_multiplier::free_normal;
+use crate::mortar::MOST_NODES;
+use crate::pairs::{Formulation, Multiplier};
+use crate::slave_nodes::SlaveStates;
+
+/// Share of a master facet by which a node may lie beyond its edge and still face it.
+const BESIDE: f64 = 0.02;
+/// Shape functions up to this are those of nodes on the other side of an edge.
+const NO_SHARE: f64 = 1e-3;
+/// Cosine of the angle between normals beyond which a node is not moved along its own to the master.
+const LEAST_SLOPE: f64 = 0.1;
+/// Difference of prescribed motions, over their size, from which on they move a contact.
+const SAME_MOTION: f64 = 1e-9;
+
+/// Nodes that supports hold, and what was said of them.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Holding {
+    fixed: BTreeMap<u32, Fixed>,
+    planes: BTreeMap<u32, Fixed>,
+    said: bool,
+}
+
+/// A pair as supports are looked at.
+#[derive(Clone, Copy)]
+pub(crate) struct FacetsOfPair<'a> {
+    /// The slave facet.
+    pub slave: &'a Facet,
+    /// Its slave nodes, in the order of its nodes.
+    pub slaves: &'a [SlaveIndex],
+    /// The master facet.
+    pub master: &'a Facet,
+}
+
+/// A slave node that is held with what it faces.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HeldNode {
+    /// Components in which both sides are held.
+    pub components: Fixed,
+    /// Whether supports move both sides apart in one of them.
+    pub moves: bool,
+    /// Whether the supports are planes of symmetry.
+    pub symmetric: bool,
+}
+
+impl Holding {
+    /// Whether it can be that of as many nodes.
+    ///
+    /// # Errors
+    /// Others.
+    pub(crate) fn check(&self, nodes: usize) -> Result<()> {
+        check_nodes(nodes, self.fixed.keys().chain(self.planes.keys()).copied())
+    }
+
+    /// See [`State::carry`](zelus_core::State::carry).
+    pub(crate) fn carry(&mut self, carrier: &mut dyn Carrier) {
+        carrier.node_map(&mut self.fixed);
+        carrier.node_map(&mut self.planes);
+    }
+
+    /// Step start: what is fixed now, and which of it are planes of symmetry.
+    pub(crate) fn begin_step(&mut self, part: &ModelPart, interfaces: &[Interface]) {
+        self.fixed = fixed_components(part, interfaces);
+        self.planes = symmetry_planes(part, interfaces, &self.fixed);
+    }
+
+    /// Components that the normals of nodes on planes of symmetry lack.
+    pub(crate) fn planes(&self) -> &BTreeMap<u32, Fixed> {
+        &self.planes
+    }
+
+    /// Whether a component of an interface node is fixed.
+    pub(crate) fn fixes(&self, node: u32, component: usize) -> bool {
+        self.fixed.get(&node).is_some_and(|fixed| fixed[component])
+    }
+
+    /// The slave nodes that are held, of these pairs; `normal` is that of a slave node.
+    pub(crate) fn nodes<'a>(
+        &self,
+        part: &ModelPart,
+        normal: &dyn Fn(SlaveIndex) -> [f64; 3],
+        pairs: impl Iterator<Item = FacetsOfPair<'a>>,
+    ) -> BTreeMap<SlaveIndex, HeldNode> {
+        // Of each node the image on the master that lies least beside a facet, then the nearest.
+        let mut faced: BTreeMap<SlaveIndex, ([f64; 2], HeldNode)> = BTreeMap::new();
+        for FacetsOfPair { slave, slaves, master } in pairs {
+            let own = slave.nodes.iter().zip(slaves).filter(|(node, _)| self.fixed.contains_key(node));
+            for (&node, &at) in own {
+                let points = master.positions(part);
+                let foot = foot(part, node, normal(at), master, &points);
+                let Some(image) = local_coordinates(master.shape, &points, foot) else { continue };
+                // Those of its corners, which are positive all over a facet of second order, too.
+                let mut shares = [0.0; MOST_NODES];
+                let linear = master.shape.linear();
+                shape_functions(linear, image.xi, &mut shares[..linear.nodes()]);
+                let beside = shares.iter().fold(0.0_f64, |most, share| most.max(-share));
+                let distance = norm(sub(foot, part.nodes.current[node as usize])) + image.distance;
+                let place = [if beside > BESIDE { beside } else { 0.0 }, distance];
+                if beside <= BESIDE && faced.get(&at).is_none_or(|(known, _)| place < *known) {
+                    faced.insert(at, (place, self.held(part, node, master, &shares)));
+                }
+            }
+        }
+        faced.into_iter().map(|(node, (_, held))| (node, held)).filter(|(_, h)| h.components.contains(&true)).collect()
+    }
+
+    fn held(&self, part: &ModelPart, node: u32, master: &Facet, shares: &[f64]) -> HeldNode {
+        let own = self.fixed[&node];
+        let weights = || master.nodes.iter().zip(shares).filter(|(_, share)| **share > NO_SHARE);
+        let components = std::array::from_fn(|c| own[c] && weights().all(|(&faced, _)| self.fixes(faced, c)));
+        let field = part.nodes.history.get(DISPLACEMENT.name());
+        let motion = |n: u32| {
+            field.map_or([0.0; 3], |u| sub(u.vector(0, n as usize), u.vector(1.min(u.levels.len() - 1), n as usize)))
+        };
+        let total: f64 = weights().map(|(_, share)| share).sum();
+        let faced = weights().fold([0.0; 3], |sum, (&n, share)| add(sum, scale(motion(n), share / total)));
+        let (apart, size) = (sub(motion(node), faced), norm(motion(node)).max(norm(faced)));
+        let moves = |c: usize| apart[c].abs() > SAME_MOTION * size;
+        HeldNode {
+            components,
+            moves: (0..3).any(|c| components[c] && moves(c)),
+            symmetric: self.planes.contains_key(&node),
+        }
+    }
+
+    /// Decides what becomes of the multipliers of the slave nodes by this formulation; gives the note of it.
+    pub(crate) fn hold<'a>(
+        &mut self,
+        part: &ModelPart,
+        states: &mut SlaveStates,
+        formulation: &Formulation,
+        pairs: impl Iterator<Item = FacetsOfPair<'a>> + Clone,
+    ) -> Option<Diagnostic> {
+        states.for_all(|state| state.law.held = [Held::Free; 3]);
+        let held = if formulation.multiplier.is_unknown() {
+            self.nodes(part, &|slave| states[slave].kinematics.normal, pairs.clone())
+        } else {
+            BTreeMap::new()
+        };
+        let followed = followed(&held, pairs.clone().map(|pair| pair.slaves));
+        let resting = self.resting(pairs);
+        let mut dropped = BTreeMap::new();
+        for (&node, own) in &held {
+            let normal = states[node].kinematics.normal;
+            let rule = |c: usize| match () {
+                () if !own.components[c] => Held::Free,
+                () if own.moves => Held::KeptInStick,
+                () if own.symmetric => Held::Kept,
+                () if followed.contains(&(node, c)) => Held::Follows,
+                () if resting[&node][c] => Held::Kept,
+                () => Held::Free,
+            };
+            let rules: [Held; 3] = std::array::from_fn(rule);
+            let held_normal = free_normal(normal, rules) == [0.0; 3] && rules.iter().any(|rule| rule.is_still());
+            let rules = match formulation.multiplier {
+                Multiplier::Vector(_) if formulation.frictional() || held_normal => rules,
+                Multiplier::Scalar(_) if held_normal => {
+                    // Along the normal alone.
+                    let most = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+                    [rules[most], Held::Free, Held::Free]
+                }
+                _ => continue,
+            };
+            states[node].law.held = rules;
+            dropped.insert(states.mesh_node(node), rules.map(Held::is_still));
+        }
+        let scalar = matches!(formulation.multiplier, Multiplier::Scalar(_));
+        self.say(part, &dropped, scalar)
+    }
+
+    /// Components in which nothing that a node faces can move.
+    fn resting<'a>(&self, pairs: impl Iterator<Item = FacetsOfPair<'a>>) -> BTreeMap<SlaveIndex, Fixed> {
+        let mut out: BTreeMap<SlaveIndex, Fixed> = BTreeMap::new();
+        for FacetsOfPair { slaves, master, .. } in pairs {
+            let rests: Fixed = std::array::from_fn(|c| master.nodes.iter().all(|&node| self.fixes(node, c)));
+            for &slave in slaves {
+                let own = out.entry(slave).or_insert([true; 3]);
+                (0..3).for_each(|c| own[c] &= rests[c]);
+            }
+        }
+        out
+    }
+
+    /// Says once a run how many multipliers have no equation.
+    pub(crate) fn say(
+        &mut self,
+        part: &ModelPart,
+        dropped: &BTreeMap<u32, Fixed>,
+        along_normals: bool,
+    ) -> Option<Diagnostic> {
+        let count = dropped.values().filter(|components| components.contains(&true)).count();
+        if count == 0 || std::mem::replace(&mut self.said, true) {
+            return None;
+        }
+        let along: Vec<String> = (0..3)
+            .map(|c| (["x", "y", "z"][c], dropped.values().filter(|components| components[c]).count()))
+            .filter(|(_, count)| *count > 0)
+            .map(|(name, count)| format!("{count} along {name}"))
+            .collect();
+        let along = if along_normals { "along their normals".to_owned() } else { along.join(", ") };
+        let ids: Vec<String> = dropped.keys().take(5).map(|&n| part.nodes.ids[n as usize].to_string()).collect();
+        let fact = format!(
+            "supports hold {count} slave nodes together with what they face: multipliers without equation, {along}; \
+             nodes {}{}",
+            ids.join(" "),
+            if count > ids.len() { " …" } else { "" }
+        );
+        Some(Diagnostic::note("held-multipliers", fact))
+    }
+}
+
+/// Where a slave node meets the plane of a master along its own normal, which lies in planes of symmetry: across a gap or a
+/// penetration the point nearest to it would not. The node itself where the facets hardly face each other.
+fn foot(part: &ModelPart, node: u32, normal: [f64; 3], master: &Facet, points: &[[f64; 3]]) -> [f64; 3] {
+    let at = part.nodes.current[node as usize];
+    let across = master.normal_at(points);
+    match dot(normal, across) {
+        slope if slope < -LEAST_SLOPE => add(at, scale(normal, dot(sub(points[0], at), across) / slope)),
+        _ => at,
+    }
+}
+
+/// The components of held nodes that some node of their facets has free.
+fn followed<'a>(
+    held: &BTreeMap<SlaveIndex, HeldNode>,
+    facets: impl Iterator<Item = &'a [SlaveIndex]>,
+) -> BTreeSet<(SlaveIndex, usize)> {
+    let mut found = BTreeSet::new();
+    for slaves in facets {
+        for c in 0..3 {
+            let is_held = |node: &SlaveIndex| held.get(node).is_some_and(|own| own.components[c]);
+            if slaves.iter().any(|node| !is_held(node)) {
+                found.extend(slaves.iter().filter(|node| is_held(node)).map(|&node| (node, c)));
+            }
+        }
+    }
+    found
+}

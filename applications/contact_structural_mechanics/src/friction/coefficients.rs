@@ -1,0 +1,101 @@
+//! Coefficients of friction at the nodes, and the settings of friction.
+
+use std::collections::BTreeMap;
+
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::model::ModelPart;
+
+use crate::interface::Interface;
+use crate::law::{COULOMB, FrictionLaw, Margin, SlipRule};
+use crate::pairs::Friction;
+
+/// Settings of friction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionSettings {
+    /// The law (`frictional_law`).
+    pub law: &'static FrictionLaw,
+    /// Coefficient by key of the pair, for surfaces whose properties have none.
+    pub coefficients: BTreeMap<String, f64>,
+    /// How far below its bound a sliding node sticks again (`slip_augmentation_coefficient`, `slip_threshold`).
+    pub margin: Margin,
+    /// Whether in the plane a node keeps the direction in which it began to slide (`sliding_direction`).
+    pub keeps_direction: bool,
+    /// Every so many steps all nodes start in stick; `None` for never (`slip_step_reset_frequency`).
+    pub reset_frequency: Option<usize>,
+}
+
+impl Default for FrictionSettings {
+    fn default() -> Self {
+        let (coefficients, reset_frequency) = (BTreeMap::new(), None);
+        Self { law: &COULOMB, coefficients, margin: Margin::default(), keeps_direction: true, reset_frequency }
+    }
+}
+
+/// Writes the number of the law, the mean over the facets of a node, and says how stick and slip are told apart.
+/// Facets whose properties have none count with the pair's coefficient where the law takes one, else with what the node
+/// has. Without a number anywhere, contact always slides, and a warning among the `messages` says so.
+///
+/// # Errors
+/// A number below zero.
+pub(crate) fn prepare(
+    part: &mut ModelPart,
+    interfaces: &[Interface],
+    settings: &FrictionSettings,
+    friction: Friction,
+    messages: &mut Vec<Diagnostic>,
+) -> Result<SlipRule> {
+    let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
+    let mut largest = 0.0_f64;
+    let mut is_given = false;
+    let law = settings.law;
+    let written = part.nodes.values.values(law.variable, 0);
+    let mut overridden: Option<(&str, f64, usize, f64)> = None;
+    for interface in interfaces {
+        let listed = settings.coefficients.get(&interface.key).copied().filter(|_| law.by_coefficients);
+        is_given |= listed.is_some();
+        let given = listed.filter(|coefficient| *coefficient > 0.0);
+        for facet in &interface.facets {
+            let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable.name()));
+            if let (Some(own), Some(given)) = (own, given.filter(|given| own != Some(*given))) {
+                overridden.get_or_insert((&interface.key, given, facet.properties, own));
+            }
+            for &node in &facet.nodes {
+                let nodal = written.get(node as usize).copied().filter(|number| *number > 0.0);
+                let coefficient = own.or(given).or(nodal).unwrap_or(0.0);
+                largest = largest.max(coefficient);
+                is_given |= own.is_some() || nodal.is_some();
+                if coefficient < 0.0 {
+                    let (name, id) = (law.variable.name(), facet.properties);
+                    let fact = format!("{name} of properties {id} is {coefficient}, it must be 0 or more");
+                    return Err(Diagnostic::error("negative-friction", fact).remedy("write a number from 0").into());
+                }
+                let (sum, count) = &mut sums[node as usize];
+                *sum += coefficient;
+                *count += 1;
+            }
+        }
+    }
+    if let Some((pair, given, id, own)) = overridden.filter(|_| friction == Friction::Coulomb) {
+        let name = law.variable.name();
+        let fact = format!(
+            "\"friction_coefficients\" gives pair \"{pair}\" {given}, {name} of properties {id} is {own}: that of the properties counts"
+        );
+        let remedy = "take one of the two out";
+        messages.push(Diagnostic::warning("friction-overridden", fact).remedy(remedy));
+    }
+    let column = part.nodes.values.values_mut(law.variable, 0);
+    for (slot, (sum, count)) in column.iter_mut().zip(sums) {
+        *slot = sum / count.max(1) as f64;
+    }
+    if friction == Friction::Coulomb && !is_given {
+        let name = law.variable.name();
+        let fact = format!("contact with friction has no {name}: everything slides freely");
+        let remedy = format!(
+            "give {name} in the materials of the contact surfaces, or \"friction_coefficients\" of the process"
+        );
+        messages.push(Diagnostic::warning("no-friction", fact).remedy(remedy));
+    }
+    let pure = friction == Friction::PureSlip || largest <= 0.0;
+    Ok(if pure { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) })
+}

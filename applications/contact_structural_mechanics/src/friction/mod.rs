@@ -1,0 +1,12 @@
+//! Friction at slave nodes: coefficients, slips, and tractions at their bounds.
+//!
+//! Friction laws are in [`law`](crate::law), decisions on stick and slip in `active_set`.
+
+mod bounds;
+mod coefficients;
+mod step_slip;
+
+pub(crate) use bounds::{meet_bounds, start_in_stick, warn_of_pushing};
+pub use coefficients::FrictionSettings;
+pub(crate) use coefficients::prepare;
+pub(crate) use step_slip::slip;

@@ -1,0 +1,7 @@
+//! Results of contact: nodal columns and forces, and the pairs of a deck by name.
+
+mod nodal_results;
+mod pair_states;
+
+pub(crate) use nodal_results::{write_forces, write_states};
+pub(crate) use pair_states::{PartsOfPairs, heat, joins, name, pair_states};

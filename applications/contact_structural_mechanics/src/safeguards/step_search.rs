@@ -1,0 +1,103 @@
+//! When contact searches within a step: in its first iterations, and in converged states.
+
+use serde::{Deserialize, Serialize};
+use zelus_core::Result;
+use zelus_core::diagnostics::Diagnostic;
+use zelus_core::entities::Outer;
+use zelus_core::model::ModelPart;
+
+use super::missed_pairs::{FoundPairs, SearchThresholds, farthest_motion, missed_pairs};
+use crate::pairing::Pairing;
+use crate::pairs::Pair;
+use crate::search::{WithinStep, warn_of_late_pairs};
+use crate::settings::Setup;
+use crate::slave_nodes::SlaveStates;
+
+/// Searches in converged states of a step after which it counts as not converged.
+const MOST_SEARCHES: usize = 5;
+
+/// The searches of a step.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct StepSearch {
+    /// In converged states of this step.
+    searches: usize,
+    warned: bool,
+}
+
+impl StepSearch {
+    /// A step begins.
+    pub(crate) fn begin_step(&mut self) {
+        self.searches = 0;
+    }
+
+    /// Facets that should be pairs now and are not; `searched` says whether the step began with a search.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    fn missed_pairs(
+        &self,
+        part: &ModelPart,
+        (pairing, states): (&Pairing, &SlaveStates),
+        setup: &Setup,
+        searched: bool,
+    ) -> Result<FoundPairs> {
+        let still = searched && farthest_motion(part, &pairing.nodes()) <= setup.resolution.length;
+        if still || !setup.threshold.is_finite() {
+            return Ok(FoundPairs::default());
+        }
+        let wanted = match setup.settings.search.within_step {
+            WithinStep::Facing => SearchThresholds::facing(setup.resolution),
+            WithinStep::Lost => SearchThresholds::lost(setup.near(), self.searches > 0),
+        };
+        missed_pairs(part, (pairing, states), setup, wanted)
+    }
+
+    /// In the first iterations: pairs that the motion has made, so that the iteration need not be repeated for them at its end.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    pub(crate) fn on_the_way(
+        &self,
+        part: &ModelPart,
+        contact: (&Pairing, &SlaveStates),
+        setup: &Setup,
+        searched: bool,
+    ) -> Result<Vec<Pair>> {
+        let looks = setup.settings.search.within_step == WithinStep::Facing && setup.settings.explicit.is_none();
+        if looks { Ok(self.missed_pairs(part, contact, setup, searched)?.missed) } else { Ok(Vec::new()) }
+    }
+
+    /// In a converged state: pairs that the motion has made, and what the step does about them.
+    ///
+    /// # Errors
+    /// Those of making blocks.
+    pub(crate) fn in_converged_state(
+        &mut self,
+        part: &ModelPart,
+        contact: (&Pairing, &SlaveStates),
+        setup: &Setup,
+        searched: bool,
+        messages: &mut Vec<Diagnostic>,
+    ) -> Result<(Vec<Pair>, Outer)> {
+        let late = self.missed_pairs(part, contact, setup, searched)?;
+        if late.missed.is_empty() {
+            return Ok((late.missed, Outer::Done));
+        }
+        let why = match late.nodes.iter().take(6).map(|&n| part.nodes.ids[n as usize].to_string()).collect::<Vec<_>>() {
+            ids if ids.is_empty() => format!("{} pairs more are found where the nodes have come to", late.missed.len()),
+            ids => format!("nodes {} came through facets they had no pair with", ids.join(" ")),
+        };
+        if self.searches < MOST_SEARCHES {
+            self.searches += 1;
+            return Ok((late.missed, Outer::Widened(why)));
+        }
+        if !late.nodes.is_empty() {
+            let why = format!("{why}, after {MOST_SEARCHES} searches within the step");
+            return Ok((Vec::new(), Outer::Failed(why)));
+        }
+        if !std::mem::replace(&mut self.warned, true) {
+            messages.push(warn_of_late_pairs(late.missed.len(), MOST_SEARCHES));
+        }
+        Ok((Vec::new(), Outer::Done))
+    }
+}

@@ -1,0 +1,91 @@
+//! Settings of contact, read by the processes and used by the interaction.
+
+use std::collections::BTreeMap;
+
+use zelus_core::parameters::Interval;
+
+use crate::adaptation::{AdaptationSettings, ExplicitPenalty, UzawaSettings};
+use crate::friction::FrictionSettings;
+use crate::interface::{AlmParameters, NodalNormals};
+use crate::law::{Augmentation, Nitsche, NormalVariation};
+use crate::mortar::{OperatorThreshold, SegmentationSettings};
+use crate::pairs::Formulation;
+use crate::search::SearchSettings;
+use crate::solver::ContactSolverSettings;
+
+/// Settings of contact.
+#[derive(Clone)]
+pub struct ContactSettings {
+    /// Parts of the interfaces by key.
+    pub parts: BTreeMap<String, Vec<String>>,
+    /// Parts on the slave side by key.
+    pub slaves: BTreeMap<String, Vec<String>>,
+    /// The formulation of conditions.
+    pub formulation: &'static Formulation,
+    /// Times in which contact acts.
+    pub interval: Interval,
+    /// When normals follow the iteration.
+    pub normal_variation: NormalVariation,
+    /// How facets count in the normals of nodes.
+    pub nodal_normals: NodalNormals,
+    /// Where gaps augment the forces of augmented Lagrangians.
+    pub augmentation: Augmentation,
+    /// Nitsche's method, of formulations whose tractions are those of bodies.
+    pub nitsche: Nitsche,
+    /// Which facets are looked at.
+    pub search: SearchSettings,
+    /// Gap, in mesh sizes, below which a node starts active.
+    pub active_check_factor: f64,
+    /// Whether activation goes by 0.002 of the mesh size instead.
+    pub simple_search: bool,
+    /// Whether the factors of the search grow with the ratio of the largest and the smallest mesh size.
+    pub adapt_search: bool,
+    /// Steps between searches.
+    pub database_step_update: usize,
+    /// Penalty and scale factor given by hand.
+    pub manual: Option<AlmParameters>,
+    /// Factor of E/h in eq. 4.11, and ratio of scale factor and penalty.
+    pub estimate: [f64; 2],
+    /// Factor of the estimated penalty; the penalty formulations need a stiffer spring.
+    pub penalty_factor: f64,
+    /// Whether penalties act pair by pair on weighted gaps.
+    pub weighted_penalty: bool,
+    /// Least penalty: what takes its place when the estimate is zero.
+    pub least_penalty: f64,
+    /// Whether the scale factor is used; otherwise it is 1.
+    pub use_scale_factor: bool,
+    /// Whether multipliers are no part of what a deck sees, so that their scale is that of the bodies.
+    pub own_scale: bool,
+    /// Ratio of tangential and normal penalty.
+    pub tangent_factor: f64,
+    /// Change of the operators beyond which slip is measured objectively; its area counts in the model's unit of length.
+    pub operator_threshold: OperatorThreshold,
+    /// Coefficients and the rules of stick and slip.
+    pub friction: FrictionSettings,
+    /// Parameters that are adapted in every iteration.
+    pub adaptation: AdaptationSettings,
+    /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.
+    pub mind_supports: bool,
+    /// Share of a node's facets, of that of its neighbours, that must be faced for it to be in contact.
+    pub least_coverage: f64,
+    /// Whether augmented pressures of inactive nodes are zero after a step.
+    pub clear_inactive: bool,
+    /// How far Uzawa's outer loop goes, where the formulation has one.
+    pub uzawa: UzawaSettings,
+    /// How explicit steps adapt the penalty; `None` in implicit ones.
+    pub explicit: Option<ExplicitPenalty>,
+    /// How overlaps are cut and integrated.
+    pub segmentation: SegmentationSettings,
+    /// Whether the plane is rotated about the y axis.
+    pub axisymmetric: bool,
+    /// Settings of contact at the solver.
+    pub solver: ContactSolverSettings,
+}
+
+impl ContactSettings {
+    /// Name of the conditions up to the shape.
+    pub(crate) fn condition_stem(&self) -> String {
+        let stem = self.formulation.condition;
+        if self.axisymmetric { stem.replace("MortarContact", "AxisymMortarContact") } else { stem.to_owned() }
+    }
+}
