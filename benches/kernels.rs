@@ -14,8 +14,13 @@ use std::time::Instant;
 
 use specimen::{Loads, Random, Specimen, cell};
 use zelus as _;
+use zelus_contact_structural_mechanics::mortar::{
+    Choices, EXACT_MOTION, LANES, Operators, PairGeometry, PairPoints, SegmentationSettings, find_operators, operators,
+};
 use zelus_core::entities::find_kind;
-use zelus_core::geometry::Shape;
+use zelus_core::geometry::{
+    FacetShape, QUADRILATERAL_4, QUADRILATERAL_8, QUADRILATERAL_9, Shape, TRIANGLE_3, TRIANGLE_6, reversed,
+};
 use zelus_core::model::Role;
 use zelus_linear_algebra::{Engine, MultigridSettings, Symmetry, System, create};
 
@@ -111,5 +116,56 @@ fn main() {
             });
         });
         line(&format!("tangent of {name}"), "element", tangent / 100.0, count / operations);
+    }
+    pairs();
+}
+
+/// A pair of triangles or quadrilaterals that overlap in part and are bent a little where they can be.
+fn pair(slave_shape: &'static FacetShape, master_shape: &'static FacetShape) -> PairGeometry<f64> {
+    let place = |x: f64, y: f64| [x, y, 0.05 * (x * x + 0.5 * y * y)];
+    let slave = slave_shape.nodal(|n| {
+        let [x, y] = slave_shape.corner(n);
+        place(x, y)
+    });
+    let mirrored = reversed(master_shape.shape, &std::array::from_fn::<u32, 9, _>(|n| n as u32)[..master_shape.nodes]);
+    let master = master_shape.nodal(|n| {
+        let [x, y] = master_shape.corner(mirrored[n] as usize);
+        place(x + 0.31, y + 0.17)
+    });
+    let normal = |shape: &FacetShape, nodes: &[[f64; 3]]| shape.unit_normal(nodes, shape.centre);
+    PairGeometry {
+        slave_shape,
+        master_shape,
+        slave,
+        master,
+        nodal_normals: slave_shape.nodal(|n| slave_shape.unit_normal(&slave, slave_shape.corner(n))),
+        slave_normal: normal(slave_shape, &slave),
+        master_normal: normal(master_shape, &master),
+        choices: Choices::default(),
+    }
+}
+
+/// Times D and M of pairs of facets, plain and with their derivatives by all displacements.
+fn pairs() {
+    println!("\n| pair | D and M, s | with derivatives, s | by that of Tri3 |\n|---|---:|---:|---:|");
+    let settings = SegmentationSettings::default();
+    let mut first = None;
+    for shape in [&TRIANGLE_3, &TRIANGLE_6, &QUADRILATERAL_4, &QUADRILATERAL_8, &QUADRILATERAL_9] {
+        let pair = pair(shape, shape);
+        assert!(operators(&pair, &settings).cells().is_some(), "the facets overlap");
+        let plain = seconds(|| {
+            black_box(operators(black_box(&pair), &settings));
+        });
+        let mut out = Operators::zero(shape, shape);
+        let derivatives = seconds(|| {
+            let points = PairPoints::new(black_box(&pair), &settings);
+            for first in (0..pair.unknowns()).step_by(LANES) {
+                out.clear();
+                let found = find_operators(&pair.seeded_from(first), &settings, &points, &EXACT_MOTION, &mut out);
+                black_box(found.cells());
+            }
+        });
+        let one = *first.get_or_insert(derivatives);
+        println!("| {:?} | {plain:.3e} | {derivatives:.3e} | {:.1} |", shape.shape, derivatives / one);
     }
 }

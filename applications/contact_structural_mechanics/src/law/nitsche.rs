@@ -19,8 +19,8 @@
 //! where the element is a parallelepiped, and divided there by the change of area.
 
 use super::friction_law::Bound;
+use crate::mortar::for_each_point;
 use crate::mortar::operators::least_overlap;
-use crate::mortar::points::for_each_point;
 use crate::mortar::{
     FacetRotation, PairGeometry, SegmentationSettings, inner_point, inner_values, nodal_shares, tangential,
 };

@@ -1,7 +1,7 @@
 //! Facets that no mesh should have: without area, folded, needles, of any size and anywhere. Overlaps of them are finite, push both
 //! sides alike and are no larger than the slave, or there is none.
 
-use super::points::for_each_point;
+use super::for_each_point;
 use super::tests::{Noise, all_shapes};
 use super::*;
 use zelus_core::geometry::{FacetShape, Nodal};

@@ -6,14 +6,14 @@
 //! 3. `segmentation_2d`, `segmentation_3d`: the exact overlap. In the plane an interval of the slave; in space the
 //!    intersection of both facets flattened along the slave's normal, cut into a fan of triangles and put back on the
 //!    true slave surface;
-//! 4. [`points`]: Gauss points on each cell; each goes to the master along the interpolated nodal normal
+//! 4. `first_order`: Gauss points on each cell; each goes to the master along the interpolated nodal normal
 //!    n = Σ N¹_j n_j, x² = x¹ + n ((x²₀ − x¹)·n_m)/(n·n_m), and gets its local coordinates there;
-//! 5. [mod@operators]: dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
+//! 5. [`operators`](mod@operators): dual shape functions Φ = De Me⁻¹ N¹ of this pair alone, D = ∫ Φ⊗N¹ (diagonal), M = ∫ Φ⊗N²;
 //! 6. [`gap`]: g̃_j = −n_j·(D x¹ − M x²)_j, negative in penetration;
 //! 7. [`slip`]: the tangential counterpart, from the change of the operators or from displacement increments;
 //! 8. [`rotation`]: the rotation of a facet since the last accepted state.
 //!
-//! Facets of second order are cut into linear pieces first: `curved`.
+//! Facets of second order have points of their own: `curved`. [`for_each_point`] and [`find_operators()`] serve all shapes.
 //!
 //! All of it is continuous in the positions but for a few choices, which a pair can keep: [mod@choices].
 //!
@@ -27,26 +27,32 @@
 //! solution, so that dual numbers cost a small multiple of the plain kernel and are exact.
 
 pub mod choices;
-mod curved;
-pub mod gap;
 pub mod geometry;
-pub mod operators;
-pub mod points;
+pub mod settings;
+mod overlap_point;
 mod segmentation_2d;
 mod segmentation_3d;
-pub mod settings;
+mod first_order;
+pub mod operators;
+mod curved;
+mod each_point;
+mod find_operators;
+pub mod gap;
 mod inner;
 pub(crate) mod shapes;
-pub mod slip;
 pub mod rotation;
+pub mod slip;
 
 pub use choices::Choices;
 pub use curved::{PairPoints, nodal_shares};
+pub use each_point::for_each_point;
+pub use find_operators::{choices_of, find_operators, find_operators_by_normals, operators};
+pub use first_order::{EXACT_MOTION, MasterMotion};
 pub use gap::{weighted_gap, weighted_jump};
 pub use geometry::{Active, LANES, PairGeometry, variables_from};
 pub use inner::{inner_point, inner_values};
-pub use operators::{Operators, Overlap, choices_of, find_operators, find_operators_by_normals, operators};
-pub use points::{EXACT_MOTION, MasterMotion};
+pub use operators::{Operators, Overlap};
+pub use overlap_point::OverlapPoint;
 pub use rotation::FacetRotation;
 pub use settings::{IntegrationOrder, SegmentationSettings};
 pub use shapes::{MOST_NODES, carries_contact, condition_name};

@@ -7,12 +7,9 @@
 //! quadrilateral slave whose overlap is a single triangle: three points cannot tell four functions apart.
 
 use super::choices::Choices;
-use super::curved::{self, PairPoints};
 use super::geometry::{Active, LANES, PairGeometry};
-use super::points::{EXACT_MOTION, MasterMotion, Point, Points};
-use super::segmentation_3d::Polygon;
-use super::settings::SegmentationSettings;
-use zelus_core::geometry::{FacetShape, Nodal, interpolate};
+use super::overlap_point::OverlapPoint;
+use zelus_core::geometry::{FacetShape, Nodal};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::value;
 
@@ -61,90 +58,13 @@ impl<O> Overlap<O> {
     }
 }
 
-/// Computes D and M of a pair: lines in the plane, triangles and quadrilaterals in space; those of second order as `curved` says.
-///
-/// With dual numbers the gradients are exact derivatives of the values, through cells, points and dual functions, as
-/// long as the kinds of the overlap's vertices do not change.
-pub fn operators<T: Real>(pair: &PairGeometry<T>, settings: &SegmentationSettings) -> Overlap<Operators<T>> {
-    let mut out = Operators::zero(pair.slave_shape, pair.master_shape);
-    let points = PairPoints::new(&pair.values(), settings);
-    find_operators(pair, settings, &points, &EXACT_MOTION, &mut out).map(|()| out)
-}
-
-/// Writes D and M of a pair to `out`, whose entries are zero; `points` are those of the pair's values, `motion` is that of points on the
-/// master.
-///
-/// Large numbers with derivatives are not moved about: the caller gives the memory.
-pub fn find_operators<T: Real>(
-    pair: &PairGeometry<T>,
-    settings: &SegmentationSettings,
-    points: &PairPoints,
-    motion: &dyn MasterMotion<T>,
-    out: &mut Operators<T>,
-) -> Overlap<()> {
-    if pair.is_curved() {
-        let covered = curved::find_operators(pair, settings, points, out);
-        return if out.is_finite() { overlap_of(covered, pair) } else { Overlap::None };
-    }
-    let covered = Points { pair, motion }.visit(settings, &mut |point| out.add_point(point));
-    out.finish(covered, pair)
-}
-
-/// Writes D and M to `out`, whose entries are zero, with derivatives by components of the nodal normals, [`LANES`](super::geometry::LANES) of them from the
-/// one numbered `first` on, node by node.
-///
-/// In space the overlap of facets of first order is cut along the slave's normal: those of nodes say where points meet the master
-/// and nothing else, each point by the one interpolated there. That has three components, whatever the number of nodes.
-pub fn find_operators_by_normals(
-    pair: &PairGeometry<f64>,
-    settings: &SegmentationSettings,
-    points: &PairPoints,
-    first: usize,
-    out: &mut Operators<Active>,
-) -> Overlap<()> {
-    if pair.space() == 2 {
-        return find_operators(&pair.seeded_by_normals(first), settings, points, &EXACT_MOTION, out);
-    }
-    if pair.is_curved() {
-        let covered = curved::find_operators_by_normals(pair, points, first, out);
-        return if out.is_finite() { overlap_of(covered, pair) } else { Overlap::None };
-    }
-    let still: PairGeometry<Dual<3>> = pair.as_constants();
-    let still = Points { pair: &still, motion: &EXACT_MOTION };
-    let covered = Points { pair, motion: &EXACT_MOTION }.visit(settings, &mut |point| {
-        let normal = interpolate(&point.slave, &pair.nodal_normals);
-        let normal = std::array::from_fn(|c| Dual::variable(normal[c], c));
-        let x = interpolate(&point.slave, &pair.slave).map(Dual::constant);
-        out.add_point_by_normals(point, &still.along(normal, x, Dual::zero()), first);
-    });
-    out.finish(covered, pair)
-}
-
-/// The choices that gave the operators `found` of a pair.
-pub fn choices_of(pair: &PairGeometry<f64>, settings: &SegmentationSettings, found: &Operators<f64>) -> Choices {
-    if pair.is_curved() {
-        let plain = curved::standard_pieces(pair, settings);
-        return Choices { plain, slivers: true, ..pair.choices };
-    }
-    let origin = || {
-        // Intervals of the plane have no such choice.
-        let polygon = if pair.space() == 2 { None } else { Polygon::new(pair, settings) }?;
-        Some(polygon.local(polygon.vertices()[0]))
-    };
-    Choices {
-        origin: pair.choices.origin.or_else(origin),
-        plain: pair.choices.plain | u8::from(!found.is_diagonal()),
-        slivers: true,
-    }
-}
-
 /// Length or area above which an overlap counts.
 pub(crate) fn least_overlap<T: Real>(pair: &PairGeometry<T>) -> f64 {
     if pair.choices.slivers { 0.0 } else { SLIVER * pair.slave_shape.measure(&pair.slave.map(value)) }
 }
 
 /// The kind of overlap of a pair whose cells have this length or area.
-fn overlap_of<T: Real>(covered: f64, pair: &PairGeometry<T>) -> Overlap<()> {
+pub(super) fn overlap_of<T: Real>(covered: f64, pair: &PairGeometry<T>) -> Overlap<()> {
     match covered {
         covered if covered > least_overlap(pair) => Overlap::Cells(()),
         covered if covered > 0.0 => Overlap::Sliver,
@@ -193,7 +113,7 @@ impl<T: Real> Operators<T> {
     }
 
     /// Whether all entries are numbers.
-    fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         self.d.iter().chain(self.m.iter()).flat_map(|row| row.iter()).all(|x| x.value().is_finite())
     }
 
@@ -219,7 +139,7 @@ impl<T: Real> Operators<T> {
     }
 
     /// Adds a point to the integrals Me (upper triangle, in place of D) and ∫ N¹⊗N² (in place of M).
-    fn add_point(&mut self, point: &Point<T>) {
+    pub(super) fn add_point(&mut self, point: &OverlapPoint<T>) {
         let nodes = point.slave.len();
         for j in 0..nodes {
             let weighted = point.slave[j] * point.weight;
@@ -233,7 +153,7 @@ impl<T: Real> Operators<T> {
     }
 
     /// Makes D and M of the integrals of a pair whose cells have this length or area.
-    fn finish<R: Real>(&mut self, covered: f64, pair: &PairGeometry<R>) -> Overlap<()> {
+    pub(super) fn finish<R: Real>(&mut self, covered: f64, pair: &PairGeometry<R>) -> Overlap<()> {
         // Points have no place on a master that is folded.
         if !self.m.iter().flat_map(|row| row.iter()).all(|x| x.value().is_finite()) {
             return Overlap::None;
@@ -290,7 +210,7 @@ impl<T: Real> Operators<T> {
 
 impl Operators<Active> {
     /// Adds a point whose shape functions on the master have derivatives by the normal that is interpolated there.
-    fn add_point_by_normals(&mut self, point: &Point<f64>, master: &[Dual<3>], first: usize) {
+    pub(super) fn add_point_by_normals(&mut self, point: &OverlapPoint<f64>, master: &[Dual<3>], first: usize) {
         let nodes = point.slave.len();
         let weighted = point.slave.map(|shape| shape * point.weight);
         for j in 0..nodes {

@@ -31,6 +31,13 @@ impl Default for SegmentationSettings {
 }
 
 impl SegmentationSettings {
+    /// Number of the Gauss rule on cells of facets of second order: exact for functions of the fourth degree at least, as those
+    /// of quadrilaterals with nine nodes are.
+    #[inline]
+    pub(crate) fn rule_of_second_order(&self) -> usize {
+        self.integration_order.get().max(4)
+    }
+
     /// Factor on the weight of a point at `radius` per unit of radius: 2π/thickness, or `None` if not axisymmetric.
     #[inline]
     pub(crate) fn revolution(&self) -> Option<f64> {

@@ -5,7 +5,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, sub};
 
 use crate::interface::Facet;
-use crate::mortar::points::for_each_point;
+use crate::mortar::for_each_point;
 use crate::mortar::{Choices, MOST_NODES, PairGeometry, SegmentationSettings};
 
 /// A point of the slave and the one of the master before it.

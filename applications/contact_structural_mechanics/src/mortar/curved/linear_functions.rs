@@ -1,6 +1,6 @@
 //! The linear functions L of the sub-facets of a slave, which multipliers are built of.
 
-use super::super::points::Point;
+use super::super::overlap_point::OverlapPoint;
 use zelus_core::geometry::{FacetShape, Nodal};
 use zelus_core::scalar::Real;
 
@@ -33,7 +33,7 @@ pub(super) fn linear_functions<T: Real>(shape: &FacetShape, piece: &[usize], xi:
 
 /// L of all nodes of a slave at one of its points: the share of the point that each node has. Of a slave of first order its
 /// shape functions.
-pub fn nodal_shares<T: Real>(shape: &FacetShape, point: &Point<T>) -> Nodal<T> {
+pub fn nodal_shares<T: Real>(shape: &FacetShape, point: &OverlapPoint<T>) -> Nodal<T> {
     if !shape.curved {
         return point.slave;
     }

@@ -2,10 +2,9 @@
 
 use super::super::choices::Choices;
 use super::super::geometry::PairGeometry;
-use super::super::points::Point;
+use super::super::overlap_point::OverlapPoint;
 use super::super::segmentation_2d;
 use super::super::settings::SegmentationSettings;
-use super::RULE;
 use zelus_core::geometry::{FacetShape, LINE_2, Nodal, ShapeTable, interpolate};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::norm;
@@ -18,7 +17,7 @@ pub(super) struct CurvedLines<'a, T: Real> {
 
 impl<T: Real> CurvedLines<'_, T> {
     /// Points of a chord of the slave before those of the master.
-    pub(super) fn of_piece(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&Point<T>)) {
+    pub(super) fn of_piece(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
         let pair = self.pair;
         let own = pair.slave_shape.pieces[piece];
         for other in pair.master_shape.pieces {
@@ -43,10 +42,10 @@ impl<T: Real> CurvedLines<'_, T> {
     }
 
     /// Points between two local coordinates of the slave; gives the length.
-    fn of_interval(&self, ends: [T; 2], visit: &mut dyn FnMut(&Point<T>)) -> f64 {
+    fn of_interval(&self, ends: [T; 2], visit: &mut dyn FnMut(&OverlapPoint<T>)) -> f64 {
         let share = (ends[1] - ends[0]) * (1.0 / LINE_2.cell_size);
         let mut covered = 0.0;
-        let rule = ShapeTable::get(LINE_2.shape, self.settings.integration_order.get().max(RULE));
+        let rule = ShapeTable::get(LINE_2.shape, self.settings.rule_of_second_order());
         for (weights, point) in rule.n::<2>().iter().zip(rule.points()) {
             let local = [ends[0] * weights[0] + ends[1] * weights[1], T::zero()];
             let normal = self.pair.slave_shape.area_normal_at(&self.pair.slave, local);
@@ -58,14 +57,14 @@ impl<T: Real> CurvedLines<'_, T> {
     }
 
     /// The point at local coordinates of the slave that stands for `measure`.
-    fn visit(&self, local: [T; 2], measure: T, visit: &mut dyn FnMut(&Point<T>)) {
+    fn visit(&self, local: [T; 2], measure: T, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
         let (pair, master) = (self.pair, self.pair.master_shape);
         let slave = pair.slave_shape.values(local);
         let x = interpolate(&slave, &pair.slave);
         let weight = self.settings.revolution().map_or(measure, |per_radius| measure * x[0] * per_radius);
         let direction = interpolate(&slave, &pair.nodal_normals);
         let master = on_master(master, &pair.master, x, direction);
-        visit(&Point { local, slave, master, weight });
+        visit(&OverlapPoint { local, slave, master, weight });
     }
 }
 

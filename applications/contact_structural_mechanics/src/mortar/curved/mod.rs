@@ -20,7 +20,7 @@ mod surface_points;
 
 use super::geometry::{Active, PairGeometry};
 use super::operators::Operators;
-use super::points::Point;
+use super::overlap_point::OverlapPoint;
 use super::settings::SegmentationSettings;
 use lines::CurvedLines;
 use piece_integrals::PieceIntegrals;
@@ -30,11 +30,8 @@ use zelus_core::scalar::Real;
 pub use linear_functions::nodal_shares;
 pub use overlap::PairPoints;
 
-/// Gauss rule of cells: exact for functions of the fourth degree, as those of quadrilaterals with nine nodes are.
-const RULE: usize = 4;
-
 /// A visitor of points, each with the number of the slave's sub-facet that it lies on.
-type Visitor<'v, T> = &'v mut dyn FnMut(usize, &Point<T>);
+type Visitor<'v, T> = &'v mut dyn FnMut(usize, &OverlapPoint<T>);
 
 /// Visits the points of the overlap; gives its length or area, without the factor of a revolution.
 pub(super) fn for_each_point<T: Real>(

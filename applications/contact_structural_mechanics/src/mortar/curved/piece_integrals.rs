@@ -2,7 +2,7 @@
 
 use super::super::geometry::Active;
 use super::super::operators::{Operators, by_nodal_normals, inverse};
-use super::super::points::Point;
+use super::super::overlap_point::OverlapPoint;
 use super::linear_functions::{PIECE, linear_functions};
 use zelus_core::geometry::{FacetShape, Nodal};
 use zelus_core::scalar::{Dual, Real};
@@ -30,7 +30,7 @@ impl<T: Real> PieceIntegrals<T> {
     }
 
     /// Adds a point of the sub-facet.
-    pub(super) fn add(&mut self, point: &Point<T>) {
+    pub(super) fn add(&mut self, point: &OverlapPoint<T>) {
         let count = self.nodes.len();
         let linear = linear_functions(self.slave_shape, self.nodes, point.local);
         for i in 0..count {
@@ -56,7 +56,7 @@ impl PieceIntegrals<Active> {
     /// Adds a point of the sub-facet that is moved on the master by the normal interpolated there: `by_normal` are the derivatives
     /// of the shape functions of the master by its components. Derivatives are by components of the normals of nodes, [`LANES`](super::super::geometry::LANES)
     /// of them from the one numbered `first` on, node by node.
-    pub(super) fn add_by_normals(&mut self, point: &Point<f64>, by_normal: &[[f64; 3]], first: usize) {
+    pub(super) fn add_by_normals(&mut self, point: &OverlapPoint<f64>, by_normal: &[[f64; 3]], first: usize) {
         let count = self.nodes.len();
         let linear = linear_functions(self.slave_shape, self.nodes, point.local);
         let weighted: [f64; PIECE] = std::array::from_fn(|i| linear[i] * point.weight);

@@ -1,7 +1,7 @@
 //! Derivatives of the points of the overlap of surfaces: each follows from where it is by one step of the implicit function theorem.
 
 use super::super::geometry::PairGeometry;
-use super::super::points::Point;
+use super::super::overlap_point::OverlapPoint;
 use super::super::segmentation_3d::Plane;
 use super::surface_points::{Cell, SurfacePoint, SurfacePoints, area_of_cell, outline};
 use zelus_core::geometry::{MOST_FACET_NODES, Nodal, interpolate};
@@ -94,18 +94,18 @@ impl<'a, T: Real> SurfaceMotion<'a, T> {
     }
 
     /// Visits the points of a sub-facet of the slave.
-    pub(super) fn of_piece(&self, piece: usize, visit: &mut dyn FnMut(&Point<T>)) {
+    pub(super) fn of_piece(&self, piece: usize, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
         for cell in self.found.cells(piece) {
             self.of_cell(cell, visit);
         }
     }
 
-    fn of_cell(&self, cell: &Cell, visit: &mut dyn FnMut(&Point<T>)) {
+    fn of_cell(&self, cell: &Cell, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
         let corners = self.found.corners_of(cell, self.pair.slave_shape, &self.flat, &self.outline);
         let area = area_of_cell(&corners);
         let motions = corners.map(motion);
         let zero = T::zero();
-        let mut out = Point {
+        let mut out = OverlapPoint {
             local: [zero; 2],
             slave: self.pair.slave_shape.nodal(|_| zero),
             master: self.pair.master_shape.nodal(|_| zero),
@@ -118,7 +118,7 @@ impl<'a, T: Real> SurfaceMotion<'a, T> {
     }
 
     /// The point with derivatives; `corners` are the motions of the corners of its cell.
-    fn find(&self, point: &SurfacePoint, corners: &[[T; 2]; 3], area: T, out: &mut Point<T>) {
+    fn find(&self, point: &SurfacePoint, corners: &[[T; 2]; 3], area: T, out: &mut OverlapPoint<T>) {
         let slave = &point.slave;
         let mut place = [T::zero(); 2];
         for (corner, &share) in corners.iter().zip(&point.barycentric) {

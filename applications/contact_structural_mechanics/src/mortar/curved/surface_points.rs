@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use super::super::geometry::PairGeometry;
-use super::super::points::Point;
+use super::super::overlap_point::OverlapPoint;
 use super::super::segmentation_3d::{Plane, Vertex, area, cross2, minus, place, tolerance};
 use super::super::settings::SegmentationSettings;
-use super::RULE;
 use super::outline::{ClosedLine, rim};
 use zelus_core::geometry::{Crossing, FacetShape, Nodal, ShapeTable, TRIANGLE_3, combine};
 use zelus_core::scalar::{Dual, Real};
@@ -65,8 +64,8 @@ pub(super) struct FacetPoint {
 
 impl SurfacePoint {
     /// The point without derivatives.
-    pub(super) fn constant<T: Real>(&self) -> Point<T> {
-        Point {
+    pub(super) fn constant<T: Real>(&self) -> OverlapPoint<T> {
+        OverlapPoint {
             local: self.slave.local.map(T::constant),
             slave: self.slave.values.map(T::constant),
             master: self.master.values.map(T::constant),
@@ -131,7 +130,7 @@ impl SurfacePoints {
         let is_apart = plane.is_beyond(&pair.master, settings.distance_threshold);
         let flat = pair.slave.map(|x| plane.coordinates(x));
         let outline = outline(pair, &plane);
-        let rule = settings.integration_order.get().max(RULE);
+        let rule = settings.rule_of_second_order();
         for piece in pair.slave_shape.pieces {
             let first = out.cells.len();
             if !is_apart {

@@ -1,7 +1,7 @@
-//! The integration points of the overlap of a pair: Gauss points on its cells, and where they go on the master.
+//! Points of the overlap of facets of first order: Gauss points on its cells, and where they go on the master.
 
-use super::curved::{self, PairPoints};
 use super::geometry::PairGeometry;
+use super::overlap_point::OverlapPoint;
 use super::segmentation_2d;
 use super::segmentation_3d::{Polygon, Vertex};
 use super::settings::SegmentationSettings;
@@ -12,33 +12,6 @@ use zelus_core::vector3::{cross, dot, norm, sub, value};
 /// Share of the slave's measure below which a cell is skipped, and of a master's extent below which it has no area: normals would
 /// be rounding noise.
 const LEAST_CELL: f64 = 1e-13;
-
-/// A point of the slave that faces a point of the master.
-#[derive(Debug, Clone, Copy)]
-pub struct Point<T: Real> {
-    /// Local coordinates on the slave.
-    pub local: [T; 2],
-    /// Shape functions of the slave.
-    pub slave: Nodal<T>,
-    /// Shape functions of the master.
-    pub master: Nodal<T>,
-    /// Length or area that it stands for; about an axis also 2π r by the thickness.
-    pub weight: T,
-}
-
-/// Visits the points of the overlap; gives its length or area, without the turn about an axis.
-pub fn for_each_point<T: Real>(
-    pair: &PairGeometry<T>,
-    settings: &SegmentationSettings,
-    visit: &mut dyn FnMut(&Point<T>),
-) -> f64 {
-    if pair.is_curved() {
-        let found = PairPoints::new(&pair.values(), settings);
-        curved::for_each_point(pair, settings, &found, &mut |_, point| visit(point))
-    } else {
-        Points { pair, motion: &EXACT_MOTION }.visit(settings, visit)
-    }
-}
 
 /// The motion of points of the slave on the master: where they are is the same for all.
 pub trait MasterMotion<T: Real> {
@@ -67,14 +40,14 @@ impl<T: Real> MasterMotion<T> for ExactMotion {
 }
 
 /// A pair whose overlap is walked.
-pub(super) struct Points<'a, T: Real> {
+pub(super) struct FirstOrderPoints<'a, T: Real> {
     pub(super) pair: &'a PairGeometry<T>,
     pub(super) motion: &'a dyn MasterMotion<T>,
 }
 
-impl<T: Real> Points<'_, T> {
-    /// As [`for_each_point`], for facets of first order.
-    pub(super) fn visit(&self, settings: &SegmentationSettings, visit: &mut dyn FnMut(&Point<T>)) -> f64 {
+impl<T: Real> FirstOrderPoints<'_, T> {
+    /// Visits the points; gives the length or area of the overlap, without the turn about an axis.
+    pub(super) fn visit(&self, settings: &SegmentationSettings, visit: &mut dyn FnMut(&OverlapPoint<T>)) -> f64 {
         if !self.master_has_area() {
             return 0.0;
         }
@@ -100,7 +73,12 @@ impl<T: Real> Points<'_, T> {
     }
 
     /// Points of a segment of the slave line; gives its length.
-    fn of_interval(&self, ends: [T; 2], settings: &SegmentationSettings, visit: &mut dyn FnMut(&Point<T>)) -> f64 {
+    fn of_interval(
+        &self,
+        ends: [T; 2],
+        settings: &SegmentationSettings,
+        visit: &mut dyn FnMut(&OverlapPoint<T>),
+    ) -> f64 {
         let pair = self.pair;
         let share = (ends[1] - ends[0]) * 0.5;
         let det_j = norm(sub(pair.slave[1], pair.slave[0])) * share;
@@ -115,7 +93,7 @@ impl<T: Real> Points<'_, T> {
                 weight *= x[0] * per_radius;
             }
             let master = self.on_master(&slave, x, T::zero());
-            visit(&Point { local, slave, master, weight });
+            visit(&OverlapPoint { local, slave, master, weight });
         }
         det_j.value()
     }
@@ -125,7 +103,7 @@ impl<T: Real> Points<'_, T> {
         &self,
         polygon: &Polygon<T>,
         settings: &SegmentationSettings,
-        visit: &mut dyn FnMut(&Point<T>),
+        visit: &mut dyn FnMut(&OverlapPoint<T>),
     ) -> f64 {
         let pair = self.pair;
         let shape = pair.slave_shape;
@@ -160,7 +138,7 @@ impl<T: Real> Points<'_, T> {
                 }
                 let lift = (0..3).fold(T::zero(), |sum, n| sum + lifts[n] * barycentric[n]);
                 let master = self.on_master(&slave, x, lift);
-                visit(&Point { local: xi, slave, master, weight: area * (point.weight / TRIANGLE_3.cell_size) });
+                visit(&OverlapPoint { local: xi, slave, master, weight: area * (point.weight / TRIANGLE_3.cell_size) });
             }
         }
         covered
