@@ -33,7 +33,7 @@ def main():
     parser.add_argument("--element", type=float, default=16e-6, help="seconds for the tangent of an element")
     parser.add_argument("--facet", type=float, default=72e-6, help="seconds for the pairs of a slave facet")
     parser.add_argument("--decide", type=float, default=5e-6, 
-                        help="seconds a slave facet of all ranks for what every rank decides")
+                        help="seconds a slave facet of all ranks for active set and search, which every rank computes")
     parser.add_argument("--memory", type=float, default=5e9, help="bytes a second that a rank reads from memory")
     parser.add_argument("--latency", type=float, default=2e-6, help="seconds a message")
     parser.add_argument("--network", type=float, default=1e9, help="bytes a second that a rank sends")
@@ -62,7 +62,7 @@ def main():
          12 * entries * 10 * products * 4 / 3 / options.memory),
     ]
     talk = [
-        ("what every rank decides", "F t_d", f"{all_facets:.0f} · {options.decide:.2g}", all_facets * options.decide),
+        ("active set and search, on every rank", "F t_d", f"{all_facets:.0f} · {options.decide:.2g}", all_facets * options.decide),
         ("values, residuals", "8 d (p + g) / B + 2 P a", f"8 · {d} · ({copies:.0f} + {ghosts:.0f}); 2 · {neighbours}",
          8 * d * (copies + ghosts) / options.network + 2 * neighbours * options.latency),
         ("values on all ranks", "8 d C / B + (N - 1) a", f"8 · {d} · {common:.0f}; {ranks - 1}",
