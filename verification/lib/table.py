@@ -107,7 +107,9 @@ def picture(name, case, runs):
 
 HEAD = """# Verification atlas
 
-Problems with published answers, run with the default settings of zelus except for what a row's variant names. This page is written by
+For users who judge the accuracy of zelus. After this page you know errors, orders of convergence, iterations and cuts of published problems.
+
+The problems are run with the default settings of zelus, except for the variant that a row names. This page is written by
 
     cargo build --release
     python3 verification/run.py --write
@@ -117,9 +119,9 @@ cases with that text in their name. A quick part (the coarsest meshes of some va
 (`tests/pages/atlas.rs`). Each case is a folder of `verification` with a script that makes the mesh and the deck; how to add one is in
 [verification/README.md](../verification/README.md).
 
-*Published* is the reference; its tag says of which kind it is: ANALYTIC a closed form, EXTERNAL another program or a published table,
-REGRESSION an earlier answer of this program. *Error* is that of the finest mesh, relative to the published value or to the unit in which
-the row is given; *order* the slope of log error over log mesh size from the first to the last mesh, where the error is that of the mesh.
+*Published* is the reference; its tag is ANALYTIC (closed form), EXTERNAL (another program or a published table) or
+REGRESSION (an earlier result of this program). *Error* is that of the finest mesh, relative to the published value or to the unit in which
+the row is given; *order* the slope of log error over log mesh size from the first to the last mesh, where the error is a discretisation error.
 *Iterations* and *cuts* are those of the whole run on the finest mesh. A row passes when every mesh is within its tolerance.
 """
 
@@ -137,7 +139,7 @@ def write(docs, cases, rows, runs):
         anchor = re.sub(r"[^\w\- ]", "", case.title.lower()).replace(" ", "-")
         out.append(f"| [{case.title}](#{anchor}) | {len(mine)} | {sum(r.passed for r in mine)} | {case.tag} |")
     if missed:
-        out.append("\n## What misses today\n\n| case | variant | number | error | reason |\n|---|---|---|---|---|")
+        out.append("\n## Cases outside their tolerance\n\n| case | variant | number | error | reason |\n|---|---|---|---|---|")
         for r in missed:
             error = r.errors.get(max(r.errors)) if r.errors else None
             out.append(f"| `{r.case}` | {r.variant or '–'} | {r.quantity.name} | {'–' if error is None else f'{error:.1e}'} | {said(r)} |")
