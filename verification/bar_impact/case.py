@@ -45,7 +45,7 @@ def run(n, family="ALM", courant=1.0, slave="bar", dynamic=None, elastic_wall=Fa
 CASE = Case(
     "Bar against a wall", "one-dimensional waves: contact lasts 2L/c under the force ρ c v A, and the bar leaves with its speed "
     "(Carpenter, Taylor and Katona 1991; Doyen, Ern and Piperno 2011)", "ANALYTIC",
-    "The front of the wave is smeared over some cells and steps, so that a share of the energy, which falls with the mesh, goes on swinging in the bar; `bossak` damps it.",
+    "The front of the wave is smeared over some cells and steps, so that a share of the energy, which falls with the mesh, remains as vibration of the bar; `bossak` damps it.",
     [Quantity("velocity after", 1.0, {"": (0.06, 0.04), "double steps": (0.1, 0.06)}), Quantity("largest energy", 1.0, 0.02, order=False),
      Quantity("energy after", 1.0, {"": 0.01, "bossak": (0.08, 0.05)}, order=False), Quantity("time of contact", 1.0, {"": (0.05, 0.03)}), Quantity("mean force", 1.0, {"": (0.04, 0.025), "double steps": (0.05, 0.035)})],
     (20, 40), run, size=lambda n: 1 / n,

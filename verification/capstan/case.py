@@ -28,7 +28,7 @@ def run(n, family="ALM frictional", friction=0.3, slave="belt", steps=6, **units
 
 CASE = Case(
     "Belt on a drum", "L. Euler, J. A. Eytelwein: T₂ = T₁ exp(μ θ)", "ANALYTIC",
-    "The belt has a thickness of a fiftieth of the radius and bends, which Euler neglects; polygons press through their corners.",
+    "The belt has a thickness of a fiftieth of the radius and bends, which Euler neglects; polygons transmit pressure through their corners.",
     [Quantity("tension over tension", lambda v: math.exp(v.get("friction", 0.3) * ANGLE), (0.04, 0.02, 0.01))],
     (40, 80), run, size=lambda n: 1 / n,
     variants={"μ = 0.3": {}, "μ = 0.1": {"friction": 0.1}, "μ = 0.8": {"friction": 0.8}, "drum as slave": {"slave": "drum"},

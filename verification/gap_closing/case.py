@@ -33,7 +33,7 @@ def run(n, family="ALM", gap=0.005, load=False, steps=1, dim=2, **units):
 
 
 CASE = Case(
-    "Gap that closes", "two springs in a row: p = E_oed (d - g) / 2", "ANALYTIC", "Displacement is affine; the tolerance is that of the iteration; a penalty gives way by its share.",
+    "Gap that closes", "two springs in a row: p = E_oed (d - g) / 2", "ANALYTIC", "Displacement is affine; the tolerance is that of the iteration; a penalty yields by its compliance.",
     [Quantity("force", 1.0, {"": 1e-4, "penalty": 1e-3}, order=False), Quantity("motion of the top", 1.0, {"": 1e-3}, order=False)],
     (2, 4), run, size=lambda n: 1 / n,
     variants={**{f: {"family": f} for f in FRICTIONLESS}, "4 steps": {"steps": 4}, "wide gap": {"gap": 0.2}, "wide gap, 5 steps": {"gap": 0.2, "steps": 5},

@@ -36,7 +36,7 @@ CASE = Case(
     "Plate on a rigid foundation (GRECO)",
     "working group GRECO (Raous, Chabrand, Lebon, J. Méc. Théor. Appl. 7, 1988); Code_Aster SSNV128: 28.6, 27.2, 22.8, 19.8, 15.0 µm",
     "EXTERNAL",
-    "The answers of several programs differ by 3 %; the last value is read from a curve. Points lie 0, 1.25, 5, 7.5 and 11.25 mm from "
+    "Results of several programs differ by 3 %; the last value is read from a curve. Points lie 0, 1.25, 5, 7.5 and 11.25 mm from "
     "the loaded side.",
     [Quantity("u" + name, u, (0.06, 0.04, 0.04), "µm", order=False) for name, (_, u) in POINTS.items()],
     (16, 32, 64), run, variants={"mm": {}, "m": {"length": 1e-3, "stress": 1e6}, "4 steps": {"steps": 4}}, quick=["mm", "m"])

@@ -41,7 +41,7 @@ def run(n, family="ALM", slave="sphere", shape="3D8N", **units):
 
 CASE = Case(
     "Sphere on a block in space (Hertz)", "H. Hertz 1882; Johnson, Contact Mechanics, § 4.2", "ANALYTIC",
-    "Values are shares of Hertz'; bodies are 12 contact radii deep and wide, and six to nine facets lie in a contact radius at the most.",
+    "Values are relative to Hertz'; bodies are 12 contact radii deep and wide, and six to nine facets lie in a contact radius at the most.",
     [Quantity("contact radius", 1.0, (0.05, 0.04)), Quantity("peak pressure", 1.0, (0.06, 0.05)), Quantity("load", 1.0, 5e-3, order=False)],
     (3, 5), run, size=lambda n: 1 / n,
     variants={"ALM": {}, "block as slave": {"slave": "block"}, "components": {"family": "ALM components"}, "penalty": {"family": "penalty"},

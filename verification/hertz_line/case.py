@@ -40,7 +40,7 @@ def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, friction=None, sha
 
 CASE = Case(
     "Two cylinders (Hertz)", "H. Hertz 1882; Johnson, Contact Mechanics, § 4.2", "ANALYTIC",
-    "Values are shares of Hertz'. Half-planes are 40 half-widths deep and wide here; Hertz' parabola and vanishing strain hold as a/R goes "
+    "Values are relative to Hertz'. Half-planes are 40 half-widths deep and wide here; Hertz' parabola and vanishing strain hold as a/R goes "
     "to 0, and an offset of the order of a/R times the strain p₀/E stays beyond.",
     [Quantity("half-width", 1.0, {"": (0.02, 0.005, 0.004), "a/R = 0.2": 0.07, "a/R = 0.1": 0.035, "a/R = 0.02": (0.02, 0.012)}),
      Quantity("peak pressure", 1.0, {"": (0.01, 0.005, 0.005), "a/R = 0.2": 0.07, "a/R = 0.1": 0.035, "a/R = 0.02": (0.02, 0.012)})],

@@ -40,7 +40,7 @@ def run(n, ratio=0.002, family="ALM", slave="upper", steps=1, shape="2D4N", **un
 
 CASE = Case(
     "Two spheres (Hertz)", "H. Hertz 1882; Johnson, Contact Mechanics, § 4.2", "ANALYTIC",
-    "Values are shares of Hertz'. Half-spaces are 25 contact radii deep and wide here; the peak is that of a fit without the axis node.",
+    "Values are relative to Hertz'. Half-spaces are 25 contact radii deep and wide here; the peak is that of a fit without the axis node.",
     [Quantity("contact radius", 1.0, {"": (0.03, 0.01, 0.005), "a/R = 0.1": 0.04, "a/R = 0.02": (0.03, 0.012)}),
      Quantity("peak pressure", 1.0, {"": (0.02, 0.01, 0.005), "a/R = 0.1": 0.04, "a/R = 0.02": (0.03, 0.012)})],
     (6, 12, 24), run, size=lambda n: 1 / n,

@@ -39,7 +39,7 @@ CASE = Case(
     "Ironing", "balance and translation: without friction there is no drag, with friction drag is μ times the pressing force, and nothing changes "
     "along the way (after Fischer and Wriggers 2006)", "ANALYTIC",
     "A long slab under a die pressed in by a twentieth of its height; facets pass under facets, whose ripple falls with the mesh. Drag through friction "
-    "tilts the die's contact a little forwards.",
+    "tilts the die slightly forwards.",
     [Quantity("drag over pressing force", lambda v: v.get("friction", 0.0) or 0.0, (0.05, 0.02, 0.01), scale=1.0, order=False),
      Quantity("scatter of the pressing force", 0.0, (0.3, 0.1, 0.05), scale=1.0)],
     (5, 10, 20), run, size=lambda n: 1 / n,

@@ -80,7 +80,7 @@ CASE = Case(
     "Polygons in place of circles and unlike facets on them are off by the square of the mesh size; strains of 0.7 %, which Lamé neglects, "
     "count in the area that the pressure acts on. Values are shares of the closed form; the torque is the coefficient of friction that would bear it. "
     "A slave finer than its master feels the master's corners: its pressures scatter by the sagitta of a facet over its stretch, of first order. "
-    "On a held hub the rim closes by little more than these sagittas.",
+    "On a fixed hub the rim closes by little more than these sagittas.",
     [Quantity("closing of the rim", 1.0, {"": (0.15, 0.04, 0.015), **{v: (0.7, 0.2, 0.06) for v in ROTATED}}), Quantity("pressure between", 1.0, (0.6, 0.15, 0.04)),
      Quantity("scatter of the pressure", 0.0, {"": (1.5, 1.0, 0.7), "inner as slave": (0.3, 0.1, 0.03), "turned by 9°, inner as slave": (0.3, 0.1, 0.05)}, scale=1.0), Quantity("torque", 0.0, 1e-4, scale=1.0, order=False)],
     (16, 32, 64), run, size=lambda n: 1 / n,

@@ -32,7 +32,7 @@ def run(n, family="ALM", friction=None, slave="upper", **units):
 
 CASE = Case(
     "Patch test: curved interface", "uniform pressure on a body cut by an arc (after Puso and Laursen, CMAME 193, 2004)", "ANALYTIC",
-    "Facets of unlike meshes on an arc leave gaps of second order in the mesh size, which the pressure sees.",
+    "Facets of non-matching meshes on an arc leave gaps of second order in the mesh size, which affect the pressure.",
     [Quantity("strain error", 0.0, (0.1, 0.03, 0.008), scale=1.0), Quantity("pressure error, mean", 0.0, (0.2, 0.1, 0.05), scale=1.0)],
     (8, 16, 32), run, size=lambda n: 1 / n,
     variants={**{f: {"family": f} for f in FRICTIONLESS}, "lower as slave": {"slave": "lower"},

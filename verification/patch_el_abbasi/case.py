@@ -46,7 +46,7 @@ CUBES = {"shape": "3D8N"}
 CASE = Case(
     "Patch test: distorted cells, pressed and stretched", "N. El-Abbasi, K. J. Bathe, Stability and patch test performance of contact "
     "discretizations, Computers & Structures 79 (2001)", "ANALYTIC",
-    "Stress is uniform and displacement affine; the tolerance is that of the iteration, for Uzawa's that of its multipliers; penalties give way by 1e-4 of an element.",
+    "Stress is uniform and displacement affine; the tolerance is that of the iteration, for Uzawa's that of its multipliers; penalties yield by 1e-4 of an element.",
     [Quantity(name, 0.0, {"": tolerance, "Uzawa": 2e-4, **dict.fromkeys(("penalty", "perturbed", "hexahedra turned, penalty"), 1e-4)}, scale=1.0, order=False)
      for name, tolerance in (("strain error", 1e-7), ("pressure error", 1e-5))],
     (2, 4), run, size=lambda n: 1 / n,

@@ -38,7 +38,7 @@ def run(n, family="ALM", shapes=("2D4N", "2D4N"), friction=None, slave="upper", 
 CUBES = {"shapes": ("3D8N", "3D8N")}
 CASE = Case(
     "Patch test: oblique interface", "uniform pressure on a body cut by a plane (after Crisfield 2000; El-Abbasi and Bathe 2001)", "ANALYTIC",
-    "Pressure is uniform and displacement affine; the tolerance is that of the iteration, for Uzawa's that of its multipliers; penalties give way by 1e-4 of an element.",
+    "Pressure is uniform and displacement affine; the tolerance is that of the iteration, for Uzawa's that of its multipliers; penalties yield by 1e-4 of an element.",
     [Quantity("strain error", 0.0, {"": 1e-7, "Uzawa": 2e-4, "hexahedra, penalty": 1e-4}, scale=1.0, order=False), Quantity("pressure error", 0.0, {"": 1e-6, "Uzawa": 2e-4}, scale=1.0, order=False)],
     (2, 5), run, size=lambda n: 1 / n,
     variants={**{f: {"family": f} for f in FRICTIONLESS}, "lower as slave": {"slave": "lower"},

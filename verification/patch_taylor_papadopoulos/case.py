@@ -32,7 +32,7 @@ def run(n, family="ALM", slave="punch", friction=None, shape="2D4N", **units):
 CASE = Case(
     "Patch test: punch on a foundation", "R. L. Taylor, P. Papadopoulos, On a patch test for contact problems in two dimensions (1991)",
     "ANALYTIC", "Stress is uniform and displacement affine in each body, which a mortar method reproduces; the tolerance is that of the "
-    "iteration. Tractions count on the present area, 1.4e-3 larger.",
+    "iteration. Tractions act on the present area, 1.4e-3 larger.",
     [Quantity("strain error", 0.0, {"": 1e-7, "Uzawa": 2e-4, "hexahedra, Uzawa": 2e-4}, scale=1.0, order=False), Quantity("pressure error", 0.0, {"": 1e-6, "Uzawa": 2e-4, "hexahedra, Uzawa": 2e-4}, scale=1.0, order=False)],
     (2, 4, 8), run, size=lambda n: 1 / n,
     variants={**{f: {"family": f} for f in FRICTIONLESS}, "ALM frictional": {"family": "ALM frictional", "friction": 0.3},

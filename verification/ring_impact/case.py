@@ -35,7 +35,7 @@ def run(n, family="ALM", dynamic=None, steps=100, offset=4.0):
 
 CASE = Case(
     "Two rings collide", "balance of momentum, angular momentum and energy (after Wriggers, Vu Van and Stein 1990; Hesch and Betsch 2011)",
-    "ANALYTIC", "Momentum obeys the law exactly; energy may only fall, by what the scheme damps.",
+    "ANALYTIC", "Momentum is conserved exactly; energy may only decrease, by the damping of the scheme.",
     [Quantity("momentum", 0.0, 1e-6, scale=1.0, order=False), Quantity("angular momentum", 0.0, 1e-2, scale=1.0, order=False),
      Quantity("largest energy", 1.0, 0.02, order=False), Quantity("energy after", 1.0, {"": 0.05, "bossak": 0.2}, order=False)],
     (10, 16), run, size=lambda n: 1 / n,

@@ -29,7 +29,7 @@ def run(n, family="ALM frictional", slave="sleeve", steps=4, way=1.0, **units):
 
 CASE = Case(
     "Sleeve pulled along a shaft", "Lamé's pressure of the interference, Coulomb's law on 2π r L", "ANALYTIC",
-    "Poisson's ratio is 0, so that the pressure is even along the shaft; the sleeve has moved by 0.2 % of its length, and strains are 0.2 %.",
+    "Poisson's ratio is 0, so that the pressure is uniform along the shaft; the sleeve has moved by 0.2 % of its length, and strains are 0.2 %.",
     [Quantity("pressure", PRESSURE, (0.02, 0.01, 0.005)),
      Quantity("force to pull", lambda v: math.copysign(FRICTION * PRESSURE * 2 * math.pi * SHAFT * LENGTH, v.get("way", 1.0)), (0.02, 0.015, 0.01))],
     (4, 8, 16), run, size=lambda n: 1 / n,

@@ -33,7 +33,7 @@ def run(n, family="ALM", dim=2, size=1.0):
 
 CASE = Case(
     "Punch in all sizes", "similarity: a linear elastic problem has no length of its own", "ANALYTIC",
-    "The same mesh in other units of length must give the same answer in the same iterations; a penalty may give way by a hundredth of the motion.",
+    "The same mesh in other units of length must give the same result in the same iterations; a penalty may yield by a hundredth of the motion.",
     [Quantity("motion over that at size 1", 1.0, 1e-6, order=False), Quantity("iterations over those at size 1", 1.0, 0.0, order=False),
      Quantity("motion over that of ALM", 1.0, {"": 1e-2}, order=False)],
     (3,), run, size=lambda n: 1 / n,

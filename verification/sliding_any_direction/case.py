@@ -35,7 +35,7 @@ def run(n, family="ALM frictional", dim=2, along=0.0, turn=0.0, friction=FRICTIO
 
 CASE = Case(
     "Sliding in any direction", "Coulomb's law", "ANALYTIC",
-    "All nodes slide, so that forces obey the law exactly; the tolerance is that of the iteration (1e-4).",
+    "All nodes slide, so that forces satisfy the law exactly; the tolerance is that of the iteration (1e-4).",
     [Quantity("T over μN", 1.0, 1e-3, order=False), Quantity("angle to the motion", 0.0, 0.1, "°", scale=1.0, order=False),
      Quantity("balance", 0.0, 1e-3, scale=1.0, order=False)],
     (2, 4), run, size=lambda n: 1 / n,

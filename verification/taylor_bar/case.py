@@ -40,6 +40,6 @@ def run(n, family="ALM", steps=80, dynamic=None):
 
 CASE = Case(
     "Taylor bar", "G. I. Taylor 1948; as computed by Kamoulakos 1990, Zhu and Cescotto 1995, Camacho and Ortiz 1997: length 21.42 to 21.47 mm, radius "
-    "6.89 to 7.24 mm", "EXTERNAL", "Published programs differ by 0.3 % in length and 5 % in radius; the foot flattens to a rim that coarse cells do not follow.",
+    "6.89 to 7.24 mm", "EXTERNAL", "Published programs differ by 0.3 % in length and 5 % in radius; the foot flattens to a rim that coarse elements do not resolve.",
     [Quantity("final length", 21.44, (0.03, 0.02), "mm"), Quantity("final radius of the foot", 7.05, (0.25, 0.15), "mm")],
     (3, 4), run, size=lambda n: 1 / n, variants={"default scheme": {}}, quick=False, slow=True)

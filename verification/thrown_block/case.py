@@ -33,7 +33,7 @@ def run(n, family="ALM", degrees=12.0, steps=160, dynamic=None, slave="block"):
 
 CASE = Case(
     "Thrown block", "balance of momentum and energy: without friction the momentum along the ground stays", "ANALYTIC",
-    "Momentum obeys the law to the tolerance of the iteration (1e-4); energy stays but for what the scheme damps and what a step makes where contact opens.",
+    "Momentum obeys the law to the tolerance of the iteration (1e-4); energy is conserved except for the damping of the scheme and the error of a step in which contact opens.",
     [Quantity("momentum along the ground", 0.0, 1e-3, scale=1.0, order=False), Quantity("largest energy", 1.0, 0.02, order=False),
      Quantity("energy after", 1.0, 0.02, order=False), Quantity("leaves the ground", 1.0, 0.0, order=False)],
     (4, 8), run, size=lambda n: 1 / n,

@@ -26,7 +26,7 @@ def run(n, family="tie", slave="root", oblique=0.5, **units):
 
 CASE = Case(
     "Glued cantilever", "beam theory with shear (Timoshenko)", "ANALYTIC",
-    "Plane elements of first order are too stiff in bending by the square of their size; warping of the clamped end is left out by the theory.",
+    "Plane elements of first order are too stiff in bending by the square of their size; the theory neglects warping of the clamped end.",
     [Quantity("deflection of the tip", TIP, (0.05, 0.02, 0.01)), Quantity("force at the root", -LOAD * HIGH, 1e-6, order=False)],
     (4, 8, 16), run, size=lambda n: 1 / n,
     variants={"multipliers": {}, "tip as slave": {"slave": "tip"}, "straight cut": {"oblique": 0.0}, "constraints": {"family": "MPC tie"},

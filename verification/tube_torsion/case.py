@@ -35,7 +35,7 @@ def run(n, family="ALM frictional", degrees=1.0, slave="upper", steps=4, **units
 
 CASE = Case(
     "Twisted tubes", "Coulomb's law on an annulus under uniform pressure: T = 2π/3 μ p (r₂³ - r₁³)", "ANALYTIC",
-    "Polygons in place of circles lose area and lever of the second order in the mesh size; Poisson's ratio is 0, so that pressure stays uniform.",
+    "Polygons in place of circles lose area and lever arm of second order in the mesh size; Poisson's ratio is 0, so that pressure stays uniform.",
     [Quantity("torque", lambda v: math.copysign(TORQUE, v.get("degrees", 1.0)), (0.05, 0.02, 0.01)), Quantity("axial force", YOUNG * PRESSED / 2 * math.pi * (OUTER ** 2 - INNER ** 2), (0.05, 0.02, 0.01))],
     (4, 6, 9), run, size=lambda n: 1 / n,
     variants={"ALM": {}, "backwards": {"degrees": -1.0}, "lower as slave": {"slave": "lower"}, "penalty": {"family": "penalty frictional"},

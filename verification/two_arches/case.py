@@ -37,7 +37,7 @@ def run(n, family="ALM", slave="upper", friction=None, depth=1.5, steps=8, shift
 
 CASE = Case(
     "Double arch", "mirror symmetry: both arches deform alike and meet in a plane (after the example double_arch of Kratos)", "ANALYTIC",
-    "Nodes of like meshes meet, so that only what a plane cut into facets does otherwise is left; unlike meshes are off by their size squared.",
+    "Nodes of matching meshes meet, so that only the faceting of the plane remains; non-matching meshes have errors of their size squared.",
     [Quantity("force over that on a plane", 1.0, (0.03, 0.02, 0.01))],
     (4, 6, 9), run, size=lambda n: 1 / n,
     variants={"like meshes": {}, "unlike meshes": {"shift": True}, "unlike meshes, lower as slave": {"shift": True, "slave": "lower"},

@@ -46,7 +46,7 @@ def run(n, family="ALM", slave="wave", **units):
 
 CASE = Case(
     "Wavy surface on a rigid plane", "H. M. Westergaard, Bearing pressures and cracks, J. Appl. Mech. 6 (1939); Johnson, Contact Mechanics, § 13.2",
-    "ANALYTIC", "Half-plane with a wave 0.1 % high; pressure is steep at the edge of contact, which a mesh sees to its size.",
+    "ANALYTIC", "Half-plane with a wave 0.1 % high; pressure is steep at the edge of contact, which a mesh resolves to its size.",
     [Quantity("half-width", HALF, (0.03, 0.015, 0.01)), Quantity("crest pressure", pressure(0.0), (0.02, 0.01, 0.005)),
      Quantity("load", MEAN * WAVE / 2, 1e-3, order=False)],
     (20, 40, 80), run, size=lambda n: 1 / n, variants={**{f: {"family": f} for f in FRICTIONLESS if f != "MPC"},

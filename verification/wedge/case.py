@@ -32,7 +32,7 @@ def ratio(variant):
 F = {"family": "ALM frictional"}
 CASE = Case(
     "Wedge", "balance of a wedge of slope β with the angle of friction φ: drive over thrust is tan(β + φ)", "ANALYTIC",
-    "The interface turns with the strain of 0.2 %, which the ratio feels.",
+    "The interface rotates with the strain of 0.2 %, which affects the ratio.",
     [Quantity("drive over thrust", ratio, 5e-3, order=False)], (3, 6), run, size=lambda n: 1 / n,
     variants={"frictionless": {}, "components": {"family": "ALM components"}, "penalty": {"family": "penalty"}, "perturbed": {"family": "perturbed"},
               "MPC": {"family": "MPC"}, "block as slave": {"slave": "block"}, "μ = 0.2": {**F, "friction": 0.2}, "μ = 0.2, block as slave": {**F, "friction": 0.2, "slave": "block"},
