@@ -25,7 +25,7 @@ const MEANT: f64 = 0.5 + 1e-6;
 /// The end of a run whose steps do not add up to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LastStep {
-    /// It is whole where at least half of it is left, or where it is the only one; it is shortened otherwise.
+    /// It is whole where at least half of it is left; it is shortened otherwise.
     Automatic,
     /// The last step ends there; what is round-off is no step.
     Shortened,
@@ -84,10 +84,22 @@ impl TimeStepping {
             LastStep::WhileBelow => whole,
             _ if beyond.abs() <= round_off => (end, false),
             LastStep::Whole => whole,
-            LastStep::Automatic if time <= start || beyond <= MEANT * length => whole,
+            LastStep::Automatic if beyond <= MEANT * length => whole,
             LastStep::Shortened if beyond <= 0.0 => whole,
             LastStep::Automatic | LastStep::Shortened => (end, true),
         }
+    }
+
+    /// Warning of a first step that is longer than twice the run and is therefore shortened.
+    pub fn warning(&self, start: f64, end: f64) -> Option<Diagnostic> {
+        let length = self.next(start).ok()?;
+        let (_, is_shortened) = self.target(start, length, [start, end]);
+        is_shortened.then(|| {
+            let fact =
+                format!("\"time_step\" is {length}, and the run from {start} to {end} is shorter: one step ends there");
+            let remedy = "write a time step that fits between \"start_time\" and \"end_time\"";
+            Diagnostic::warning("time-step", fact).remedy(remedy)
+        })
     }
 
     /// Steps from `start` to `end`, where they can be counted.
@@ -205,7 +217,7 @@ mod tests {
         let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
         assert_eq!((thirds.len(), thirds[3]), (4, 1.0));
         for (step, end, last) in
-            [(1.1, 1.0, 1.1), (1e6, 1.0, 1e6), (1.0, 3.99, 4.0), (0.02, 0.19, 0.2), (0.7, 1.0, 1.0)]
+            [(1.1, 1.0, 1.1), (1e6, 1.0, 1.0), (10.0, 1.0, 1.0), (1.0, 3.99, 4.0), (0.02, 0.19, 0.2), (0.7, 1.0, 1.0)]
         {
             let found = ends(&format!("{{ \"time_step\": {step} }}"), end);
             assert!((found[found.len() - 1] - last).abs() < 1e-12 * last, "{step} to {end}: {found:?}");
