@@ -6,7 +6,7 @@ mod blocks_of_case;
 #[path = "../support/mod.rs"]
 mod support;
 mod ranges;
-mod supports;
+mod loads_and_supports;
 mod table;
 
 use std::fmt::Write as _;

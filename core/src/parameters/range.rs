@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::node::{Node, Value};
-use crate::diagnostics::{Diagnostic, Result};
+use crate::diagnostics::Diagnostic;
 
 /// An interval of numbers.
 ///
@@ -55,18 +55,16 @@ impl Range {
         ends.into_iter().filter(|(_, value)| value.is_finite()).collect()
     }
 
-    /// `out-of-range` where a value is a number, or has one, outside the interval; other values are of no concern here.
-    ///
-    /// # Errors
-    /// The first such number, with its place.
-    pub fn check(&self, value: &Node, name: &str) -> Result<()> {
+    /// The first number in a value, alone or in lists, that lies outside the interval: `out-of-range`, with its place. Other
+    /// values have no numbers.
+    pub fn problem(&self, value: &Node, name: &str) -> Option<Diagnostic> {
         match &value.value {
-            Value::Array(items) => items.iter().try_for_each(|item| self.check(item, name)),
+            Value::Array(items) => items.iter().find_map(|item| self.problem(item, name)),
             Value::Integer(_) | Value::Double(_) if !value.as_f64().is_some_and(|number| self.holds(number)) => {
                 let fact = format!("{name} is {value}, it must be {self}");
-                Err(Diagnostic::error("out-of-range", fact).at(value.place()).into())
+                Some(Diagnostic::error("out-of-range", fact).at(value.place()))
             }
-            _ => Ok(()),
+            _ => None,
         }
     }
 }

@@ -48,9 +48,8 @@ impl Settings {
             let Some(range) = entry.range else { continue };
             let given = node.get_path(&entry.path).filter(|given| given.is_given());
             let Some(given) = given else { continue };
-            if let Err(problem) = range.check(given, &format!("\"{}\" of {}", entry.path, defaults.name)) {
-                merger.failed = true;
-                merger.report.absorb::<()>(Err(problem));
+            if let Some(problem) = range.problem(given, &format!("\"{}\" of {}", entry.path, defaults.name)) {
+                merger.error(problem.remedy(format!("{} is the default", entry.default)));
             }
         }
         let is_sound = !merger.failed;

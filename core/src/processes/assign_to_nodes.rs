@@ -111,7 +111,27 @@ impl AssignToNodes {
             let name = self.components[0].variable.column;
             return Ok(Some(format!("{name} of {path} has a component out of the plane only")));
         }
+        let loads: Vec<&str> =
+            self.components.iter().filter(acts).map(|c| c.variable.column).filter(|column| is_load(column)).collect();
+        if let Some(name) = loads.first()
+            && part.share.is_none()
+            && !self.is_taken(part, &loads)?
+        {
+            return Ok(Some(format!("no condition at the nodes of {path} takes {name}")));
+        }
         Ok(None)
+    }
+
+    /// Whether a condition at one of the nodes takes one of these loads from them.
+    fn is_taken(&self, part: &ModelPart, loads: &[&str]) -> Result<bool> {
+        let mut selected = vec![false; part.nodes.len()];
+        self.target.selection(&part.tree)?.nodes.iter().for_each(|&node| selected[node as usize] = true);
+        let table = &part.conditions;
+        let takes = |at: usize| {
+            let kind_takes = table.kinds[at].loads.is_none_or(|own| loads.iter().any(|load| own.contains(load)));
+            kind_takes && table.nodes(at as u32).iter().any(|&node| selected[node as usize])
+        };
+        Ok((0..table.len()).any(takes))
     }
 
     /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.
