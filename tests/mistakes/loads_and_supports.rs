@@ -1,10 +1,10 @@
-//! Loads that no condition takes, and supports that something else would take the place of.
+//! Loads that no condition takes, contact that no step meets, and supports that something else would take the place of.
 
 use serde_json::json;
 
 use crate::DECK;
 use crate::support::{read_json, root, said, scratch_copy, zelus};
-use crate::table::{PRESSED, load};
+use crate::table::{PRESSED, contact, load};
 
 #[test]
 fn a_constraint_on_a_supported_node_is_refused() {
@@ -53,4 +53,15 @@ fn a_load_on_nodes_that_no_condition_takes_is_named() {
     assert!(said.contains("warning[acts-on-nothing]") && said.contains("takes POINT_LOAD"), "{said}");
     let said = of_nodes("LINE_LOAD");
     assert!(!said.contains("acts-on-nothing"), "line loads read it at their nodes: {said}");
+}
+
+#[test]
+fn contact_that_no_step_meets_is_named() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    contact(&mut deck)["interval"] = json!([0.0, 0.0]);
+    std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+    let said = said(&zelus(scratch.path(), &["check", DECK]));
+    assert!(said.contains("warning[interval-outside]") && said.contains("no step of the run"), "{said}");
 }
