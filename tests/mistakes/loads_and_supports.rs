@@ -65,3 +65,14 @@ fn contact_that_no_step_meets_is_named() {
     let said = said(&zelus(scratch.path(), &["check", DECK]));
     assert!(said.contains("warning[interval-outside]") && said.contains("no step of the run"), "{said}");
 }
+
+#[test]
+fn a_direction_that_leaves_the_plane_is_named() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    load(&mut deck)["direction"] = json!([0.0, -0.8, 0.6]);
+    std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+    let said = said(&zelus(scratch.path(), &["check", DECK]));
+    assert!(said.contains("warning[acts-on-nothing]") && said.contains("out of the plane, which is lost"), "{said}");
+}

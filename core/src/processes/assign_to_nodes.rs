@@ -5,7 +5,7 @@
 //! the same unknown wins, and fixities of the mesh file on the same unknown last one step only.
 
 use super::local_axes::LocalAxes;
-use super::prescription::{Load, LoadCarrier, Prescription, is_load};
+use super::prescription::{Load, LoadCarrier, Prescription, is_load, lost_in_the_plane, of_components};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
@@ -102,14 +102,14 @@ impl AssignToNodes {
             return Ok(Some(format!("{process} on {path} gives no component a value, and fixes none")));
         }
         let acts = |c: &&NodalComponent| c.value.as_ref().is_some_and(|value| !value.is_zero());
-        let out_of_plane = |c: &NodalComponent| {
+        let out_of_plane = |c: &NodalComponent| -> bool {
             let name = c.variable.column;
             c.variable.component == Some(2) && part.info.domain_size == 2 && (moves(name) || is_load(name))
         };
-        let mut of_value = self.components.iter().filter(acts).peekable();
-        if of_value.peek().is_some() && of_value.all(out_of_plane) {
-            let name = self.components[0].variable.column;
-            return Ok(Some(format!("{name} of {path} has a component out of the plane only")));
+        let name = self.components[0].variable.column;
+        let (lost, of_value) = of_components(self.components.iter().filter(acts), out_of_plane);
+        if let Some(fact) = lost_in_the_plane(name, path, lost, of_value) {
+            return Ok(Some(fact));
         }
         let loads: Vec<&str> =
             self.components.iter().filter(acts).map(|c| c.variable.column).filter(|column| is_load(column)).collect();
