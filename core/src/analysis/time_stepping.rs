@@ -11,6 +11,9 @@ const LEAST_STEP: f64 = 1e-2;
 /// Steps beyond which they are not counted ahead.
 const MOST_COUNTED: usize = 1_000_000;
 
+/// Steps that no run comes to the end of.
+const MOST_STEPS: f64 = 1e10;
+
 /// Steps of the deck: their lengths, and whether the last one ends at `end_time`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeStepping {
@@ -90,9 +93,15 @@ impl TimeStepping {
         }
     }
 
-    /// Warning of a first step that is longer than twice the run and is therefore shortened.
-    pub fn warning(&self, start: f64, end: f64) -> Option<Diagnostic> {
+    /// Error of a first step so short that the run would not end, or warning of one that is longer than twice the run and is
+    /// therefore shortened.
+    pub fn problem(&self, start: f64, end: f64) -> Option<Diagnostic> {
         let length = self.next(start).ok()?;
+        if (end - start) / length > MOST_STEPS {
+            let fact =
+                format!("steps of {length} from {start} to {end} are more than {MOST_STEPS:e}: the run would not end");
+            return Some(Diagnostic::error("time-step", fact).remedy("write a longer \"time_step\""));
+        }
         let (_, is_shortened) = self.target(start, length, [start, end]);
         is_shortened.then(|| {
             let fact =
@@ -229,6 +238,18 @@ mod tests {
         assert_eq!(ends(r#"{ "time_step": 1.1, "last_step": "whole" }"#, 1.0), [1.1]);
         let beyond = ends(r#"{ "time_step": 0.1, "last_step": "while_below" }"#, 1.0);
         assert!(beyond.len() == 11 && beyond[10] > 1.09, "ten tenths sum up to less than one");
+    }
+
+    #[test]
+    fn steps_that_do_not_fit_the_run_are_named() {
+        let problem = |step: &str| {
+            let deck = Document::from_str(&format!("{{ \"time_step\": {step} }}"), "deck.json").expect("JSON").root;
+            let stepping = TimeStepping::from_node(&deck, &mut Report::new()).expect("steps");
+            stepping.problem(0.0, 1.0).map(|problem| problem.to_string())
+        };
+        assert!(problem("1e-300").is_some_and(|text| text.starts_with("error[time-step]")));
+        assert!(problem("10").is_some_and(|text| text.starts_with("warning[time-step]")));
+        assert_eq!([problem("1e-6"), problem("1.0"), problem("1.9")], [None, None, None]);
     }
 
     #[test]

@@ -21,8 +21,8 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     }
     let part = model.root(root)?;
     if part.info.step == 0 {
-        let warning = schedule.stepping.warning(schedule.start_time, schedule.end_time);
-        warning.into_iter().for_each(|warning| problems.push(warning));
+        let problem = schedule.stepping.problem(schedule.start_time, schedule.end_time);
+        problem.into_iter().for_each(|problem| problems.push(problem));
     }
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
     warn_of_twins(part, &mut problems);
