@@ -1,4 +1,4 @@
-//! What holds for every registered element and condition on its cell, and for every contact formulation on every pair of
+//! Properties of every registered element and condition on its cell, and of every contact formulation on every pair of
 //! shapes: tangents are derivatives, rigid motions do what they must, the order of nodes does not matter.
 //!
 //! A kind is covered by being registered. A crate with kinds of its own includes this file in its tests.

@@ -22,7 +22,20 @@ pub struct Place {
     pub column: u32,
 }
 
+/// Start of the places of keys that are set by the command line.
+const SET: &str = "--set ";
+
 impl Place {
+    /// The option of the command line that sets a key.
+    pub fn command_line(key: &str) -> Self {
+        Self::file(format!("{SET}{key}"))
+    }
+
+    /// Whether it is an option of the command line.
+    pub fn is_of_command_line(&self) -> bool {
+        self.file.starts_with(SET)
+    }
+
     /// A whole file.
     pub fn file(path: impl AsRef<Path>) -> Self {
         Self { file: path.as_ref().to_owned(), line: 0, column: 0 }

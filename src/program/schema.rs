@@ -219,6 +219,11 @@ fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
             schema["description"] = json!(words.join(" "));
         }
         schema["default"] = node.to_json();
+        for (keyword, bound) in entry.range.iter().flat_map(parameters::Range::schema) {
+            // Limits of a list are those of its items.
+            let limited = if schema["type"] == "array" { &mut schema["items"] } else { &mut schema };
+            limited[keyword] = json!(bound);
+        }
         if idle.is_some() {
             schema["deprecated"] = json!(true);
         }

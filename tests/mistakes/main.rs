@@ -5,6 +5,8 @@
 mod blocks_of_case;
 #[path = "../support/mod.rs"]
 mod support;
+mod ranges;
+mod loads_and_supports;
 mod table;
 
 use std::fmt::Write as _;

@@ -71,7 +71,7 @@ fn list(mesh: &mut String, part: &str, kind: &str, id: usize) {
 }
 
 pub const PRESSED: &str = "contact_2d/matching";
-const SLIDING: &str = "contact_2d/friction_slide";
+pub const SLIDING: &str = "contact_2d/friction_slide";
 
 const CONSTRAINED: &str = "mpc/pressed_and_opened";
 

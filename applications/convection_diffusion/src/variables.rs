@@ -1,6 +1,6 @@
 //! The variables of heat.
 
-use zelus_core::{register_rates, register_variable};
+use zelus_core::{register_material_range, register_rates, register_variable};
 pub use zelus_structural_mechanics::variables::TEMPERATURE;
 
 register_variable! {
@@ -21,6 +21,10 @@ register_variable! {
     kind TAYLOR_QUINNEY_COEFFICIENT: Scalar = "Share of plastic work that heats the body, times what brings work to the units of heat.";
     kind STEFAN_BOLTZMANN_CONSTANT: Scalar = "Black radiation over the fourth power of temperature, in the units of the deck; 5.67e-8 W/(m² K⁴) where it is not given.";
 }
+
+register_material_range! { "[0, inf)": ["CONDUCTIVITY", "SPECIFIC_HEAT", "CONVECTION_COEFFICIENT"] }
+register_material_range! { "(0, inf)": ["STEFAN_BOLTZMANN_CONSTANT"] }
+register_material_range! { "[0, 1]": ["EMISSIVITY"] }
 
 register_rates! { "TEMPERATURE",
     first: "TEMPERATURE_RATE",

@@ -1,6 +1,6 @@
 //! The variables of structural mechanics.
 
-use zelus_core::{register_rates, register_usual_results, register_variable};
+use zelus_core::{register_material_range, register_rates, register_usual_results, register_variable};
 
 register_variable! {
     pub DISPLACEMENT: [f64; 3] = "Displacement from the initial position (length).";
@@ -94,6 +94,9 @@ register_variable! {
     kind STRAIN_ENERGY: Scalar = "Stored energy per initial volume.";
     kind INTEGRATION_WEIGHT: Scalar = "Part of the initial volume that a Gauss point stands for.";
 }
+
+register_material_range! { "(0, inf)": ["CROSS_AREA", "THICKNESS"] }
+register_material_range! { "[0, inf)": ["DENSITY", "RAYLEIGH_ALPHA", "RAYLEIGH_BETA", "FRACTURE_ENERGY"] }
 
 register_usual_results! {
     values: [],

@@ -46,7 +46,7 @@ pub struct RunOptions {
 /// Lays the caller's changes over a deck.
 fn change(deck: &mut Node, options: &RunOptions) -> Result<()> {
     options.changes.iter().try_for_each(|(key, value)| {
-        let place = Place::file(format!("--set {key}"));
+        let place = Place::command_line(key);
         let value = Node::from_json(value, &place)?;
         deck.set_path(key, value).map_err(|problem| problem.at(place).into())
     })

@@ -5,6 +5,9 @@ use zelus_linear_algebra::{address_space, parallel::Pool};
 use crate::communication::{cores, fair_threads};
 use crate::diagnostics::{Diagnostic, Error, Result};
 
+/// Threads of a run at most: more do not help, and a machine may not stand them.
+const MOST: usize = 1024;
+
 /// The pool of `wanted` threads, or of all that the machine has; of fewer, with a warning, where a limit of the address space
 /// (`ulimit -v`) would abort the run.
 ///
@@ -13,6 +16,11 @@ use crate::diagnostics::{Diagnostic, Error, Result};
 pub(super) fn pool(wanted: Option<usize>) -> Result<(Pool, Option<Diagnostic>)> {
     let asked = wanted.unwrap_or_else(fair_threads);
     let wanted = if asked == 0 { cores() } else { asked };
+    if wanted > MOST {
+        let fact = format!("{wanted} threads are asked for, {MOST} are the most that a run takes");
+        let remedy = format!("this machine has {} cores: more threads take longer", cores());
+        return Err(Diagnostic::error("threads", fact).remedy(remedy).into());
+    }
     let (own, left) = (address_space::of_a_thread(), address_space::left());
     let fitting = left.map_or(wanted, |left| (left / own) as usize);
     if fitting == 0 {

@@ -11,6 +11,9 @@ const LEAST_STEP: f64 = 1e-2;
 /// Steps beyond which they are not counted ahead.
 const MOST_COUNTED: usize = 1_000_000;
 
+/// Steps that no run comes to the end of.
+const MOST_STEPS: f64 = 1e10;
+
 /// Steps of the deck: their lengths, and whether the last one ends at `end_time`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeStepping {
@@ -25,7 +28,7 @@ const MEANT: f64 = 0.5 + 1e-6;
 /// The end of a run whose steps do not add up to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LastStep {
-    /// It is whole where at least half of it is left, or where it is the only one; it is shortened otherwise.
+    /// It is whole where at least half of it is left; it is shortened otherwise.
     Automatic,
     /// The last step ends there; what is round-off is no step.
     Shortened,
@@ -84,10 +87,28 @@ impl TimeStepping {
             LastStep::WhileBelow => whole,
             _ if beyond.abs() <= round_off => (end, false),
             LastStep::Whole => whole,
-            LastStep::Automatic if time <= start || beyond <= MEANT * length => whole,
+            LastStep::Automatic if beyond <= MEANT * length => whole,
             LastStep::Shortened if beyond <= 0.0 => whole,
             LastStep::Automatic | LastStep::Shortened => (end, true),
         }
+    }
+
+    /// Error of a first step so short that the run would not end, or warning of one that is longer than twice the run and is
+    /// therefore shortened.
+    pub fn problem(&self, start: f64, end: f64) -> Option<Diagnostic> {
+        let length = self.next(start).ok()?;
+        if (end - start) / length > MOST_STEPS {
+            let fact =
+                format!("steps of {length} from {start} to {end} are more than {MOST_STEPS:e}: the run would not end");
+            return Some(Diagnostic::error("time-step", fact).remedy("write a longer \"time_step\""));
+        }
+        let (_, is_shortened) = self.target(start, length, [start, end]);
+        is_shortened.then(|| {
+            let fact =
+                format!("\"time_step\" is {length}, and the run from {start} to {end} is shorter: one step ends there");
+            let remedy = "write a time step that fits between \"start_time\" and \"end_time\"";
+            Diagnostic::warning("time-step", fact).remedy(remedy)
+        })
     }
 
     /// Steps from `start` to `end`, where they can be counted.
@@ -205,7 +226,7 @@ mod tests {
         let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
         assert_eq!((thirds.len(), thirds[3]), (4, 1.0));
         for (step, end, last) in
-            [(1.1, 1.0, 1.1), (1e6, 1.0, 1e6), (1.0, 3.99, 4.0), (0.02, 0.19, 0.2), (0.7, 1.0, 1.0)]
+            [(1.1, 1.0, 1.1), (1e6, 1.0, 1.0), (10.0, 1.0, 1.0), (1.0, 3.99, 4.0), (0.02, 0.19, 0.2), (0.7, 1.0, 1.0)]
         {
             let found = ends(&format!("{{ \"time_step\": {step} }}"), end);
             assert!((found[found.len() - 1] - last).abs() < 1e-12 * last, "{step} to {end}: {found:?}");
@@ -217,6 +238,18 @@ mod tests {
         assert_eq!(ends(r#"{ "time_step": 1.1, "last_step": "whole" }"#, 1.0), [1.1]);
         let beyond = ends(r#"{ "time_step": 0.1, "last_step": "while_below" }"#, 1.0);
         assert!(beyond.len() == 11 && beyond[10] > 1.09, "ten tenths sum up to less than one");
+    }
+
+    #[test]
+    fn steps_that_do_not_fit_the_run_are_named() {
+        let problem = |step: &str| {
+            let deck = Document::from_str(&format!("{{ \"time_step\": {step} }}"), "deck.json").expect("JSON").root;
+            let stepping = TimeStepping::from_node(&deck, &mut Report::new()).expect("steps");
+            stepping.problem(0.0, 1.0).map(|problem| problem.to_string())
+        };
+        assert!(problem("1e-300").is_some_and(|text| text.starts_with("error[time-step]")));
+        assert!(problem("10").is_some_and(|text| text.starts_with("warning[time-step]")));
+        assert_eq!([problem("1e-6"), problem("1.0"), problem("1.9")], [None, None, None]);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::io::MeshFormatEntry;
 use crate::parameters::{Defaults, Interval, Node};
+use crate::processes::ProcessEntry;
 use crate::registry;
 use crate::strategies::LinearSolverEntry;
 
@@ -102,8 +103,11 @@ pub(super) fn warn_of_unheeded(deck: &Node, times: Option<((f64, f64), &TimeStep
     processes.iter().for_each(|process| warn_of_keys(process, "a process", &OF_PROCESS, report));
     let Some(((start, end), stepping)) = times.filter(|((start, end), _)| end > start) else { return };
     let steps = stepping.times(start, end);
-    for node in processes.iter().filter_map(|process| process.get_path("Parameters.interval")) {
+    for process in &processes {
+        let Some(node) = process.get_path("Parameters.interval") else { continue };
         let Ok(interval) = Interval::from_node(node) else { continue };
+        // Contact and ties have nothing to do before the first step; values and output may be given at the start.
+        let first = usize::from(is_of_surfaces(process));
         let Interval { begin, end: last } = interval;
         let problem = if last < begin {
             let fact = format!("the interval {node} ends before it begins: the process never acts");
@@ -113,7 +117,7 @@ pub(super) fn warn_of_unheeded(deck: &Node, times: Option<((f64, f64), &TimeStep
             Diagnostic::note("interval-outside", fact)
                 .remedy("nothing to do where a run is shorter than its deck is for")
         } else if let Some(steps) = &steps
-            && !steps.iter().any(|time| interval.contains(*time))
+            && !steps[first.min(steps.len())..].iter().any(|time| interval.contains(*time))
         {
             let fact = format!("no step of the run ends in the interval {node}: the process never acts");
             Diagnostic::warning("interval-outside", fact).remedy("shorten the steps, or widen the interval")
@@ -130,6 +134,13 @@ pub(super) fn warn_of_unheeded(deck: &Node, times: Option<((f64, f64), &TimeStep
         };
         report.push(problem.at(node.place()));
     }
+}
+
+/// Whether a process of the deck makes surfaces act on each other.
+fn is_of_surfaces(process: &Node) -> bool {
+    let name = process.get("python_module").and_then(Node::as_str).unwrap_or_default();
+    let entry = registry::find::<ProcessEntry>(name.rsplit('.').next().unwrap_or_default());
+    entry.is_some_and(|entry| !(entry.surfaces)(process.get("Parameters")).is_empty())
 }
 
 /// What the linear solver or the format of meshes that `object` names reads besides, nothing where it names none; `None` where

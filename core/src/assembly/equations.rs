@@ -62,11 +62,22 @@ pub struct Equations {
     pub layout: Layout,
 }
 
+/// A constraint that would take the place of a support.
+fn supported_slave(constraint: &MasterSlaveConstraint, node: usize) -> Diagnostic {
+    let (_, variable) = constraint.slave;
+    let fact = format!(
+        "constraint {} makes {variable} of node {node} follow others, and a support prescribes it",
+        constraint.id
+    );
+    let remedy = "take the node out of the support, or make one of its masters the slave";
+    Diagnostic::error("constraint-on-support", fact).remedy(remedy)
+}
+
 impl Equations {
     /// The equations left by the present fixities and active constraints.
     ///
     /// # Errors
-    /// Constraints that form a circle or eliminate an unknown twice.
+    /// Constraints that form a circle, eliminate an unknown twice, or one that a support prescribes.
     pub fn new(dofs: &DofTable, part: &ModelPart) -> Result<Self> {
         let nodes = &part.nodes;
         let mut slaves: BTreeMap<u32, &MasterSlaveConstraint> = BTreeMap::new();
@@ -94,9 +105,14 @@ impl Equations {
             free.push(number as u32);
         }
         let mut leaning = Vec::new();
-        for &number in slaves.keys() {
+        for (&number, constraint) in &slaves {
             let mut terms = BTreeMap::new();
             follow(number, [1.0; 2], &slaves, dofs, part, 0, &mut terms)?;
+            let (node, variable) = constraint.slave;
+            let is_free = |master: &u32| matches!(roles[*master as usize], Role::Free(_));
+            if constraint.set.is_none() && nodes.is_fixed(variable, node) && terms.keys().any(is_free) {
+                return Err(supported_slave(constraint, nodes.ids[node as usize]).into());
+            }
             let mut follows = Vec::with_capacity(terms.len());
             for (master, [weight, force]) in terms {
                 match roles[master as usize] {

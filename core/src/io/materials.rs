@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::variables::{composed_law, kind_of, last_of_path, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Error, Place, Report, Result, did_you_mean};
-use crate::model::{ModelPart, Properties, PropertyValue, Table, VariableKind};
+use crate::model::{MaterialRange, ModelPart, Properties, PropertyValue, Table, VariableKind};
 use crate::parameters::{Document, Node};
 
 /// Reads a materials file and gives its properties to the parts it names; gives the warnings.
@@ -190,6 +190,9 @@ fn read_material(material: &Node, properties: &mut Properties, domain_size: usiz
             report.push(warning.at(material.get("Variables").map(|v| v.key_place(&member.key))));
         }
         if let Some(value) = report.absorb(value(&member.node, kind).map_err(|error| about(&member.key, error))) {
+            if let PropertyValue::Number(number) = value {
+                check_range(name, number, properties.id, &member.node, report);
+            }
             properties.values.insert(name.to_owned(), value);
         }
     }
@@ -200,6 +203,9 @@ fn read_material(material: &Node, properties: &mut Properties, domain_size: usiz
                     report.push(unknown_variable(name).at(member.node.place()));
                 }
             }
+            table.points.iter().for_each(|[_, number]| {
+                check_range(&names.1, *number, properties.id, &member.node, report);
+            });
             properties.tables.insert(names, table);
         }
     }
@@ -208,6 +214,13 @@ fn read_material(material: &Node, properties: &mut Properties, domain_size: usiz
         let problem = Diagnostic::error("misplaced-key", "\"sub_properties\" inside \"Material\" are not read");
         report.push(problem.at(inner.place()).remedy(remedy));
     }
+}
+
+/// Reports a constant outside the range of its variable.
+fn check_range(name: &str, number: f64, properties: usize, node: &Node, report: &mut Report) {
+    let Some(range) = MaterialRange::of(name).filter(|range| !range.holds(number)) else { return };
+    let fact = format!("{name} of properties {properties} is {number}, it must be {range}");
+    report.push(Diagnostic::error("material-out-of-range", fact).at(node.place()));
 }
 
 /// The same problems, named after the variable.

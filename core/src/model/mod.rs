@@ -32,6 +32,7 @@ mod sub_part;
 mod table;
 #[cfg(test)]
 pub mod test_variables;
+mod material_range;
 mod usual_results;
 mod variable;
 mod variables;
@@ -50,6 +51,7 @@ pub use flags::Flags;
 pub use geometries::Geometries;
 pub use halo::Halo;
 pub use level::Level;
+pub use material_range::MaterialRange;
 pub use model_part::{ModelPart, NodalState};
 pub use multiplier_request::MultiplierRequest;
 pub use nodes::Nodes;

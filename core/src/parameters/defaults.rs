@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::document::{self, Comment};
-use super::node::{Node, Value};
+use super::node::{Member, Node, Value};
+use super::range::Range;
 use crate::diagnostics::{Diagnostic, Result};
 
 /// The defaults of one object, and how strictly a deck is held against them.
@@ -20,7 +21,7 @@ pub struct Defaults {
 }
 
 /// One documented key.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     /// Dotted path of the key from the object's root.
     pub path: String,
@@ -32,10 +33,15 @@ pub struct Entry {
     pub description: String,
     /// Why the key is read and changes nothing, where that is so.
     pub without_effect: Option<String>,
+    /// The numbers that it accepts, where they are limited.
+    pub range: Option<Range>,
 }
 
 /// The member of a file of defaults that lists keys without effect by the reason.
 const WITHOUT_EFFECT: &str = "$without_effect";
+
+/// The member of a file of defaults that lists keys by the range of their numbers.
+const RANGES: &str = "$ranges";
 
 /// The member of a file of defaults that shows how the object is used.
 const EXAMPLE: &str = "$example";
@@ -60,23 +66,38 @@ impl Defaults {
     /// A default of `null` accepts any value, `{}` any content; the items of arrays are not checked. A number written
     /// without fraction stands for an integer. The comment above a key or at the end of its line documents it, the
     /// one above the opening brace the object. `$without_effect` is no key: it lists those that are read and change nothing,
-    /// `{ "reason": ["key", "other.key"] }`. Nor is `$example`, settings as a deck may give them.
+    /// `{ "reason": ["key", "other.key"] }`. Nor is `$ranges`, which lists keys by the range of their numbers,
+    /// `{ "(0, 1]": ["key"] }`, nor `$example`, settings as a deck may give them.
     ///
     /// # Errors
-    /// `invalid-json`, `wrong-type` when the text is not an object, `unknown-key` when a key without effect is none.
+    /// `invalid-json`, `wrong-type` when the text is not an object, `unknown-key` when a key without effect or with a range is none,
+    /// `invalid-value` for a range that is none.
     pub fn parse(name: &str, text: &str) -> Result<Self> {
         let (document, comments) = document::parse(text, Path::new(name), true)?;
         let mut node = document.root;
-        let [idle, example] = match &mut node.value {
-            Value::Object(members) => [WITHOUT_EFFECT, EXAMPLE].map(|key| members.remove(key)),
-            _ => [None, None],
+        let [idle, ranges, example] = match &mut node.value {
+            Value::Object(members) => [WITHOUT_EFFECT, RANGES, EXAMPLE].map(|key| members.remove(key)),
+            _ => [None, None, None],
         };
         let example = example.map(|member| member.node);
         node.object()?;
         let mut entries = Vec::new();
         collect(&node, "", &comments, &mut entries);
         if let Some(idle) = idle {
-            mark(&idle.node, &mut entries)?;
+            for_each_key(&idle.node, &mut entries, &mut |reason, entry| {
+                entry.without_effect = Some(reason.key.clone());
+                Ok(())
+            })?;
+        }
+        if let Some(ranges) = ranges {
+            for_each_key(&ranges.node, &mut entries, &mut |range, entry| {
+                let problem = || {
+                    Diagnostic::error("invalid-value", format!("{:?} is no range; write e.g. [0, inf)", range.key))
+                        .at(range.node.place())
+                };
+                entry.range = Some(Range::parse(&range.key).ok_or_else(problem)?);
+                Ok(())
+            })?;
         }
         let description = comment_above(&comments, node.line);
         let (lenient, required, deprecated) = (false, Vec::new(), Vec::new());
@@ -177,21 +198,32 @@ fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<Entry>
         texts.retain(|t| !t.is_empty());
         let kind = if member.node.is_null() { "any value" } else { member.node.value.kind() };
         let default = member.node.to_json().to_string();
-        out.push(Entry { path: path.clone(), kind, default, description: texts.join("\n"), without_effect: None });
+        out.push(Entry {
+            path: path.clone(),
+            kind,
+            default,
+            description: texts.join("\n"),
+            without_effect: None,
+            range: None,
+        });
         collect(&member.node, &path, comments, out);
     }
 }
 
-/// Puts down why keys have no effect.
-fn mark(reasons: &Node, entries: &mut [Entry]) -> Result<()> {
-    for reason in reasons.object()?.iter() {
-        for key in reason.node.array()? {
+/// Visits the keys that an object of lists names, each with the member that it is listed under.
+fn for_each_key(
+    lists: &Node,
+    entries: &mut [Entry],
+    visit: &mut dyn FnMut(&Member, &mut Entry) -> Result<()>,
+) -> Result<()> {
+    for list in lists.object()?.iter() {
+        for key in list.node.array()? {
             let path = key.str()?;
             let Some(entry) = entries.iter_mut().find(|entry| entry.path == path) else {
-                let problem = Diagnostic::error("unknown-key", format!("{path:?} without effect is no key"));
+                let problem = Diagnostic::error("unknown-key", format!("{path:?} under {:?} is no key", list.key));
                 return Err(problem.at(key.place()).into());
             };
-            entry.without_effect = Some(reason.key.clone());
+            visit(list, entry)?;
         }
     }
     Ok(())
@@ -244,6 +276,9 @@ mod tests {
         let idle = defaults.entries().iter().filter_map(|entry| Some((&*entry.path, entry.without_effect.as_deref()?)));
         assert_eq!(idle.collect::<Vec<_>>(), [("nested.count", "everything is counted")]);
         assert!(Defaults::parse("thing", r#"{ "a": 1, "$without_effect": { "why": ["b"] } }"#).is_err());
+        let ranged = Defaults::parse("thing", r#"{ "a": 1.0, "$ranges": { "(0, inf)": ["a"] } }"#).unwrap();
+        assert!(ranged.entries()[0].range.is_some_and(|range| !range.holds(0.0)));
+        assert!(Defaults::parse("thing", r#"{ "a": 1, "$ranges": { "above 0": ["a"] } }"#).is_err());
         let said: Vec<String> = defaults
             .entries()
             .iter()

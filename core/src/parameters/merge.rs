@@ -111,7 +111,8 @@ impl Merger<'_> {
             (Some(text), None) | (None, Some(text)) => text,
             (None, None) => "remove it; `zelus describe` lists the known keys".to_owned(),
         };
-        if self.lenient {
+        // A key of the command line or of a table of runs stands for something; a deck may hold keys of other programs.
+        if self.lenient && !place.is_of_command_line() {
             let fact = format!("\"{}\" is not a setting of {name} and is ignored", member.key);
             self.report.push(Diagnostic::warning("unknown-key-ignored", fact).at(place).remedy(remedy));
         } else {

@@ -7,6 +7,7 @@
 
 mod node;
 mod document;
+mod range;
 mod defaults;
 mod merge;
 mod settings;
@@ -19,4 +20,5 @@ pub use document::Document;
 pub use expression::{Expression, ExpressionError, SpaceTime};
 pub use interval::Interval;
 pub use node::{Member, Node, Object, Value};
+pub use range::Range;
 pub use settings::Settings;

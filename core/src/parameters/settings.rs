@@ -16,7 +16,7 @@ impl Settings {
     /// Lays `user` over `defaults`; every key and type that does not fit goes to `report`.
     ///
     /// `None` when an error was reported. Unknown keys are errors (`unknown-key`), or warnings with
-    /// [`Defaults::lenient`] (`unknown-key-ignored`); other codes are `wrong-type`, `missing-key` and, as warnings,
+    /// [`Defaults::lenient`] (`unknown-key-ignored`); other codes are `wrong-type`, `missing-key`, `out-of-range` and, as warnings,
     /// `deprecated-key` and `key-without-effect`.
     pub fn validate(user: &Node, defaults: &Defaults, report: &mut Report) -> Option<Self> {
         Self::complete(user, defaults, report).and_then(|(settings, is_sound)| is_sound.then_some(settings))
@@ -44,6 +44,14 @@ impl Settings {
             }
         }
         let node = merger.merge(&user, &defaults.node, &defaults.name);
+        for entry in defaults.entries() {
+            let Some(range) = entry.range else { continue };
+            let given = node.get_path(&entry.path).filter(|given| given.is_given());
+            let Some(given) = given else { continue };
+            if let Some(problem) = range.problem(given, &format!("\"{}\" of {}", entry.path, defaults.name)) {
+                merger.error(problem.remedy(format!("{} is the default", entry.default)));
+            }
+        }
         let is_sound = !merger.failed;
         if is_sound {
             warn_without_effect(&user, defaults, report);

@@ -4,7 +4,7 @@
 //! the last value stays.
 
 use super::local_axes::LocalAxes;
-use super::prescription::{Load, LoadCarrier, is_load};
+use super::prescription::{Load, LoadCarrier, is_load, lost_in_the_plane, of_components};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
@@ -180,10 +180,8 @@ impl AssignToEntities {
         }
         let out_of_plane = |c: &EntityComponent| c.variable.component == Some(2) && part.info.domain_size == 2;
         let acts = self.components.iter().filter(|c| !c.value.is_zero());
-        if acts.clone().count() > 0 && acts.clone().all(out_of_plane) {
-            return Ok(Some(format!("{names} of {path} has a component out of the plane only")));
-        }
-        Ok(None)
+        let (lost, all) = of_components(acts, out_of_plane);
+        Ok(lost_in_the_plane(&names, path, lost, all))
     }
 }
 

@@ -5,7 +5,7 @@
 //! the same unknown wins, and fixities of the mesh file on the same unknown last one step only.
 
 use super::local_axes::LocalAxes;
-use super::prescription::{Load, LoadCarrier, Prescription, is_load};
+use super::prescription::{Load, LoadCarrier, Prescription, is_load, lost_in_the_plane, of_components};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
@@ -102,16 +102,36 @@ impl AssignToNodes {
             return Ok(Some(format!("{process} on {path} gives no component a value, and fixes none")));
         }
         let acts = |c: &&NodalComponent| c.value.as_ref().is_some_and(|value| !value.is_zero());
-        let out_of_plane = |c: &NodalComponent| {
+        let out_of_plane = |c: &NodalComponent| -> bool {
             let name = c.variable.column;
             c.variable.component == Some(2) && part.info.domain_size == 2 && (moves(name) || is_load(name))
         };
-        let mut of_value = self.components.iter().filter(acts).peekable();
-        if of_value.peek().is_some() && of_value.all(out_of_plane) {
-            let name = self.components[0].variable.column;
-            return Ok(Some(format!("{name} of {path} has a component out of the plane only")));
+        let name = self.components[0].variable.column;
+        let (lost, of_value) = of_components(self.components.iter().filter(acts), out_of_plane);
+        if let Some(fact) = lost_in_the_plane(name, path, lost, of_value) {
+            return Ok(Some(fact));
+        }
+        let loads: Vec<&str> =
+            self.components.iter().filter(acts).map(|c| c.variable.column).filter(|column| is_load(column)).collect();
+        if let Some(name) = loads.first()
+            && part.share.is_none()
+            && !self.is_taken(part, &loads)?
+        {
+            return Ok(Some(format!("no condition at the nodes of {path} takes {name}")));
         }
         Ok(None)
+    }
+
+    /// Whether a condition at one of the nodes takes one of these loads from them.
+    fn is_taken(&self, part: &ModelPart, loads: &[&str]) -> Result<bool> {
+        let mut selected = vec![false; part.nodes.len()];
+        self.target.selection(&part.tree)?.nodes.iter().for_each(|&node| selected[node as usize] = true);
+        let table = &part.conditions;
+        let takes = |at: usize| {
+            let kind_takes = table.kinds[at].loads.is_none_or(|own| loads.iter().any(|load| own.contains(load)));
+            kind_takes && table.nodes(at as u32).iter().any(|&node| selected[node as usize])
+        };
+        Ok((0..table.len()).any(takes))
     }
 
     /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.

@@ -52,3 +52,17 @@ pub(super) fn is_load(name: &str) -> bool {
     let kinds = registry::all::<ConditionEntry>();
     kinds.iter().any(|kind| kind.loads.is_some_and(|loads| loads.contains(&name)))
 }
+
+/// Components that meet a condition, and all of them.
+pub(super) fn of_components<T>(components: impl Iterator<Item = T>, condition: impl Fn(T) -> bool) -> (usize, usize) {
+    components.fold((0, 0), |(some, all), component| (some + usize::from(condition(component)), all + 1))
+}
+
+/// The fact that a planar model takes some or all of the components of a vector for nothing.
+pub(super) fn lost_in_the_plane(names: &str, path: &str, lost: usize, components: usize) -> Option<String> {
+    match lost {
+        0 => None,
+        lost if lost == components => Some(format!("{names} of {path} has a component out of the plane only")),
+        _ => Some(format!("{names} of {path} has a component out of the plane, which is lost")),
+    }
+}

@@ -47,13 +47,13 @@ pub(crate) fn prepare(
 ) -> Result<SlipRule> {
     let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
     let mut largest = 0.0_f64;
-    let mut is_given = false;
+    let mut without: Vec<&str> = Vec::new();
     let law = settings.law;
     let written = part.nodes.values.values(law.variable, 0);
     let mut overridden: Option<(&str, f64, usize, f64)> = None;
     for interface in interfaces {
         let listed = settings.coefficients.get(&interface.key).copied().filter(|_| law.by_coefficients);
-        is_given |= listed.is_some();
+        let mut is_given = listed.is_some();
         let given = listed.filter(|coefficient| *coefficient > 0.0);
         for facet in &interface.facets {
             let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable.name()));
@@ -75,6 +75,9 @@ pub(crate) fn prepare(
                 *count += 1;
             }
         }
+        if !is_given {
+            without.push(&interface.key);
+        }
     }
     if let Some((pair, given, id, own)) = overridden.filter(|_| friction == Friction::Coulomb) {
         let name = law.variable.name();
@@ -88,9 +91,13 @@ pub(crate) fn prepare(
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {
         *slot = sum / count.max(1) as f64;
     }
-    if friction == Friction::Coulomb && !is_given {
+    if friction == Friction::Coulomb && !without.is_empty() {
         let name = law.variable.name();
-        let fact = format!("contact with friction has no {name}: everything slides freely");
+        let fact = if without.len() == interfaces.len() {
+            format!("contact with friction has no {name}: everything slides freely")
+        } else {
+            format!("contact with friction has no {name} in pair {}: it slides freely there", listed_pairs(&without))
+        };
         let remedy = format!(
             "give {name} in the materials of the contact surfaces, or \"friction_coefficients\" of the process"
         );
@@ -98,4 +105,9 @@ pub(crate) fn prepare(
     }
     let pure = friction == Friction::PureSlip || largest <= 0.0;
     Ok(if pure { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) })
+}
+
+/// Keys of pairs in quotation marks.
+fn listed_pairs(keys: &[&str]) -> String {
+    keys.iter().map(|key| format!("\"{key}\"")).collect::<Vec<_>>().join(", ")
 }

@@ -256,7 +256,7 @@ impl Interaction for ContactInteraction {
         let mut out = vec![
             ("pairs", self.contact.pairing.len() as f64),
             ("active nodes", self.contact.states.count_active() as f64),
-            ("deepest penetration", -deepest),
+            ("deepest penetration", deepest.abs()),
         ];
         if self.contact.pairing.moved > 0 {
             out.push(("pairs moved to other ranks", self.contact.pairing.moved as f64));

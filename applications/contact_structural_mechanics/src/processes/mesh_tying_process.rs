@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use zelus_core::Result;
-use zelus_core::model::{Named, ScalarVariable, VariableKind, named};
+use zelus_core::model::{ModelPart, Named, Rates, ScalarVariable, VariableKind, named};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
@@ -47,6 +47,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;
     let part = request.model.root_mut(&whole.model_part_name)?;
     let (mortar_type, tied) = tied(&settings, part.info.domain_size)?;
+    check_unknown(&settings, part, tied[0])?;
     let formulation = find_tying_formulation(mortar_type)?;
     for (name, components) in formulation.variables {
         part.nodes.history.add_named(name, *components);
@@ -94,6 +95,17 @@ fn tied(settings: &Settings, dimension: usize) -> Result<(&'static str, Vec<Scal
             .remedy("tie a vector, e.g. \"DISPLACEMENT\", or a scalar or component")
             .into()),
     }
+}
+
+/// Refuses variables that no equation of the part solves for.
+fn check_unknown(settings: &Settings, part: &ModelPart, tied: ScalarVariable) -> Result<()> {
+    if Rates::of(tied.column).is_some() && part.nodes.history.has(tied.column) {
+        return Ok(());
+    }
+    let unknowns: Vec<&str> = Rates::within(&part.nodes.history).iter().map(|(rates, _)| rates.unknown).collect();
+    let fact = format!("{:?} is no unknown of model part {:?}: it cannot be tied", tied.column, part.name);
+    let remedy = format!("tie {}", unknowns.join(" or "));
+    Err(settings.error("variable_name", "tied-variable", fact).remedy(remedy).into())
 }
 
 register! { ProcessEntry "mesh_tying_process",

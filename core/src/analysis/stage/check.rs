@@ -20,6 +20,10 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
         problems.absorb(checked);
     }
     let part = model.root(root)?;
+    if part.info.step == 0 {
+        let problem = schedule.stepping.problem(schedule.start_time, schedule.end_time);
+        problem.into_iter().for_each(|problem| problems.push(problem));
+    }
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
     warn_of_twins(part, &mut problems);
     warn_of_loads_given_twice(part, processes, &mut problems);

@@ -76,8 +76,6 @@ enum Op {
     Binary(Operator),
     One(fn(f64) -> f64),
     Two(fn(f64, f64) -> f64),
-    /// Forgets the top: the value before a comma.
-    Drop,
     /// Takes a truth value and skips so many steps when it is 0.
     SkipUnless(usize),
     /// Skips so many steps.
@@ -141,7 +139,6 @@ impl Expression {
                     top -= 1;
                     stack[top - 1] = operator.apply(stack[top - 1], stack[top]);
                 }
-                Op::Drop => top -= 1,
                 Op::SkipUnless(steps) => {
                     top -= 1;
                     if stack[top] == 0.0 {

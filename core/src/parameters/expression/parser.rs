@@ -1,13 +1,12 @@
 //! Compiles the text of an expression into steps of the stack machine.
 //!
 //! ```text
-//! whole  = list [ "if" sum COMPARE sum "else" list ]
-//! list   = sum { "," sum }
+//! whole  = sum [ "if" sum COMPARE sum "else" sum ]
 //! sum    = term { ("+" | "-") term }
 //! term   = factor { ("*" | "/" | "%") factor }
 //! factor = signed { "^" signed }                      from the left
 //! signed = { "+" | "-" } base
-//! base   = NUMBER | VARIABLE | CONSTANT [ "()" ] | ONE signed | TWO "(" sum "," sum ")" | "(" list ")"
+//! base   = NUMBER | VARIABLE | CONSTANT [ "()" ] | ONE signed | TWO "(" sum "," sum ")" | "(" sum ")"
 //! ```
 
 use super::functions::{CONSTANTS, FUNCTIONS, Function};
@@ -133,6 +132,7 @@ impl<'a> Parser<'a> {
         };
         let remedy = match self.token {
             Token::Name("and" | "or" | "not") => Some("a condition is one comparison".to_owned()),
+            Token::Comma => Some("a comma stands between two arguments of a function: write 1.5 for 1,5".to_owned()),
             Token::Operator(o) if is_comparison(o) => Some("compare only in: A if LEFT < RIGHT else B".to_owned()),
             _ => None,
         };
@@ -158,7 +158,7 @@ impl<'a> Parser<'a> {
     }
 
     fn whole(&mut self) -> Parsed {
-        self.list()?;
+        self.sum()?;
         if self.token == Token::Name("if") {
             self.advance()?;
             let chosen = std::mem::take(&mut self.code);
@@ -175,21 +175,11 @@ impl<'a> Parser<'a> {
             self.emit(Op::SkipUnless(chosen.len() + 1), -1)?;
             self.code.extend(chosen);
             let at = self.code.len();
-            self.list()?;
+            self.sum()?;
             let otherwise = self.code.len() - at;
             self.code.insert(at, Op::Skip(otherwise));
         }
         if self.token == Token::End { Ok(()) } else { Err(self.unexpected("an operator or the end")) }
-    }
-
-    fn list(&mut self) -> Parsed {
-        self.sum()?;
-        while self.token == Token::Comma {
-            self.advance()?;
-            self.emit(Op::Drop, -1)?;
-            self.sum()?;
-        }
-        Ok(())
     }
 
     fn sum(&mut self) -> Parsed {
@@ -241,7 +231,7 @@ impl<'a> Parser<'a> {
             }
             Token::Open => {
                 self.advance()?;
-                self.list()?;
+                self.sum()?;
                 self.expect(Token::Close, "\")\"")
             }
             Token::Name(name) => self.name(name),

@@ -8,7 +8,7 @@ use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::control::TimeCounter;
 use super::gauss;
-use super::json_output_process::{fields, node_key, passes};
+use super::json_output_process::{node_key, passes};
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
@@ -105,12 +105,12 @@ impl FromJsonCheck {
     fn compare(&self, part: &ModelPart, system: &System, selection: &SubPart) -> Differences {
         let mut found = Differences::default();
         let time = part.info.time;
-        let fields = fields(part, self.history);
         let mut values = Vec::new();
         let wanted = |&&node: &&u32| part.owns_node(node as usize) && passes(&part.nodes.flags, self.flag, node);
         for &node in selection.nodes.iter().filter(wanted) {
             let key = node_key(part.nodes.ids[node as usize]);
             for quantity in &self.quantities {
+                let fields = quantity.fields(part, self.history);
                 values.resize(quantity.components(fields), 0.0);
                 quantity.read(fields, node, &mut values);
                 self.judge(&self.reference[&key], &key, &quantity.name, &values, time, &mut found);

@@ -16,7 +16,7 @@ use crate::assembly::System;
 use crate::diagnostics::{Result, unfit};
 use crate::entities::Gauss;
 use crate::io::{FileUse, Mark, replace_file};
-use crate::model::{Fields, Flags, Model, ModelPart, Role, SubPart};
+use crate::model::{Flags, Model, ModelPart, Role, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
@@ -104,11 +104,6 @@ pub(super) fn passes(flags: &Flags, flag: Option<&'static str>, item: u32) -> bo
     flag.is_none_or(|flag| flags.is(flag, item as usize))
 }
 
-/// The fields a process looks at.
-pub(super) fn fields(part: &ModelPart, history: bool) -> &Fields {
-    if history { &part.nodes.history } else { &part.nodes.values }
-}
-
 /// The key of a node, by its id.
 pub(super) fn node_key(id: usize) -> String {
     format!("NODE_{id}")
@@ -149,12 +144,16 @@ impl JsonOutput {
         }
     }
 
+    /// Numbers that each quantity takes.
+    fn sizes(&self, part: &ModelPart) -> Vec<usize> {
+        self.quantities.iter().map(|quantity| quantity.components(quantity.fields(part, self.history))).collect()
+    }
+
     /// Takes the values of this moment; collective.
     fn sample(&mut self, part: &ModelPart, system: &System, selection: &SubPart) {
         self.keys(part, selection);
         self.series.times.push(part.info.time);
-        let fields = fields(part, self.history);
-        let sizes: Vec<usize> = self.quantities.iter().map(|q| q.components(fields)).collect();
+        let sizes = self.sizes(part);
         let width: usize = sizes.iter().sum();
         let mut own = Vec::new();
         for &node in self.series.known.iter().filter(|&&node| passes(&part.nodes.flags, self.flag, node)) {
@@ -164,7 +163,7 @@ impl JsonOutput {
             let mut rest = &mut own[start..];
             for (quantity, &size) in self.quantities.iter().zip(&sizes) {
                 let (values, others) = rest.split_at_mut(size);
-                quantity.read(fields, node, values);
+                quantity.read(quantity.fields(part, self.history), node, values);
                 rest = others;
             }
         }
@@ -204,7 +203,7 @@ impl JsonOutput {
 
     fn write(&mut self, model: &Model) -> Result<()> {
         let (part, _) = self.part.find(model)?;
-        let sizes: Vec<usize> = self.quantities.iter().map(|q| q.components(fields(part, self.history))).collect();
+        let sizes = self.sizes(part);
         replace_file(&part.ranks, &self.file, |out| self.text(out, &sizes))?;
         self.last_write = Some(Instant::now());
         Ok(())

@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
-use super::json_output_process::fields;
 use super::place::{PartPath, one_of};
 use super::quantity::Quantity;
 use crate::assembly::System;
@@ -154,9 +153,9 @@ impl PointsOutput {
 
     /// The values at a point that this rank has found.
     fn values(&self, part: &ModelPart, point: &Point) -> Vec<f64> {
-        let fields = fields(part, self.history);
         let mut values = Vec::new();
         for quantity in &self.quantities {
+            let fields = quantity.fields(part, self.history);
             let mut sum = vec![0.0; quantity.components(fields)];
             let mut value = sum.clone();
             for &(node, weight) in &point.weights {
@@ -172,9 +171,8 @@ impl PointsOutput {
         let [x, y, z] = point.position;
         let mut head =
             format!("# Results for \"{}\" at position: x: {x:?}; y: {y:?}; z: {z:?}\n# time", ENTITIES[self.entity]);
-        let fields = fields(part, self.history);
         for quantity in &self.quantities {
-            match quantity.components(fields) {
+            match quantity.components(quantity.fields(part, self.history)) {
                 1 => head.push_str(&format!(" {}", quantity.name)),
                 3 => ["X", "Y", "Z"].iter().for_each(|c| head.push_str(&format!(" {}_{c}", quantity.name))),
                 n => (0..n).for_each(|c| head.push_str(&format!(" {}_{c}", quantity.name))),

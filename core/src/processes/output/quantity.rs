@@ -4,7 +4,7 @@ use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::io::results::Column;
 use crate::io::variables::{not_computed, unknown_variable};
 use crate::model::flags::flag;
-use crate::model::{Field, Fields, Flags, Named, VariableKind, named, variables};
+use crate::model::{Field, Fields, Flags, ModelPart, Named, VariableKind, named, variables};
 use crate::parameters::Settings;
 
 /// A variable, or a component of one, that a column may hold.
@@ -35,6 +35,16 @@ impl Quantity {
     /// The column it is in.
     fn column<'f>(&self, fields: &'f Fields) -> Option<&'f Field> {
         fields.get(self.variable.column().0)
+    }
+
+    /// The columns of nodes that hold it: those with history where that is asked for, else those without; the others where it is
+    /// in them alone.
+    pub(super) fn fields<'p>(&self, part: &'p ModelPart, history: bool) -> &'p Fields {
+        let (mut asked, mut other) = (&part.nodes.values, &part.nodes.history);
+        if history {
+            std::mem::swap(&mut asked, &mut other);
+        }
+        if self.column(asked).is_none() && self.column(other).is_some() { other } else { asked }
     }
 
     /// How many numbers it takes; a quantity that is nowhere stored reads as zero.

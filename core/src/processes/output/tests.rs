@@ -261,6 +261,13 @@ fn json_filters_by_flag_sums_up_and_holds_gauss_points() {
     run(process.as_mut(), &mut model, 1, 0.1).unwrap();
     assert_eq!(read("s.json"), serde_json::json!({"TIME": [0.1], "RESULTANT": {"DISPLACEMENT_X": [6.0]}}));
 
+    // A quantity is found where it is kept, whichever columns the process asks for.
+    let elsewhere = r#"{"model_part_name": "Structure.Edge", "output_file_name": "e.json", "time_frequency": 0.0,
+        "output_variables": ["DISPLACEMENT_X"], "resultant_solution": true, "historical_value": false}"#;
+    let mut process = make("json_output_process", elsewhere, &mut model, folder.path()).0.unwrap();
+    run(process.as_mut(), &mut model, 1, 0.1).unwrap();
+    assert_eq!(read("e.json")["RESULTANT"], read("s.json")["RESULTANT"]);
+
     let gauss = r#"{"model_part_name": "Structure", "output_file_name": "g.json", "time_frequency": 0.0,
         "gauss_points_output_variables": ["OUTPUT_TEST_VECTOR"]}"#;
     let mut process = make("json_output_process", gauss, &mut model, folder.path()).0.unwrap();

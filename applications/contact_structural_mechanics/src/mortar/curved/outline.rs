@@ -107,7 +107,7 @@ impl ClosedLine {
     }
 }
 
-/// What the crossing of an edge of the slave with another edge is.
+/// The vertex in which an edge of the slave crosses another edge.
 fn crossing(slaves: usize, edge: usize, other: Edge) -> Vertex {
     match other {
         Edge::Master(master) => Vertex::Crossing { slave: edge, master },

@@ -1,0 +1,78 @@
+//! Loads that no condition takes, contact that no step meets, and supports that something else would take the place of.
+
+use serde_json::json;
+
+use crate::DECK;
+use crate::support::{read_json, root, said, scratch_copy, zelus};
+use crate::table::{PRESSED, contact, load};
+
+#[test]
+fn a_constraint_on_a_supported_node_is_refused() {
+    let scratch = scratch_copy(&root().join("tests/cases/structural/bar_thickness"));
+    let path = scratch.path().join("mesh.mdpa");
+    let mesh = std::fs::read_to_string(&path).expect("the mesh");
+    let with = |slave: usize, master: usize| {
+        let constraint = format!(
+            "Begin Constraints LinearMasterSlaveConstraint DISPLACEMENT_X DISPLACEMENT_X\n1 0.0 [1.0] {slave} {master}\n\
+             End Constraints\n\n"
+        );
+        let (head, parts) = mesh.split_once("Begin SubModelPart").expect("parts");
+        std::fs::write(&path, format!("{head}{constraint}Begin SubModelPart{parts}")).expect("a file");
+        let output = zelus(scratch.path(), &["run", DECK]);
+        (output.status.code(), said(&output))
+    };
+    let (code, said) = with(1, 7);
+    let names = ["error[constraint-on-support]", "DISPLACEMENT_X of node 1"];
+    assert!(code == Some(2) && names.iter().all(|name| said.contains(name)), "{code:?} {said}");
+    // A free node may follow a supported one, and supported nodes each other.
+    for (slave, master) in [(7, 1), (1, 6)] {
+        let (code, said) = with(slave, master);
+        assert_eq!(code, Some(0), "{slave} follows {master}: {said}");
+    }
+}
+
+#[test]
+fn a_load_on_nodes_that_no_condition_takes_is_named() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    let part = load(&mut deck)["model_part_name"].clone();
+    let mut of_nodes = |variable: &str| {
+        deck["processes"]["loads_process_list"][0] = json!({
+            "python_module": "assign_vector_variable_process",
+            "kratos_module": "KratosMultiphysics",
+            "Parameters": {
+                "model_part_name": part, "variable_name": variable, "constrained": [false, false, false],
+                "value": [0.0, "-1.0e3*t", 0.0]
+            }
+        });
+        std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+        said(&zelus(scratch.path(), &["check", DECK]))
+    };
+    let said = of_nodes("POINT_LOAD");
+    assert!(said.contains("warning[acts-on-nothing]") && said.contains("takes POINT_LOAD"), "{said}");
+    let said = of_nodes("LINE_LOAD");
+    assert!(!said.contains("acts-on-nothing"), "line loads read it at their nodes: {said}");
+}
+
+#[test]
+fn contact_that_no_step_meets_is_named() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    contact(&mut deck)["interval"] = json!([0.0, 0.0]);
+    std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+    let said = said(&zelus(scratch.path(), &["check", DECK]));
+    assert!(said.contains("warning[interval-outside]") && said.contains("no step of the run"), "{said}");
+}
+
+#[test]
+fn a_direction_that_leaves_the_plane_is_named() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    load(&mut deck)["direction"] = json!([0.0, -0.8, 0.6]);
+    std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+    let said = said(&zelus(scratch.path(), &["check", DECK]));
+    assert!(said.contains("warning[acts-on-nothing]") && said.contains("out of the plane, which is lost"), "{said}");
+}
