@@ -91,7 +91,7 @@ fn assert_near(found: [f64; 3], right: [f64; 3], tolerance: f64, what: &str) {
 #[test]
 fn a_corner_shows_the_pressure_of_each_of_its_faces() {
     let (scene, _) = die(2, 0.0, 1.0, FRICTIONLESS, true);
-    let (folder, _) = of_scene(&scene);
+    let (folder, simulation) = of_scene(&scene);
     let data = surface(folder.path(), 0, 1);
     let (ids, patches) = (column(&data, "KRATOS_NODE_ID"), column(&data, "PATCH"));
     let (pressures, normals) = (column(&data, "CONTACT_PRESSURE"), vectors(&data, "NORMAL"));
@@ -108,6 +108,14 @@ fn a_corner_shows_the_pressure_of_each_of_its_faces() {
         let &[one, other] = points.as_slice() else { panic!("{points:?}") };
         assert!(patches[one] != patches[other] && data.points[one] == data.points[other], "{points:?}");
         assert!((pressures[one] - pressures[other]).abs() > 0.5 * (1.0 - lateral), "{pressures:?}");
+    }
+    let part = simulation.part().expect("a part");
+    for ((id, place), u) in ids.iter().zip(&data.points).zip(vectors(&data, "DISPLACEMENT")) {
+        let node = part.nodes.ids.iter().position(|own| *own as f64 == *id).expect("a node");
+        assert_eq!(
+            (u, *place),
+            (part.nodes.history.get("DISPLACEMENT").expect("a column").vector(0, node), part.nodes.current[node])
+        );
     }
     for (flag, right) in [("ACTIVE", 1.0), ("CONTACT_STATUS", 2.0)] {
         assert!(column(&data, flag).iter().all(|state| *state == right), "{flag}");

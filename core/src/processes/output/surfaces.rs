@@ -1,9 +1,9 @@
 //! Surfaces of interfaces as pictures.
 
 use super::format::ShownSurface;
-use super::quantity::flag_column;
+use super::quantity::{Quantity, flag_column};
 use crate::io::results::{Column, Dataset};
-use crate::model::{InterfaceSurface, ModelPart, SubPart};
+use crate::model::{InterfaceSurface, ModelPart, Rates, SubPart};
 
 /// Surfaces of the interfaces of a part now, with the facets whose mesh nodes all belong to the selection; those without such facets are
 /// left out.
@@ -33,6 +33,11 @@ fn picture(part: &ModelPart, selection: &SubPart, surface: &InterfaceSurface, de
     };
     for (at, (shape, points)) in facets().enumerate() {
         data.cells.push(at + 1, 0, shape, points.iter().map(|&point| point_of[point as usize]));
+    }
+    // By this column programs displace surfaces as they do the mesh.
+    if let Some(moving) = Rates::moving(&part.nodes.history).and_then(|name| Quantity::new(name).ok()) {
+        let nodes: Vec<u32> = points.iter().map(|point| node(point) as u32).collect();
+        data.point_data.push(moving.gather(&part.nodes.history, &nodes));
     }
     data.point_data.extend(surface.values.iter().map(|(name, field)| {
         let row = |&point: &u32| &field.levels[0][point as usize * field.components..][..field.components];
