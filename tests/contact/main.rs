@@ -9,6 +9,7 @@ mod blocks_of_case;
 mod condensation;
 mod corners;
 mod free_bodies;
+mod interface_surfaces;
 mod like_kratos;
 mod methods;
 mod mpc;

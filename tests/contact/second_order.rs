@@ -6,14 +6,14 @@ use serde_json::{Value, json};
 use zelus::{RunOptions, Silent, Simulation};
 
 /// What a block is made of: whether of simplices, and whether of second order, with nodes in the middle of faces or not.
-type Kind = (bool, Option<bool>);
+pub type Kind = (bool, Option<bool>);
 
 const LINEAR: Option<bool> = None;
 const SERENDIPITY: Option<bool> = Some(false);
 const FULL: Option<bool> = Some(true);
 
 /// Two blocks of unlike meshes one on the other, the upper one pressed down.
-fn stack(space: usize, kinds: [Kind; 2], upper_is_slave: bool) -> Mesh {
+pub fn stack(space: usize, kinds: [Kind; 2], upper_is_slave: bool) -> Mesh {
     let last = space - 1;
     let mut mesh = Mesh::new(space);
     let mut block = |name: &str, (simplices, _): Kind, divisions: [usize; 3], from: f64, skew: f64| {

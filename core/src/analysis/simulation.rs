@@ -383,6 +383,7 @@ impl Simulation {
                 stages.swap_remove(0)
             };
             check_mesh(model.root(&self.root)?, part)?;
+            model.root_mut(&self.root)?.interface_surfaces.clone_from(&part.interface_surfaces);
             self.model = model;
             stage.resume(&mut self.model, state)?;
         }

@@ -70,6 +70,11 @@ pub struct Flags {
 }
 
 impl Flags {
+    /// Names of the flags that have a column.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.columns.keys().copied()
+    }
+
     /// `Some(state)`, or `None` when undefined.
     pub fn get(&self, flag: &str, index: usize) -> Option<bool> {
         self.columns

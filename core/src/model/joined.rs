@@ -112,6 +112,7 @@ impl ModelPart {
             all.geometries = Geometries::default();
         }
         (all.tree, all.share, all.slave_nodes) = (tree, None, slave_nodes);
+        all.interface_surfaces.clear();
         Ok(all)
     }
 

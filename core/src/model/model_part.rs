@@ -10,6 +10,7 @@ use super::entity_kind::Role;
 use super::entity_table::EntityTable;
 use super::fields::Fields;
 use super::geometries::Geometries;
+use super::interface_surface::InterfaceSurface;
 use super::nodes::Nodes;
 use super::owner::Owner;
 use super::process_info::ProcessInfo;
@@ -32,6 +33,10 @@ pub struct ModelPart {
     /// Slave nodes of interfaces: owners of unknowns beside the nodes.
     #[serde(default)]
     pub slave_nodes: SlaveNodes,
+    /// Surfaces of the interfaces of the present stage, for results. They are made anew when a stage is initialised, and are in no
+    /// saved run.
+    #[serde(skip)]
+    pub interface_surfaces: Vec<InterfaceSurface>,
     /// Elements as the mesh gives them.
     pub elements: EntityTable,
     /// Conditions as the mesh gives them.
@@ -199,6 +204,7 @@ impl ModelPart {
             name: self.name.clone(),
             nodes: self.nodes.pick(nodes),
             slave_nodes: self.slave_nodes.kept(&new_nodes),
+            interface_surfaces: Vec::new(),
             elements: self.elements.pick(elements, &new_nodes),
             conditions: self.conditions.pick(conditions, &new_nodes),
             geometries: Geometries::default(),

@@ -32,7 +32,9 @@ mod tests;
 pub use assign_to_entities::{AssignToEntities, Container, EntityComponent};
 pub use assign_to_nodes::{AssignToNodes, NodalComponent};
 pub use local_axes::LocalAxes;
-pub use output::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown, largest_results, usual_results};
+pub use output::{
+    OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown, ShownSurface, largest_results, usual_results,
+};
 pub use prescription::{Load, LoadCarrier, Prescription};
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;

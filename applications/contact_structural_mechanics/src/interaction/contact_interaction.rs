@@ -23,7 +23,7 @@ use crate::friction::slip;
 use crate::interface::{Bodies, SlaveIndex, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
 use crate::law::StepParameters;
-use crate::results::{heat, joins, pair_states, write_forces, write_states};
+use crate::results::{heat, joins, pair_states, write_forces};
 use crate::safeguards::{FreeBodies, InterfacesInContact, near_nodes};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::SlaveState;
@@ -115,8 +115,7 @@ impl ContactInteraction {
 
     /// Writes what is looked at of the present state.
     fn write_results(&self, part: &mut ModelPart) -> Result<()> {
-        let frictional = self.contact.setup.settings.formulation.frictional();
-        write_states(&mut part.nodes, &self.contact.states, frictional);
+        self.contact.write_states(part);
         // explicit steps are many and short: the forces would cost as much as the steps
         match self.contact.setup.settings.explicit {
             None => write_forces(part, &self.contact.pairing.as_entities()),
@@ -411,7 +410,7 @@ impl ActiveSet for ContactInteraction {
         let outer = self.loops.judge(part, &mut self.contact, &mut self.set)?;
         self.contact.publish(part);
         // Others that look at the converged state, as heat does, read pressures and slips.
-        write_states(&mut part.nodes, &self.contact.states, self.contact.setup.settings.formulation.frictional());
+        self.contact.write_states(part);
         Ok(outer)
     }
 

@@ -13,7 +13,7 @@ use crate::interface::{NormalPatches, Roles, SlaveIndex, add_contact_part, inter
 use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
-use crate::results::write_states;
+use crate::results::{InterfaceSurfaces, write_states};
 use crate::safeguards::settle_all;
 use crate::search::{GapCheck, assign_roles};
 use crate::settings::{ContactSettings, Setup};
@@ -31,6 +31,8 @@ pub(super) struct ContactState {
     holding: Holding,
     steps_since_search: usize,
     saved: SlaveStates,
+    /// The surfaces of the interfaces in results.
+    surfaces: InterfaceSurfaces,
     /// Notes and warnings for the user.
     pub messages: Vec<Diagnostic>,
 }
@@ -70,6 +72,7 @@ impl ContactState {
             holding: Holding::default(),
             steps_since_search: usize::MAX,
             saved: SlaveStates::default(),
+            surfaces: InterfaceSurfaces::default(),
         })
     }
 
@@ -89,6 +92,9 @@ impl ContactState {
         self.states.set_slaves(self.pairing.slaves());
         self.import_multipliers(part);
         self.states.export(&mut part.nodes);
+        let (interfaces, settings) = (&self.pairing.interfaces, &self.setup.settings);
+        let parts = (&settings.parts, &settings.slaves);
+        self.surfaces = InterfaceSurfaces::add(part, "contact", interfaces, &self.pairing.patches, parts);
     }
 
     /// Name of the sets of its slave nodes: that of the parts of its pairs.
@@ -158,6 +164,7 @@ impl ContactState {
         self.pairing.resume(self.holding.planes(), &self.setup, pairing)?;
         self.states.resume(states)?;
         self.pairing.set_states(&self.states);
+        self.surfaces.write_states(part, &self.states, self.setup.settings.formulation);
         Ok(())
     }
 
@@ -209,9 +216,16 @@ impl ContactState {
         let (states, resolution, overlaps) = (self.states.clone(), self.setup.resolution, self.pairing.overlaps());
         self.integrate(part);
         set.find_tractions(part, &mut self.states, &self.setup);
-        write_states(&mut part.nodes, &self.states, self.setup.settings.formulation.frictional());
+        self.write_states(part);
         (self.states, self.setup.resolution) = (states, resolution);
         self.pairing.set_overlaps(&overlaps);
+    }
+
+    /// Writes pressures, slips, gaps and states of slave nodes to columns of mesh nodes and of the surfaces of interfaces.
+    pub(super) fn write_states(&self, part: &mut ModelPart) {
+        let formulation = self.setup.settings.formulation;
+        write_states(&mut part.nodes, &self.states, formulation.frictional());
+        self.surfaces.write_states(part, &self.states, formulation);
     }
 
     /// Takes in pairs that were found within the step.

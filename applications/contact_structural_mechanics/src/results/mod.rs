@@ -1,7 +1,9 @@
-//! Results of contact: nodal columns and forces, and the pairs of a deck by name.
+//! Results of contact: nodal columns and forces, surfaces of interfaces, and the pairs of a deck by name.
 
+mod interface_surfaces;
 mod nodal_results;
 mod pair_states;
 
+pub(crate) use interface_surfaces::{InterfaceSurfaces, TiedColumns};
 pub(crate) use nodal_results::{write_forces, write_states};
 pub(crate) use pair_states::{PartsOfPairs, heat, joins, name, pair_states};

@@ -21,33 +21,17 @@ pub(crate) fn write_states(nodes: &mut Nodes, states: &SlaveStates, frictional: 
     if frictional {
         values.values_mut(&CONTACT_SLIP, 0).fill(0.0);
     }
-    let status = |state: &SlaveState| match state.contact() {
-        NodeState::Inactive => 0.0,
-        NodeState::Stick if frictional => 1.0,
-        NodeState::Stick | NodeState::Slip => 2.0,
-    };
-    let in_contact = |state: &SlaveState| state.contact() != NodeState::Inactive;
-    let traction = |state: &SlaveState| {
-        let tangential = if frictional { state.law.traction } else { [0.0; 3] };
-        let whole = add(scale(state.kinematics.normal, state.law.pressure), tangential);
-        if in_contact(state) { whole } else { [0.0; 3] }
-    };
-    let slip = |state: &SlaveState| match in_contact(state) && state.kinematics.area > 0.0 {
-        true => scale(state.kinematics.weighted_slip, state.kinematics.area.recip()),
-        false => [0.0; 3],
-    };
     // Of several slave nodes at a node: the state that is in contact most, the least gap, and pressures by area.
     for node in states.mesh_nodes() {
         let at = node as usize;
         let own = || states.at(node).map(|slave| &states[slave]);
-        values.values_mut(&CONTACT_STATUS, 0)[at] = own().map(status).fold(0.0, f64::max);
+        values.values_mut(&CONTACT_STATUS, 0)[at] = own().map(|state| status(state, frictional)).fold(0.0, f64::max);
         let gaps = own().map(|state| state.gap().unwrap_or(0.0));
         let least = gaps.clone().fold(f64::INFINITY, f64::min);
         values.values_mut(&CONTACT_GAP, 0)[at] = least;
-        let pressures =
-            own().map(|state| ([if in_contact(state) { -state.law.pressure } else { 0.0 }], state.kinematics.area));
+        let pressures = own().map(|state| ([pressure(state)], state.kinematics.area));
         values.values_mut(&CONTACT_PRESSURE, 0)[at] = combined(NodalCombination::Mean, pressures)[0];
-        let tractions = own().map(|state| (traction(state), state.kinematics.area));
+        let tractions = own().map(|state| (traction(state, frictional), state.kinematics.area));
         let traction = combined(NodalCombination::Mean, tractions);
         values.values_mut(&CONTACT_TRACTION, 0)[3 * at..][..3].copy_from_slice(&traction);
         if frictional {
@@ -55,6 +39,39 @@ pub(crate) fn write_states(nodes: &mut Nodes, states: &SlaveStates, frictional: 
             let slip = combined(NodalCombination::Mean, slips);
             values.values_mut(&CONTACT_SLIP, 0)[3 * at..][..3].copy_from_slice(&slip);
         }
+    }
+}
+
+fn in_contact(state: &SlaveState) -> bool {
+    state.contact() != NodeState::Inactive
+}
+
+/// CONTACT_STATUS of a slave node.
+pub(super) fn status(state: &SlaveState, frictional: bool) -> f64 {
+    match state.contact() {
+        NodeState::Inactive => 0.0,
+        NodeState::Stick if frictional => 1.0,
+        NodeState::Stick | NodeState::Slip => 2.0,
+    }
+}
+
+/// CONTACT_PRESSURE of a slave node (force per area).
+pub(super) fn pressure(state: &SlaveState) -> f64 {
+    if in_contact(state) { -state.law.pressure } else { 0.0 }
+}
+
+/// CONTACT_TRACTION of a slave node (force per area).
+pub(super) fn traction(state: &SlaveState, frictional: bool) -> [f64; 3] {
+    let tangential = if frictional { state.law.traction } else { [0.0; 3] };
+    let whole = add(scale(state.kinematics.normal, state.law.pressure), tangential);
+    if in_contact(state) { whole } else { [0.0; 3] }
+}
+
+/// CONTACT_SLIP of a slave node (length).
+pub(super) fn slip(state: &SlaveState) -> [f64; 3] {
+    match in_contact(state) && state.kinematics.area > 0.0 {
+        true => scale(state.kinematics.weighted_slip, state.kinematics.area.recip()),
+        false => [0.0; 3],
     }
 }
 

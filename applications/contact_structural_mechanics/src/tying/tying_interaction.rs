@@ -25,7 +25,7 @@ use crate::pairs::{
     FacetOperators, FacetPair, PairKey, TyingFormulation, check_pairs, condition_name, group_by_shapes,
     overlapping_pairs,
 };
-use crate::results::{joins, name};
+use crate::results::{InterfaceSurfaces, TiedColumns, joins, name};
 use crate::search::SearchSettings;
 use crate::slave_nodes::{SlaveTable, multiplier_columns, owners_name, set_name};
 
@@ -81,6 +81,8 @@ pub struct TyingInteraction {
     /// Changes with the constraints on multipliers.
     constrained: u64,
     steps_since_search: Option<usize>,
+    /// The surfaces of the interfaces in results.
+    surfaces: InterfaceSurfaces,
     messages: Vec<Diagnostic>,
 }
 
@@ -126,13 +128,14 @@ impl TyingInteraction {
             holding: Holding::default(),
             constrained: 0,
             steps_since_search: None,
+            surfaces: InterfaceSurfaces::default(),
         })
     }
 
     fn search(&mut self, part: &mut ModelPart) {
         let all = NormalPatches::new(part.nodes.len(), &self.interfaces, NodalNormals::ByFacets);
         all.on_planes(self.holding.planes().clone()).write(part);
-        self.find_normals(part);
+        self.normals = self.present_normals(part);
         let known = |key: &PairKey| self.pairs.contains_key(key);
         let normals = |key: PairKey, local: usize| self.normals[self.slaves_of(key)[local].place()];
         let found = overlapping_pairs(
@@ -147,14 +150,14 @@ impl TyingInteraction {
     }
 
     /// Normals of the slave nodes in the present configuration.
-    fn find_normals(&mut self, part: &ModelPart) {
+    fn present_normals(&self, part: &ModelPart) -> Vec<[f64; 3]> {
         let patches = NormalPatches::of_slaves(&self.patches, &self.interfaces, NodalNormals::ByFacets);
         let patches = patches.on_planes(self.holding.planes().clone());
         let unit = |sum: [f64; 3]| {
             let size = norm(sum);
             sum.map(|x| if size > 0.0 { x / size } else { 0.0 })
         };
-        self.normals = self.patches.all().map(|slave| unit(patches.sum(slave.0, &part.nodes.current))).collect();
+        self.patches.all().map(|slave| unit(patches.sum(slave.0, &part.nodes.current))).collect()
     }
 
     /// Slave nodes of the slave facet of a pair.
@@ -292,6 +295,28 @@ impl TyingInteraction {
         }
     }
 
+    /// Areas of the slave nodes over the pairs that are tied now: sums of the rows of D.
+    fn areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.patches.len()];
+        for (key, operators) in self.pairs.iter().filter(|_| !self.blocks.is_empty()) {
+            let rows = self.slaves_of(*key).iter().zip(&operators.d);
+            rows.for_each(|(slave, row)| areas[slave.place()] += row.iter().sum::<f64>());
+        }
+        areas
+    }
+
+    /// Brings the columns of the surfaces of interfaces up to date.
+    fn write_surfaces(&self, part: &mut ModelPart) {
+        let columns = TiedColumns {
+            multiplier: self.settings.formulation.multiplier,
+            owners: &self.table.owners,
+            normals: &self.present_normals(part),
+            areas: &self.areas(),
+            holds: !self.blocks.is_empty(),
+        };
+        self.surfaces.write_ties(part, &columns);
+    }
+
     fn mark(&self, part: &mut ModelPart, active: bool) {
         self.table.nodes.iter().for_each(|&node| part.nodes.flags.set(ACTIVE, node as usize, active));
     }
@@ -316,7 +341,10 @@ impl Interaction for TyingInteraction {
         if let Some((name, components)) = self.settings.formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }
-        self.find_normals(part);
+        self.normals = self.present_normals(part);
+        let parts = (&self.settings.parts, &self.settings.slaves);
+        self.surfaces = InterfaceSurfaces::add(part, "tie", &self.interfaces, &self.patches, parts);
+        self.write_surfaces(part);
         Ok(())
     }
 
@@ -355,6 +383,7 @@ impl Interaction for TyingInteraction {
 
     fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
         multiplier_columns::export(part, &self.table, &|_| 0.0, self.settings.formulation.multiplier);
+        self.write_surfaces(part);
         Ok(())
     }
 
@@ -378,6 +407,7 @@ impl Interaction for TyingInteraction {
             self.make_blocks(part)?;
         }
         (self.graph, self.constrained) = (graph, constrained);
+        self.write_surfaces(part);
         Ok(())
     }
 

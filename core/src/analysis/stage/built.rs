@@ -132,6 +132,7 @@ fn initialize(
         warn_of_unreferenced_nodes(part, system, &mut problems);
         warn_of_extensions(solver_settings, system, &mut problems);
     }
+    part.interface_surfaces.clear();
     for interaction in &mut system.interactions {
         problems.absorb(interaction.initialize(part));
     }

@@ -18,4 +18,4 @@ pub use gid::{GaussResult, GidKind, write_gid_mesh, write_gid_results_head, writ
 pub use pvtu::write_pvtu;
 pub use read::{read_pvd, read_vtu, vtu_of};
 pub use vtk::{VtkFormat, write_vtk};
-pub use vtu::{escape, write_piece, write_pvd, write_vtu};
+pub use vtu::{PvdFile, escape, write_piece, write_pvd, write_vtu};

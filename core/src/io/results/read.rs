@@ -19,17 +19,18 @@ const MOST: u64 = 1 << 34;
 const POINT_ID: &str = "KRATOS_NODE_ID";
 const CELL_IDS: [&str; 2] = ["KRATOS_ELEMENT_ID", "KRATOS_CONDITION_ID"];
 
-/// Times and files of a PVD file.
+/// Times and files of the mesh in a PVD file, without surfaces beside it.
 ///
 /// # Errors
 /// A file that cannot be read or is none.
 pub fn read_pvd(path: &Path) -> Result<Vec<(f64, PathBuf)>> {
     let text = fs::read_to_string(path).map_err(|error| unreadable(path, &error.to_string()))?;
+    let is_mesh = |tag: &&str| attribute(tag, "part").is_none_or(|part| part == "0");
     let of = |tag: &str| {
         let time = attribute(tag, "timestep")?.parse().ok()?;
         Some((time, path.with_file_name(unescape(attribute(tag, "file")?))))
     };
-    let tags = text.split('<').filter(|tag| tag.starts_with("DataSet "));
+    let tags = text.split('<').filter(|tag| tag.starts_with("DataSet ")).filter(is_mesh);
     tags.map(|tag| of(tag).ok_or_else(|| unreadable(path, "a step has no time or no file"))).collect()
 }
 

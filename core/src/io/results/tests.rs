@@ -133,8 +133,8 @@ fn vtu_reads_back_in_double_precision() {
         ("Int32", &[1, 0, 0, 0][..])
     );
 
-    write_pvd(&Ranks::default(), &folder.path().join("a.pvd"), &[(0.1, "a_1.vtu".into()), (0.2, "a_2.vtu".into())])
-        .unwrap();
+    let file = |time: f64, file: &str| PvdFile { time, part: 0, name: String::new(), file: file.into() };
+    write_pvd(&Ranks::default(), &folder.path().join("a.pvd"), &[file(0.1, "a_1.vtu"), file(0.2, "a_2.vtu")]).unwrap();
     let pvd = std::fs::read_to_string(folder.path().join("a.pvd")).unwrap();
     assert!(pvd.contains("<DataSet timestep=\"0.2\" part=\"0\" file=\"a_2.vtu\"/>"));
 }
@@ -213,6 +213,10 @@ fn what_was_written_is_read_and_what_is_damaged_refused() {
         let _ = vtu_of(&damaged);
     }
     assert!(vtu_of(&bytes[..bytes.len() / 2]).is_err());
-    write_pvd(&Ranks::default(), &folder.path().join("a.pvd"), &[(0.5, "a.vtu".to_owned())]).unwrap();
+    let file = |part: usize, name: &str, file: &str| PvdFile { time: 0.5, part, name: name.into(), file: file.into() };
+    let files = [file(0, "", "a.vtu"), file(1, "floor & wall", "a.interface_0.vtu")];
+    write_pvd(&Ranks::default(), &folder.path().join("a.pvd"), &files).unwrap();
+    let text = std::fs::read_to_string(folder.path().join("a.pvd")).unwrap();
+    assert!(text.contains("part=\"1\" name=\"floor &amp; wall\" file=\"a.interface_0.vtu\""), "{text}");
     assert_eq!(read_pvd(&folder.path().join("a.pvd")).unwrap(), [(0.5, path)]);
 }

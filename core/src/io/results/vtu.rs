@@ -5,6 +5,7 @@ use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::parallel;
 
 use super::dataset::{Column, Dataset, Values};
@@ -126,18 +127,32 @@ pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// Writes the PVD file of a series: a time and a file name, relative to the PVD file, each.
+/// A file of a PVD series.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PvdFile {
+    /// Its time.
+    pub time: f64,
+    /// 0 for the mesh, above for a surface beside it: ParaView opens the parts of one time together.
+    pub part: usize,
+    /// Name of a surface; empty for the mesh.
+    pub name: String,
+    /// Its name relative to the PVD file.
+    pub file: String,
+}
+
+/// Writes the PVD file of a series.
 ///
 /// # Errors
 /// [`crate::diagnostics::Error::System`] when the disk refuses.
-pub fn write_pvd(ranks: &Ranks, path: &Path, steps: &[(f64, String)]) -> Result<()> {
-    replace_file(ranks, path, |out| pvd(out, steps))
+pub fn write_pvd(ranks: &Ranks, path: &Path, files: &[PvdFile]) -> Result<()> {
+    replace_file(ranks, path, |out| pvd(out, files))
 }
 
-fn pvd(out: &mut impl Write, steps: &[(f64, String)]) -> io::Result<()> {
+fn pvd(out: &mut impl Write, files: &[PvdFile]) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>")?;
-    for (time, file) in steps {
-        writeln!(out, "    <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{}\"/>", escape(file))?;
+    for PvdFile { time, part, name, file } in files {
+        let name = if name.is_empty() { String::new() } else { format!(" name=\"{}\"", escape(name)) };
+        writeln!(out, "    <DataSet timestep=\"{time:?}\" part=\"{part}\"{name} file=\"{}\"/>", escape(file))?;
     }
     writeln!(out, "  </Collection>\n</VTKFile>")
 }

@@ -8,7 +8,7 @@ use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use crate::diagnostics::Result;
 use crate::io::Mark;
-use crate::io::results::{Dataset, VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
+use crate::io::results::{Dataset, PvdFile, VtkFormat, write_piece, write_pvd, write_pvtu, write_vtk, write_vtu};
 use crate::model::ModelPart;
 use crate::parameters::Settings;
 use crate::{register, registered_kind};
@@ -19,6 +19,9 @@ pub struct Shown<'a> {
     pub part: &'a ModelPart,
     /// Points, cells and columns; of several ranks what this one has.
     pub data: &'a Dataset,
+    /// Surfaces of interfaces beside the mesh; none where the deck does not ask for them, or the format has none
+    /// ([`OutputFormat::has_surfaces`]).
+    pub surfaces: &'a [ShownSurface],
     /// Folder of the files.
     pub folder: &'a Path,
     /// Name of the pictures of one part.
@@ -27,6 +30,22 @@ pub struct Shown<'a> {
     pub time: f64,
     /// Step or time in its name.
     pub label: &'a str,
+}
+
+/// The surface of an interface in one step. Every rank has it whole.
+pub struct ShownSurface {
+    /// Its place among the interfaces of the stage, from 0.
+    pub number: usize,
+    /// Its name.
+    pub name: String,
+    /// Points, facets and columns. Ids of points are those of mesh nodes, which several points may share.
+    pub data: Dataset,
+}
+
+/// Name of the surfaces of interfaces beside the pictures of a series. The dot sets it apart from the series of sub parts, whose paths
+/// are written with `_`.
+pub(super) fn surface_series(series: &str) -> String {
+    format!("{series}.interface")
 }
 
 /// Writes pictures.
@@ -39,6 +58,11 @@ pub trait OutputFormat: Send {
 
     /// Endings of its files, the first being that of each picture; those of an earlier run are removed before the first is written.
     fn endings(&self) -> &'static [&'static str];
+
+    /// Whether it writes the surfaces of interfaces; a deck that asks another format for them is refused.
+    fn has_surfaces(&self) -> bool {
+        false
+    }
 
     /// How its pictures are known.
     fn mark(&self) -> Mark {
@@ -87,8 +111,13 @@ struct Legacy(VtkFormat);
 
 impl OutputFormat for Legacy {
     fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
-        let path = shown.folder.join(format!("{}_0_{}.vtk", shown.series, shown.label));
+        let path = |series: &str| shown.folder.join(format!("{series}_0_{}.vtk", shown.label));
         let ranks = &shown.part.ranks;
+        for surface in shown.surfaces {
+            let series = format!("{}_{}", surface_series(shown.series), surface.number);
+            write_vtk(ranks, &path(&series), &surface.data, self.0)?;
+        }
+        let path = path(shown.series);
         if shown.part.share.is_some() {
             return write_vtk(ranks, &path, &shown.data.gathered(ranks), self.0);
         }
@@ -97,6 +126,10 @@ impl OutputFormat for Legacy {
 
     fn endings(&self) -> &'static [&'static str] {
         &["vtk"]
+    }
+
+    fn has_surfaces(&self) -> bool {
+        true
     }
 
     fn mark(&self) -> Mark {
@@ -108,8 +141,8 @@ impl OutputFormat for Legacy {
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(remote = "Self")]
 struct Vtu {
-    /// Time and file of every step written, by series.
-    series: BTreeMap<String, Vec<(f64, String)>>,
+    /// Files of every step written, by series.
+    series: BTreeMap<String, Vec<PvdFile>>,
 }
 
 stored_as_bytes!(Vtu);
@@ -157,14 +190,24 @@ impl OutputFormat for Vtu {
     }
 
     fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
-        let file = Self::write_file(shown)?;
+        let (ranks, time) = (&shown.part.ranks, shown.time);
+        let mut files = vec![PvdFile { time, part: 0, name: String::new(), file: Self::write_file(shown)? }];
+        for (at, surface) in shown.surfaces.iter().enumerate() {
+            let file = format!("{}_{}_{}.vtu", surface_series(shown.series), surface.number, shown.label);
+            write_vtu(ranks, &shown.folder.join(&file), &surface.data)?;
+            files.push(PvdFile { time, part: at + 1, name: surface.name.clone(), file });
+        }
         let steps = self.series.entry(shown.series.to_owned()).or_default();
-        steps.push((shown.time, file));
-        write_pvd(&shown.part.ranks, &shown.folder.join(format!("{}.pvd", shown.series)), steps)
+        steps.extend(files);
+        write_pvd(ranks, &shown.folder.join(format!("{}.pvd", shown.series)), steps)
     }
 
     fn endings(&self) -> &'static [&'static str] {
         &["vtu", "pvtu", "pvd"]
+    }
+
+    fn has_surfaces(&self) -> bool {
+        true
     }
 
     fn mark(&self) -> Mark {

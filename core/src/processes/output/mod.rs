@@ -22,11 +22,12 @@ mod point_output_process;
 mod points;
 mod quantity;
 mod save_restart_process;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 mod usual;
 mod vtk_output_process;
 
-pub use format::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown};
+pub use format::{OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown, ShownSurface};
 pub use picture::usual_results;
 pub use usual::largest_results;

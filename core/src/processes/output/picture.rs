@@ -110,7 +110,7 @@ fn dataset(part: &ModelPart, table: &EntityTable, nodes: &[u32], cells: &[u32], 
 /// The columns a deck asks for.
 pub(super) struct Picture {
     choice: CellChoice,
-    deformed: bool,
+    pub(super) deformed: bool,
     ids: bool,
     history: Vec<Quantity>,
     values: Vec<Quantity>,

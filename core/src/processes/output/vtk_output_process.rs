@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 
 use super::control::{OutputControl, Unit};
-use super::format::{OutputFormat, OutputFormatEntry, Shown};
+use super::format::{OutputFormat, OutputFormatEntry, Shown, ShownSurface, surface_series};
 use super::picture::Picture;
 use super::place::PartPath;
+use super::surfaces::surfaces;
 use crate::assembly::System;
-use crate::diagnostics::{Report, Result};
+use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::io::results::Dataset;
 use crate::io::{FileUse, remove_series};
 use crate::model::{Model, SubPart};
@@ -38,12 +39,15 @@ struct VtkOutput {
     postfix: String,
     decimals: usize,
     sub_parts: bool,
+    /// Place of the key that asks for the surfaces of interfaces; `None` where they are not written.
+    surfaces: Option<Place>,
 }
 
 /// The picture of a part at a time.
 struct Drawn {
     path: String,
     data: Dataset,
+    surfaces: Vec<ShownSurface>,
     time: f64,
     label: String,
 }
@@ -64,14 +68,21 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
     let format = require::<OutputFormatEntry>(format).map_err(|d| d.at(settings.key_place("file_format")))?;
     let in_folder = settings.get_bool("save_output_files_in_folder")?;
     let results = request.results;
+    let surfaces = settings.get_bool("interface_surfaces")?.then(|| settings.key_place("interface_surfaces"));
+    let (name, format, format_of_failure) = (format.name, (format.build)(settings)?, (format.build)(settings)?);
+    if let Some(place) = surfaces.as_ref().filter(|_| !format.has_surfaces()) {
+        let fact = format!("\"interface_surfaces\": files of the format \"{name}\" hold no surfaces of interfaces");
+        let remedy = "use vtu_output_process, or \"file_format\": \"vtu\"";
+        return Err(Diagnostic::error("no-interface-surfaces", fact).at(place.clone()).remedy(remedy).into());
+    }
     let folder = if in_folder { results.join(settings.get_str("output_path")?) } else { results.into() };
     Ok(Box::new(VtkOutput {
         part: PartPath::new(settings)?,
         control: OutputControl::new(settings, "")?,
         picture: Picture::new(settings, request.report)?,
         start: Vec::new(),
-        format: (format.build)(settings)?,
-        format_of_failure: (format.build)(settings)?,
+        format,
+        format_of_failure,
         folder,
         in_folder,
         clears: in_folder,
@@ -79,6 +90,7 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
         postfix: settings.get_str("custom_name_postfix")?.to_owned(),
         decimals,
         sub_parts: settings.get_bool("output_sub_model_parts")?,
+        surfaces,
     }))
 }
 
@@ -98,17 +110,22 @@ impl VtkOutput {
             Unit::Step => part.info.step.to_string(),
             Unit::Time => format!("{:.*}", self.decimals, part.info.time),
         };
-        let drawn = |selection: &SubPart, path: String| Drawn {
+        let drawn = |selection: &SubPart, path: String, surfaces: Vec<ShownSurface>| Drawn {
             path,
             data: self.picture.draw(part, system, selection).data,
+            surfaces,
             time: part.info.time,
             label: label.clone(),
         };
-        let mut all = vec![drawn(selection, self.part.path.clone())];
+        let surfaces = match self.surfaces {
+            Some(_) => surfaces(part, selection, self.picture.deformed),
+            None => Vec::new(),
+        };
+        let mut all = vec![drawn(selection, self.part.path.clone(), surfaces)];
         for (name, child) in selection.children.iter().filter(|_| self.sub_parts) {
             let is_here = !child.nodes.is_empty() || !child.elements.is_empty() || !child.conditions.is_empty();
             if part.ranks.any(is_here) {
-                all.push(drawn(child, format!("{}.{name}", self.part.path)));
+                all.push(drawn(child, format!("{}.{name}", self.part.path), Vec::new()));
             }
         }
         Ok(all)
@@ -117,14 +134,14 @@ impl VtkOutput {
     /// Writes pictures; those of an earlier run go first. Collective.
     fn write(&mut self, model: &Model, pictures: &[Drawn]) -> Result<()> {
         let (part, _) = self.part.find(model)?;
-        for Drawn { path, data, time, label } in pictures {
+        for Drawn { path, data, surfaces, time, label } in pictures {
             if self.clears {
                 part.ranks.on_root(|| {
                     [self.folder.clone(), self.folder_of_failure()].iter().try_for_each(|own| self.clear(own, path))
                 })?;
             }
             let (series, folder) = (self.series(path), &self.folder);
-            self.format.write(&Shown { part, data, time: *time, folder, series: &series, label })?;
+            self.format.write(&Shown { part, data, surfaces, time: *time, folder, series: &series, label })?;
         }
         Ok(())
     }
@@ -144,9 +161,11 @@ impl VtkOutput {
         format!("{}{}{}", self.prefix, path.replace('.', "_"), self.postfix)
     }
 
-    /// Removes the pictures that an earlier run has made of a part, so that none is taken for one of this run.
+    /// Removes the pictures that an earlier run has made of a part and of its interfaces, so that none is taken for one of this run.
     fn clear(&self, folder: &Path, path: &str) -> Result<()> {
-        remove_series(folder, &self.series(path), self.format.endings())
+        let series = self.series(path);
+        remove_series(folder, &series, self.format.endings())?;
+        remove_series(folder, &surface_series(&series), self.format.endings())
     }
 }
 
@@ -174,8 +193,14 @@ impl Process for VtkOutput {
     }
 
     fn check(&self, model: &Model, system: &System, warnings: &mut Report) -> Result<()> {
-        let (part, _) = self.part.find(model)?;
+        let (part, selection) = self.part.find(model)?;
         self.picture.check(part, system).into_iter().for_each(|problem| warnings.push(problem));
+        if let Some(place) = self.surfaces.as_ref().filter(|_| surfaces(part, selection, false).is_empty()) {
+            let fact = format!("\"interface_surfaces\": {} has no facets with slave nodes", self.part.path);
+            let remedy = "pairs of contact and ties by multipliers have surfaces, linear constraints have none";
+            let warning = Diagnostic::warning("no-interface-surfaces", format!("{fact}, and no surface is written"));
+            warnings.push(warning.at(place.clone()).remedy(remedy));
+        }
         Ok(())
     }
 
@@ -236,8 +261,11 @@ impl Process for VtkOutput {
 
     fn files(&self) -> Vec<FileUse> {
         let ending = self.format.endings()[0];
-        let series = self.folder.join(format!("{}.{ending}", self.series(&self.part.path)));
-        vec![FileUse::WritesSeries(series, self.format.mark())]
+        let own = self.series(&self.part.path);
+        let surfaces = self.surfaces.is_some().then(|| surface_series(&own));
+        let file_use =
+            |series: String| FileUse::WritesSeries(self.folder.join(format!("{series}.{ending}")), self.format.mark());
+        [Some(own), surfaces].into_iter().flatten().map(file_use).collect()
     }
 
     fn outputs(&self) -> Vec<PathBuf> {
