@@ -68,8 +68,8 @@ register_absent! { ConditionEntry ["MovingLoad"] =>
 register_absent! { ProcessEntry ["contact_remesh", "mmg_process", "metric_", "hessian_"] =>
 "meshes are not changed during a run: refine the mesh file, or where contact is expected" }
 
-register_absent! { ProcessEntry ["save_restart", "load_restart"] =>
-"states are not saved: run stages one after another in one deck (\"orchestrator\" and \"stages\")" }
+register_absent! { ProcessEntry ["load_restart"] =>
+"`zelus run DECK --resume` restarts a run from the files of save_restart_process" }
 
 register_absent! { ProcessEntry ["set_moving_load"] =>
 "use LineLoadCondition with a load that is a function of x and t" }
