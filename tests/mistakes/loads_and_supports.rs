@@ -1,4 +1,4 @@
-//! Loads that no condition takes, contact that no step meets, and supports that something else would take the place of.
+//! Loads that no condition takes, contact that no step meets or that one solve cannot find, and supports that something else would take the place of.
 
 use serde_json::json;
 
@@ -75,4 +75,16 @@ fn a_direction_that_leaves_the_plane_is_named() {
     std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
     let said = said(&zelus(scratch.path(), &["check", DECK]));
     assert!(said.contains("warning[acts-on-nothing]") && said.contains("out of the plane, which is lost"), "{said}");
+}
+
+#[test]
+fn contact_in_a_linear_analysis_is_refused() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    deck["solver_settings"]["analysis_type"] = json!("linear");
+    std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+    let output = zelus(scratch.path(), &["run", DECK]);
+    let said = said(&output);
+    assert!(output.status.code() == Some(2) && said.contains("error[linear-contact]"), "{said}");
 }

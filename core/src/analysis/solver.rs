@@ -270,6 +270,8 @@ impl SolverSettings {
         let earlier = part.info.solver;
         part.info.solver = SolverInfo {
             explicit: self.definition.explicit,
+            linear: !self.definition.explicit
+                && self.settings.node().get("analysis_type").and_then(Node::as_str) == Some("linear"),
             incomplete: !self.is_whole,
             unknown_load_factor: earlier.unknown_load_factor
                 || strategy.is_some_and(|strategy| strategy.unknown_load_factor),

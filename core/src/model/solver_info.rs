@@ -9,6 +9,8 @@ use super::multiplier_request::MultiplierRequest;
 pub struct SolverInfo {
     /// Whether steps are explicit.
     pub explicit: bool,
+    /// Whether each step is one linear solve without iteration.
+    pub linear: bool,
     /// Whether mesh or settings have errors, so that the part is not what the deck asks for: only other errors are looked for.
     pub incomplete: bool,
     /// Whether the load factor is an unknown, as with arc length.

@@ -12,7 +12,7 @@ use zelus_core::{Error, Result};
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
-use super::interface_settings::{check_positive, check_search, segmentation, without_computing_part};
+use super::interface_settings::{check_analysis, check_positive, check_search, segmentation, without_computing_part};
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaSettings};
 use crate::compatibility::{Refusal, Use, refusal};
 use crate::friction::FrictionSettings;
@@ -320,6 +320,7 @@ fn explicit_penalty(settings: &Settings, request: &ProcessRequest<'_>) -> Result
 
 /// Refuses what the formulation cannot be used for.
 fn check_use(part: &ModelPart, formulation: &Formulation, settings: &Settings) -> Result<()> {
+    check_analysis(settings, part)?;
     let key = "alternative_formulations.axisymmetric";
     let wanted = Use {
         dimension: part.info.domain_size,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::did_you_mean;
+use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Defaults, Settings};
 
 use crate::mortar::{IntegrationOrder, SegmentationSettings};
@@ -58,6 +59,19 @@ pub(super) fn check_search(settings: &Settings) -> Result<()> {
 /// Accepts the name of a computed part, which decks of earlier Kratos versions give.
 pub(super) fn without_computing_part(defaults: Defaults) -> Defaults {
     defaults.dropped("computing_model_part_name", "the whole root part is computed")
+}
+
+/// Contact needs iterations: one solve cannot decide which nodes are active.
+///
+/// # Errors
+/// A solver whose `analysis_type` is `linear`.
+pub(super) fn check_analysis(settings: &Settings, part: &ModelPart) -> Result<()> {
+    if !part.info.solver.linear {
+        return Ok(());
+    }
+    let fact = "\"analysis_type\" of the solver is \"linear\", and one solve cannot decide which nodes are in contact";
+    let problem = settings.error("contact_type", "linear-contact", fact);
+    Err(problem.remedy("set \"analysis_type\" to \"non_linear\"").into())
 }
 
 /// Every pair needs a slave side.

@@ -10,7 +10,7 @@ use zelus_core::register;
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
-use super::interface_settings::{check_search, check_slaves, segmentation, without_computing_part};
+use super::interface_settings::{check_analysis, check_search, check_slaves, segmentation, without_computing_part};
 use crate::friction::FrictionSettings;
 use crate::mpc::{MpcInteraction, MpcKind, MpcSettings, Weights, mpc_contact_type, updates_each_iteration};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
@@ -43,7 +43,11 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let (kind, pure_slip) = mpc_contact_type(&settings)?;
     check_search(&settings)?;
     check_slaves(&settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
-    let info = &request.model.root_mut(&whole.model_part_name)?.info;
+    let part = request.model.root_mut(&whole.model_part_name)?;
+    if kind != MpcKind::MeshTying {
+        check_analysis(&settings, part)?;
+    }
+    let info = &part.info;
     let (solver, update_each_iteration) = (ContactSolverSettings::of(info), updates_each_iteration(info));
     let law = friction_law(&settings, kind == MpcKind::Frictional, request)?;
     let chosen = MpcSettings {
