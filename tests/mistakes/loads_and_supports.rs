@@ -1,4 +1,4 @@
-//! Loads that no condition takes, contact that no step meets or that one solve cannot find, and supports that something else would take the place of.
+//! Loads that no condition takes, slaves that face no master, contact that no step meets or that one solve cannot find, and supports that something else would take the place of.
 
 use serde_json::json;
 
@@ -87,4 +87,30 @@ fn contact_in_a_linear_analysis_is_refused() {
     let output = zelus(scratch.path(), &["run", DECK]);
     let said = said(&output);
     assert!(output.status.code() == Some(2) && said.contains("error[linear-contact]"), "{said}");
+}
+
+#[test]
+fn slaves_of_a_tie_that_face_no_master_are_named() {
+    let scratch = scratch_copy(&root().join("tests/cases/mesh_tying/quadrilaterals"));
+    let whole = said(&zelus(scratch.path(), &["run", DECK]));
+    assert!(!whole.contains("slaves-not-tied"), "all face a master: {whole}");
+    // The upper body, nodes 13 to 27, is moved along the interface by half of its width.
+    let path = scratch.path().join("mesh.mdpa");
+    let mesh = std::fs::read_to_string(&path).expect("the mesh");
+    let moved = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        let [id, x, y, "0"] = words[..] else { return line.to_owned() };
+        match (id.parse::<usize>(), x.parse::<f64>(), y.parse::<f64>()) {
+            (Ok(id), Ok(x), Ok(y)) if (13..=27).contains(&id) => format!("{id} {} {} 0", x + 0.5, y + 0.125),
+            _ => line.to_owned(),
+        }
+    };
+    let (nodes, rest) = mesh.split_once("End Nodes").expect("nodes");
+    let nodes: Vec<String> = nodes.lines().map(moved).collect();
+    std::fs::write(&path, format!("{}\nEnd Nodes{rest}", nodes.join("\n"))).expect("a file");
+    let said = said(&zelus(scratch.path(), &["run", DECK]));
+    assert!(
+        said.contains("warning[slaves-not-tied]") && said.contains("slave nodes of the tie face no master"),
+        "{said}"
+    );
 }

@@ -147,6 +147,31 @@ impl TyingInteraction {
             &known,
         );
         self.pairs.extend(found.into_iter().map(|pair| (pair.key, pair.operators)));
+        if self.steps_since_search.is_none() {
+            self.messages.extend(self.untied(part));
+        }
+    }
+
+    /// Warning of slave nodes that face no master.
+    fn untied(&self, part: &ModelPart) -> Option<Diagnostic> {
+        let mut tied = vec![false; self.patches.len()];
+        for key in self.pairs.keys() {
+            self.slaves_of(*key).iter().for_each(|slave| tied[slave.place()] = true);
+        }
+        let without: Vec<u32> = self
+            .patches
+            .all()
+            .filter(|slave| !tied[slave.place()])
+            .map(|slave| self.patches.mesh_node(slave))
+            .collect();
+        let first = part.nodes.ids[*without.first()? as usize];
+        let fact = format!(
+            "{} of {} slave nodes of the tie face no master and are not tied, the first is node {first}",
+            without.len(),
+            tied.len()
+        );
+        let remedy = "end the slave part where the master ends, or check that both surfaces meet";
+        Some(Diagnostic::warning("slaves-not-tied", fact).remedy(remedy))
     }
 
     /// Normals of the slave nodes in the present configuration.
