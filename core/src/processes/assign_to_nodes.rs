@@ -128,7 +128,9 @@ impl AssignToNodes {
         self.target.selection(&part.tree)?.nodes.iter().for_each(|&node| selected[node as usize] = true);
         let table = &part.conditions;
         let takes = |at: usize| {
-            let kind_takes = table.kinds[at].loads.is_none_or(|own| loads.iter().any(|load| own.contains(load)));
+            // A plain condition stands for whatever the solver makes of it.
+            let of_kind = table.kinds[at].loads.filter(|own| !own.is_empty());
+            let kind_takes = of_kind.is_none_or(|own| loads.iter().any(|load| own.contains(load)));
             kind_takes && table.nodes(at as u32).iter().any(|&node| selected[node as usize])
         };
         Ok((0..table.len()).any(takes))
