@@ -33,7 +33,7 @@ impl Place {
 
     /// Whether it is an option of the command line.
     pub fn is_of_command_line(&self) -> bool {
-        self.file.starts_with(SET)
+        self.file.to_string_lossy().starts_with(SET)
     }
 
     /// A whole file.

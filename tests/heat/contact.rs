@@ -447,9 +447,18 @@ fn barbers_rod_comes_to_rest_in_one_step() {
 fn both_together_need_newtons_iteration() {
     let scratch = scratch_copy(&root().join("examples/barber_rod"));
     change(scratch.path(), "AtRest.json", "\"non_linear\"", "\"linear\"");
-    let output = zelus(scratch.path(), &["run", "AtRest.json"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("\"monolithic\""), "{}", said(&output));
+    let refused = |words: &str| {
+        let output = zelus(scratch.path(), &["run", "AtRest.json"]);
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).contains(words), "{}", said(&output));
+    };
+    refused("error[linear-contact]");
+    // Without contact, the coupling itself.
+    let path = scratch.path().join("AtRest.json");
+    let mut deck = read_json(&path).expect("the deck");
+    deck["processes"]["contact"] = json!([]);
+    std::fs::write(&path, deck.to_string()).expect("a file");
+    refused("\"monolithic\"");
 }
 
 /// A bar that grows by the heat of its friction between fixed ends settles at p₀/(1 - V), V the speed over the critical one, where that is below 1.

@@ -53,8 +53,8 @@ const CHANGEABLE: [&str; 6] = ["Mutex", "RwLock", "Cell<", "Lock<", "Atomic", "s
 
 /// Globals that hold no state of a run: what is read or computed once and never changes, the lock of a library that
 /// takes one caller at a time, and how deep a reader of states within states is on its thread.
-const CONSTANT: [&str; 9] =
-    ["DEPTH", "VARIABLES", "FLAGS", "RATES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS", "NAMES"];
+const CONSTANT: [&str; 10] =
+    ["DEPTH", "VARIABLES", "FLAGS", "RATES", "RANGES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS", "NAMES"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
