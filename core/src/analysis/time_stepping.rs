@@ -14,7 +14,7 @@ const MOST_COUNTED: usize = 1_000_000;
 /// Steps that no run comes to the end of.
 const MOST_STEPS: f64 = 1e10;
 
-/// Length of a step, in lengths of the run, beyond which a deck asks for one step whatever its length.
+/// Length of a step, in lengths of the run, beyond which a deck asks for one whole step: steady states of transient heat by a long step.
 const ONE_STEP: f64 = 1e4;
 
 /// Steps of the deck: their lengths, and whether the last one ends at `end_time`.
@@ -31,7 +31,8 @@ const MEANT: f64 = 0.5 + 1e-6;
 /// The end of a run whose steps do not add up to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LastStep {
-    /// It is whole where at least half of it is left; it is shortened otherwise.
+    /// It is whole where at least half of it is left, or where it is the only one and far longer than the run; it is shortened
+    /// otherwise.
     Automatic,
     /// The last step ends there; what is round-off is no step.
     Shortened,
@@ -90,7 +91,9 @@ impl TimeStepping {
             LastStep::WhileBelow => whole,
             _ if beyond.abs() <= round_off => (end, false),
             LastStep::Whole => whole,
-            LastStep::Automatic if beyond <= MEANT * length => whole,
+            LastStep::Automatic if beyond <= MEANT * length || time <= start && length > ONE_STEP * (end - start) => {
+                whole
+            }
             LastStep::Shortened if beyond <= 0.0 => whole,
             LastStep::Automatic | LastStep::Shortened => (end, true),
         }
@@ -106,9 +109,7 @@ impl TimeStepping {
             return Some(Diagnostic::error("time-step", fact).remedy("write a longer \"time_step\""));
         }
         let (_, is_shortened) = self.target(start, length, [start, end]);
-        // Decks that want one step write a length that nobody takes for a time.
-        let is_meant = length > ONE_STEP * (end - start);
-        (is_shortened && !is_meant).then(|| {
+        is_shortened.then(|| {
             let fact =
                 format!("\"time_step\" is {length}, and the run from {start} to {end} is shorter: one step ends there");
             let remedy = "write a time step that fits between \"start_time\" and \"end_time\"";
@@ -231,7 +232,7 @@ mod tests {
         let thirds = ends(r#"{ "time_step": 0.3 }"#, 1.0);
         assert_eq!((thirds.len(), thirds[3]), (4, 1.0));
         for (step, end, last) in
-            [(1.1, 1.0, 1.1), (1e6, 1.0, 1.0), (10.0, 1.0, 1.0), (1.0, 3.99, 4.0), (0.02, 0.19, 0.2), (0.7, 1.0, 1.0)]
+            [(1.1, 1.0, 1.1), (1e6, 1.0, 1e6), (10.0, 1.0, 1.0), (1.0, 3.99, 4.0), (0.02, 0.19, 0.2), (0.7, 1.0, 1.0)]
         {
             let found = ends(&format!("{{ \"time_step\": {step} }}"), end);
             assert!((found[found.len() - 1] - last).abs() < 1e-12 * last, "{step} to {end}: {found:?}");
