@@ -166,10 +166,6 @@ fn interaction(
     let part = request.model.root_mut(&whole.model_part_name)?;
     let known = check_parts(part, &whole.contact_model_part, &whole.assume_master_slave);
     problems.absorb(known.map_err(|error| error.at(&settings.place())));
-    problems.absorb(check_positive(
-        settings,
-        &["advance_ALM_parameters.stiffness_factor", "advance_ALM_parameters.penalty_scale_factor"],
-    ));
     problems.absorb(check_search(settings));
     problems.absorb(segmentation(settings));
     problems.finish()?;
