@@ -6,6 +6,7 @@ mod balance;
 mod blocks;
 #[path = "../support/blocks_of_case.rs"]
 mod blocks_of_case;
+mod body_balance;
 mod condensation;
 mod corners;
 mod free_bodies;

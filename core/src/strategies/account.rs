@@ -18,7 +18,7 @@ const INTERACTIONS: usize = 2;
 const REACTIONS: usize = 4;
 
 /// Forces over all unknowns, by kind.
-type Forces = [Vec<f64>; KINDS];
+pub(super) type Forces = [Vec<f64>; KINDS];
 
 /// A converged state that is not accepted yet.
 #[derive(Debug, Clone, Default)]
@@ -82,6 +82,11 @@ impl Account {
         };
         self.pending = Some(pending);
         Ok(balance)
+    }
+
+    /// Forces of the converged state whose balance was taken last, by kind; `None` once it is accepted.
+    pub(super) fn pending_forces(&self) -> Option<&Forces> {
+        self.pending.as_ref().map(|pending| &pending.forces)
     }
 
     /// The step is accepted.

@@ -241,9 +241,10 @@ impl ArcLength {
             if verdict.converged && change.count() == 0 {
                 self.newton.keep_reactions(part, system, &residual);
                 let more: Vec<f64> = load.iter().map(|q| (factor - 1.0) * q).collect();
-                self.newton.keep_balance(part, system, &residual, Some(&more))?;
-                self.pending = Some((factor, step, iteration));
-                return Ok((records, None));
+                if self.newton.keep_balance(part, system, &residual, &references, Some(&more))?.is_none() {
+                    self.pending = Some((factor, step, iteration));
+                    return Ok((records, None));
+                }
             }
         }
         if let Some([_, radius]) = &mut self.radius {

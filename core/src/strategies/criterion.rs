@@ -183,6 +183,11 @@ impl Verdict {
 pub trait ConvergenceCriterion: Send {
     /// Measures and judges.
     fn judge(&self, measures: &Measures<'_>) -> Verdict;
+
+    /// Tolerance of forces out of balance, relative to forces; `None` where forces are not measured.
+    fn residual_tolerance(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// What a criterion is made from.
@@ -218,6 +223,11 @@ impl ConvergenceCriterion for Pair {
             if self.both { first.converged && second.converged } else { first.converged || second.converged };
         first.checks.extend(second.checks);
         first
+    }
+
+    fn residual_tolerance(&self) -> Option<f64> {
+        let [first, second] = [&self.first, &self.second].map(|criterion| criterion.residual_tolerance());
+        if self.both { first.or(second) } else { None }
     }
 }
 

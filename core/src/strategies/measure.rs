@@ -156,6 +156,10 @@ impl ConvergenceCriterion for Measure {
     fn judge(&self, measures: &Measures<'_>) -> Verdict {
         Verdict::all(vec![self.check(measures)])
     }
+
+    fn residual_tolerance(&self) -> Option<f64> {
+        (self.form == Form::Residual).then_some(self.tolerance.relative)
+    }
 }
 
 #[cfg(test)]

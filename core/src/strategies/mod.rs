@@ -7,6 +7,7 @@
 mod account;
 mod arc_length;
 mod balance;
+mod body_balance;
 mod bdf_scheme;
 mod bossak_scheme;
 mod builder;

@@ -19,6 +19,7 @@ pub(super) use references::References;
 
 use super::account::Account;
 use super::balance::Balance;
+use super::body_balance::{Bodies, Imbalance};
 use super::condensing;
 use super::criterion::{ConvergenceCriterion, Measures, Verdict};
 use super::gathered::Gathered;
@@ -38,6 +39,9 @@ use crate::model::ModelPart;
 /// Nodes that a message of a failure describes.
 const DESCRIBED: usize = 4;
 
+/// Largest share of the forces on a body that may be out of balance, for criteria that measure no residual.
+const BALANCE_TOLERANCE: f64 = 1e-4;
+
 /// Value of the step data: the largest energy that bodies in motion have had.
 pub const ENERGY_OF_MOTION: &str = "ENERGY_OF_MOTION";
 
@@ -56,6 +60,8 @@ pub struct NewtonSettings {
     pub reactions_of_constraints: bool,
     /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
+    /// Whether an iteration goes on until the forces on each body are in balance; else the run is warned of those that are not.
+    pub requires_balance: bool,
     /// How much of an increment is taken; all of it when `None`.
     pub line_search: Option<LineSearch>,
     /// The same for steps that have failed, where they may be tried again so.
@@ -88,6 +94,10 @@ pub struct NewtonRaphson {
     pub(super) account: Account,
     /// Balance of the step that has just converged.
     pub(super) balance: Option<Balance>,
+    /// Bodies of the part, once a state has converged.
+    bodies: Option<Bodies>,
+    /// Whether the run has been warned of bodies out of balance.
+    warned_of_balance: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -242,6 +252,8 @@ impl NewtonRaphson {
             messages: Vec::new(),
             account: Account::default(),
             balance: None,
+            bodies: None,
+            warned_of_balance: false,
         }
     }
 
@@ -263,20 +275,53 @@ impl NewtonRaphson {
             Some(super::owned_rows::OwnedRows::new(self.assembler.ranks(), communicator, settings, condensing));
     }
 
-    /// Keeps the balance of a converged state; `more` are loads that the assembler does not know of. Collective.
+    /// Keeps the balance of a converged state; `more` are loads that the assembler does not know of. Gives the body that is out
+    /// of balance where the settings require balance: such a state must not be accepted. Collective.
     pub(super) fn keep_balance(
         &mut self,
         part: &ModelPart,
         system: &System,
         residual: &[f64],
+        references: &References,
         more: Option<&[f64]>,
-    ) -> Result<()> {
+    ) -> Result<Option<Imbalance>> {
         let start = Instant::now();
         let inertia = self.scheme.inertia(part, &system.dofs);
         let balance = self.account.balance(part, system, &mut self.assembler, residual, inertia.as_ref(), more)?;
         self.balance = Some(balance);
+        let imbalance = self.imbalance(part, system, residual, references);
         self.phases.since("balance", start);
-        Ok(())
+        match imbalance {
+            Some(imbalance) if self.settings.requires_balance => {
+                self.balance = None;
+                Ok(Some(imbalance))
+            }
+            Some(imbalance) => {
+                if !std::mem::replace(&mut self.warned_of_balance, true) {
+                    let remedy = "lower \"residual_relative_tolerance\", or set \"check_body_balance\" to true, which iterates on";
+                    let fact = format!("step {}: {}", part.info.step, imbalance.fact());
+                    self.messages.push(Diagnostic::warning("out-of-balance", fact).remedy(remedy));
+                }
+                Ok(None)
+            }
+            None => Ok(None),
+        }
+    }
+
+    /// The body that is farthest out of balance in the state whose balance was taken last; collective.
+    fn imbalance(
+        &mut self,
+        part: &ModelPart,
+        system: &System,
+        residual: &[f64],
+        references: &References,
+    ) -> Option<Imbalance> {
+        let forces = self.account.pending_forces()?;
+        let bodies = self.bodies.get_or_insert_with(|| Bodies::of(part));
+        let tolerance = self.criterion.residual_tolerance().unwrap_or(BALANCE_TOLERANCE);
+        let balanced = self.assembler.equations().balanced(residual);
+        let start = references.start.first()?;
+        bodies.imbalance(part, system, &self.assembler, [&balanced, start], forces, tolerance)
     }
 
     /// Notes the energy of the present state where it is the largest so far.

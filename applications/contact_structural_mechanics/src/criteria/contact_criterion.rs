@@ -40,6 +40,10 @@ impl ConvergenceCriterion for ContactCriterion {
         }
         Verdict::all(checks)
     }
+
+    fn residual_tolerance(&self) -> Option<f64> {
+        self.primary.residual_tolerance()
+    }
 }
 
 fn single(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Result<Box<dyn ConvergenceCriterion>> {

@@ -185,6 +185,10 @@ impl ConvergenceCriterion for FrictionalCriterion {
         }
         Verdict::all(checks)
     }
+
+    fn residual_tolerance(&self) -> Option<f64> {
+        self.primary.residual_tolerance()
+    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use crate::communication::Ranks;
 use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, Outer, SetChange};
 use crate::model::ModelPart;
+use crate::strategies::body_balance::Imbalance;
 use crate::strategies::contraction::{contracts, swings};
 use crate::strategies::criterion::Check;
 use crate::strategies::linear_solve::{Failed, Solved};
@@ -44,6 +45,8 @@ struct Step {
     relaxed: Option<f64>,
     /// Why the last search in a converged state found more.
     widened: Option<String>,
+    /// The body that was out of balance in the last state that met the criterion.
+    imbalance: Option<Imbalance>,
     /// The last iteration it may take, and the last when it converges steadily.
     last: usize,
     most: usize,
@@ -56,8 +59,9 @@ impl Step {
         let missing = |check: &Check| {
             (check.ratio_tolerance / check.ratio).max(check.absolute_tolerance / check.absolute).min(1.0)
         };
+        let of_body = self.imbalance.as_ref().map_or(1.0, |own| own.tolerance / own.ratio);
         let last = self.records.last();
-        last.map_or(0.0, |record| LEFT * record.checks.iter().map(missing).fold(1.0, f64::min))
+        last.map_or(0.0, |record| LEFT * record.checks.iter().map(missing).fold(of_body, f64::min))
     }
 }
 
@@ -95,13 +99,20 @@ impl NewtonRaphson {
                 Turn::Failed(why) => return Ok((step.records, Some(why))),
                 Turn::Converged => {
                     self.keep_reactions(part, system, &step.residual);
-                    self.keep_balance(part, system, &step.residual, None)?;
-                    return Ok((step.records, None));
+                    step.imbalance = self.keep_balance(part, system, &step.residual, &step.references, None)?;
+                    if step.imbalance.is_none() {
+                        return Ok((step.records, None));
+                    }
+                    // One solve does not balance what is nonlinear.
+                    if self.settings.linear {
+                        step.last = self.settings.max_iteration;
+                    }
                 }
             }
         }
         let failure = self.explain(part, system, &step.records, &step.residual);
-        let failure = step.widened.iter().fold(failure, |failure, why| format!("{failure}; {why}"));
+        let imbalance = step.imbalance.as_ref().map(Imbalance::fact);
+        let failure = step.widened.iter().chain(&imbalance).fold(failure, |failure, why| format!("{failure}; {why}"));
         self.keep_reactions(part, system, &step.residual);
         Ok((step.records, Some(failure)))
     }
@@ -147,6 +158,7 @@ impl NewtonRaphson {
             relaxation: relaxation(&system.interactions),
             relaxed: None,
             widened: None,
+            imbalance: None,
             last: self.allowed().0,
             most: self.allowed().1,
         })
