@@ -20,9 +20,11 @@ struct Bars {
     across: [usize; 2],
     /// Temperature of the first bar's far end.
     hot: f64,
+    /// Growth of the gap across the bars.
+    slope: f64,
 }
 
-const PLANE: Bars = Bars { space: 2, simplices: false, gap: 0.0, angle: 0.0, across: [2, 3], hot: 400.0 };
+const PLANE: Bars = Bars { space: 2, simplices: false, gap: 0.0, angle: 0.0, across: [2, 3], hot: 400.0, slope: 0.0 };
 
 impl Bars {
     fn mesh(&self) -> Mesh {
@@ -31,7 +33,8 @@ impl Bars {
         for (at, name) in ["First", "Second"].into_iter().enumerate() {
             let begin = if at == 0 { 0.0 } else { LENGTHS[0] + self.gap };
             let place = |x: [f64; 3]| {
-                let (along, up) = (begin + LENGTHS[at] * x[0], x[1]);
+                let length = LENGTHS[at] - if at == 0 { self.slope * x[1] } else { 0.0 };
+                let (along, up) = (begin + length * x[0], x[1]);
                 [cos * along - sin * up, sin * along + cos * up, x[2]]
             };
             let across = self.across[at];
@@ -173,6 +176,50 @@ fn gas_conducts_across_a_gap() {
     let laws = json!([{"law": "gas", "conductivity": 0.5, "jump_distance": 0.01},
         {"law": "constant", "conductance": 1e3}]);
     check(&Bars { gap: 0.04, ..PLANE }, &laws, series(0.05 / 0.5));
+}
+
+/// Heat that supports feed and take up where the bars themselves have next to no resistance; nothing is said of their temperature
+/// at the start.
+fn through_the_gap(bars: &Bars, laws: &Value) -> [f64; 2] {
+    let mut deck = bars.deck(laws);
+    deck["processes"]["list"].as_array_mut().expect("processes").remove(0);
+    deck["solver_settings"].as_object_mut().expect("settings").remove("residual_relative_tolerance");
+    let scratch = tempfile::tempdir().expect("a scratch folder");
+    bars.write(scratch.path(), &deck);
+    change(&scratch.path().join("heat.json"), |materials| {
+        for own in materials["properties"].as_array_mut().expect("materials") {
+            own["Material"]["Variables"]["CONDUCTIVITY"] = json!(1e9);
+        }
+    });
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let results = Results::read(&scratch.path().join("results.json")).expect("results");
+    fed(&results, results.len() - 1)
+}
+
+#[test]
+fn gas_conducts_across_a_wedge_on_meshes_of_any_size() {
+    let laws = json!([{"law": "gas", "conductivity": 1.0, "jump_distance": 1e-9}]);
+    // ANALYTIC: ∫ k ΔT/g dy with the gap g = 0.05 + 0.2 y; the Gauss rule of four facets is off by 1e-3.
+    let exact = 100.0 / 0.2 * 5.0_f64.ln();
+    for (across, tolerance) in [(4, 2e-3), (12, 1e-4), (48, 1e-5)] {
+        let bars = Bars { gap: 0.05, slope: 0.2, across: [across, across + 1], ..PLANE };
+        let [enters, leaves] = through_the_gap(&bars, &laws);
+        assert!((enters - exact).abs() < tolerance * exact, "{across}: {enters} {exact}");
+        assert!((enters - leaves).abs() < 1e-5 * exact, "{across}: {enters} {leaves}");
+    }
+}
+
+#[test]
+fn thin_sheets_that_radiate_are_in_balance() {
+    let laws = json!([{"law": "radiation", "emissivity_of_slave": 1.0, "emissivity_of_master": 1.0}]);
+    // ANALYTIC: σ (T₁⁴ − T₂⁴); 1e-5 covers the tolerance of the residual and the resistance of the bars.
+    let exact = 5.67e-8 * (400.0_f64.powi(4) - 300.0_f64.powi(4));
+    let [enters, leaves] = through_the_gap(&Bars { gap: 0.04, ..PLANE }, &laws);
+    assert!(
+        (enters - exact).abs() < 1e-5 * exact && (leaves - exact).abs() < 1e-5 * exact,
+        "{enters} {leaves} {exact}"
+    );
 }
 
 #[test]

@@ -47,8 +47,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         return Err(problem.remedy("give both, for sliding across the model, or neither").into());
     }
     let root = settings.get_str("model_part_name")?.to_owned();
+    let across = laws.iter().any(|law| law.acts_apart());
     let chosen = Chosen {
-        surfaces: FacingSurfaces::new(&settings, request.model.root_mut(&root)?, true)?,
+        surfaces: FacingSurfaces::new(&settings, request.model.root_mut(&root)?, true, across)?,
         interval: Interval::from_node(settings.get("interval")?)?,
         laws: laws.into(),
         touching: settings.get_positive("touching_gap")?,

@@ -140,7 +140,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let root = settings.get_str("model_part_name")?.to_owned();
     let part = request.model.root_mut(&root)?;
     let reading = Reading {
-        surfaces: FacingSurfaces::new(&settings, part, false)?,
+        surfaces: FacingSurfaces::new(&settings, part, false, false)?,
         speed: speed.map(ScalarValue::from_node).transpose()?,
         around: settings.get_bool("axisymmetric")?,
     };

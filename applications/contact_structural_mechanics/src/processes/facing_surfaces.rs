@@ -53,16 +53,17 @@ impl FacingPair<'_, '_> {
 
 impl FacingSurfaces {
     /// By the keys `contact_model_part`, `assume_master_slave`, `search_factor`, `integration_order` and
-    /// `normal_orientation_threshold`; `slivers` says whether overlaps of next to no size count.
+    /// `normal_orientation_threshold`; `slivers` says whether overlaps of next to no size count, `across` whether facets face each
+    /// other at any distance: else `search_factor` is the reach.
     ///
     /// # Errors
     /// Parts that do not exist or hold no facets, pairs without slaves, numbers out of range.
-    pub fn new(settings: &Settings, part: &mut ModelPart, slivers: bool) -> Result<Self> {
+    pub fn new(settings: &Settings, part: &mut ModelPart, slivers: bool, across: bool) -> Result<Self> {
         let whole: FacingSurfacesKeys = settings.parse()?;
         check_slaves(settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
         let search = SearchSettings {
             factor: settings.get_positive("search_factor")?,
-            distance: SearchDistance::BetweenFacets,
+            distance: if across { SearchDistance::BeyondFirst } else { SearchDistance::BetweenFacets },
             within_step: WithinStep::Lost,
             normal_orientation_threshold: whole.normal_orientation_threshold,
             check: GapCheck::CheckMapping,

@@ -4,6 +4,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::parallel;
 use zelus_core::vector3::{dot, norm, scale, sub};
 
+use super::along_normals::farthest_master;
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles};
 
@@ -34,6 +35,9 @@ pub enum SearchDistance {
     BetweenFacets,
     /// Between their centres: masters much larger than the slave may be left out.
     BetweenCentres,
+    /// Between the boxes, beyond the first masters along the slave's normal: whatever faces the slave is a pair, however far.
+    #[serde(skip)]
+    BeyondFirst,
 }
 
 /// Which pairs that bodies come to within a step are taken in before it ends.
@@ -103,7 +107,11 @@ pub(super) fn among(
     let of_slave = |at: usize| {
         let slave = slaves[at];
         let own = place(slave);
-        let reach = settings.factor * own.radius;
+        let mut reach = settings.factor * own.radius;
+        if settings.distance == SearchDistance::BeyondFirst {
+            let facet = (&interface.facets[slave as usize], own.centre, own.normal);
+            reach += farthest_master(part, interface, facet, (masters, &tree), settings.normal_orientation_threshold);
+        }
         let near = tree.meeting(&own.bounds.grown(reach));
         let found: Vec<Candidate> = near
             .into_iter()
@@ -112,7 +120,7 @@ pub(super) fn among(
             .filter(|(_, other)| !overlapping || own.may_overlap(other))
             .filter_map(|(master, other)| {
                 let within_reach = match settings.distance {
-                    SearchDistance::BetweenFacets => true,
+                    SearchDistance::BetweenFacets | SearchDistance::BeyondFirst => true,
                     SearchDistance::BetweenCentres => norm(sub(own.centre, other.centre)) <= reach,
                 };
                 let meets = within_reach || own.bounds.grown(0.1 * own.radius).meets(&other.bounds);

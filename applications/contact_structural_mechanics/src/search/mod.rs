@@ -1,5 +1,6 @@
 //! Which facets may touch: a bounding-volume tree over the masters, then a filter on each pair.
 
+mod along_normals;
 mod candidates;
 mod direct_check;
 mod inside;

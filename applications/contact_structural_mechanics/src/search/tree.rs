@@ -77,6 +77,11 @@ impl Tree {
         tree
     }
 
+    /// The box around all; `None` around nothing.
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.boxes.iter().copied().reduce(|sum, own| sum.around(&own))
+    }
+
     fn split(&mut self, begin: usize, end: usize) -> usize {
         let first = self.boxes[self.items[begin] as usize];
         let bounds = self.items[begin..end].iter().fold(first, |all, &i| all.around(&self.boxes[i as usize]));
